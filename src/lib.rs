@@ -1,0 +1,2 @@
+//! NovaMind console.
+pub mod world;

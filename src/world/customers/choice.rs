@@ -1,0 +1,141 @@
+//! The first decision: which plan a lead picks, whether an individual takes it, and whether a company is
+//! interested at all (chapter 20 §10, chapter 40 §4).
+
+use super::curve::{Curve, required_quality};
+use crate::world::identifiers::{ByPlan, Plan};
+use crate::world::params::Params;
+use crate::world::product::quality::quota_factor;
+
+/// What is on offer to a lead of one group today, before its own demand and discount.
+#[derive(Debug, Clone, Copy)]
+pub struct Offer {
+    /// List price, dollars a month.
+    pub price: f64,
+    /// Delivered quality (less the service penalty where fidelity asks for it).
+    pub quality: f64,
+    /// Quota, units.
+    pub quota: f64,
+}
+
+/// A lead's choice among the plans.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Choice {
+    /// The plan with the largest surplus, A if none is positive.
+    pub plan: Plan,
+    /// Its price after the lead promotion, dollars a month.
+    pub price: f64,
+    /// Its quality as the lead sees it, before noise.
+    pub quality: f64,
+}
+
+/// Picks the plan with the largest surplus above 0 (ties: the earlier plan); A if there is none.
+///
+/// `demand` is what quotas are compared with; the curve already contains the market's drift once.
+pub fn choose_plan(
+    offers: &ByPlan<Offer>,
+    discount: f64,
+    demand: f64,
+    curve: &Curve,
+    params: &Params,
+) -> Choice {
+    let floor = params.billing.effective_price_min;
+    let candidate = |plan: Plan| {
+        let offer = &offers[plan];
+        let price = (offer.price - discount).max(floor);
+        Choice { plan, price, quality: offer.quality * quota_factor(offer.quota, demand, &params.quality) }
+    };
+    let mut best = (params.participation.lead_min_satisfaction_exclusive, None);
+    for plan in Plan::ALL {
+        let choice = candidate(plan);
+        if choice.price > curve.c_max {
+            continue;
+        }
+        let surplus = choice.quality - required_quality(choice.price, curve, params);
+        if surplus > best.0 {
+            best = (surplus, Some(choice));
+        }
+    }
+    best.1.unwrap_or_else(|| candidate(Plan::A))
+}
+
+/// Whether an individual takes its choice: within the budget, and quality times noise at least as required.
+pub fn accepts(choice: &Choice, noise: f64, curve: &Curve, params: &Params) -> bool {
+    choice.price <= curve.c_max && choice.quality * noise >= required_quality(choice.price, curve, params)
+}
+
+/// Whether a company finds any plan good enough for nothing: no price, no noise.
+pub fn passes_gate(offers: &ByPlan<Offer>, demand: f64, curve: &Curve, params: &Params) -> bool {
+    let required = required_quality(0.0, curve, params);
+    offers.iter().any(|offer| offer.quality * quota_factor(offer.quota, demand, &params.quality) >= required)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::curve::tests::X;
+    use super::*;
+    use crate::world::product::quality::delivered_quality;
+
+    fn offers(
+        shared: f64,
+        prices: [f64; 3],
+        tiers: [u8; 3],
+        quotas: [f64; 3],
+        params: &Params,
+    ) -> ByPlan<Offer> {
+        ByPlan::from_fn(|plan| {
+            let at = plan.index();
+            let multiplier = params.model(tiers[at]).quality_multiplier;
+            let quality = delivered_quality(params.quality.base_product_quality, shared, 0.0, multiplier);
+            Offer { price: prices[at], quality, quota: quotas[at] }
+        })
+    }
+
+    const PRICES: [f64; 3] = [12.0, 25.0, 55.0];
+
+    #[test]
+    fn check_11_of_chapter_20() {
+        let params = Params::shipped();
+        let market = |shared| offers(shared, PRICES, [1, 3, 5], [60.0, 100.0, 1200.0], &params);
+        let weak = choose_plan(&market(0.0), 0.0, 80.0, &X, &params);
+        assert_eq!((weak.plan, weak.price), (Plan::A, 12.0));
+        assert!(!accepts(&weak, 1.0, &X, &params));
+        let good = choose_plan(&market(0.2), 0.0, 80.0, &X, &params);
+        assert_eq!((good.plan, good.price), (Plan::B, 25.0));
+        assert!(accepts(&good, 1.0, &X, &params));
+        assert!(!accepts(&good, 0.8, &X, &params));
+        assert_eq!(choose_plan(&market(0.2), 7.0, 80.0, &X, &params).price, 18.0);
+    }
+
+    #[test]
+    fn check_12_of_chapter_20() {
+        let params = Params::shipped();
+        let market = offers(0.12, PRICES, [1, 3, 5], [1000.0, 100.0, 1200.0], &params);
+        let choice = choose_plan(&market, 0.0, 80.0, &X, &params);
+        assert_eq!(choice.plan, Plan::A);
+        assert!(!accepts(&choice, 1.0, &X, &params));
+        assert!(accepts(&choice, 1.1, &X, &params));
+        let at = |price| {
+            let market = offers(0.4, [price; 3], [4, 1, 1], [1e9; 3], &params);
+            let choice = choose_plan(&market, 0.0, 80.0, &X, &params);
+            accepts(&choice, 1.0, &X, &params)
+        };
+        assert!(at(50.0));
+        assert!(!at(50.01));
+    }
+
+    #[test]
+    fn check_12_of_chapter_40() {
+        let params = Params::shipped();
+        let k = Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
+        for (product, tier, quota, passes) in [
+            (0.6, 3, 1e9, true),
+            (0.55, 3, 1e9, false),
+            (0.6, 3, 4700.0, false),
+            (0.6, 3, 4800.0, true),
+            (0.9, 5, 2000.0, false),
+        ] {
+            let market = offers(product - 0.2, [1.0; 3], [tier; 3], [quota; 3], &params);
+            assert_eq!(passes_gate(&market, 5000.0, &k, &params), passes, "product quality {product}");
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Active subscribers as columns, in blocks of a fixed run of customer numbers.
+//!
+//! A block holds the active ones among customers `first ..= first + BLOCK - 1` of one group, in the order of
+//! their numbers. A daily sweep goes through whole blocks, on any thread; a customer's random word stands at
+//! its fixed place of the block's stream, so nobody's fate shifts another's (chapter 20 §4).
+
+use crate::world::canonical::{Canonical, CanonicalHasher};
+use crate::world::identifiers::Plan;
+
+use super::curve::Curve;
+
+/// Customer numbers per block.
+pub const BLOCK: u32 = 1024;
+
+macro_rules! columns {
+    (
+        $(#[$block_doc:meta])* block $Block:ident,
+        $(#[$row_doc:meta])* row $Row:ident {
+            $($(#[$doc:meta])* $column:ident: $kind:ty,)*
+        }
+    ) => {
+        $(#[$row_doc])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $Row { $($(#[$doc])* pub $column: $kind,)* }
+
+        $(#[$block_doc])*
+        #[derive(Debug, Clone, Default)]
+        pub struct $Block { $($(#[$doc])* pub $column: Vec<$kind>,)* }
+
+        impl $Block {
+            /// Appends a row.
+            pub fn push(&mut self, row: $Row) {
+                $(self.$column.push(row.$column);)*
+            }
+
+            /// Inserts a row at a position.
+            pub fn insert(&mut self, at: usize, row: $Row) {
+                $(self.$column.insert(at, row.$column);)*
+            }
+
+            /// The row at a position.
+            pub fn row(&self, at: usize) -> $Row {
+                $Row { $($column: self.$column[at],)* }
+            }
+
+            /// Drops the rows at these ascending positions; the others keep their order.
+            pub fn remove(&mut self, gone: &[usize]) {
+                if !gone.is_empty() {
+                    $(drop_positions(&mut self.$column, gone);)*
+                }
+            }
+        }
+
+        impl Canonical for $Block {
+            fn feed(&self, hasher: &mut CanonicalHasher) {
+                $(self.$column.feed(hasher);)*
+            }
+        }
+    };
+}
+
+columns! {
+    /// The active subscribers of a run of customer numbers, one vector per column.
+    block Block,
+    /// One active subscriber.
+    row Subscriber {
+        /// Running number within the group, from 1.
+        n: u32,
+        /// Customer number.
+        customer: u32,
+        /// Subscription number.
+        subscription: u32,
+        /// Plan.
+        plan: Plan,
+        /// Billed on days with this remainder by 30.
+        billing_day: u8,
+        /// Whether the first bill was made.
+        billed_once: bool,
+        /// Day the subscription started.
+        start_day: u32,
+        /// Steepness of the lower half of the curve, with its own drift.
+        steepness_left: f64,
+        /// Steepness of the upper half of the curve.
+        steepness_right: f64,
+        /// Budget with its own drift, dollars a month.
+        c_max: f64,
+        /// Floor of quality with its own drift.
+        q_min: f64,
+        /// Ceiling of quality with its own drift.
+        q_max: f64,
+        /// Mean demand, units a day and seat.
+        usage_demand: f64,
+        /// Quality lost to ads of full strength.
+        ads_quality_sensitivity: f64,
+        /// Revenue of ads of full strength, dollars a day and seat.
+        ads_return_sensitivity: f64,
+        /// Seats, which drift for companies; whole seats count.
+        seats: f64,
+        /// Price the discounts are taken from, dollars a month and seat.
+        listed_price: f64,
+        /// Discount in force, dollars a month and seat.
+        promotion: f64,
+        /// Price in force, dollars a month and seat.
+        effective_price: f64,
+        /// Budget remembered at the last bill, dollars a month.
+        effective_c_max: f64,
+        /// Usage of this billing period, units a day for the whole account.
+        usage_rate: f64,
+        /// Units used in this billing period.
+        period_usage: u64,
+        /// Satisfaction, without bounds.
+        satisfaction: f64,
+        /// Relationship, 0..=1.
+        relationship: f64,
+        /// Days an issue has been open, 0 without one.
+        open_issue_days: u32,
+        /// Number of the open issue, 0 without one.
+        issue: u32,
+        /// Quality required at the price in force, before the market's expectations are added.
+        required: f64,
+    }
+}
+
+fn drop_positions<T: Copy>(column: &mut Vec<T>, gone: &[usize]) {
+    let (mut next, mut kept) = (gone.iter().copied().peekable(), gone[0]);
+    for at in gone[0]..column.len() {
+        if next.peek() == Some(&at) {
+            next.next();
+        } else {
+            column[kept] = column[at];
+            kept += 1;
+        }
+    }
+    column.truncate(kept);
+}
+
+impl Block {
+    /// Number of active subscribers.
+    pub fn len(&self) -> usize {
+        self.n.len()
+    }
+
+    /// Whether nobody is active.
+    pub fn is_empty(&self) -> bool {
+        self.n.is_empty()
+    }
+
+    /// Position of the customer with this running number.
+    pub fn position(&self, n: u32) -> Option<usize> {
+        self.n.binary_search(&n).ok()
+    }
+
+    /// Current willingness curve of a row, without the market's expectations.
+    pub fn curve(&self, at: usize) -> Curve {
+        Curve {
+            steepness_left: self.steepness_left[at],
+            steepness_right: self.steepness_right[at],
+            c_max: self.c_max[at],
+            q_min: self.q_min[at],
+            q_max: self.q_max[at],
+        }
+    }
+
+    /// Place of a row in its block's stream of random words.
+    pub fn place(&self, at: usize) -> usize {
+        ((self.n[at] - 1) % BLOCK) as usize
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A subscriber with plain values; tests change what matters to them.
+    pub(crate) fn subscriber(n: u32) -> Subscriber {
+        Subscriber {
+            n,
+            customer: n + 1,
+            subscription: n,
+            plan: Plan::A,
+            billing_day: 1,
+            billed_once: true,
+            start_day: 1,
+            steepness_left: 1.2,
+            steepness_right: 2.8,
+            c_max: 50.0,
+            q_min: 0.1,
+            q_max: 0.55,
+            usage_demand: 80.0,
+            ads_quality_sensitivity: 0.12,
+            ads_return_sensitivity: 0.08,
+            seats: 1.0,
+            listed_price: 12.0,
+            promotion: 0.0,
+            effective_price: 12.0,
+            effective_c_max: 50.0,
+            usage_rate: 80.0,
+            period_usage: 0,
+            satisfaction: 0.5,
+            relationship: 0.5,
+            open_issue_days: 0,
+            issue: 0,
+            required: 0.2,
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn removing_keeps_the_others_in_order(
+            count in 1u32..60,
+            gone in proptest::collection::btree_set(0usize..60, 0..30),
+        ) {
+            let mut block = Block::default();
+            (1..=count).for_each(|n| block.push(subscriber(n)));
+            let gone: Vec<usize> = gone.into_iter().filter(|at| *at < count as usize).collect();
+            let expected: Vec<u32> = (1..=count).filter(|n| !gone.contains(&(*n as usize - 1))).collect();
+            block.remove(&gone);
+            prop_assert_eq!(&block.n, &expected);
+            let customers: Vec<u32> = expected.iter().map(|n| n + 1).collect();
+            prop_assert_eq!(&block.customer, &customers);
+        }
+    }
+
+    #[test]
+    fn rows_come_back_as_they_went_in() {
+        let mut block = Block::default();
+        block.push(subscriber(3));
+        block.insert(0, subscriber(1));
+        assert_eq!((block.row(0), block.row(1)), (subscriber(1), subscriber(3)));
+        assert_eq!((block.position(3), block.position(2)), (Some(1), None));
+        assert_eq!(block.place(1), 2);
+    }
+}

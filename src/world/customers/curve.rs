@@ -1,0 +1,138 @@
+//! The participation curve: how much quality a customer requires at a price (chapter 20 §8).
+
+use crate::world::params::{Params, Participation, RequiredQuality};
+
+/// A customer's willingness curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Curve {
+    /// Steepness of the lower half, 0.2..=6.
+    pub steepness_left: f64,
+    /// Steepness of the upper half, 0.5..=7.
+    pub steepness_right: f64,
+    /// Budget, dollars a month (and seat).
+    pub c_max: f64,
+    /// Quality required for next to nothing.
+    pub q_min: f64,
+    /// Quality required at the budget and above.
+    pub q_max: f64,
+}
+
+impl Curve {
+    /// The curve with expectations and budget moved by the market: q + dq, max(floor, c + dc).
+    pub fn drifted(self, dq: f64, dc: f64, c_max_floor: f64) -> Curve {
+        Curve {
+            q_min: self.q_min + dq,
+            q_max: self.q_max + dq,
+            c_max: (self.c_max + dc).max(c_max_floor),
+            ..self
+        }
+    }
+
+    /// The curve with another budget.
+    pub fn with_budget(self, c_max: f64) -> Curve {
+        Curve { c_max, ..self }
+    }
+}
+
+/// Logistic function with the argument clamped (chapter 20, notation).
+pub fn sigmoid(z: f64, participation: &Participation) -> f64 {
+    1.0 / (1.0 + libm::exp(-z.clamp(participation.sigmoid_input_min, participation.sigmoid_input_max)))
+}
+
+/// Quality required at a price of at least 0, in dollars a month: req(C; sL, sR, c, q_min, q_max).
+///
+/// Above the budget it is q_max. Below, the released form has two logistic halves that jump at half the
+/// budget; the paper's form (`required_quality = "blended"`) blends both sigmoids (chapter 20 §8, §23).
+pub fn required_quality(price: f64, curve: &Curve, params: &Params) -> f64 {
+    let form = &params.participation;
+    if price > curve.c_max {
+        return curve.q_max;
+    }
+    let x = price / curve.c_max;
+    let range = curve.q_max - curve.q_min;
+    let left = || sigmoid(form.curve_gain * curve.steepness_left * (x - form.curve_left_center), form);
+    let right = || sigmoid(form.curve_gain * curve.steepness_right * (x - form.curve_right_center), form);
+    match params.fidelity.required_quality {
+        RequiredQuality::Piecewise => {
+            let half = range / form.curve_half_divisor;
+            if x < form.curve_split {
+                curve.q_min + half * left()
+            } else {
+                curve.q_min + half + half * right()
+            }
+        }
+        RequiredQuality::Blended => {
+            let blend = form.blend_weight * left() + (1.0 - form.blend_weight) * right();
+            curve.q_min + range * blend.clamp(0.0, 1.0)
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// Reference customer X of chapter 20 §25.
+    pub(crate) const X: Curve =
+        Curve { steepness_left: 1.2, steepness_right: 2.8, c_max: 50.0, q_min: 0.1, q_max: 0.55 };
+
+    fn assert_curve(curve: &Curve, expected: &[(f64, f64)], tolerance: f64) {
+        let params = Params::shipped();
+        for &(price, quality) in expected {
+            let required = required_quality(price, curve, &params);
+            assert!((required - quality).abs() < tolerance, "at {price}: {required} instead of {quality}");
+        }
+    }
+
+    #[test]
+    fn check_1_of_chapter_20() {
+        let expected = [
+            (0.0, 0.110670821),
+            (10.0, 0.179727331),
+            (12.5, 0.2125),
+            (20.0, 0.293083510),
+            (24.999999, 0.314329176),
+            (25.0, 0.325204987),
+            (30.0, 0.328324157),
+            (37.5, 0.4375),
+            (45.0, 0.546675843),
+            (50.0, 0.549795013),
+            (50.01, 0.55),
+        ];
+        assert_curve(&X, &expected, 1e-9);
+    }
+
+    #[test]
+    fn check_4_of_chapter_10() {
+        let expected =
+            [(0.0, 0.1106708215), (24.999, 0.3143267387), (25.0, 0.3252049865), (50.0, 0.5497950135)];
+        assert_curve(&X, &expected, 1e-10);
+    }
+
+    #[test]
+    fn check_1_of_chapter_40() {
+        let k = Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
+        let expected = [
+            (0.0, 0.5170680905),
+            (15.0, 0.6125),
+            (29.999999, 0.7079319069),
+            (30.0, 0.7265058915),
+            (45.0, 0.8375),
+            (60.0, 0.9484941085),
+            (60.01, 0.95),
+            (1e6, 0.95),
+            (-10.0, 0.5034351096),
+        ];
+        assert_curve(&k, &expected, 1e-9);
+    }
+
+    #[test]
+    fn the_blended_form_has_no_jump_and_meets_the_ends() {
+        let mut params = Params::shipped();
+        params.fidelity.required_quality = RequiredQuality::Blended;
+        let at = |price| required_quality(price, &X, &params);
+        assert!((at(25.0 + 1e-9) - at(25.0 - 1e-9)).abs() < 1e-6);
+        assert!(at(0.0) > X.q_min && at(50.0) < X.q_max && at(50.01) == X.q_max);
+        assert!((0..100).all(|step| at(f64::from(step) * 0.5) <= at(f64::from(step + 1) * 0.5)));
+    }
+}

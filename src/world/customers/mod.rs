@@ -1,0 +1,182 @@
+//! Who the customers are: how they arise, what they want, and the columns of those who are active.
+
+pub mod choice;
+pub mod columns;
+pub mod curve;
+pub mod persona;
+pub mod traits;
+
+use rayon::prelude::*;
+
+use super::canonical::canonical;
+use super::identifiers::{ByGroup, Group};
+use columns::{BLOCK, Block, Subscriber};
+
+/// The first real customer; number 1 is the market observer, who only owns posts that no customer wrote.
+pub const FIRST_CUSTOMER: u32 = 2;
+
+/// Fewer blocks than this are not worth waking a second thread.
+const PARALLEL_FROM: usize = 8;
+
+/// All customers of a run: the active ones as columns, of the others only where their numbers are.
+#[derive(Debug, Clone)]
+pub struct Customers {
+    /// By group.
+    pub groups: ByGroup<GroupCustomers>,
+    /// Number of the next customer.
+    pub next_customer: u32,
+    /// Number of the next subscription.
+    pub next_subscription: u32,
+    /// Which numbers came when, in order.
+    arrivals: Vec<ArrivalRun>,
+}
+
+/// Customers of one group.
+#[derive(Debug, Clone, Default)]
+pub struct GroupCustomers {
+    /// How many were ever generated.
+    pub created: u32,
+    /// Block k holds the active ones of running numbers k * BLOCK + 1 ..= (k + 1) * BLOCK.
+    pub blocks: Vec<Block>,
+}
+
+/// Customers of one group that came on one day: consecutive numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ArrivalRun {
+    /// Day of arrival.
+    pub day: u32,
+    /// Their group.
+    pub group: Group,
+    /// Customer number of the first.
+    pub first_customer: u32,
+    /// Running number of the first within the group.
+    pub first_n: u32,
+    /// How many.
+    pub count: u32,
+}
+
+canonical! {
+    Customers { groups, next_customer, next_subscription, arrivals }
+    GroupCustomers { created, blocks }
+    ArrivalRun { day, group, first_customer, first_n, count }
+}
+
+impl Default for Customers {
+    fn default() -> Self {
+        Customers {
+            groups: ByGroup::default(),
+            next_customer: FIRST_CUSTOMER,
+            next_subscription: 1,
+            arrivals: Vec::new(),
+        }
+    }
+}
+
+impl GroupCustomers {
+    /// Number of active subscriptions.
+    pub fn active(&self) -> u32 {
+        self.blocks.iter().map(|block| block.len() as u32).sum()
+    }
+
+    /// Adds an active subscriber at the place of its running number.
+    pub fn activate(&mut self, row: Subscriber) {
+        let block = ((row.n - 1) / BLOCK) as usize;
+        if self.blocks.len() <= block {
+            self.blocks.resize_with(block + 1, Block::default);
+        }
+        let block = &mut self.blocks[block];
+        match block.n.binary_search(&row.n) {
+            Err(at) if at == block.len() => block.push(row),
+            Err(at) => block.insert(at, row),
+            Ok(_) => debug_assert!(false, "customer {} is active already", row.customer),
+        }
+    }
+}
+
+impl Customers {
+    /// Active subscriptions by group; an enterprise account counts once.
+    pub fn active(&self) -> ByGroup<u32> {
+        ByGroup::from_fn(|group| self.groups[group].active())
+    }
+
+    /// Records that consecutive customers came, and returns the number of the first.
+    pub fn arrive(&mut self, day: u32, group: Group, count: u32) -> ArrivalRun {
+        let own = &mut self.groups[group];
+        let run =
+            ArrivalRun { day, group, first_customer: self.next_customer, first_n: own.created + 1, count };
+        own.created += count;
+        self.next_customer += count;
+        if count > 0 {
+            self.arrivals.push(run);
+        }
+        run
+    }
+
+    /// Group and running number of a customer, if that number was ever given to one.
+    pub fn find(&self, customer: u32) -> Option<(Group, u32)> {
+        let after = self.arrivals.partition_point(|run| run.first_customer <= customer);
+        let run = self.arrivals[..after].last()?;
+        let offset = customer - run.first_customer;
+        (offset < run.count).then_some((run.group, run.first_n + offset))
+    }
+
+    /// Works through all blocks that hold anybody, on several threads when there are many; the results stand
+    /// in group and block order whatever the number of threads.
+    pub fn sweep<R: Send>(&mut self, work: impl Fn(Group, u32, &mut Block) -> R + Sync) -> Vec<R> {
+        let mut jobs: Vec<(Group, u32, &mut Block)> = Vec::new();
+        for (group, own) in Group::all().zip(&mut self.groups.0) {
+            let blocks = own.blocks.iter_mut().enumerate();
+            jobs.extend(
+                blocks.filter(|(_, block)| !block.is_empty()).map(|(at, block)| (group, at as u32, block)),
+            );
+        }
+        if jobs.len() < PARALLEL_FROM {
+            jobs.into_iter().map(|(group, at, block)| work(group, at, block)).collect()
+        } else {
+            jobs.into_par_iter().map(|(group, at, block)| work(group, at, block)).collect()
+        }
+    }
+
+    /// All blocks that hold anybody, in group and block order.
+    pub fn blocks(&self) -> impl Iterator<Item = (Group, &Block)> {
+        self.groups
+            .pairs()
+            .flat_map(|(group, own)| own.blocks.iter().map(move |block| (group, block)))
+            .filter(|(_, block)| !block.is_empty())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::columns::tests::subscriber;
+    use super::*;
+
+    #[test]
+    fn numbers_are_consecutive_over_groups_and_found_again() {
+        let mut customers = Customers::default();
+        let (s1, e1) = (Group::at(0).expect("S1"), Group::at(3).expect("E1"));
+        customers.arrive(1, s1, 3);
+        customers.arrive(1, e1, 1);
+        customers.arrive(2, s1, 2);
+        assert_eq!(customers.find(1), None);
+        assert_eq!(customers.find(4), Some((s1, 3)));
+        assert_eq!(customers.find(5), Some((e1, 1)));
+        assert_eq!(customers.find(7), Some((s1, 5)));
+        assert_eq!(customers.find(8), None);
+    }
+
+    #[test]
+    fn late_deals_find_their_place_and_sweeps_keep_their_order() {
+        let mut group = GroupCustomers::default();
+        for n in [5, 2000, 3, 1024, 1025] {
+            group.activate(subscriber(n));
+        }
+        assert_eq!(group.active(), 5);
+        assert_eq!(group.blocks[0].n, [3, 5, 1024]);
+        assert_eq!(group.blocks[1].n, [1025, 2000]);
+        let mut customers = Customers::default();
+        customers.groups[Group::at(1).expect("S2")] = group;
+        let seen = customers.sweep(|group, at, block| (group.id(), at, block.len()));
+        assert_eq!(seen, [("S2", 0, 3), ("S2", 1, 2)]);
+    }
+}

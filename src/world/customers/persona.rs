@@ -1,0 +1,42 @@
+//! Picks of a customer's profile: codes only; words are made when a row is written (chapter 10.5).
+
+use crate::world::canonical::{Canonical, CanonicalHasher};
+use crate::world::identifiers::Group;
+use crate::world::params::Params;
+use crate::world::random::Stream;
+
+/// Positions in the word lists of the group's profile, in the order of the draws.
+///
+/// Individuals: industry, role, experience, work style, technical skill, none, none.
+/// Companies: industry, role, technical skill, company size, culture, decision style, primary concern.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PersonaPicks(pub [u8; 7]);
+
+impl Canonical for PersonaPicks {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        hasher.bytes(&self.0);
+    }
+}
+
+impl PersonaPicks {
+    /// Draws one pick per axis.
+    pub fn draw(group: Group, params: &Params, stream: &mut Stream) -> PersonaPicks {
+        let own = &params.personas.group[group.index()];
+        let axes = if group.is_enterprise() {
+            [
+                own.industry.len(),
+                own.role.len(),
+                params.personas.enterprise.tech_savvy.len(),
+                own.company_size.len(),
+                own.culture.len(),
+                own.decision_style.len(),
+                own.primary_concern.len(),
+            ]
+        } else {
+            let common = &params.personas.individual;
+            let (experience, skill) = (common.experience_levels.len(), common.tech_savvy.len());
+            [own.industry.len(), own.role.len(), experience, own.work_style.len(), skill, 0, 0]
+        };
+        PersonaPicks(axes.map(|length| if length == 0 { 0 } else { stream.index(length) as u8 }))
+    }
+}

@@ -1,0 +1,176 @@
+//! What a new customer is like: the draws of chapter 20 §7, from the stream of (group, n).
+//!
+//! The n-th customer of a group has the same traits whatever else happened; only accumulated drift is added
+//! afterwards. The position of every draw in the stream is fixed. Attributes that act nowhere (patience,
+//! negotiation rate, lock-in penalty while contracts last a month) are not drawn at all.
+
+use super::curve::Curve;
+use super::persona::PersonaPicks;
+use crate::world::identifiers::Group;
+use crate::world::params::{GroupParams, Params};
+use crate::world::random::{Part, Stream, Streams};
+
+/// Traits as drawn, before any drift.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Traits {
+    /// Willingness curve.
+    pub curve: Curve,
+    /// Mean demand, units a day (and seat).
+    pub usage_demand: f64,
+    /// Quality lost to ads of full strength.
+    pub ads_quality_sensitivity: f64,
+    /// Revenue of ads of full strength, dollars a day and seat.
+    pub ads_return_sensitivity: f64,
+    /// Seats; 1 for individuals.
+    pub seats: f64,
+    /// How a company negotiates; nothing for individuals.
+    pub negotiator: Option<Negotiator>,
+    /// Picks of the profile.
+    pub persona: PersonaPicks,
+}
+
+/// How a company negotiates (chapter 40 §3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Negotiator {
+    /// Mean reply delay, in days.
+    pub reply_delay_mean: f64,
+    /// Its spread.
+    pub reply_delay_std: f64,
+    /// First bid as a share of the most it would pay, 0.5..=0.95.
+    pub initial_offer_factor: f64,
+    /// Turns it takes part in, at least 2.
+    pub max_negotiation_turns: u32,
+}
+
+/// Traits of the n-th customer of a group; `deal_velocity` is today's macro multiplier of that name.
+pub fn draw_traits(group: Group, n: u32, deal_velocity: f64, params: &Params, streams: &Streams) -> Traits {
+    let mut stream = streams.open(Part::Traits, [group.index() as u64, u64::from(n)]);
+    let (own, bounds) = (params.group(group), &params.customer_generation);
+    let steepness = |exponential: f64, offset: f64, low, high| (exponential + offset).clamp(low, high);
+    let steepness_left = steepness(
+        stream.exponential(bounds.steepness_left_exp_scale),
+        bounds.steepness_left_offset,
+        bounds.steepness_left_min,
+        bounds.steepness_left_max,
+    );
+    let steepness_right = steepness(
+        stream.exponential(bounds.steepness_right_exp_scale),
+        bounds.steepness_right_offset,
+        bounds.steepness_right_min,
+        bounds.steepness_right_max,
+    );
+    let c_max =
+        stream.normal(own.c_max_mean, bounds.c_max_std_multiplier * own.c_max_std).max(bounds.c_max_min);
+    let q_min = stream.normal(own.q_min_mean, own.q_min_std).max(bounds.q_min_min);
+    let q_range = stream.normal(own.q_range_mean, own.q_range_std).max(bounds.q_range_min);
+    let usage_demand =
+        stream.normal(own.usage_demand_mean, own.usage_demand_std).max(bounds.usage_demand_min);
+    let ads_quality_sensitivity = stream
+        .normal(own.ads_quality_sensitivity_mean, own.ads_quality_sensitivity_std)
+        .max(bounds.ads_quality_sensitivity_min);
+    let ads_return_sensitivity = stream
+        .normal(own.ads_return_sensitivity_mean, own.ads_return_sensitivity_std)
+        .max(bounds.ads_return_sensitivity_min);
+    let (seats, negotiator) = if group.is_enterprise() {
+        let (seats, negotiator) = draw_company(own, deal_velocity, params, &mut stream);
+        (seats, Some(negotiator))
+    } else {
+        (1.0, None)
+    };
+    let persona = PersonaPicks::draw(group, params, &mut stream);
+    let curve = Curve { steepness_left, steepness_right, c_max, q_min, q_max: q_min + q_range };
+    Traits {
+        curve,
+        usage_demand,
+        ads_quality_sensitivity,
+        ads_return_sensitivity,
+        seats,
+        negotiator,
+        persona,
+    }
+}
+
+fn draw_company(
+    own: &GroupParams,
+    deal_velocity: f64,
+    params: &Params,
+    stream: &mut Stream,
+) -> (f64, Negotiator) {
+    let (bounds, sales) = (&params.customer_generation, &params.enterprise);
+    let expected = "enterprise groups are complete: checked on load";
+    let (fewest, most) = (own.seat_count_min.expect(expected), own.seat_count_max.expect(expected));
+    let (delay_mean, delay_std) =
+        (own.reply_delay_mean.expect(expected), own.reply_delay_std.expect(expected));
+    let turns_mean = own.max_negotiation_turns_mean.expect(expected);
+    let turns_std = own.max_negotiation_turns_std.expect(expected);
+    let velocity = if deal_velocity > 0.0 { deal_velocity } else { 1.0 };
+    let seats = f64::from(stream.integer(fewest, most));
+    let reply_delay_mean = stream
+        .normal(delay_mean / velocity, bounds.reply_delay_mean_noise_std_factor * delay_std)
+        .max(bounds.reply_delay_mean_min);
+    let reply_delay_std = stream
+        .normal(delay_std, bounds.reply_delay_std_noise_std_factor * delay_std)
+        .max(bounds.reply_delay_std_min);
+    let initial_offer_factor = stream
+        .normal(sales.enterprise_initial_offer_factor_mean, sales.enterprise_initial_offer_factor_std)
+        .clamp(bounds.initial_offer_factor_min, bounds.initial_offer_factor_max);
+    let turns = stream.normal(turns_mean, turns_std).round_ties_even();
+    let max_negotiation_turns = turns.max(f64::from(bounds.max_negotiation_turns_min)) as u32;
+    (seats, Negotiator { reply_delay_mean, reply_delay_std, initial_offer_factor, max_negotiation_turns })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(id: &str, count: u32, deal_velocity: f64) -> Vec<Traits> {
+        let (params, streams) = (Params::shipped(), Streams::new(7));
+        let group = Group::parse(id).expect("a group");
+        (1..=count).map(|n| draw_traits(group, n, deal_velocity, &params, &streams)).collect()
+    }
+
+    fn assert_moments(name: &str, values: impl Iterator<Item = f64> + Clone, mean: f64, std: f64) {
+        let count = values.clone().count() as f64;
+        let own_mean = values.clone().sum::<f64>() / count;
+        let own_std =
+            (values.map(|value| (value - own_mean) * (value - own_mean)).sum::<f64>() / count).sqrt();
+        assert!((own_mean - mean).abs() < 4.0 * std / count.sqrt() + 0.002 * mean, "{name}: mean {own_mean}");
+        assert!((own_std / std - 1.0).abs() < 0.02, "{name}: spread {own_std}");
+    }
+
+    fn share(values: &[Traits], holds: impl Fn(&Traits) -> bool) -> f64 {
+        values.iter().filter(|traits| holds(traits)).count() as f64 / values.len() as f64
+    }
+
+    #[test]
+    fn individuals_are_distributed_as_chapter_20_measured() {
+        let drawn = sample("S1", 60_000, 1.0);
+        assert_moments("steepness_left", drawn.iter().map(|t| t.curve.steepness_left), 1.202, 0.991);
+        assert_moments("steepness_right", drawn.iter().map(|t| t.curve.steepness_right), 2.713, 1.695);
+        assert_moments("c_max", drawn.iter().map(|t| t.curve.c_max), 52.19, 28.46);
+        assert_moments("usage_demand", drawn.iter().map(|t| t.usage_demand), 81.41, 47.72);
+        assert!((share(&drawn, |t| t.curve.c_max == 15.0) - 0.140).abs() < 0.005);
+        assert!((share(&drawn, |t| t.usage_demand == 1.0) - 0.057).abs() < 0.004);
+        assert!(drawn.iter().all(|t| t.seats == 1.0 && t.negotiator.is_none()));
+    }
+
+    #[test]
+    fn companies_are_distributed_as_chapter_20_measured() {
+        let drawn = sample("E1", 40_000, 0.9);
+        assert_moments("c_max", drawn.iter().map(|t| t.curve.c_max), 55.87, 25.87);
+        assert_moments("seats", drawn.iter().map(|t| t.seats), 275.7, 130.6);
+        assert!((share(&drawn, |t| t.curve.c_max == 15.0) - 0.074).abs() < 0.005);
+        let negotiators = || drawn.iter().filter_map(|t| t.negotiator);
+        assert_moments("turns", negotiators().map(|n| f64::from(n.max_negotiation_turns)), 6.01, 1.99);
+        assert_moments("delay", negotiators().map(|n| n.reply_delay_mean), 5.558, 0.999);
+        assert!(drawn.iter().all(|t| (50.0..=500.0).contains(&t.seats)));
+    }
+
+    #[test]
+    fn the_nth_customer_does_not_depend_on_the_others() {
+        let ten = sample("E2", 10, 1.0);
+        let (params, streams) = (Params::shipped(), Streams::new(7));
+        let group = Group::parse("E2").expect("a group");
+        assert_eq!(draw_traits(group, 7, 1.0, &params, &streams), ten[6]);
+    }
+}

@@ -1,0 +1,338 @@
+//! A day, as a list: read [`step_day`] from top to bottom (specification, chapter 20 §5).
+
+use std::collections::BTreeSet;
+
+use super::customers::Customers;
+use super::events::{Category, DayFigures, Facts, LedgerEntry, LedgerNote};
+use super::finance::{Finance, pay_running_costs};
+use super::identifiers::{ByGroup, ByPlan, Group, Plan};
+use super::market::drift::Expectation;
+use super::market::economy::Dimension;
+use super::market::leads::LeadFactors;
+use super::market::{arrivals, competitors, drift, economy, reputation, surges, yields};
+use super::params::Params;
+use super::product::ads::AdLoad;
+use super::product::quality::{TenureTable, delivered_quality, service_penalty};
+use super::product::{ads, development, research, service, usage};
+use super::random::Streams;
+use super::retention::{billing, issues, refresh_block, renewal, satisfaction};
+use super::settings::CoreSettings;
+use super::state::World;
+
+/// What is frozen in the morning for the whole day: today's improvements, finished research, drift and rivals
+/// reach individuals tomorrow.
+#[derive(Debug, Clone)]
+pub struct Morning {
+    /// Day.
+    pub day: u32,
+    /// Settings in force.
+    pub core: CoreSettings,
+    /// Factor of the weekday.
+    pub weekday: f64,
+    /// Factor of the day of the month.
+    pub month_day: f64,
+    /// Quotas in units.
+    pub quotas: ByPlan<f64>,
+    /// Quality multiplier of each plan's model.
+    pub multipliers: ByPlan<f64>,
+    /// Product quality by group before the multiplier.
+    pub product: ByGroup<f64>,
+    /// What the market adds to curves.
+    pub expectations: ByGroup<Expectation>,
+    /// Active subscriptions.
+    pub subscribers: ByGroup<u32>,
+}
+
+impl Morning {
+    /// The morning of the world's present day.
+    pub fn of(world: &World, params: &Params) -> Morning {
+        let core = world.settings.core;
+        Morning {
+            day: world.day,
+            core,
+            weekday: params.calendar.weekly[(world.day % 7) as usize],
+            month_day: params.calendar.monthly[(world.day % 30) as usize],
+            quotas: ByPlan::from_fn(|plan| core.quotas[plan] as f64),
+            multipliers: ByPlan::from_fn(|plan| params.model(core.tiers[plan]).quality_multiplier),
+            product: ByGroup::from_fn(|group| world.product.quality(group, params)),
+            expectations: ByGroup::from_fn(|group| world.market.drift.expectation(group)),
+            subscribers: world.customers.active(),
+        }
+    }
+
+    /// Quality delivered to a group on a plan, before anything today's service does to it.
+    pub fn delivered(&self, group: Group, plan: Plan) -> f64 {
+        delivered_quality(self.product[group], 0.0, 0.0, self.multipliers[plan])
+    }
+}
+
+/// What the player never sees of a day; read by the x-ray and by the comparison with reference figures.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct DayTrace {
+    /// Factors of today's leads.
+    pub leads: ByGroup<LeadFactors>,
+}
+
+/// Simulates one day. Afterwards `facts` holds what happened.
+pub fn step_day(
+    world: &mut World,
+    params: &Params,
+    streams: &Streams,
+    facts: &mut Facts,
+) -> (DayFigures, DayTrace) {
+    world.day += 1;
+    let (day, total_days) = (world.day, world.total_days);
+    facts.begin(day);
+
+    // The morning: what stays as it is for the whole day.
+    surges::draw_week(day, total_days, &mut world.market.surges, params, streams);
+    let morning = Morning::of(world, params);
+    let World { settings, finance, product, customers, issue_desk, market, enterprise, .. } = world;
+    if drift::is_drift_day(day - 1, &params.drift) {
+        refresh_requirements(customers, &morning, params);
+    }
+
+    // The product is used, and holds up or not.
+    let metered = usage::meter(customers, &morning, params, facts);
+    let service = service::observe(metered.total, &morning, params, streams, facts);
+    research::complete(day, product, facts);
+
+    // The market moves.
+    let seats = ByGroup::from_fn(|group| market.economy.multiplier(group, Dimension::SeatCount, params));
+    if drift::apply(day, &mut market.drift, customers, &seats, params) {
+        refresh_requirements(customers, &morning, params);
+    }
+    yields::vary(day, &mut market.yields, params, streams);
+    economy::step(day, &mut market.economy, params, streams, facts);
+    competitors::react(day, total_days, &mut market.competitors, product, &mut market.drift, params, streams);
+    development::improve(day, product, settings, params, streams);
+
+    // Subscribers call for help, feel, decide; companies wait for answers.
+    let ads = AdLoad::of(&settings.ads_strength, params);
+    let tenure = TenureTable::up_to(day, &params.quality);
+    let penalty = service_penalty(service.overload, service.outage, &params.quality);
+    let calls = issues::read_calls(day, service.outage, customers, params, streams);
+    let felt =
+        satisfaction::Conditions { morning: &morning, service: &service, ads: &ads, tenure: &tenure, params };
+    let moods = satisfaction::update(customers, &felt);
+    issues::settle(day, service.outage, calls, settings, customers, issue_desk, params, streams, facts);
+    let judgement = renewal::Judgement {
+        morning: &morning,
+        settings,
+        service_penalty: penalty,
+        willingness_to_pay: ByGroup::from_fn(|group| {
+            market.economy.multiplier(group, Dimension::WillingnessToPay, params)
+        }),
+        ads: &ads,
+        tenure: &tenure,
+        params,
+        streams,
+    };
+    let renewals = renewal::decide(customers, &mut market.reputation, &judgement, facts);
+    enterprise.time_out(day, params, facts);
+    let knowledge = market.knowledge;
+    reputation::contribute(&mut market.reputation, &moods, |group| knowledge[group].level >= 1, params);
+
+    // New customers come.
+    let coming =
+        arrivals::Arrivals { morning: &morning, settings, market, service_penalty: penalty, params, streams };
+    let factors = arrivals::expect(&coming, &customers.active());
+    let leads = arrivals::arrive(&coming, &factors, customers, enterprise, facts);
+    finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;
+
+    // Money changes hands.
+    let suspended = BTreeSet::new();
+    let bill = billing::Terms { morning: &morning, settings, suspended: &suspended, params, streams };
+    let received = billing::collect(customers, &bill, facts);
+    finance.cash += received;
+    let costs = pay_running_costs(finance, &metered, &morning, settings, params, facts);
+    earn_from_ads(customers, &ads, finance, facts);
+
+    let figures = DayFigures {
+        day,
+        total_usage: service.total_usage,
+        overload: service.overload,
+        outage: service.outage,
+        downtime_minutes: service.downtime_minutes,
+        p95_ms: service.p95_ms,
+        error_rate: service.error_rate,
+        new_leads: leads.all,
+        new_individual_leads: leads.individuals,
+        new_enterprise_leads: leads.companies,
+        new_individual_subscribers: leads.subscribed,
+        new_enterprise_seats: 0,
+        cancellations: renewals.cancellations,
+        upgrades: renewals.upgrades,
+        downgrades: renewals.downgrades,
+        payments_received: received,
+        total_costs: costs,
+        ..closing_figures(world)
+    };
+    (figures, DayTrace { leads: factors })
+}
+
+/// Recomputes what everybody requires, after the group's budget drift or their own curve moved.
+fn refresh_requirements(customers: &mut Customers, morning: &Morning, params: &Params) {
+    customers.sweep(|group, _, block| refresh_block(group, block, morning, params));
+}
+
+/// Books the ad revenue of the day, if there is any.
+fn earn_from_ads(customers: &mut Customers, ads: &AdLoad<'_>, finance: &mut Finance, facts: &mut Facts) {
+    let revenue = ads::earn(customers, ads, facts);
+    if revenue > 0.0 {
+        let note = LedgerNote::Subscribers(customers.active().iter().sum());
+        finance.book(LedgerEntry { category: Category::AdRevenue, amount: revenue, note }, facts);
+    }
+}
+
+/// Cash, recurring revenue and stocks as they stand.
+pub fn closing_figures(world: &World) -> DayFigures {
+    let (mut mrr, mut individual_subscribers, mut enterprise_seats) = (0.0, 0, 0);
+    for (group, block) in world.customers.blocks() {
+        if group.is_enterprise() {
+            let seats = || block.seats.iter().map(|seats| seats.trunc());
+            mrr += block.effective_price.iter().zip(seats()).map(|(price, seats)| price * seats).sum::<f64>();
+            enterprise_seats += seats().sum::<f64>() as u32;
+        } else {
+            mrr += block.effective_price.iter().sum::<f64>();
+            individual_subscribers += block.len() as u32;
+        }
+    }
+    DayFigures {
+        day: world.day,
+        cash: world.finance.cash,
+        mrr,
+        individual_subscribers,
+        enterprise_seats,
+        ..DayFigures::default()
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::world::settings::Settings;
+
+    /// A morning with plain values; tests change what matters to them.
+    pub(crate) fn morning(day: u32) -> Morning {
+        let params = Params::shipped();
+        Morning {
+            day,
+            core: Settings::opening(&params).core,
+            weekday: params.calendar.weekly[(day % 7) as usize],
+            month_day: params.calendar.monthly[(day % 30) as usize],
+            quotas: ByPlan([0.0; 3]),
+            multipliers: ByPlan([0.6; 3]),
+            product: ByGroup::from_fn(|_| 0.2),
+            expectations: ByGroup::default(),
+            subscribers: ByGroup::default(),
+        }
+    }
+
+    fn run(cash: f64, days: u32, prepare: impl Fn(&mut World)) -> Vec<DayFigures> {
+        let (params, streams) = (Params::shipped(), Streams::new(42));
+        let mut facts = Facts::default();
+        let mut world = World::open(500, cash, &params, &mut facts);
+        prepare(&mut world);
+        (0..days).map(|_| step_day(&mut world, &params, &streams, &mut facts).0).collect()
+    }
+
+    #[test]
+    fn check_20_of_chapter_20_an_idle_company_pays_85_a_day() {
+        let days = run(1_000_000.0, 3, |_| {});
+        assert_eq!((days[0].total_costs, days[0].cash), (85.0, 999_915.0));
+        assert_eq!(days[2].cash, 999_745.0);
+        assert_eq!(run(100.0, 2, |_| {})[1].cash, -70.0);
+        assert_eq!(run(85.0, 1, |_| {})[0].cash, 0.0);
+    }
+
+    #[test]
+    fn check_9_of_chapter_10_the_calendar() {
+        for (day, weekday, month_day) in [
+            (1, 1.1, 1.15),
+            (2, 1.15, 1.15),
+            (5, 0.6, 1.0),
+            (7, 1.0, 1.0),
+            (27, 0.6, 1.1),
+            (29, 1.1, 1.1),
+            (30, 1.15, 1.15),
+            (60, 1.0, 1.15),
+        ] {
+            let morning = morning(day);
+            assert_eq!((morning.weekday, morning.month_day), (weekday, month_day), "day {day}");
+        }
+    }
+
+    /// Fixed costs and row counts of checks 7 and 9 of chapter 60 (policy P).
+    #[test]
+    fn a_week_of_policy_p_books_its_fixed_costs() {
+        let (params, streams) = (Params::shipped(), Streams::new(42));
+        let mut facts = Facts::default();
+        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        policy_p(&mut world);
+        let mut booked = std::collections::BTreeMap::new();
+        for _ in 0..7 {
+            step_day(&mut world, &params, &streams, &mut facts);
+            for entry in &facts.ledger {
+                let sum = booked.entry(entry.category.id()).or_insert((0, 0.0));
+                *sum = (sum.0 + 1, sum.1 + entry.amount);
+            }
+        }
+        assert_eq!(booked["advertising"], (7, -14_000.0));
+        assert_eq!(booked["capacity"], (7, -595.0));
+        assert_eq!(booked["development"], (14, -33_600.0));
+        assert_eq!(booked["operations"], (7, -2_100.0));
+        assert_eq!(booked["compute"].0, 7);
+    }
+
+    pub(crate) fn policy_p(world: &mut World) {
+        let s1 = Group::at(0).expect("S1");
+        let core = &mut world.settings.core;
+        core.prices = ByPlan([9.0, 18.0, 40.0]);
+        core.tiers = ByPlan([1, 2, 3]);
+        core.quotas = ByPlan([60_000, 250_000, 1_200_000]);
+        core.operations = 300.0;
+        core.development = 800.0;
+        let channel = crate::world::identifiers::Channel::SocialMedia;
+        world.settings.targeted_ads.targeted_spend.insert(channel, [(s1, 2000.0)].into_iter().collect());
+        world.settings.targeted_development.targeted_spend.insert(s1, 4000.0);
+    }
+
+    #[test]
+    fn cash_is_the_sum_of_the_ledger_and_counts_agree_with_the_columns() {
+        let (params, streams) = (Params::shipped(), Streams::new(7));
+        let mut facts = Facts::default();
+        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        policy_p(&mut world);
+        let (mut ledger, mut opened, mut ended) = (1_000_000.0, 0, 0);
+        for _ in 0..120 {
+            let (figures, _) = step_day(&mut world, &params, &streams, &mut facts);
+            ledger -= params.leads.lead_acquisition_cost * facts.arrivals.len() as f64;
+            ledger += facts.payments.iter().map(|payment| payment.amount).sum::<f64>();
+            ledger += facts.ledger.iter().map(|entry| entry.amount).sum::<f64>();
+            opened += facts
+                .openings
+                .iter()
+                .filter(|o| o.status == crate::world::events::SubscriptionStatus::Subscribed)
+                .count();
+            ended += facts.endings.iter().filter(|e| !e.group.is_enterprise()).count();
+            assert!((figures.cash - ledger).abs() < 1e-6);
+            assert_eq!(figures.individual_subscribers as usize, opened - ended);
+            assert_eq!(
+                facts.usage.iter().map(|rows| rows.units.len()).sum::<usize>()
+                    + facts
+                        .openings
+                        .iter()
+                        .filter(|o| o.status == crate::world::events::SubscriptionStatus::Subscribed)
+                        .count()
+                    - ended_today(&facts),
+                opened - ended
+            );
+        }
+        assert!(opened > 1000 && ended > 100);
+    }
+
+    fn ended_today(facts: &Facts) -> usize {
+        facts.endings.iter().filter(|ending| !ending.group.is_enterprise()).count()
+    }
+}

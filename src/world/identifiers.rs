@@ -1,0 +1,263 @@
+//! Names of the things every part of the house speaks about: groups, plans, channels, months and weeks.
+//!
+//! These are plain identifiers without behaviour of the world, so that the console, the policies and the
+//! tools may use them without reaching into the simulator (specification, chapter 90 §1).
+
+use std::fmt;
+use std::ops::{Index, IndexMut};
+
+use serde::{Deserialize, Serialize};
+
+/// One of the 26 customer groups, as its position in the fixed group order of chapter 10.1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Group(u8);
+
+const GROUP_IDS: [&str; Group::COUNT] = [
+    "S1", "S2", "S3", "E1", "E2", "E3", "D_S01", "D_S02", "D_S03", "D_S04", "D_S05", "D_S06", "D_S07",
+    "D_S08", "D_S09", "D_S10", "D_E01", "D_E02", "D_E03", "D_E04", "D_E05", "D_E06", "D_E07", "D_E08",
+    "D_E09", "D_E10",
+];
+
+impl Group {
+    /// Number of groups.
+    pub const COUNT: usize = 26;
+
+    /// All groups in their fixed order: S1 S2 S3 E1 E2 E3 D_S01..D_S10 D_E01..D_E10.
+    pub fn all() -> impl DoubleEndedIterator<Item = Group> + ExactSizeIterator + Clone {
+        (0..Self::COUNT as u8).map(Group)
+    }
+
+    /// The group at a position of the fixed order, if there is one.
+    pub fn at(position: usize) -> Option<Group> {
+        (position < Self::COUNT).then_some(Group(position as u8))
+    }
+
+    /// The group with this identifier; case counts.
+    pub fn parse(id: &str) -> Option<Group> {
+        GROUP_IDS.iter().position(|known| *known == id).and_then(Group::at)
+    }
+
+    /// Identifier as tools and tables write it.
+    pub fn id(self) -> &'static str {
+        GROUP_IDS[self.index()]
+    }
+
+    /// Position in the fixed order, 0..26.
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+
+    /// Companies negotiate; individuals decide alone.
+    pub fn is_enterprise(self) -> bool {
+        matches!(self.0, 3..=5 | 16..=25)
+    }
+
+    /// The six initial groups are known from day 0; the others have to be discovered.
+    pub fn initially_known(self) -> bool {
+        self.0 < 6
+    }
+}
+
+impl fmt::Display for Group {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.id())
+    }
+}
+
+/// One of the three plans on sale, in evaluation order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(u8)]
+pub enum Plan {
+    /// The first plan in every comparison.
+    A,
+    /// The second plan.
+    B,
+    /// The third plan.
+    C,
+}
+
+impl Plan {
+    /// All plans in evaluation order.
+    pub const ALL: [Plan; 3] = [Plan::A, Plan::B, Plan::C];
+
+    /// The plan with this letter; case counts.
+    pub fn parse(id: &str) -> Option<Plan> {
+        Plan::ALL.into_iter().find(|plan| plan.id() == id)
+    }
+
+    /// Letter of the plan.
+    pub fn id(self) -> &'static str {
+        ["A", "B", "C"][self.index()]
+    }
+
+    /// Position in evaluation order, 0..3.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The plan at a position of the evaluation order.
+    pub fn at(position: usize) -> Option<Plan> {
+        Plan::ALL.get(position).copied()
+    }
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.id())
+    }
+}
+
+/// One of the five advertising channels, in channel order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(u8)]
+pub enum Channel {
+    /// Paid feeds of consumer networks.
+    SocialMedia,
+    /// Paid results in web search.
+    SearchAds,
+    /// Ads on the business network.
+    Linkedin,
+    /// Articles and guides.
+    ContentMarketing,
+    /// Rewards for recommending customers.
+    ReferralProgram,
+}
+
+impl Channel {
+    /// All channels in channel order (chapter 10.1).
+    pub const ALL: [Channel; 5] = [
+        Channel::SocialMedia,
+        Channel::SearchAds,
+        Channel::Linkedin,
+        Channel::ContentMarketing,
+        Channel::ReferralProgram,
+    ];
+
+    /// The channel with this identifier; case counts.
+    pub fn parse(id: &str) -> Option<Channel> {
+        Channel::ALL.into_iter().find(|channel| channel.id() == id)
+    }
+
+    /// Identifier as tools and tables write it.
+    pub fn id(self) -> &'static str {
+        ["social_media", "search_ads", "linkedin", "content_marketing", "referral_program"][self.index()]
+    }
+
+    /// Position in channel order, 0..5.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The channel at a position of the channel order.
+    pub fn at(position: usize) -> Option<Channel> {
+        Channel::ALL.get(position).copied()
+    }
+}
+
+impl fmt::Display for Channel {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.id())
+    }
+}
+
+macro_rules! serde_by_id {
+    ($($kind:ident: $what:literal),*) => {$(
+        impl Serialize for $kind {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str(self.id())
+            }
+        }
+        impl<'de> Deserialize<'de> for $kind {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let id = String::deserialize(deserializer)?;
+                $kind::parse(&id).ok_or_else(|| serde::de::Error::custom(format!("unknown {} {id}", $what)))
+            }
+        }
+    )*};
+}
+serde_by_id!(Group: "group", Plan: "plan", Channel: "channel");
+
+macro_rules! table_by {
+    ($(#[$doc:meta])* $name:ident, $key:ident, $count:expr) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub struct $name<T>(pub [T; $count]);
+
+        impl<T> $name<T> {
+            /// A table with one computed value per key.
+            pub fn from_fn(mut value: impl FnMut($key) -> T) -> Self {
+                $name(std::array::from_fn(|position| value($key::at(position).expect("position is in range"))))
+            }
+
+            /// Values in order.
+            pub fn iter(&self) -> std::slice::Iter<'_, T> {
+                self.0.iter()
+            }
+
+            /// Keys and values in order.
+            pub fn pairs(&self) -> impl Iterator<Item = ($key, &T)> {
+                self.0.iter().enumerate().map(|(at, value)| ($key::at(at).expect("position is in range"), value))
+            }
+        }
+
+        impl<T: Default> Default for $name<T> {
+            fn default() -> Self {
+                Self::from_fn(|_| T::default())
+            }
+        }
+
+        impl<T> Index<$key> for $name<T> {
+            type Output = T;
+            fn index(&self, key: $key) -> &T {
+                &self.0[key.index()]
+            }
+        }
+
+        impl<T> IndexMut<$key> for $name<T> {
+            fn index_mut(&mut self, key: $key) -> &mut T {
+                &mut self.0[key.index()]
+            }
+        }
+    };
+}
+table_by!(
+    /// One value for each of the 26 groups.
+    ByGroup, Group, Group::COUNT
+);
+table_by!(
+    /// One value for each of the three plans.
+    ByPlan, Plan, 3
+);
+table_by!(
+    /// One value for each of the five advertising channels.
+    ByChannel, Channel, 5
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_keep_the_order_of_chapter_10() {
+        let ids: Vec<_> = Group::all().map(Group::id).collect();
+        assert_eq!(ids[..7], ["S1", "S2", "S3", "E1", "E2", "E3", "D_S01"]);
+        assert_eq!(ids[25], "D_E10");
+        assert!(Group::all().all(|group| Group::parse(group.id()) == Some(group)));
+        assert_eq!(Group::parse("s1"), None);
+    }
+
+    #[test]
+    fn segments_follow_from_the_identifier() {
+        for group in Group::all() {
+            assert_eq!(group.is_enterprise(), group.id().trim_start_matches("D_").starts_with('E'));
+            assert_eq!(group.initially_known(), !group.id().starts_with("D_"));
+        }
+    }
+
+    #[test]
+    fn plans_and_channels_round_trip() {
+        assert!(Plan::ALL.into_iter().all(|plan| Plan::parse(plan.id()) == Some(plan)));
+        assert!(Channel::ALL.into_iter().all(|channel| Channel::parse(channel.id()) == Some(channel)));
+        assert_eq!(Channel::parse("content_marketing").map(Channel::index), Some(3));
+    }
+}

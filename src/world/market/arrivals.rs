@@ -1,0 +1,343 @@
+//! The leads of a day become customers, prospects, or nothing (chapter 20 §9, §10, step 19).
+
+use rayon::prelude::*;
+
+use super::leads::{LeadContext, LeadFactors, lead_factors};
+use crate::world::customers::choice::{Choice, Offer, accepts, choose_plan, passes_gate};
+use crate::world::customers::columns::Subscriber;
+use crate::world::customers::curve::Curve;
+use crate::world::customers::traits::{Traits, draw_traits};
+use crate::world::customers::{ArrivalRun, Customers};
+use crate::world::day::Morning;
+use crate::world::enterprise::Enterprise;
+use crate::world::events::{Arrival, ChannelLeads, Facts, Source, SubscriptionOpened, SubscriptionStatus};
+use crate::world::identifiers::{ByGroup, ByPlan, Group};
+use crate::world::market::Market;
+use crate::world::market::economy::Dimension;
+use crate::world::params::{DriftCounted, Params, ServicePenalty};
+use crate::world::product::quality::quota_demand;
+use crate::world::random::{Part, Streams};
+use crate::world::retention::refresh_required;
+use crate::world::retention::renewal::ongoing_discount;
+use crate::world::settings::Settings;
+
+/// What came of the leads of a day.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LeadCounts {
+    /// All leads.
+    pub all: u32,
+    /// Individuals.
+    pub individuals: u32,
+    /// Companies that opened a thread.
+    pub companies: u32,
+    /// Individuals who signed up.
+    pub subscribed: u32,
+}
+
+/// What the arrivals of a day share.
+pub struct Arrivals<'a> {
+    /// Values frozen this morning.
+    pub morning: &'a Morning,
+    /// Settings of today.
+    pub settings: &'a Settings,
+    /// The market, after today's changes.
+    pub market: &'a Market,
+    /// Quality lost to today's service, where fidelity makes it count here.
+    pub service_penalty: f64,
+    /// Parameters.
+    pub params: &'a Params,
+    /// Random streams.
+    pub streams: &'a Streams,
+}
+
+struct Lead {
+    traits: Traits,
+    /// The curve with today's expectations, counted once.
+    curve: Curve,
+    source: Source,
+    outcome: Outcome,
+}
+
+enum Outcome {
+    Subscribes { choice: Choice, discount: f64 },
+    Lost { choice: Choice, discount: f64 },
+    Prospect,
+    GatedOut,
+}
+
+/// Number and factors of today's leads, group by group; undiscovered groups bring none.
+pub fn expect(arrivals: &Arrivals<'_>, subscribers: &ByGroup<u32>) -> ByGroup<LeadFactors> {
+    let &Arrivals { morning, settings, market, params, .. } = arrivals;
+    let context = LeadContext {
+        day: morning.day,
+        calendar: morning.weekday * morning.month_day,
+        market,
+        subscribers,
+        ads: &settings.targeted_ads,
+        params,
+    };
+    ByGroup::from_fn(|group| {
+        if market.is_known(group) { lead_factors(group, &context) } else { LeadFactors::default() }
+    })
+}
+
+/// Lets the leads of the day come. Subscriptions are numbered subscribers first, then lost leads, then
+/// companies, each in the order of their customers.
+pub fn arrive(
+    arrivals: &Arrivals<'_>,
+    factors: &ByGroup<LeadFactors>,
+    customers: &mut Customers,
+    enterprise: &mut Enterprise,
+    facts: &mut Facts,
+) -> LeadCounts {
+    let mut counts = LeadCounts::default();
+    let mut came: Vec<(ArrivalRun, Vec<Lead>)> = Vec::new();
+    for group in Group::all() {
+        let keys = [u64::from(arrivals.morning.day), group.index() as u64];
+        let expected = factors[group].expected();
+        let number = arrivals.streams.open(Part::LeadCount, keys).poisson(expected) as u32;
+        if number > 0 {
+            let run = customers.arrive(arrivals.morning.day, group, number);
+            came.push((run, evaluate(arrivals, &factors[group], &run)));
+        }
+    }
+    record_arrivals(&came, &mut counts, facts);
+    record_channels(arrivals, &came, facts);
+    open_subscriptions(arrivals, &came, customers, facts, &mut counts);
+    open_prospects(arrivals, came, customers, enterprise, facts, &mut counts);
+    counts
+}
+
+fn evaluate(arrivals: &Arrivals<'_>, factors: &LeadFactors, run: &ArrivalRun) -> Vec<Lead> {
+    let offers = offers(arrivals, run.group);
+    let numbers = run.first_n..run.first_n + run.count;
+    let lead = |n: u32| evaluate_lead(arrivals, factors, &offers, run.group, n);
+    if run.count < 64 {
+        numbers.map(lead).collect()
+    } else {
+        numbers.into_par_iter().with_min_len(32).map(lead).collect()
+    }
+}
+
+fn offers(arrivals: &Arrivals<'_>, group: Group) -> ByPlan<Offer> {
+    let &Arrivals { morning, params, .. } = arrivals;
+    let penalty = match params.fidelity.service_penalty {
+        ServicePenalty::Satisfaction => 0.0,
+        ServicePenalty::Everywhere => arrivals.service_penalty,
+    };
+    ByPlan::from_fn(|plan| Offer {
+        price: morning.core.prices[plan],
+        quality: morning.delivered(group, plan) - penalty,
+        quota: morning.quotas[plan],
+    })
+}
+
+fn evaluate_lead(
+    arrivals: &Arrivals<'_>,
+    factors: &LeadFactors,
+    offers: &ByPlan<Offer>,
+    group: Group,
+    n: u32,
+) -> Lead {
+    let &Arrivals { morning, settings, market, params, streams, .. } = arrivals;
+    let velocity = market.economy.multiplier(group, Dimension::DealVelocity, params);
+    let traits = draw_traits(group, n, velocity, params, streams);
+    let expectation = morning.expectations[group];
+    let floor = params.customer_generation.c_max_min;
+    let curve = traits.curve.drifted(expectation.quality, expectation.c_max, floor);
+    let keys = [group.index() as u64, u64::from(n)];
+    let source = factors.source(streams.open(Part::LeadSource, keys).uniform());
+    let rate = traits.usage_demand * traits.seats;
+    let demand = quota_demand(rate, rate, params);
+    let outcome = if group.is_enterprise() {
+        if passes_gate(offers, demand, &curve, params) { Outcome::Prospect } else { Outcome::GatedOut }
+    } else {
+        let discount =
+            settings.lead_promotion.sum(group, source.channel()).max(params.promotions.lead_promotion_min);
+        let choice = choose_plan(offers, discount, demand, &curve, params);
+        let quality = &params.quality;
+        let noise = streams
+            .open(Part::LeadNoise, keys)
+            .between(quality.initial_decision_noise_min, quality.initial_decision_noise_max);
+        if accepts(&choice, noise, &curve, params) {
+            Outcome::Subscribes { choice, discount }
+        } else {
+            Outcome::Lost { choice, discount }
+        }
+    };
+    Lead { traits, curve, source, outcome }
+}
+
+fn record_arrivals(came: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCounts, facts: &mut Facts) {
+    for (run, leads) in came {
+        counts.all += run.count;
+        for (offset, lead) in (0..).zip(leads) {
+            facts.arrivals.push(Arrival {
+                customer: run.first_customer + offset,
+                group: run.group,
+                n: run.first_n + offset,
+                source: lead.source,
+                persona: lead.traits.persona,
+                usage_demand: lead.traits.usage_demand,
+                c_max: lead.curve.c_max,
+                seats: lead.traits.seats as u32,
+            });
+        }
+    }
+}
+
+/// One row per funded pair whose group is known and whose channel has a yield; channels in their order, groups
+/// in the order in which the player listed them.
+fn record_channels(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], facts: &mut Facts) {
+    let &Arrivals { settings, market, .. } = arrivals;
+    for channel in crate::world::identifiers::Channel::ALL {
+        let Some(groups) = settings.targeted_ads.targeted_spend.get(&channel) else { continue };
+        for (&group, &spend) in groups {
+            if spend > 0.0 && market.is_known(group) && market.yields[channel][group] > 0.0 {
+                let of_group = came.iter().filter(|(run, _)| run.group == group).flat_map(|(_, leads)| leads);
+                let leads = of_group.filter(|lead| lead.source.channel() == Some(channel)).count() as u32;
+                facts.channel_leads.push(ChannelLeads { channel, group, leads, spend });
+            }
+        }
+    }
+}
+
+fn open_subscriptions(
+    arrivals: &Arrivals<'_>,
+    came: &[(ArrivalRun, Vec<Lead>)],
+    customers: &mut Customers,
+    facts: &mut Facts,
+    counts: &mut LeadCounts,
+) {
+    let individuals = || {
+        came.iter().filter(|(run, _)| !run.group.is_enterprise()).flat_map(|(run, leads)| {
+            (0..).zip(leads).map(move |(offset, lead)| {
+                (run.group, run.first_n + offset, run.first_customer + offset, lead)
+            })
+        })
+    };
+    for (group, n, customer, lead) in individuals() {
+        counts.individuals += 1;
+        if let Outcome::Subscribes { choice, discount } = lead.outcome {
+            counts.subscribed += 1;
+            let subscription = customers.next_subscription;
+            customers.next_subscription += 1;
+            let row = subscriber(arrivals, group, n, customer, subscription, lead, choice, discount);
+            customers.groups[group].activate(row);
+            let blocks = &mut customers.groups[group].blocks;
+            let block = blocks.last_mut().expect("the subscriber was just added");
+            let last = block.len() - 1;
+            refresh_required(block, last, arrivals.morning.expectations[group].c_max, arrivals.params);
+            facts.openings.push(SubscriptionOpened {
+                subscription,
+                customer,
+                plan: Some(row.plan),
+                status: SubscriptionStatus::Subscribed,
+                listed_price: row.listed_price,
+                promotion: row.promotion,
+                effective_price: row.effective_price,
+                seats: 1,
+            });
+        }
+    }
+    for (_, _, customer, lead) in individuals() {
+        if let Outcome::Lost { choice, discount } = lead.outcome {
+            let subscription = customers.next_subscription;
+            customers.next_subscription += 1;
+            facts.openings.push(SubscriptionOpened {
+                subscription,
+                customer,
+                plan: Some(choice.plan),
+                status: SubscriptionStatus::Lost,
+                listed_price: arrivals.morning.core.prices[choice.plan],
+                promotion: discount,
+                effective_price: choice.price,
+                seats: 1,
+            });
+        }
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "one value per source of a row")]
+fn subscriber(
+    arrivals: &Arrivals<'_>,
+    group: Group,
+    n: u32,
+    customer: u32,
+    subscription: u32,
+    lead: &Lead,
+    choice: Choice,
+    discount: f64,
+) -> Subscriber {
+    let &Arrivals { morning, settings, params, .. } = arrivals;
+    let listed_price = morning.core.prices[choice.plan];
+    let promotion = discount + ongoing_discount(customer, group, choice.plan, settings, params);
+    // Drift that counts once is used for the decision but not stored.
+    let stored = match params.fidelity.drift_counted {
+        DriftCounted::EveryRead => lead.curve,
+        DriftCounted::Once => lead.traits.curve,
+    };
+    Subscriber {
+        n,
+        customer,
+        subscription,
+        plan: choice.plan,
+        billing_day: (morning.day % params.billing.billing_period_days) as u8,
+        billed_once: false,
+        start_day: morning.day,
+        steepness_left: stored.steepness_left,
+        steepness_right: stored.steepness_right,
+        c_max: stored.c_max,
+        q_min: stored.q_min,
+        q_max: stored.q_max,
+        usage_demand: lead.traits.usage_demand,
+        ads_quality_sensitivity: lead.traits.ads_quality_sensitivity,
+        ads_return_sensitivity: lead.traits.ads_return_sensitivity,
+        seats: lead.traits.seats,
+        listed_price,
+        promotion,
+        effective_price: (listed_price - promotion).max(params.billing.effective_price_min),
+        effective_c_max: stored.c_max,
+        // Drawn by the first bill, which comes later the same day.
+        usage_rate: 0.0,
+        period_usage: 0,
+        satisfaction: params.initial.customer_satisfaction,
+        relationship: params.initial.customer_relationship,
+        open_issue_days: 0,
+        issue: 0,
+        required: 0.0,
+    }
+}
+
+fn open_prospects(
+    arrivals: &Arrivals<'_>,
+    came: Vec<(ArrivalRun, Vec<Lead>)>,
+    customers: &mut Customers,
+    enterprise: &mut Enterprise,
+    facts: &mut Facts,
+    counts: &mut LeadCounts,
+) {
+    for (run, leads) in came {
+        for (offset, lead) in (0..).zip(leads) {
+            if !matches!(lead.outcome, Outcome::Prospect) {
+                continue;
+            }
+            counts.companies += 1;
+            let subscription = customers.next_subscription;
+            customers.next_subscription += 1;
+            let customer = run.first_customer + offset;
+            facts.openings.push(SubscriptionOpened {
+                subscription,
+                customer,
+                plan: None,
+                status: SubscriptionStatus::Lead,
+                listed_price: 0.0,
+                promotion: 0.0,
+                effective_price: 0.0,
+                seats: lead.traits.seats as u32,
+            });
+            let seats = lead.traits.seats as u32;
+            enterprise.open_lead(arrivals.morning.day, run.group, customer, subscription, seats, facts);
+        }
+    }
+}

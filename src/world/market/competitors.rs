@@ -1,0 +1,256 @@
+//! Competitor events: rivals raise everyone's expectations, and copy what we improved (chapter 30 §7, step 11).
+
+use super::drift::DriftTotals;
+use crate::world::canonical::canonical;
+use crate::world::identifiers::Group;
+use crate::world::params::{Competitor, Params};
+use crate::world::product::Product;
+use crate::world::random::{Part, Streams};
+
+/// One competitor event.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// Day on which it happened.
+    pub day: u32,
+    /// Size that applied.
+    pub boost: f64,
+    /// Size that was drawn, after the growth over the run.
+    pub sampled: f64,
+    /// Share of our shared bank that rivals could copy.
+    pub u: f64,
+    /// Whether copying beat the draw.
+    pub by_feedback: bool,
+}
+
+canonical! { Event { day, boost, sampled, u, by_feedback } }
+
+/// How large an event is in the eyes of the press.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Below 0.03.
+    Minor,
+    /// Below 0.10.
+    Moderate,
+    /// Below 0.20.
+    Major,
+    /// Above.
+    Transformative,
+}
+
+/// Severity of a boost.
+pub fn severity(boost: f64, law: &Competitor) -> Severity {
+    match boost {
+        _ if boost < law.competitor_severity_minor_max => Severity::Minor,
+        _ if boost < law.competitor_severity_moderate_max => Severity::Moderate,
+        _ if boost < law.competitor_severity_major_max => Severity::Major,
+        _ => Severity::Transformative,
+    }
+}
+
+/// Chance of an event on a day, 0 where none can happen (chapter 30 §7.1).
+pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, params: &Params) -> f64 {
+    let law = &params.competitor;
+    let too_early = day < params.drift.drift_grace_period_days;
+    let too_late = i64::from(day) > i64::from(total_days) - i64::from(law.competitor_event_late_cutoff_days);
+    if law.competitor_events_disabled || too_early || too_late {
+        return 0.0;
+    }
+    let (mut mean, mut least) = (law.competitor_event_mean_interval, law.competitor_event_min_interval);
+    let gap = f64::from(day) - last_event.map_or(-law.competitor_event_mean_interval, f64::from);
+    if day < (total_days / law.first_half_divisor).max(1) {
+        mean *= law.first_half_interval_multiplier;
+        least *= law.first_half_min_interval_multiplier;
+    }
+    if gap < least { 0.0 } else { 1.0 / mean }
+}
+
+/// Growth of sizes over the run: from 1 to 4 along a ramp that ends 30 days before the last day.
+pub fn magnitude_scale(day: u32, total_days: u32, law: &Competitor) -> f64 {
+    let start = f64::from(law.magnitude_ramp_start_day);
+    let end = (f64::from(total_days) - f64::from(law.competitor_event_late_cutoff_days))
+        .max(f64::from(law.magnitude_ramp_end_day_min));
+    let ramp = ((f64::from(day) - start) / (end - start).max(1.0)).clamp(0.0, 1.0);
+    let (least, most) = (law.competitor_event_magnitude_scale_min, law.competitor_event_magnitude_scale_max);
+    least + (most - least) * ramp
+}
+
+/// Size of an event from a log-normal draw: clamped, then scaled.
+pub fn sampled_boost(log_normal: f64, day: u32, total_days: u32, law: &Competitor) -> f64 {
+    log_normal.clamp(law.competitor_event_boost_min, law.competitor_event_boost_max)
+        * magnitude_scale(day, total_days, law)
+}
+
+/// An event of a sampled size when rivals could copy `u` of the bank: the larger of both applies, and what was
+/// copied leaves the bank.
+pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, law: &Competitor) -> Event {
+    let feedback = u * *bank;
+    let by_feedback = feedback > sampled;
+    if by_feedback {
+        *bank = (*bank - feedback).max(law.bank_min);
+    }
+    Event { day, boost: if by_feedback { feedback } else { sampled }, sampled, u, by_feedback }
+}
+
+/// Rolls the event of the day; `v` of each group with a targeted bank is drawn in alphabetical order.
+pub fn react(
+    day: u32,
+    total_days: u32,
+    events: &mut Vec<Event>,
+    product: &mut Product,
+    drift: &mut DriftTotals,
+    params: &Params,
+    streams: &Streams,
+) {
+    let law = &params.competitor;
+    let chance = event_probability(day, total_days, events.last().map(|event| event.day), params);
+    let mut stream = streams.open(Part::CompetitorEvent, [u64::from(day)]);
+    if chance <= 0.0 || !stream.bernoulli(chance) {
+        return;
+    }
+    let size = stream.log_normal(law.competitor_event_boost_mu, law.competitor_event_boost_sigma);
+    let u = stream.between(law.competitor_feedback_u_min, law.competitor_feedback_u_max);
+    let sampled = sampled_boost(size, day, total_days, law);
+    let event = resolve_event(day, sampled, u, &mut product.shared_bank, law);
+    raise_expectations(event.boost, drift, params);
+    let mut funded: Vec<Group> = Group::all().filter(|group| product.group_bank[*group] > 0.0).collect();
+    funded.sort_by_key(|group| group.id());
+    for group in funded {
+        let v = stream.between(law.competitor_segment_drain_u_min, law.competitor_segment_drain_u_max);
+        drain_group(group, v, product, drift, law);
+    }
+    events.push(event);
+}
+
+/// An event raises everyone's expectations, and those of reactive groups further.
+pub fn raise_expectations(boost: f64, drift: &mut DriftTotals, params: &Params) {
+    drift.global_quality += boost;
+    for group in Group::all() {
+        drift.quality[group] += params.group(group).competitor_reactivity_q_bias * boost;
+    }
+}
+
+/// Rivals copy a share `v` of a group's targeted bank, which raises that group's expectations.
+pub fn drain_group(group: Group, v: f64, product: &mut Product, drift: &mut DriftTotals, law: &Competitor) {
+    let drained = v * product.group_bank[group];
+    drift.quality[group] += drained;
+    product.group_bank[group] = (product.group_bank[group] - drained).max(law.bank_min);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(actual: f64, expected: f64) {
+        assert!((actual - expected).abs() < 1e-12, "{actual} instead of {expected}");
+    }
+
+    fn group(id: &str) -> Group {
+        Group::parse(id).expect("a group")
+    }
+
+    /// An event with given draws: log-normal size and the fraction of the range of u.
+    fn event(day: u32, size: f64, bank: f64, fraction: f64) -> (Event, f64, Severity) {
+        let law = Params::shipped().competitor;
+        let u = law.competitor_feedback_u_min
+            + fraction * (law.competitor_feedback_u_max - law.competitor_feedback_u_min);
+        let mut bank = bank;
+        let event = resolve_event(day, sampled_boost(size, day, 500, &law), u, &mut bank, &law);
+        (event, bank, severity(event.boost, &law))
+    }
+
+    #[test]
+    fn check_c_of_chapter_30_when_events_happen() {
+        let params = Params::shipped();
+        let chance = |day, total, last| event_probability(day, total, last, &params);
+        assert_eq!(chance(59, 500, None), 0.0);
+        assert_eq!(chance(471, 500, None), 0.0);
+        let early = chance(60, 500, None);
+        assert!(0.0971 < early && early < 0.0973);
+        let late = chance(260, 500, None);
+        assert!(0.1458 < late && late < 0.1459);
+        assert_eq!(chance(100, 500, Some(99)), 0.0);
+        assert!(chance(100, 500, Some(98)) > 0.0);
+        assert!(chance(260, 500, Some(259)) > 0.0);
+        assert_eq!((chance(35, 50, None), chance(60, 50, None)), (0.0, 0.0));
+        let mut quiet = params.clone();
+        quiet.competitor.competitor_events_disabled = true;
+        assert_eq!(event_probability(200, 500, None, &quiet), 0.0);
+    }
+
+    #[test]
+    fn check_c_of_chapter_30_how_large_they_are() {
+        let (small, _, class) = event(60, 0.02, 0.0, 0.5);
+        near(small.boost, 0.027547974413646);
+        assert_eq!(class, Severity::Minor);
+        let mut drift = DriftTotals::default();
+        raise_expectations(small.boost, &mut drift, &Params::shipped());
+        near(drift.quality[group("S1")], 0.004132196162047);
+        near(drift.quality[group("S2")], 0.001652878464819);
+        near(drift.quality[group("D_S08")], 0.009641791044776);
+        let (moderate, bank, class) = event(300, 0.02, 0.1, 0.5);
+        near(moderate.boost, 0.058251599147122);
+        assert!(!moderate.by_feedback && bank == 0.1 && class == Severity::Moderate);
+        let (copied, bank, class) = event(300, 0.02, 0.5, 0.5);
+        near(copied.boost, 0.175);
+        near(bank, 0.325);
+        assert!(copied.by_feedback && class == Severity::Major);
+        let (huge, _, class) = event(300, 5.0, 0.0, 0.0);
+        near(huge.boost, 0.503170942164179);
+        assert_eq!(class, Severity::Transformative);
+        near(event(300, 0.0001, 0.0, 0.0).0.boost, 0.005750525053305);
+        near(event(470, 0.02, 0.0, 0.0).0.boost, 0.08);
+    }
+
+    #[test]
+    fn check_c_of_chapter_30_with_targeted_banks() {
+        let params = Params::shipped();
+        let (event, bank, _) = event(200, 0.03, 1.0, 0.25);
+        near(event.boost, 0.275);
+        near(bank, 0.725);
+        let (mut product, mut drift) = (Product::opening(&params), DriftTotals::default());
+        product.group_bank[group("D_E03")] = 0.1;
+        product.group_bank[group("S1")] = 0.4;
+        raise_expectations(event.boost, &mut drift, &params);
+        drain_group(group("D_E03"), 0.05, &mut product, &mut drift, &params.competitor);
+        drain_group(group("S1"), 0.08, &mut product, &mut drift, &params.competitor);
+        near(drift.quality[group("S1")], 0.07325);
+        near(product.group_bank[group("D_E03")], 0.095);
+        near(product.group_bank[group("S1")], 0.368);
+    }
+
+    #[test]
+    fn check_16_of_chapter_10() {
+        let law = Params::shipped().competitor;
+        near(sampled_boost(0.01, 250, 500, &law), 0.02592750533049);
+        near(sampled_boost(0.01, 470, 500, &law), 0.04);
+        near(sampled_boost(5.0, 470, 500, &law), 0.69103125);
+        near(sampled_boost(1e-9, 470, 500, &law), 0.0078975);
+        near(sampled_boost(0.01, 467, 497, &law), 0.04);
+        let mut bank = 1.0;
+        let event = resolve_event(60, sampled_boost(0.01, 60, 500, &law), 0.35, &mut bank, &law);
+        assert!(event.by_feedback);
+        near(event.boost, 0.35);
+        near(bank, 0.65);
+    }
+
+    #[test]
+    fn events_without_development_are_distributed_as_chapter_30_measured() {
+        let params = Params::shipped();
+        let (mut counts, mut sums, mut first_half) = (0.0, 0.0, 0.0);
+        let seeds = 200;
+        for seed in 0..seeds {
+            let (mut events, mut product) = (Vec::new(), Product::opening(&params));
+            let (mut drift, streams) = (DriftTotals::default(), Streams::new(seed));
+            for day in 1..=500 {
+                react(day, 500, &mut events, &mut product, &mut drift, &params, &streams);
+            }
+            counts += events.len() as f64;
+            sums += events.iter().map(|event| event.boost).sum::<f64>();
+            first_half += events.iter().filter(|event| event.day < 250).count() as f64;
+        }
+        let seeds = seeds as f64;
+        assert!((counts / seeds - 48.2).abs() < 4.0 * 6.0 / seeds.sqrt(), "{}", counts / seeds);
+        assert!((first_half / seeds - 16.6).abs() < 4.0 * 3.5 / seeds.sqrt(), "{}", first_half / seeds);
+        assert!((sums / seeds - 2.82).abs() < 4.0 * 0.66 / seeds.sqrt(), "{}", sums / seeds);
+    }
+}

@@ -1,0 +1,210 @@
+//! Preference drift: expectations and budgets move, for groups and for each subscriber (chapter 30 §9, step 8).
+
+use crate::world::canonical::canonical;
+use crate::world::customers::Customers;
+use crate::world::customers::columns::Block;
+use crate::world::identifiers::{ByGroup, Group};
+use crate::world::params::{Drift, IndividualDrift, Params};
+
+/// How much expectations and budgets have moved since day 0.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DriftTotals {
+    /// Quality added to everyone's expectations.
+    pub global_quality: f64,
+    /// Quality added to a group's expectations.
+    pub quality: ByGroup<f64>,
+    /// Dollars a month added to a group's budgets.
+    pub c_max: ByGroup<f64>,
+}
+
+canonical! {
+    DriftTotals { global_quality, quality, c_max }
+    Expectation { quality, c_max }
+}
+
+/// What is added to a customer's curve when it is read.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Expectation {
+    /// Added to both quality bounds.
+    pub quality: f64,
+    /// Added to the budget, dollars a month.
+    pub c_max: f64,
+}
+
+impl DriftTotals {
+    /// What is added to the curves of a group's customers.
+    pub fn expectation(&self, group: Group) -> Expectation {
+        Expectation { quality: self.global_quality + self.quality[group], c_max: self.c_max[group] }
+    }
+}
+
+/// Growth of a daily rate over an application of drift: (1 + r)^30 - 1.
+pub fn compounded(rate: f64, law: &Drift) -> f64 {
+    libm::pow(1.0 + rate, f64::from(law.days_per_application)) - 1.0
+}
+
+/// Whether drift is applied on a day: every 30 days once the grace period is over.
+pub fn is_drift_day(day: u32, law: &Drift) -> bool {
+    day.is_multiple_of(law.interval_days) && day > law.drift_grace_period_days
+}
+
+/// Moves the group totals and every active subscriber's own curve and seats. `seat_multiplier` is the macro
+/// multiplier of seats as it was yesterday. Returns whether anything moved.
+pub fn apply(
+    day: u32,
+    totals: &mut DriftTotals,
+    customers: &mut Customers,
+    seat_multiplier: &ByGroup<f64>,
+    params: &Params,
+) -> bool {
+    let law = &params.drift;
+    if !is_drift_day(day, law) {
+        return false;
+    }
+    let days = f64::from(law.days_per_application);
+    totals.global_quality += days * law.global_q_bias_drift;
+    for group in Group::all() {
+        let own = &params.group(group).group_drift_per_day;
+        totals.quality[group] += days * own.q_bias_drift;
+        totals.c_max[group] += days * own.c_max_drift;
+    }
+    customers.sweep(|group, _, block| {
+        drift_block(block, &params.group(group).individual_drift_per_day, seat_multiplier[group], law);
+    });
+    true
+}
+
+fn drift_block(block: &mut Block, rates: &IndividualDrift, seat_multiplier: f64, law: &Drift) {
+    if let Some(rate) = rates.c_max_drift {
+        let factor = 1.0 + compounded(rate, law);
+        for c_max in &mut block.c_max {
+            *c_max = (*c_max * factor).clamp(law.individual_c_max_min, law.individual_c_max_max);
+        }
+    }
+    if let Some(rate) = rates.q_bias_drift {
+        let factor = 1.0 + compounded(rate, law);
+        block.q_min.iter_mut().for_each(|quality| *quality *= factor);
+        block.q_max.iter_mut().for_each(|quality| *quality *= factor);
+    }
+    if let Some(rate) = rates.steepness_left_drift {
+        let factor = 1.0 + compounded(rate, law);
+        let (least, most) = (law.individual_steepness_left_min, law.individual_steepness_left_max);
+        block
+            .steepness_left
+            .iter_mut()
+            .for_each(|steepness| *steepness = (*steepness * factor).clamp(least, most));
+    }
+    if let Some(rate) = rates.seat_count_drift {
+        let factor = 1.0 + compounded(rate, law) * seat_multiplier;
+        block
+            .seats
+            .iter_mut()
+            .for_each(|seats| *seats = (*seats * factor).max(law.individual_seat_count_min));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::customers::columns::Subscriber;
+    use crate::world::customers::columns::tests::subscriber;
+    use crate::world::customers::curve::Curve;
+    use crate::world::market::economy::Dimension;
+    use crate::world::market::economy::tests::economy_at;
+
+    fn near(actual: f64, expected: f64) {
+        assert!((actual - expected).abs() < 6e-9, "{actual} instead of {expected}");
+    }
+
+    fn drifted(id: &str, row: Subscriber, day: u32, pmi: f64) -> (Subscriber, DriftTotals) {
+        let params = Params::shipped();
+        let group = Group::parse(id).expect("a group");
+        let economy = economy_at(pmi);
+        let seats = ByGroup::from_fn(|group| economy.multiplier(group, Dimension::SeatCount, &params));
+        let (mut totals, mut customers) = (DriftTotals::default(), Customers::default());
+        customers.groups[group].activate(row);
+        apply(day, &mut totals, &mut customers, &seats, &params);
+        (customers.groups[group].blocks[0].row(0), totals)
+    }
+
+    fn row(c_max: f64, q_min: f64, q_max: f64, steepness_left: f64, seats: f64) -> Subscriber {
+        Subscriber { c_max, q_min, q_max, steepness_left, seats, ..subscriber(1) }
+    }
+
+    #[test]
+    fn check_d_of_chapter_30() {
+        for (id, before, [c_max, q_min, q_max, steepness, seats]) in [
+            ("S1", row(50.0, 0.10, 0.50, 1.0, 1.0), [47.0853976979, 0.1061772923, 0.5308864615, 1.0, 1.0]),
+            ("S3", row(120.0, 0.3, 0.8, 5.6, 1.0), [120.5411761459, 0.3185318769, 0.8494183385, 5.0, 1.0]),
+            (
+                "E1",
+                row(55.0, 0.5, 0.9, 1.2, 200.0),
+                [52.5780851839, 0.5152195438, 0.9273951788, 1.2, 198.3959882677],
+            ),
+            (
+                "E2",
+                row(90.0, 0.6, 1.0, 2.0, 100.0),
+                [90.8135333858, 0.6090655555, 1.0151092592, 2.0241397211, 101.1780183890],
+            ),
+            ("D_S09", row(95.0, 0.2, 0.7, 0.2, 1.0), [95.2854136360, 0.2048560980, 0.7169963430, 0.2, 1.0]),
+        ] {
+            let (after, _) = drifted(id, before, 90, 45.0);
+            near(after.c_max, c_max);
+            near(after.q_min, q_min);
+            near(after.q_max, q_max);
+            near(after.steepness_left, steepness);
+            near(after.seats, seats);
+        }
+        near(drifted("S1", row(10.2, 0.1, 0.5, 1.0, 1.0), 90, 45.0).0.c_max, 10.0);
+        let (_, totals) = drifted("S1", subscriber(1), 90, 45.0);
+        for (id, quality, c_max) in [
+            ("S1", 0.0, 0.03),
+            ("S3", 0.01875, 0.0),
+            ("E1", 0.0, -0.015),
+            ("D_S08", 0.015, 0.0),
+            ("D_E08", 0.0075, 0.0),
+        ] {
+            let group = Group::parse(id).expect("a group");
+            near(totals.quality[group], quality);
+            near(totals.c_max[group], c_max);
+        }
+        assert_eq!(totals.global_quality, 0.0);
+    }
+
+    #[test]
+    fn nothing_drifts_in_the_grace_period() {
+        for day in [30, 60, 89, 91] {
+            let (after, totals) = drifted("S1", subscriber(1), day, 45.0);
+            assert_eq!((after, totals), (subscriber(1), DriftTotals::default()), "day {day}");
+        }
+    }
+
+    #[test]
+    fn check_17_of_chapter_20_and_15_of_chapter_10() {
+        near(compounded(0.002, &Params::shipped().drift), 0.0617729231);
+        let (x, _) = drifted("S1", row(50.0, 0.10, 0.55, 1.2, 1.0), 90, 45.0);
+        near(x.c_max, 47.0853976979);
+        near(x.q_max, 0.583975108);
+        let (after, _) = drifted("D_S06", row(60.0, 0.2, 0.6, 2.0, 1.0), 90, 45.0);
+        near(after.c_max, 56.84316043);
+        near(after.q_min, 0.2188053750);
+        near(after.steepness_left, 2.036314961);
+        let moved = Curve { c_max: 10.0, ..subscriber_curve() }.drifted(0.08, 2.0, 15.0);
+        assert_eq!((moved.c_max, moved.q_min), (15.0, 0.18));
+        let moved = subscriber_curve().drifted(0.08, 2.0, 15.0);
+        assert_eq!((moved.c_max, moved.q_max), (52.0, 0.63));
+    }
+
+    fn subscriber_curve() -> Curve {
+        Curve { steepness_left: 1.2, steepness_right: 2.8, c_max: 50.0, q_min: 0.1, q_max: 0.55 }
+    }
+
+    #[test]
+    fn check_14_of_chapter_40() {
+        for (id, first) in [("E1", 99.1039040602), ("E2", 101.2069860543), ("E3", 100.9039259842)] {
+            near(drifted(id, row(60.0, 0.5, 0.9, 1.0, 100.0), 90, 50.0).0.seats, first);
+        }
+        let (e1, _) = drifted("E1", row(60.0, 0.5, 0.9, 1.0, 99.1039040602), 120, 42.0);
+        assert!((e1.seats - 98.3650330978).abs() < 1e-8, "{}", e1.seats);
+    }
+}

@@ -1,0 +1,361 @@
+//! The economy: a hidden index, its delayed publications, and what it does to groups (chapter 30 §8, step 10).
+
+use serde::Serialize;
+
+use crate::world::canonical::{canonical, canonical_codes};
+use crate::world::events::{Facts, Notice};
+use crate::world::identifiers::Group;
+use crate::world::params::{MacroEconomy, Params};
+use crate::world::random::{Part, Streams};
+
+/// The state of the economy.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Economy {
+    /// Today's index, hidden.
+    pub pmi: f64,
+    /// Whether a first day has passed; before it every multiplier is 1.
+    pub started: bool,
+    /// Daily values since the last measurement.
+    history: Vec<f64>,
+    /// Day of the last measurement.
+    last_measurement: Option<u32>,
+    /// Measured, not yet published.
+    waiting: Vec<Reading>,
+    /// The newest published reading.
+    pub published: Option<Reading>,
+}
+
+/// A reading of the index.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// Day on which it was measured: the last of the days it averages.
+    pub measured_day: u32,
+    /// Average, one decimal.
+    pub value: f64,
+    /// Change against the reading before, one decimal.
+    pub change: f64,
+    /// Label of the value.
+    pub trend: Trend,
+    /// Position in the cycle.
+    pub phase: Phase,
+}
+
+canonical! {
+    Economy { pmi, started, history, last_measurement, waiting, published }
+    Reading { measured_day, value, change, trend, phase }
+}
+canonical_codes!(Trend, Phase);
+
+/// Label of a reading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[repr(u8)]
+pub enum Trend {
+    /// 58 and above.
+    StrongExpansion,
+    /// 52 and above.
+    Expansion,
+    /// 48 and above.
+    Neutral,
+    /// 42 and above.
+    Contraction,
+    /// Below.
+    SevereContraction,
+}
+
+impl Trend {
+    /// Label of an index value.
+    pub fn of(pmi: f64, law: &MacroEconomy) -> Trend {
+        match pmi {
+            _ if pmi >= law.trend_strong_expansion_min => Trend::StrongExpansion,
+            _ if pmi >= law.trend_expansion_min => Trend::Expansion,
+            _ if pmi >= law.trend_neutral_min => Trend::Neutral,
+            _ if pmi >= law.trend_contraction_min => Trend::Contraction,
+            _ => Trend::SevereContraction,
+        }
+    }
+
+    /// Word as the tables write it.
+    pub fn id(self) -> &'static str {
+        ["strong_expansion", "expansion", "neutral", "contraction", "severe_contraction"][self as usize]
+    }
+}
+
+/// Position of a reading in the cycle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[repr(u8)]
+pub enum Phase {
+    /// High and no longer rising.
+    Peak,
+    /// Falling.
+    Declining,
+    /// Low and not falling.
+    Trough,
+    /// Rising, or level in the middle.
+    Recovering,
+}
+
+impl Phase {
+    /// Phase of a reading by its value and change.
+    pub fn of(value: f64, change: f64, law: &MacroEconomy) -> Phase {
+        if value >= law.phase_peak_min_pmi && change <= 0.0 {
+            Phase::Peak
+        } else if change < 0.0 {
+            Phase::Declining
+        } else if value < law.phase_trough_below_pmi {
+            Phase::Trough
+        } else {
+            Phase::Recovering
+        }
+    }
+
+    /// Word as the tables write it.
+    pub fn id(self) -> &'static str {
+        ["peak", "declining", "trough", "recovering"][self as usize]
+    }
+}
+
+/// Where the cycle pulls the index on a day: mean + amplitude sin(2 pi day / period + phase).
+pub fn cycle_target(day: u32, phase: f64, law: &MacroEconomy) -> f64 {
+    let turn = 2.0 * std::f64::consts::PI * f64::from(day) / f64::from(law.macro_pmi_cycle_period_days);
+    law.macro_pmi_long_run_mean + law.macro_pmi_cycle_amplitude * libm::sin(turn + phase)
+}
+
+/// Index after a day's step; `z` is a standard normal draw.
+pub fn next_pmi(pmi: f64, target: f64, z: f64, law: &MacroEconomy) -> f64 {
+    let moved = pmi + law.macro_pmi_mean_reversion_rate * (target - pmi) + law.macro_pmi_daily_volatility * z;
+    moved.clamp(law.macro_pmi_floor, law.macro_pmi_ceiling)
+}
+
+/// Factor of a sensitivity at an index: max(0.5, 1 + beta (PMI - 50) / 50).
+pub fn macro_multiplier(beta: f64, pmi: f64, law: &MacroEconomy) -> f64 {
+    (law.multiplier_neutral + beta * (pmi - law.neutral_pmi) / law.pmi_scale).max(law.multiplier_min)
+}
+
+/// Rounds to decimals, half to even on the exact binary value (chapter 30, terms).
+pub fn round_to(value: f64, decimals: u32) -> f64 {
+    format!("{value:.*}", decimals as usize).parse().expect("a formatted number reads back")
+}
+
+/// What the economy acts on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// Number of leads.
+    LeadGeneration,
+    /// Budget at a billing decision.
+    WillingnessToPay,
+    /// Speed of replies of a new company.
+    DealVelocity,
+    /// Drift of seats.
+    SeatCount,
+}
+
+impl Economy {
+    /// The economy of day 0.
+    pub fn opening(params: &Params) -> Economy {
+        Economy {
+            pmi: params.economy.macro_pmi_initial,
+            started: false,
+            history: Vec::new(),
+            last_measurement: None,
+            waiting: Vec::new(),
+            published: None,
+        }
+    }
+
+    /// Multiplier of a group in a dimension at the present index; 1 before the first day and where the group
+    /// does not react.
+    pub fn multiplier(&self, group: Group, dimension: Dimension, params: &Params) -> f64 {
+        let beta = &params.group(group).macro_beta;
+        let beta = match dimension {
+            Dimension::LeadGeneration => beta.lead_generation,
+            Dimension::WillingnessToPay => beta.willingness_to_pay,
+            Dimension::DealVelocity => beta.deal_velocity,
+            Dimension::SeatCount => beta.seat_count,
+        };
+        match beta {
+            Some(beta) if self.started => macro_multiplier(beta, self.pmi, &params.economy),
+            _ => params.economy.multiplier_neutral,
+        }
+    }
+}
+
+fn phase_of_run(law: &MacroEconomy, streams: &Streams) -> f64 {
+    if law.macro_pmi_random_phase {
+        streams.open(Part::Macro, [0]).between(0.0, 2.0 * std::f64::consts::PI)
+    } else {
+        law.macro_pmi_fixed_phase
+    }
+}
+
+/// Moves the index by a day, measures when a month is full, and publishes what has waited long enough.
+pub fn step(day: u32, economy: &mut Economy, params: &Params, streams: &Streams, facts: &mut Facts) {
+    let law = &params.economy;
+    let target = cycle_target(day, phase_of_run(law, streams), law);
+    let z = streams.open(Part::Macro, [u64::from(day)]).standard_normal();
+    economy.pmi = next_pmi(economy.pmi, target, z, law);
+    economy.started = true;
+    economy.history.push(economy.pmi);
+    let interval = law.macro_pmi_update_interval_days;
+    if economy.last_measurement.is_none_or(|last| day - last >= interval) {
+        measure(day, economy, law);
+    }
+    publish(day, economy, law, facts);
+}
+
+fn measure(day: u32, economy: &mut Economy, law: &MacroEconomy) {
+    let mean = economy.history.iter().sum::<f64>() / economy.history.len() as f64;
+    let value = round_to(mean, law.published_pmi_decimals);
+    let previous = economy.waiting.last().or(economy.published.as_ref());
+    let before = previous.map_or(law.macro_pmi_initial, |reading| reading.value);
+    let change = round_to(value - before, law.published_pmi_decimals);
+    let (trend, phase) = (Trend::of(value, law), Phase::of(value, change, law));
+    economy.waiting.push(Reading { measured_day: day, value, change, trend, phase });
+    economy.history.clear();
+    economy.last_measurement = Some(day);
+}
+
+fn publish(day: u32, economy: &mut Economy, law: &MacroEconomy, facts: &mut Facts) {
+    let delay = law.macro_pmi_publication_delay_days;
+    let due = economy.waiting.partition_point(|reading| reading.measured_day + delay <= day);
+    for reading in economy.waiting.drain(..due) {
+        economy.published = Some(reading);
+        facts.readings.push(reading);
+        facts.notices.push(Notice::EconomyUpdate(reading));
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// An economy that has started and stands at an index.
+    pub(crate) fn economy_at(pmi: f64) -> Economy {
+        Economy { pmi, started: true, ..Economy::opening(&Params::shipped()) }
+    }
+
+    fn near(actual: f64, expected: f64) {
+        assert!((actual - expected).abs() < 5e-10, "{actual} instead of {expected}");
+    }
+
+    fn multiplier(id: &str, dimension: Dimension, pmi: f64) -> f64 {
+        let params = Params::shipped();
+        economy_at(pmi).multiplier(Group::parse(id).expect("a group"), dimension, &params)
+    }
+
+    #[test]
+    fn check_19_of_chapter_30() {
+        let mut params = Params::shipped();
+        params.economy.macro_pmi_daily_volatility = 0.0;
+        let (mut economy, streams) = (Economy::opening(&params), Streams::new(1));
+        let mut readings = Vec::new();
+        for day in 1..=61 {
+            let mut facts = Facts::default();
+            step(day, &mut economy, &params, &streams, &mut facts);
+            readings.extend(facts.readings.iter().map(|reading| (day, *reading)));
+            match day {
+                1 => near(economy.pmi, 49.250007889),
+                2 => near(economy.pmi, 49.131839323),
+                10 => near(economy.pmi, 48.250782805),
+                30 => near(economy.pmi, 46.520458736),
+                31 => near(economy.pmi, 46.450702501),
+                _ => {}
+            }
+        }
+        let expected = [
+            (31, 1, 49.3, -0.1, Trend::Neutral, Phase::Declining),
+            (61, 31, 47.7, -1.6, Trend::Contraction, Phase::Declining),
+        ];
+        assert_eq!(readings.len(), 2);
+        for ((published, reading), (day, measured_day, value, change, trend, phase)) in
+            readings.iter().zip(expected)
+        {
+            assert_eq!((*published, *reading), (day, Reading { measured_day, value, change, trend, phase }));
+        }
+        let law = Params::shipped().economy;
+        assert_eq!(next_pmi(30.1, cycle_target(200, law.macro_pmi_fixed_phase, &law), -3.0, &law), 30.0);
+    }
+
+    #[test]
+    fn check_20_of_chapter_30_and_10_of_chapter_10() {
+        use Dimension::*;
+        for (id, dimension, pmi, expected) in [
+            ("S1", LeadGeneration, 42.5, 0.775),
+            ("S1", WillingnessToPay, 42.5, 0.73),
+            ("E1", SeatCount, 42.5, 0.8425),
+            ("D_E01", LeadGeneration, 42.5, 1.0675),
+            ("D_E06", WillingnessToPay, 42.5, 0.7525),
+            ("S1", LeadGeneration, 30.0, 0.5),
+            ("E1", SeatCount, 30.0, 0.58),
+            ("D_S01", WillingnessToPay, 70.0, 1.78),
+            ("S1", LeadGeneration, 60.0, 1.3),
+            ("S1", WillingnessToPay, 60.0, 1.36),
+            ("E1", SeatCount, 60.0, 1.21),
+            ("D_E01", SeatCount, 60.0, 0.88),
+            ("S1", WillingnessToPay, 41.37, 0.68932),
+            ("D_E06", LeadGeneration, 41.37, 0.66343),
+            ("D_E01", LeadGeneration, 41.37, 1.07767),
+            ("E1", WillingnessToPay, 30.0, 0.52),
+            ("D_E06", LeadGeneration, 70.0, 1.78),
+            ("S2", SeatCount, 70.0, 1.0),
+        ] {
+            near(multiplier(id, dimension, pmi), expected);
+        }
+    }
+
+    #[test]
+    fn check_11_of_chapter_10() {
+        let law = Params::shipped().economy;
+        for (pmi, trend) in [
+            (58.0, "strong_expansion"),
+            (57.9, "expansion"),
+            (51.9, "neutral"),
+            (47.9, "contraction"),
+            (41.9, "severe_contraction"),
+        ] {
+            assert_eq!(Trend::of(pmi, &law).id(), trend);
+        }
+        for (value, change, phase) in [
+            (53.0, 0.0, "peak"),
+            (53.0, 0.1, "recovering"),
+            (50.0, -0.1, "declining"),
+            (50.0, 0.0, "recovering"),
+            (47.0, 0.0, "trough"),
+            (47.0, -1.0, "declining"),
+        ] {
+            assert_eq!(Phase::of(value, change, &law).id(), phase);
+        }
+    }
+
+    #[test]
+    fn rounding_is_half_to_even_on_the_binary_value() {
+        assert_eq!(round_to(0.25, 1), 0.2);
+        assert_eq!(round_to(0.35, 1), 0.3);
+        assert_eq!(round_to(-0.049, 1), -0.0);
+    }
+
+    #[test]
+    fn the_index_is_distributed_as_chapter_30_measured() {
+        let params = Params::shipped();
+        let (mut means, mut lows, mut highs, mut below) = (vec![], vec![], vec![], vec![]);
+        for seed in 0..60 {
+            let (mut economy, streams) = (Economy::opening(&params), Streams::new(seed));
+            let path: Vec<f64> = (1..=500)
+                .map(|day| {
+                    step(day, &mut economy, &params, &streams, &mut Facts::default());
+                    economy.pmi
+                })
+                .collect();
+            means.push(path.iter().sum::<f64>() / 500.0);
+            lows.push(path.iter().copied().fold(f64::INFINITY, f64::min));
+            highs.push(path.iter().copied().fold(0.0, f64::max));
+            below.push(path.iter().filter(|pmi| **pmi < 50.0).count() as f64 / 500.0);
+        }
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        assert!((mean(&means) - 50.5).abs() < 0.5, "{}", mean(&means));
+        assert!((mean(&lows) - 42.8).abs() < 0.8, "{}", mean(&lows));
+        assert!((mean(&highs) - 58.3).abs() < 0.8, "{}", mean(&highs));
+        assert!((mean(&below) - 0.477).abs() < 0.04, "{}", mean(&below));
+    }
+}

@@ -1,0 +1,241 @@
+//! How many leads a group brings today (chapter 20 §9, chapter 30 §3, step 19).
+
+use super::Market;
+use super::economy::Dimension;
+use super::social::social_multiplier;
+use super::surges::surge_factor;
+use crate::world::events::Source;
+use crate::world::identifiers::{ByChannel, ByGroup, Channel, Group};
+use crate::world::params::{Leads, Params};
+use crate::world::settings::TargetedAds;
+
+/// The factors of a group's expected leads today; hidden.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LeadFactors {
+    /// Reputation of the group.
+    pub reputation: f64,
+    /// Room left in the market.
+    pub saturation: f64,
+    /// Weekday times day of the month.
+    pub calendar: f64,
+    /// The economy.
+    pub economy: f64,
+    /// Reactions to the company's posts.
+    pub social: f64,
+    /// Demand surges.
+    pub surge: f64,
+    /// Leads by paid channel before the factors.
+    pub paid: ByChannel<f64>,
+    /// Leads by word of mouth before the factors.
+    pub network: f64,
+}
+
+impl LeadFactors {
+    /// Expected leads: lambda = R D C M A Z (X + Y).
+    pub fn expected(&self) -> f64 {
+        let paid: f64 = self.paid.iter().sum();
+        self.reputation
+            * self.saturation
+            * self.calendar
+            * self.economy
+            * self.social
+            * self.surge
+            * (paid + self.network)
+    }
+
+    /// How a lead came, from a uniform draw: in proportion to today's contributions, channels first.
+    pub fn source(&self, u: f64) -> Source {
+        let total = self.paid.iter().sum::<f64>() + self.network;
+        if total <= 0.0 {
+            return Source::Organic;
+        }
+        let mut rest = u * total;
+        for channel in Channel::ALL {
+            if rest < self.paid[channel] {
+                return Source::of_channel(channel);
+            }
+            rest -= self.paid[channel];
+        }
+        if self.network > 0.0 {
+            return Source::Network;
+        }
+        // Rounding pushed the draw past the last contribution.
+        let last = Channel::ALL.into_iter().rev().find(|channel| self.paid[*channel] > 0.0);
+        last.map_or(Source::Organic, Source::of_channel)
+    }
+}
+
+/// Customers or accounts the market of a group holds on a day.
+pub fn market_cap(base: f64, annual_growth: f64, day: u32, law: &Leads) -> f64 {
+    base * (1.0 + annual_growth * f64::from(day) / law.days_per_year)
+}
+
+/// Room left in a market: max(0, 1 - (N / cap)^2); 1 for an empty or sizeless market.
+pub fn saturation(subscribers: u32, cap: f64, law: &Leads) -> f64 {
+    if subscribers == 0 || cap <= 0.0 {
+        return 1.0;
+    }
+    let taken = libm::pow(f64::from(subscribers) / cap, law.saturation_exponent);
+    (law.saturation_base - taken).max(law.saturation_floor)
+}
+
+/// Leads that a spend brings before the factors: dollars times yield per 1,000 dollars.
+pub fn paid_leads(spend: f64, leads_per_unit: f64, law: &Leads) -> f64 {
+    spend * leads_per_unit / law.ad_spend_unit
+}
+
+/// What the leads of a day depend on.
+pub struct LeadContext<'a> {
+    /// Day.
+    pub day: u32,
+    /// Factor of weekday and day of the month.
+    pub calendar: f64,
+    /// The market.
+    pub market: &'a Market,
+    /// Active subscriptions after today's cancellations.
+    pub subscribers: &'a ByGroup<u32>,
+    /// Advertising budgets.
+    pub ads: &'a TargetedAds,
+    /// Parameters.
+    pub params: &'a Params,
+}
+
+/// Factors of a discovered group.
+pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
+    let &LeadContext { day, calendar, market, subscribers, ads, params } = context;
+    let own = params.group(group);
+    let cap = market_cap(own.base_market_cap, own.annual_cap_growth_rate, day, &params.leads);
+    let paid = |channel: Channel| {
+        let spend = ads.spend(channel, group);
+        if spend > 0.0 { paid_leads(spend, market.yields[channel][group], &params.leads) } else { 0.0 }
+    };
+    let network = Group::all()
+        .filter(|source| market.is_known(*source) && subscribers[*source] > 0)
+        .map(|source| f64::from(subscribers[source]) * params.referral_rate(source, group))
+        .sum();
+    LeadFactors {
+        reputation: market.reputation.of(group),
+        saturation: saturation(subscribers[group], cap, &params.leads),
+        calendar,
+        economy: market.economy.multiplier(group, Dimension::LeadGeneration, params),
+        social: social_multiplier(group, day, &market.own_posts, &params.ceo_posts),
+        surge: surge_factor(day, &market.surges, params.fidelity.surge_start),
+        paid: ByChannel::from_fn(paid),
+        network,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::market::social::OwnPost;
+    use crate::world::market::surges::Surge;
+    use indexmap::IndexMap;
+
+    fn group(id: &str) -> Group {
+        Group::parse(id).expect("a group")
+    }
+
+    fn near(actual: f64, expected: f64) {
+        assert!((actual - expected).abs() <= 1e-9 * expected.abs(), "{actual} instead of {expected}");
+    }
+
+    /// Check A of chapter 30.
+    #[test]
+    fn check_10_of_chapter_30() {
+        let params = Params::shipped();
+        let mut market = Market::opening(&params);
+        market.economy.pmi = 45.0;
+        market.economy.started = true;
+        market.reputation.set(group("S1"), 0.62);
+        let mut effects = ByGroup::default();
+        effects[group("S1")] = 0.9;
+        market.own_posts.push(OwnPost { day: 0, effects: Some(effects) });
+        market.surges.push(Surge { day: 1, end_day: 9, multiplier: 2.5 });
+        let mut subscribers = ByGroup::default();
+        for (id, count) in [("S1", 2000), ("S3", 300), ("E3", 2)] {
+            subscribers[group(id)] = count;
+        }
+        let spend = |pairs: &[(&str, f64)]| pairs.iter().map(|&(id, spend)| (group(id), spend)).collect();
+        let ads = TargetedAds {
+            targeted_spend: IndexMap::from([
+                (Channel::SocialMedia, spend(&[("S1", 500.0), ("E1", 1000.0)])),
+                (Channel::ContentMarketing, spend(&[("S1", 750.0), ("D_S01", 100.0)])),
+                (Channel::Linkedin, spend(&[("S1", 0.0)])),
+            ]),
+        };
+        let context = LeadContext {
+            day: 3,
+            calendar: 1.1,
+            market: &market,
+            subscribers: &subscribers,
+            ads: &ads,
+            params: &params,
+        };
+        for (id, saturation, economy, social, paid, network, expected) in [
+            ("S1", 0.9999461115691, 0.85, 1.09375, 302.563425, 59.872186, 574.4719572974636),
+            ("S2", 1.0, 0.925, 1.0, 0.0, 2.83256, 3.60266225),
+            ("S3", 0.9999875759510, 0.91, 1.0, 0.0, 8.541866, 10.687877044142),
+            ("E1", 1.0, 0.865, 1.0, 0.1038, 2.04596, 2.5568708),
+            ("E2", 1.0, 0.955, 1.0, 0.0, 2.37356, 3.116780975),
+            ("E3", 0.9997840920872, 0.94, 1.0, 0.0, 1.719662, 2.222183244442),
+        ] {
+            let factors = lead_factors(group(id), &context);
+            near(factors.saturation, saturation);
+            near(factors.economy, economy);
+            near(factors.social, social);
+            near(factors.paid.iter().sum::<f64>(), paid);
+            near(factors.network, network);
+            near(factors.expected(), expected);
+        }
+    }
+
+    #[test]
+    fn check_11_of_chapter_30_and_19_of_chapter_10() {
+        let law = Params::shipped().leads;
+        near(saturation(136_000, market_cap(272_000.0, 0.2, 0, &law), &law), 0.75);
+        near(saturation(136_000, market_cap(272_000.0, 0.2, 250, &law), &law), 0.806611990129);
+        near(saturation(600, market_cap(1190.0, 0.14, 100, &law), &law), 0.764215155299);
+        assert_eq!(saturation(140, market_cap(136.0, 0.1, 0, &law), &law), 0.0);
+        assert_eq!(saturation(0, 0.0, &law), 1.0);
+        near(market_cap(272_000.0, 0.2, 365, &law), 326_400.0);
+        near(market_cap(136.0, 0.1, 500, &law), 154.630136986301);
+    }
+
+    #[test]
+    fn check_13_of_chapter_20() {
+        let params = Params::shipped();
+        let market = Market::opening(&params);
+        let subscribers = ByGroup::default();
+        let ads = TargetedAds {
+            targeted_spend: IndexMap::from([(
+                Channel::SearchAds,
+                [(group("S1"), 1000.0)].into_iter().collect(),
+            )]),
+        };
+        for (day, calendar, expected) in [(7, 1.0, 62.29245), (6, 0.6, 37.37547)] {
+            let context = LeadContext {
+                day,
+                calendar,
+                market: &market,
+                subscribers: &subscribers,
+                ads: &ads,
+                params: &params,
+            };
+            near(lead_factors(group("S1"), &context).expected(), expected);
+        }
+    }
+
+    #[test]
+    fn sources_share_leads_in_proportion() {
+        let mut factors = LeadFactors { network: 30.0, ..LeadFactors::default() };
+        factors.paid[Channel::SearchAds] = 50.0;
+        factors.paid[Channel::ReferralProgram] = 20.0;
+        for (u, source) in
+            [(0.0, "search_ads"), (0.499, "search_ads"), (0.501, "referral_program"), (0.71, "network")]
+        {
+            assert_eq!(factors.source(u).id(), source, "{u}");
+        }
+        assert_eq!(LeadFactors::default().source(0.5), Source::Organic);
+    }
+}

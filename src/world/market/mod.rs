@@ -1,0 +1,87 @@
+//! The market around the company: who hears of it, what they think, what rivals and the economy do.
+
+pub mod arrivals;
+pub mod competitors;
+pub mod drift;
+pub mod economy;
+pub mod leads;
+pub mod posts;
+pub mod reputation;
+pub mod social;
+pub mod surges;
+pub mod yields;
+
+use super::canonical::canonical;
+use super::identifiers::{ByChannel, ByGroup, Group};
+use super::params::Params;
+
+/// The hidden state of the market.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Market {
+    /// Reputation by group.
+    pub reputation: reputation::ReputationBook,
+    /// How much expectations and budgets have moved.
+    pub drift: drift::DriftTotals,
+    /// Leads a day for 1,000 dollars a day, by channel and group.
+    pub yields: ByChannel<ByGroup<f64>>,
+    /// The economy.
+    pub economy: economy::Economy,
+    /// Competitor events so far.
+    pub competitors: Vec<competitors::Event>,
+    /// Demand surges drawn so far.
+    pub surges: Vec<surges::Surge>,
+    /// What the company knows about each group.
+    pub knowledge: ByGroup<Knowledge>,
+    /// Reactions to the company's posts.
+    pub own_posts: Vec<social::OwnPost>,
+}
+
+/// What the company knows about a group.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Knowledge {
+    /// Info level, 0 while undiscovered.
+    pub level: u8,
+    /// Day of discovery.
+    pub discovered_day: Option<u32>,
+    /// Last day on which the level rose.
+    pub last_research_day: Option<u32>,
+}
+
+canonical! {
+    Market { reputation, drift, yields, economy, competitors, surges, knowledge, own_posts }
+    Knowledge { level, discovered_day, last_research_day }
+}
+
+impl Market {
+    /// The market of day 0.
+    pub fn opening(params: &Params) -> Market {
+        let knowledge = |group: Group| {
+            let known = group.initially_known();
+            let initial = &params.initial;
+            Knowledge {
+                level: if known {
+                    initial.initial_group_info_level
+                } else {
+                    initial.discoverable_group_info_level
+                },
+                discovered_day: known.then_some(0),
+                last_research_day: known.then_some(0),
+            }
+        };
+        Market {
+            reputation: reputation::ReputationBook::opening(params),
+            drift: drift::DriftTotals::default(),
+            yields: params.starting_yields(),
+            economy: economy::Economy::opening(params),
+            competitors: Vec::new(),
+            surges: Vec::new(),
+            knowledge: ByGroup::from_fn(knowledge),
+            own_posts: Vec::new(),
+        }
+    }
+
+    /// Whether a group has been discovered.
+    pub fn is_known(&self, group: Group) -> bool {
+        self.knowledge[group].level >= 1
+    }
+}

@@ -1,0 +1,207 @@
+//! Reputation: what subscribers say, how it spreads, and what a departure costs (chapter 30 §2, step 17).
+
+use crate::world::canonical::canonical;
+use crate::world::identifiers::{ByGroup, Group};
+use crate::world::params::{Params, Reputation};
+use crate::world::retention::satisfaction::Mood;
+
+/// Reputation by group, 0.001..=1 after the first write.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReputationBook {
+    values: ByGroup<f64>,
+}
+
+canonical! { ReputationBook { values } }
+
+impl ReputationBook {
+    /// Everybody starts with the same reputation; groups without a stored one read as it too.
+    pub fn opening(params: &Params) -> ReputationBook {
+        ReputationBook { values: ByGroup::from_fn(|_| params.initial.initial_reputation) }
+    }
+
+    /// Reputation of a group.
+    pub fn of(&self, group: Group) -> f64 {
+        self.values[group]
+    }
+
+    /// Sets a reputation as it is; for tests and given states.
+    pub fn set(&mut self, group: Group, value: f64) {
+        self.values[group] = value;
+    }
+
+    /// Adds a change, clamps to 0..=1 and then to the floor.
+    pub fn move_by(&mut self, group: Group, change: f64, law: &Reputation) {
+        let moved = (self.values[group] + change).clamp(law.reputation_clamp_min, law.reputation_clamp_max);
+        self.values[group] = moved.max(law.reputation_floor);
+    }
+}
+
+/// What one subscriber contributes: 0.0005 S, twice as much when S is negative.
+pub fn contribution(satisfaction: f64, law: &Reputation) -> f64 {
+    let weight = if satisfaction < 0.0 { law.negative_satisfaction_multiplier } else { 1.0 };
+    law.base_rep_per_customer * weight * satisfaction
+}
+
+/// Change of a group's reputation from the contributions of today: (sum / m) log2(m), m = max(count, 2);
+/// nothing when it is too small.
+pub fn daily_change(mood: &Mood, law: &Reputation) -> Option<f64> {
+    let size = f64::from(mood.count.max(law.min_group_size));
+    let change = mood.sum / size * libm::log2(size);
+    (change.abs() >= law.daily_delta_min_abs).then_some(change)
+}
+
+/// Scale of a single event in a group of this many subscribers: log2(k) / k, k = max(count, 2).
+pub fn event_scale(subscribers: u32, law: &Reputation) -> f64 {
+    let size = f64::from(subscribers.max(law.event_scale_min_group_size));
+    libm::log2(size) / size
+}
+
+/// Damage of an individual's cancellation: 0.000375 (0.5 + U) (1 + 20 min(S, 0)^2) log2(k) / k.
+pub fn cancel_damage(satisfaction: f64, subscribers: u32, u: f64, law: &Reputation) -> f64 {
+    let bad = satisfaction.min(0.0);
+    event_damage(subscribers, u, law) * (1.0 + law.cancel_negative_satisfaction_coef * bad * bad)
+}
+
+/// Damage of a lost company: the same without its satisfaction.
+pub fn event_damage(subscribers: u32, u: f64, law: &Reputation) -> f64 {
+    law.reputation_quality_cancel_damage
+        * (law.cancel_damage_noise_offset + u)
+        * event_scale(subscribers, law)
+}
+
+/// Moves reputations by the moods of today; each change spreads to the other known groups by their weights.
+pub fn contribute(
+    book: &mut ReputationBook,
+    moods: &ByGroup<Mood>,
+    is_known: impl Fn(Group) -> bool,
+    params: &Params,
+) {
+    let law = &params.reputation;
+    for group in Group::all().filter(|group| moods[*group].count > 0) {
+        let Some(change) = daily_change(&moods[group], law) else { continue };
+        book.move_by(group, change, law);
+        if !is_known(group) {
+            continue;
+        }
+        for other in Group::all().filter(|other| *other != group && is_known(*other)) {
+            let weight = params.reputation_weight(group, other);
+            let spill = change * weight * law.cross_group_spillover_factor;
+            if weight > 0.0 && spill.abs() > law.cross_delta_min_abs {
+                book.move_by(other, spill, law);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn group(id: &str) -> Group {
+        Group::parse(id).expect("a group")
+    }
+
+    /// Reputations after a day with these moods: (group, subscribers, satisfaction).
+    fn after(moods: &[(&str, u32, f64)], start: f64, discovered: &[&str]) -> ReputationBook {
+        let params = Params::shipped();
+        let mut book = ReputationBook::opening(&params);
+        let mut by_group = ByGroup::<Mood>::default();
+        for &(id, count, satisfaction) in moods {
+            book.set(group(id), start);
+            let mood = &mut by_group[group(id)];
+            mood.count += count;
+            for _ in 0..count {
+                mood.sum += contribution(satisfaction, &params.reputation);
+            }
+        }
+        let known = |group: Group| group.initially_known() || discovered.contains(&group.id());
+        contribute(&mut book, &by_group, known, &params);
+        book
+    }
+
+    fn assert_book(book: &ReputationBook, expected: &[(&str, f64)]) {
+        for &(id, value) in expected {
+            let own = book.of(group(id));
+            assert!((own / value - 1.0).abs() < 1e-9, "{id}: {own} instead of {value}");
+        }
+    }
+
+    #[test]
+    fn checks_1_to_5_of_chapter_30() {
+        assert_book(
+            &after(&[("S1", 1000, 0.3)], 0.5, &[]),
+            &[("S1", 0.501494867643), ("S3", 0.5), ("E1", 0.5)],
+        );
+        let unhappy = after(&[("S1", 1000, -0.3)], 0.5, &[]);
+        assert_book(&unhappy, &[("S1", 0.497010264715), ("S3", 0.499865461912), ("S2", 0.5), ("E1", 0.5)]);
+        let small = after(&[("S1", 1, 0.5), ("S2", 100, 0.001)], 0.5, &[]);
+        assert_book(&small, &[("S1", 0.500125), ("S2", 0.5)]);
+        assert_book(&after(&[("S1", 600, 0.2), ("S1", 400, -0.1)], 0.5, &[]), &[("S1", 0.500199315686)]);
+        let crowd = after(&[("S1", 50_000, -1.2)], 0.5, &[]);
+        assert_book(&crowd, &[("S1", 0.481268431431), ("S2", 0.499719026471), ("S3", 0.499157079414)]);
+    }
+
+    #[test]
+    fn check_6_of_chapter_30_spreads_to_known_groups() {
+        let book = after(&[("S3", 2000, -0.4)], 0.5, &["D_S07", "D_S05"]);
+        let expected = [
+            ("S3", 0.495613686286),
+            ("S1", 0.499473642354),
+            ("S2", 0.499684185413),
+            ("E1", 0.49953943706),
+            ("E2", 0.49953943706),
+            ("E3", 0.499631549648),
+            ("D_S05", 0.499526278119),
+            ("D_S07", 0.499605231766),
+            ("D_S06", 0.5),
+        ];
+        assert_book(&book, &expected);
+    }
+
+    #[test]
+    fn check_7_of_chapter_30_clips_and_floors() {
+        assert_book(&after(&[("S1", 1000, -3.0)], 0.002, &[]), &[("S1", 0.001)]);
+        assert_book(&after(&[("S1", 1000, 3.0)], 0.9999, &[]), &[("S1", 1.0)]);
+    }
+
+    #[test]
+    fn checks_8_and_9_of_chapter_30_and_10_of_chapter_20() {
+        let law = Params::shipped().reputation;
+        for (count, scale) in [
+            (0, 0.5),
+            (1, 0.5),
+            (2, 0.5),
+            (10, 0.332192809489),
+            (100, 0.066438561898),
+            (1000, 0.009965784285),
+            (5000, 0.00245754248),
+            (100_000, 0.000166096405),
+        ] {
+            assert!((event_scale(count, &law) - scale).abs() < 1e-11, "{count}");
+        }
+        for (satisfaction, count, u, damage) in [
+            (-0.3, 1000, 0.5, 1.046407350e-5),
+            (0.2, 1000, 0.5, 3.737169107e-6),
+            (-1.0, 50, 0.0, 4.444536749e-4),
+        ] {
+            assert!((cancel_damage(satisfaction, count, u, &law) / damage - 1.0).abs() < 1e-9);
+        }
+        let mut book = ReputationBook::opening(&Params::shipped());
+        book.move_by(group("S1"), -cancel_damage(-0.3, 10, 0.25, &law), &law);
+        assert_book(&book, &[("S1", 0.499738398)]);
+    }
+
+    #[test]
+    fn check_13_of_chapter_40() {
+        let law = Params::shipped().reputation;
+        for (count, low, middle) in [
+            (1, 9.375e-5, 1.875e-4),
+            (2, 9.375e-5, 1.875e-4),
+            (10, 6.228615178e-5, 1.245723036e-4),
+            (100, 1.245723036e-5, 2.491446071e-5),
+        ] {
+            assert!((event_damage(count, 0.0, &law) / low - 1.0).abs() < 1e-9);
+            assert!((event_damage(count, 0.5, &law) / middle - 1.0).abs() < 1e-9);
+        }
+    }
+}

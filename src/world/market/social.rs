@@ -1,0 +1,80 @@
+//! What reactions to the company's posts do to leads (chapter 30 §6.8).
+
+use crate::world::canonical::canonical;
+use crate::world::identifiers::{ByGroup, Group};
+use crate::world::params::CeoPosts;
+
+/// A post of the company, as far as leads depend on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnPost {
+    /// Day of the post.
+    pub day: u32,
+    /// Reactions in -1..=1 by group, once it was judged.
+    pub effects: Option<ByGroup<f64>>,
+}
+
+canonical! { OwnPost { day, effects } }
+
+/// What one reaction adds to the factor on leads at an age in days; reactions below 0.6 add nothing.
+pub fn post_effect(effect: f64, age_days: u32, law: &CeoPosts) -> f64 {
+    let (size, threshold) = (effect.abs(), law.multiplier_viral_threshold);
+    if size < threshold {
+        return 0.0;
+    }
+    let strength = (size - threshold) / (1.0 - threshold) * law.multiplier_max_boost_per_post;
+    effect.signum() * strength * libm::exp2(-f64::from(age_days) / law.multiplier_half_life_days)
+}
+
+/// Factor on the leads of a group: 1 plus the effects of all posts, 0.75..=1.25.
+pub fn social_multiplier(group: Group, day: u32, posts: &[OwnPost], law: &CeoPosts) -> f64 {
+    let judged = posts.iter().filter(|post| post.day <= day);
+    let sum: f64 = judged
+        .filter_map(|post| {
+            post.effects.as_ref().map(|effects| post_effect(effects[group], day - post.day, law))
+        })
+        .sum();
+    (law.multiplier_neutral + sum).clamp(law.multiplier_min, law.multiplier_max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::params::Params;
+
+    fn multiplier(posts: &[(u32, f64)], day: u32) -> f64 {
+        let group = Group::at(0).expect("S1");
+        let posts: Vec<OwnPost> = posts
+            .iter()
+            .map(|&(day, effect)| OwnPost { day, effects: Some(ByGroup::from_fn(|_| effect)) })
+            .collect();
+        social_multiplier(group, day, &posts, &Params::shipped().ceo_posts)
+    }
+
+    #[test]
+    fn check_15_of_chapter_30() {
+        for (posts, day, expected) in [
+            (&[(7, 1.0)][..], 8, 1.198425131496),
+            (&[(7, 1.0)], 9, 1.157490131237),
+            (&[(7, 1.0)], 14, 1.049606282874),
+            (&[(7, 0.8)], 9, 1.078745065618),
+            (&[(7, 0.75)], 9, 1.059058799214),
+            (&[(7, 0.6)], 9, 1.0),
+            (&[(7, 0.59)], 9, 1.0),
+            (&[(7, -0.9)], 9, 0.881882401572),
+            (&[(0, -1.0), (7, -1.0)], 7, 0.75),
+            (&[(0, 1.0), (7, 1.0)], 9, 1.188740131237),
+        ] {
+            let own = multiplier(posts, day);
+            assert!((own - expected).abs() < 1e-11, "{posts:?} on {day}: {own} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn check_17_of_chapter_10() {
+        for (effect, day, expected) in
+            [(0.9, 10, 1.1875), (-1.0, 11, 0.8015748685), (0.9, 13, 1.09375), (-1.0, 20, 0.9751968586)]
+        {
+            assert!((multiplier(&[(10, effect)], day) - expected).abs() < 1e-10);
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Demand surges: silent rushes of leads (chapter 30 §4).
+
+use crate::world::canonical::canonical;
+use crate::world::params::{DemandSurge, Params, SurgeStart};
+use crate::world::random::{Part, Streams};
+
+/// One demand surge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surge {
+    /// Day it was drawn for.
+    pub day: u32,
+    /// First day on which it no longer acts.
+    pub end_day: u32,
+    /// Factor on leads.
+    pub multiplier: f64,
+}
+
+canonical! { Surge { day, end_day, multiplier } }
+
+/// Last day of the week that holds a day: weeks end on days divisible by 7, and the run on its last day.
+pub fn week_end(day: u32, days_per_week: u32, total_days: u32) -> u32 {
+    day.next_multiple_of(days_per_week).min(total_days.max(day))
+}
+
+/// Draws the surge of a day, if there is one.
+pub fn draw_surge(day: u32, law: &DemandSurge, streams: &Streams) -> Option<Surge> {
+    let mut stream = streams.open(Part::Surge, [u64::from(day)]);
+    if !stream.bernoulli(law.probability) {
+        return None;
+    }
+    let duration = stream.integer(law.duration_days_low, law.duration_days_high_exclusive - 1);
+    let multiplier = law.multiplier_base + law.multiplier_range * stream.uniform();
+    Some(Surge { day, end_day: day + duration, multiplier })
+}
+
+/// On the first day of a week, draws the surges of all its days.
+pub fn draw_week(day: u32, total_days: u32, surges: &mut Vec<Surge>, params: &Params, streams: &Streams) {
+    let length = params.run.days_per_week;
+    if day % length == 1 {
+        let days = day..=week_end(day, length, total_days);
+        surges.extend(days.filter_map(|day| draw_surge(day, &params.demand_surge, streams)));
+    }
+}
+
+/// Factor of all surges that act on a day; 1 without any. In the release a surge acts from the first day of
+/// the week it was drawn in, so there is no test of its own day.
+pub fn surge_factor(day: u32, surges: &[Surge], start: SurgeStart) -> f64 {
+    let begun = |surge: &Surge| start == SurgeStart::Week || surge.day <= day;
+    surges.iter().filter(|surge| day < surge.end_day && begun(surge)).map(|surge| surge.multiplier).product()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn check_14_of_chapter_20_and_25_of_chapter_30() {
+        let surge = |day, end_day, multiplier| Surge { day, end_day, multiplier };
+        let week = |day, surges: &[Surge]| surge_factor(day, surges, SurgeStart::Week);
+        let stored = [surge(5, 10, 3.0), surge(6, 9, 2.0)];
+        for (day, factor) in [(1, 6.0), (4, 6.0), (8, 6.0), (9, 3.0), (10, 1.0)] {
+            assert_eq!(week(day, &stored), factor, "day {day}");
+        }
+        let stored = [surge(12, 16, 2.5), surge(13, 17, 2.0)];
+        for (day, factor) in [(8, 5.0), (11, 5.0), (15, 5.0), (16, 2.0), (17, 1.0)] {
+            assert_eq!(week(day, &stored), factor, "day {day}");
+        }
+        assert_eq!(surge_factor(11, &stored, SurgeStart::Day), 1.0);
+        assert_eq!(surge_factor(12, &stored, SurgeStart::Day), 2.5);
+    }
+
+    #[test]
+    fn weeks_end_on_days_divisible_by_seven_or_with_the_run() {
+        assert_eq!(week_end(1, 7, 500), 7);
+        assert_eq!(week_end(7, 7, 500), 7);
+        assert_eq!(week_end(498, 7, 500), 500);
+    }
+
+    #[test]
+    fn surges_are_distributed_as_chapter_30_measured() {
+        let params = Params::shipped();
+        let (mut count, mut multipliers, mut durations) = (0.0, 0.0, 0.0);
+        for seed in 0..300 {
+            let (streams, mut surges) = (Streams::new(seed), Vec::new());
+            (1..=500).for_each(|day| draw_week(day, 500, &mut surges, &params, &streams));
+            count += surges.len() as f64;
+            multipliers += surges.iter().map(|surge| surge.multiplier).sum::<f64>();
+            durations += surges.iter().map(|surge| f64::from(surge.end_day - surge.day)).sum::<f64>();
+        }
+        assert!((count / 300.0 - 2.5).abs() < 0.35, "{}", count / 300.0);
+        assert!((multipliers / count - 5.0).abs() < 0.3 && (durations / count - 6.5).abs() < 0.4);
+    }
+}

@@ -1,0 +1,63 @@
+//! Channel yields wander: once a month every channel brings a little more or less (chapter 30 §3.7, step 9).
+
+use crate::world::identifiers::{ByChannel, ByGroup, Channel, Group};
+use crate::world::params::{Leads, Params};
+use crate::world::random::{Part, Streams};
+
+/// Yield after a month; `z` is a standard normal draw. A yield of 0 stays 0.
+pub fn varied_yield(value: f64, z: f64, law: &Leads) -> f64 {
+    (value + law.monthly_channel_noise_fraction * value * z).max(law.monthly_channel_value_min)
+}
+
+/// Varies all yields, also of undiscovered groups, on days divisible by 30; channels draw alphabetically.
+pub fn vary(day: u32, yields: &mut ByChannel<ByGroup<f64>>, params: &Params, streams: &Streams) {
+    let interval = params.leads.monthly_channel_noise_interval_days;
+    if !day.is_multiple_of(interval) {
+        return;
+    }
+    let mut alphabetical = Channel::ALL;
+    alphabetical.sort_by_key(|channel| channel.id());
+    for group in Group::all() {
+        let keys = [group.index() as u64, u64::from(day / interval)];
+        let mut stream = streams.open(Part::LeadRateDrift, keys);
+        for channel in alphabetical {
+            let value = &mut yields[channel][group];
+            if *value > 0.0 {
+                *value = varied_yield(*value, stream.standard_normal(), &params.leads);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn check_13_of_chapter_20() {
+        let law = Params::shipped().leads;
+        assert!((varied_yield(124.5849, 1.0, &law) - 130.814145).abs() < 1e-9);
+        assert_eq!(varied_yield(124.5849, -25.0, &law), 0.0);
+    }
+
+    #[test]
+    fn yields_vary_by_five_percent_a_month_and_only_then() {
+        let params = Params::shipped();
+        let streams = Streams::new(3);
+        let start = params.starting_yields();
+        let mut yields = start;
+        vary(29, &mut yields, &params, &streams);
+        assert_eq!(yields, start);
+        let (mut sum, mut squares) = (0.0, 0.0);
+        vary(30, &mut yields, &params, &streams);
+        for channel in Channel::ALL {
+            for group in Group::all() {
+                let change = yields[channel][group] / start[channel][group] - 1.0;
+                sum += change;
+                squares += change * change;
+            }
+        }
+        let (mean, std) = (sum / 130.0, (squares / 130.0).sqrt());
+        assert!(mean.abs() < 0.015 && (std - 0.05).abs() < 0.012, "{mean} {std}");
+    }
+}

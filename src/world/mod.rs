@@ -1,0 +1,19 @@
+//! The simulator: pure, deterministic, without input or output, clock, SQL or prose.
+//!
+//! Read [`day::step_day`] first: it is the story of a day. Every mechanism it calls is a function over the parts
+//! it touches, and every formula a small pure function with the specification's check values as its test.
+
+pub mod canonical;
+pub mod customers;
+pub mod day;
+pub mod enterprise;
+pub mod events;
+pub mod finance;
+pub mod identifiers;
+pub mod market;
+pub mod params;
+pub mod product;
+pub mod random;
+pub mod retention;
+pub mod settings;
+pub mod state;

@@ -1,0 +1,168 @@
+//! Every number of the world: read from `configs/world/*.toml`, checked once, immutable afterwards.
+//!
+//! The tables and keys are those of the specification's chapter 10. A scenario is a small file that overrides
+//! some of them; the merged result has a digest that every run records.
+
+mod check;
+mod customers;
+mod discovery;
+mod enterprise;
+mod load;
+mod market;
+mod product;
+mod retention;
+mod run;
+mod social;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+pub use customers::*;
+pub use discovery::*;
+pub use enterprise::*;
+pub use load::{ParameterError, Source, override_table, shipped_sources};
+pub use market::*;
+pub use product::*;
+pub use retention::*;
+pub use run::*;
+pub use social::*;
+
+use super::identifiers::{ByChannel, ByGroup, Channel, Group};
+
+/// All parameters, one field per table of the files in `configs/world`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Params {
+    /// Length and end of a run.
+    pub run: Run,
+    /// Day 0.
+    pub initial: Initial,
+    /// Limits of tools, queries and texts.
+    pub limits: Limits,
+    /// Which form odd mechanics take.
+    pub fidelity: Fidelity,
+    /// The willingness curve.
+    pub participation: Participation,
+    /// Bounds of a new customer's traits.
+    pub customer_generation: CustomerGeneration,
+    /// Delivered and perceived quality.
+    pub quality: Quality,
+    /// Development and R&D.
+    pub development: Development,
+    /// Service health.
+    pub operations: Operations,
+    /// In-app advertising.
+    pub ads: Ads,
+    /// Model tiers 1..=5.
+    pub model_tier: Vec<ModelTier>,
+    /// Capacity tiers 0..=7.
+    pub capacity_tier: Vec<CapacityTier>,
+    /// R&D tiers 1..=20.
+    pub research_tier: Vec<ResearchTier>,
+    /// Daily satisfaction.
+    pub satisfaction: Satisfaction,
+    /// Support issues.
+    pub issues: Issues,
+    /// Billing.
+    pub billing: Billing,
+    /// Floors of discounts.
+    pub promotions: Promotions,
+    /// Failed payments.
+    pub involuntary_churn: InvoluntaryChurn,
+    /// Weekday and day of the month.
+    pub calendar: Calendar,
+    /// Rushes of demand.
+    pub demand_surge: DemandSurge,
+    /// Leads and channel yields.
+    pub leads: Leads,
+    /// Reputation.
+    pub reputation: Reputation,
+    /// Competitor events.
+    pub competitor: Competitor,
+    /// Preference drift.
+    pub drift: Drift,
+    /// The economy.
+    #[serde(rename = "macro")]
+    pub economy: MacroEconomy,
+    /// Posts of customers.
+    pub social: Social,
+    /// Posts of the company.
+    pub ceo_posts: CeoPosts,
+    /// Negotiations.
+    pub enterprise: Enterprise,
+    /// Finding groups.
+    pub market_research: MarketResearch,
+    /// Levels of knowledge 1..=5.
+    pub info_level: Vec<InfoLevel>,
+    /// The 26 groups, in their fixed order.
+    pub group: Vec<GroupParams>,
+    /// The five channels, in their fixed order.
+    pub channel: Vec<ChannelParams>,
+    /// Leads a day in a group per active subscription of the source group.
+    pub referral_leads_per_subscriber_day: BTreeMap<String, Vec<f64>>,
+    /// Weight of a change of reputation of the source group on a group.
+    pub reputation_influence: BTreeMap<String, Vec<f64>>,
+    /// Words of customer profiles.
+    pub personas: Personas,
+}
+
+/// One advertising channel (chapter 10.4).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChannelParams {
+    /// Identifier.
+    pub id: String,
+    /// Name shown to the player.
+    pub name: String,
+    /// Leads a day for 1,000 dollars a day by group, at the start of a run.
+    pub leads_per_1000_dollars: BTreeMap<String, f64>,
+}
+
+impl Params {
+    /// The parameters of a group.
+    pub fn group(&self, group: Group) -> &GroupParams {
+        &self.group[group.index()]
+    }
+
+    /// Starting yields: leads a day for 1,000 dollars a day.
+    pub fn starting_yields(&self) -> ByChannel<ByGroup<f64>> {
+        ByChannel::from_fn(|channel: Channel| {
+            let yields = &self.channel[channel.index()].leads_per_1000_dollars;
+            ByGroup::from_fn(|group| yields.get(group.id()).copied().unwrap_or(0.0))
+        })
+    }
+
+    /// Referral rate from a source group to a target group, leads a day and subscription.
+    pub fn referral_rate(&self, source: Group, target: Group) -> f64 {
+        self.referral_leads_per_subscriber_day[source.id()][target.index()]
+    }
+
+    /// Weight of a change of reputation of the source on the target.
+    pub fn reputation_weight(&self, source: Group, target: Group) -> f64 {
+        self.reputation_influence[source.id()][target.index()]
+    }
+
+    /// The capacity tier with this number, 0..=7.
+    pub fn capacity(&self, tier: u8) -> &CapacityTier {
+        &self.capacity_tier[usize::from(tier)]
+    }
+
+    /// The model tier with this number, 1..=5.
+    pub fn model(&self, tier: u8) -> &ModelTier {
+        &self.model_tier[usize::from(tier) - 1]
+    }
+
+    /// The R&D tier with this number, 1..=20.
+    pub fn research(&self, tier: u8) -> &ResearchTier {
+        &self.research_tier[usize::from(tier) - 1]
+    }
+
+    /// Digest of the effective parameters: 16 hexadecimal digits of blake3 over their canonical JSON.
+    ///
+    /// A run records it, and is never silently continued under other parameters (chapter 70 §2).
+    pub fn digest(&self) -> String {
+        let canonical = serde_json::to_vec(self).expect("parameters hold only strings and finite numbers");
+        blake3::hash(&canonical).to_hex()[..16].to_owned()
+    }
+}

@@ -1,0 +1,196 @@
+//! How a run goes: `configs/world/run.toml`.
+
+use serde::{Deserialize, Serialize};
+
+/// Length and end of a run (chapter 10.3).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Run {
+    /// Default seed of a new run.
+    pub seed: u64,
+    /// Default horizon in days; the competitors grow towards it.
+    pub total_days: u32,
+    /// Days of one `next_week`; the last week of a run may be shorter.
+    pub days_per_week: u32,
+    /// The run ends when cash is below this at the end of a day, in dollars.
+    pub bankruptcy_cash_threshold: f64,
+}
+
+/// The company and its market on day 0 (chapter 20 §3).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Initial {
+    /// Cash on day 0, in dollars.
+    pub initial_cash: f64,
+    /// Opening price of plan A, dollars a month.
+    #[serde(rename = "default_price_A")]
+    pub default_price_a: f64,
+    /// Opening price of plan B, dollars a month.
+    #[serde(rename = "default_price_B")]
+    pub default_price_b: f64,
+    /// Opening price of plan C, dollars a month.
+    #[serde(rename = "default_price_C")]
+    pub default_price_c: f64,
+    /// Opening model tier of plan A, 1..=5.
+    #[serde(rename = "default_tier_A")]
+    pub default_tier_a: u8,
+    /// Opening model tier of plan B, 1..=5.
+    #[serde(rename = "default_tier_B")]
+    pub default_tier_b: u8,
+    /// Opening model tier of plan C, 1..=5.
+    #[serde(rename = "default_tier_C")]
+    pub default_tier_c: u8,
+    /// Opening quota of plan A, units a day.
+    #[serde(rename = "default_quota_A")]
+    pub default_quota_a: u64,
+    /// Opening quota of plan B, units a day.
+    #[serde(rename = "default_quota_B")]
+    pub default_quota_b: u64,
+    /// Opening quota of plan C, units a day.
+    #[serde(rename = "default_quota_C")]
+    pub default_quota_c: u64,
+    /// Opening spend on operations, dollars a day.
+    pub default_spend_operations: f64,
+    /// Opening spend on development, dollars a day.
+    pub default_spend_development: f64,
+    /// Opening capacity tier, 0..=7.
+    pub default_capacity_tier: u8,
+    /// Reputation of every group at the start, 0..=1.
+    pub initial_reputation: f64,
+    /// Quality gained before day 1.
+    pub q_shared_bonus: f64,
+    /// Info level of the six initial groups.
+    pub initial_group_info_level: u8,
+    /// Info level of the twenty groups still to be found.
+    pub discoverable_group_info_level: u8,
+    /// Satisfaction of a new customer.
+    pub customer_satisfaction: f64,
+    /// Relationship of a new customer, 0..=1.
+    pub customer_relationship: f64,
+}
+
+/// Limits of tools, queries and texts (chapter 10.3).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// Longest post of the company, in code points.
+    pub post_max_chars: u32,
+    /// Posts read when no limit is given.
+    pub get_social_posts_default_limit: u32,
+    /// Rows a query returns at most.
+    pub query_row_limit: u32,
+    /// A query is stopped after this many seconds.
+    pub query_timeout_seconds: u32,
+    /// Characters shown of a daily calculation.
+    pub dashboard_calculation_max_chars: u32,
+    /// Characters shown of an own post.
+    pub dashboard_post_preview_chars: u32,
+    /// Horizons of the cash forecasts that every week asks for, in days.
+    pub prediction_horizons_days: Vec<u32>,
+}
+
+/// Odd mechanics that agents lived with, each with a second form (chapter 00, chapter 20 §23).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fidelity {
+    /// Form of the willingness curve.
+    pub required_quality: RequiredQuality,
+    /// What the quota factor multiplies.
+    pub perceived_quality: PerceivedQuality,
+    /// Where overload and outages count.
+    pub service_penalty: ServicePenalty,
+    /// What a quota limits.
+    pub usage_quota: UsageQuota,
+    /// How often accumulated drift counts for a customer.
+    pub drift_counted: DriftCounted,
+    /// From when a demand surge acts.
+    pub surge_start: SurgeStart,
+    /// Whether dead enterprise threads fire again (chapter 40 §12).
+    pub reappearing_threads: bool,
+    /// On which days customers post.
+    pub customer_posts: CustomerPosts,
+    /// Who judges the company's posts.
+    pub post_judge: PostJudge,
+    /// Whether a company refuses prices above its budget (chapter 40 §9.4).
+    pub deal_price_ceiling: bool,
+}
+
+/// Form of the willingness curve (chapter 20 §8, §23).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RequiredQuality {
+    /// Two logistic halves with a jump between them: the release.
+    Piecewise,
+    /// One blend of both sigmoids: the paper.
+    Blended,
+}
+
+/// What the quota factor multiplies (chapter 20 §13, §23).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PerceivedQuality {
+    /// Delivered quality, relationship and tenure: the release.
+    Release,
+    /// Issues and ads too: the paper.
+    Paper,
+}
+
+/// Where overload and outages lower quality (chapter 20 §13, §23).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ServicePenalty {
+    /// Only in daily satisfaction: the release.
+    Satisfaction,
+    /// In every judgement of quality: the paper.
+    Everywhere,
+}
+
+/// What a quota limits (chapter 20 §12, §23).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UsageQuota {
+    /// Units a day: the release.
+    Daily,
+    /// Units of a billing period: the paper.
+    Period,
+}
+
+/// How often accumulated drift counts for a customer who came later (chapter 20 §6).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DriftCounted {
+    /// At creation and again at every reading: the release.
+    EveryRead,
+    /// Once.
+    Once,
+}
+
+/// From when a demand surge acts (chapter 30 §4).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SurgeStart {
+    /// From the first day of the week in which it was drawn: the release.
+    Week,
+    /// From its own day: the paper.
+    Day,
+}
+
+/// On which days customers post (chapter 30 §5.2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CustomerPosts {
+    /// On the seventh day of a week: the release.
+    Weekly,
+    /// Every day: the paper.
+    Daily,
+}
+
+/// Who judges the company's posts (chapter 30 §6.4).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PostJudge {
+    /// The judge of chapter 30 §16.
+    Offline,
+    /// Nobody.
+    None,
+}

@@ -1,0 +1,124 @@
+//! In-app advertising: what it earns (chapter 20 §19, step 21). What it costs in quality is in `quality`.
+
+use super::quality::ads_effect;
+use crate::world::customers::Customers;
+use crate::world::customers::columns::Block;
+use crate::world::events::{AdsRevenueRow, Facts};
+use crate::world::identifiers::{ByGroup, Group};
+use crate::world::params::Params;
+use crate::world::settings::AdsStrength;
+
+/// Effective strength for customers of a group without a level of their own, and with one.
+#[derive(Debug, Clone)]
+pub struct AdLoad<'a> {
+    setting: &'a AdsStrength,
+    by_group: ByGroup<f64>,
+    personal: bool,
+    params: &'a Params,
+}
+
+impl<'a> AdLoad<'a> {
+    /// Effective strengths under a setting.
+    pub fn of(setting: &'a AdsStrength, params: &'a Params) -> AdLoad<'a> {
+        AdLoad {
+            setting,
+            by_group: ByGroup::from_fn(|group| ads_effect(setting.for_group(group), &params.ads)),
+            personal: !setting.by_customer.is_empty(),
+            params,
+        }
+    }
+
+    /// What decisions and negotiations see: global + group.
+    pub fn for_group(&self, group: Group) -> f64 {
+        self.by_group[group]
+    }
+
+    /// What satisfaction feels and revenue counts: global + group + customer.
+    pub fn for_customer(&self, group: Group, customer: u32) -> f64 {
+        if !self.personal {
+            return self.by_group[group];
+        }
+        let own = self.setting.for_customer(customer);
+        if own == 0.0 {
+            self.by_group[group]
+        } else {
+            ads_effect(self.setting.for_group(group) + own, &self.params.ads)
+        }
+    }
+
+    /// Whether anybody is shown ads.
+    pub fn is_used(&self) -> bool {
+        self.setting.is_used()
+    }
+}
+
+/// Revenue of the day: sensitivity times effective strength times whole seats, over everybody who sees ads,
+/// in dollars. Records one row per subscriber who earns.
+pub fn earn(customers: &mut Customers, load: &AdLoad<'_>, facts: &mut Facts) -> f64 {
+    if !load.is_used() {
+        return 0.0;
+    }
+    let by_block = customers.sweep(|group, _, block| earn_block(group, block, load));
+    let mut revenue = 0.0;
+    for (sum, rows) in by_block {
+        revenue += sum;
+        facts.ads_revenue.extend(rows);
+    }
+    revenue
+}
+
+fn earn_block(group: Group, block: &Block, load: &AdLoad<'_>) -> (f64, Vec<AdsRevenueRow>) {
+    let (mut sum, mut rows) = (0.0, Vec::new());
+    for at in 0..block.len() {
+        let customer = block.customer[at];
+        let strength = load.for_customer(group, customer);
+        if strength > 0.0 {
+            let revenue = block.ads_return_sensitivity[at] * strength * block.seats[at].trunc();
+            sum += revenue;
+            rows.push(AdsRevenueRow { customer, group, strength, revenue });
+        }
+    }
+    (sum, rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::customers::columns::tests::subscriber;
+    use crate::world::settings::{PerCustomer, PerGroup};
+
+    fn near(actual: f64, expected: f64) {
+        assert!((actual - expected).abs() < 1e-9, "{actual} instead of {expected}");
+    }
+
+    #[test]
+    fn levels_add_up_as_in_check_4_of_chapter_50() {
+        let params = Params::shipped();
+        let (s1, e1) = (Group::at(0).expect("S1"), Group::at(3).expect("E1"));
+        let setting = AdsStrength {
+            global: 0.2,
+            by_group: PerGroup::from([(s1, 0.1)]),
+            by_customer: PerCustomer::from([(5, 0.3)]),
+        };
+        let load = AdLoad::of(&setting, &params);
+        near(load.for_customer(e1, 1), 0.447158031);
+        near(load.for_customer(s1, 1), 0.568201724);
+        near(load.for_customer(s1, 5), 0.806179974);
+        near(load.for_customer(e1, 5), 0.740362689);
+        near(load.for_group(s1), 0.568201724);
+        let full =
+            AdsStrength { global: 0.8, by_group: PerGroup::from([(s1, 0.7)]), ..AdsStrength::default() };
+        near(AdLoad::of(&full, &params).for_customer(s1, 1), 1.0);
+    }
+
+    #[test]
+    fn revenue_of_five_customers_is_that_of_check_19_of_chapter_20() {
+        let params = Params::shipped();
+        let setting = AdsStrength { global: 0.1, ..AdsStrength::default() };
+        let mut customers = Customers::default();
+        let mut facts = Facts::default();
+        (1..=5).for_each(|n| customers.groups[Group::at(0).expect("S1")].activate(subscriber(n)));
+        near(earn(&mut customers, &AdLoad::of(&setting, &params), &mut facts), 0.111501440);
+        assert_eq!(facts.ads_revenue.len(), 5);
+    }
+}

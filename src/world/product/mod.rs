@@ -1,0 +1,49 @@
+//! The product: how much is used, how well it runs, how good it is, how it improves, what ads in it earn.
+
+pub mod ads;
+pub mod development;
+pub mod quality;
+pub mod research;
+pub mod service;
+pub mod usage;
+
+use super::canonical::canonical;
+use super::identifiers::{ByGroup, Group};
+use super::params::Params;
+
+/// What development has achieved, and how much of it rivals could still copy (chapter 30 §10).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Product {
+    /// Quality gained for everybody, noise included.
+    pub shared_bonus: f64,
+    /// Quality gained for single groups.
+    pub group_bonus: ByGroup<f64>,
+    /// Shared improvements that no rival has copied yet.
+    pub shared_bank: f64,
+    /// Targeted improvements that no rival has copied yet.
+    pub group_bank: ByGroup<f64>,
+    /// R&D projects, in the order of their start.
+    pub research: Vec<research::Project>,
+}
+
+canonical! {
+    Product { shared_bonus, group_bonus, shared_bank, group_bank, research }
+}
+
+impl Product {
+    /// The product of day 0.
+    pub fn opening(params: &Params) -> Product {
+        Product {
+            shared_bonus: params.initial.q_shared_bonus,
+            group_bonus: ByGroup::default(),
+            shared_bank: 0.0,
+            group_bank: ByGroup::default(),
+            research: Vec::new(),
+        }
+    }
+
+    /// Product quality for a group before the model's multiplier.
+    pub fn quality(&self, group: Group, params: &Params) -> f64 {
+        params.quality.base_product_quality + self.shared_bonus + self.group_bonus[group]
+    }
+}

@@ -1,0 +1,165 @@
+//! Delivered and perceived quality, one function per term (chapter 20 §13).
+
+use crate::world::params::{Ads, Params, PerceivedQuality, Quality};
+
+/// Quality delivered to a group on a plan: (base + shared + group bonus) times the model's multiplier.
+pub fn delivered_quality(base: f64, shared_bonus: f64, group_bonus: f64, multiplier: f64) -> f64 {
+    (base + shared_bonus + group_bonus) * multiplier
+}
+
+/// Share of a demand that a quota covers, 0..=1; no demand is always covered.
+pub fn quota_factor(quota: f64, demand: f64, quality: &Quality) -> f64 {
+    if demand <= 0.0 {
+        return 1.0;
+    }
+    (quota.max(0.0) / demand).clamp(quality.quota_factor_min, quality.quota_factor_max)
+}
+
+/// Quality lost to overload and outages today: 0.08 o + 0.20 [outage].
+pub fn service_penalty(overload: f64, outage: bool, quality: &Quality) -> f64 {
+    quality.service_overload_weight * overload + if outage { quality.service_outage_weight } else { 0.0 }
+}
+
+/// Bonus of a good relationship, malus of a bad one; the stored value as it is.
+pub fn relationship_bonus(relationship: f64, quality: &Quality) -> f64 {
+    quality.relationship_quality_bonus_max
+        * (relationship - quality.relationship_neutral_point)
+        * quality.relationship_scale
+}
+
+/// A relationship of exactly 0 is read as neutral by most rules (chapter 10.3, note).
+pub fn relationship_as_read(relationship: f64, quality: &Quality) -> f64 {
+    if relationship == 0.0 { quality.fallback_relationship } else { relationship }
+}
+
+/// Bonus of tenure: 0.05 ln(1 + days / 30), 0 on the first day.
+pub fn tenure_bonus(days_subscribed: u32, quality: &Quality) -> f64 {
+    quality.stickiness_log_scale * libm::log(1.0 + f64::from(days_subscribed) / quality.stickiness_days_scale)
+}
+
+/// Tenure bonuses by days subscribed, computed once: the logarithm is the slow part of a daily sweep.
+#[derive(Debug, Clone, Default)]
+pub struct TenureTable(Vec<f64>);
+
+impl TenureTable {
+    /// Bonuses of 0..=days.
+    pub fn up_to(days: u32, quality: &Quality) -> TenureTable {
+        TenureTable((0..=days).map(|day| tenure_bonus(day, quality)).collect())
+    }
+
+    /// The bonus after this many days.
+    pub fn bonus(&self, days_subscribed: u32) -> f64 {
+        self.0[days_subscribed as usize]
+    }
+}
+
+/// Effective strength of in-app ads, 0..=1: ln(1 + 9 a) / ln 10, a = the summed levels clamped to 0..=1.
+pub fn ads_effect(summed_strength: f64, ads: &Ads) -> f64 {
+    let strength = summed_strength.clamp(ads.strength_min, ads.strength_max);
+    libm::log(1.0 + ads.log_curve_k * strength) / libm::log(1.0 + ads.log_curve_k)
+}
+
+/// What a customer experiences, term by term.
+#[derive(Debug, Clone, Copy)]
+pub struct Experience {
+    /// Delivered quality less the service penalty where that counts.
+    pub delivered: f64,
+    /// Relationship bonus.
+    pub relationship: f64,
+    /// Tenure bonus.
+    pub tenure: f64,
+    /// Quota factor, 0..=1.
+    pub quota: f64,
+    /// Open issue days times their penalty.
+    pub issues: f64,
+    /// Sensitivity times effective ad strength.
+    pub ads: f64,
+}
+
+/// Perceived quality: (delivered + relationship + tenure) quota - issues - ads in the release; the paper
+/// multiplies everything by the quota factor.
+pub fn perceived_quality(experience: Experience, form: PerceivedQuality) -> f64 {
+    let Experience { delivered, relationship, tenure, quota, issues, ads } = experience;
+    match form {
+        PerceivedQuality::Release => (delivered + relationship + tenure) * quota - issues - ads,
+        PerceivedQuality::Paper => (delivered + relationship + tenure - issues - ads) * quota,
+    }
+}
+
+/// What a quota is compared with: units a day, or of a whole billing period.
+pub fn quota_demand(daily_demand_today: f64, daily_rate: f64, params: &Params) -> f64 {
+    match params.fidelity.usage_quota {
+        crate::world::params::UsageQuota::Daily => daily_demand_today,
+        crate::world::params::UsageQuota::Period => {
+            daily_rate * f64::from(params.billing.billing_period_days)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(actual: f64, expected: f64) {
+        assert!((actual - expected).abs() < 1e-9, "{actual} instead of {expected}");
+    }
+
+    #[test]
+    fn check_2_of_chapter_20() {
+        let params = Params::shipped();
+        for (quota, demand, factor) in [
+            (0.0, 0.0, 1.0),
+            (0.0, 10.0, 0.0),
+            (50.0, 80.0, 0.625),
+            (60.0, 92.0, 0.652173913),
+            (100.0, 80.0, 1.0),
+        ] {
+            near(quota_factor(quota, demand, &params.quality), factor);
+        }
+        near(quota_factor(-3.0, 5.0, &params.quality), 0.0);
+        for (strength, effect) in [
+            (0.05, 0.161368002),
+            (0.1, 0.278753601),
+            (0.2, 0.447158031),
+            (0.25, 0.511883361),
+            (0.5, 0.740362689),
+            (0.75, 0.889301703),
+            (0.3 + 0.2 + 0.4, 0.9590413923),
+            (1.0, 1.0),
+            (1.7, 1.0),
+        ] {
+            near(ads_effect(strength, &params.ads), effect);
+        }
+    }
+
+    #[test]
+    fn a_relationship_of_zero_is_read_as_neutral() {
+        let quality = Params::shipped().quality;
+        near(relationship_bonus(relationship_as_read(0.0, &quality), &quality), 0.0);
+        near(relationship_bonus(0.0, &quality), -0.45);
+        near(relationship_bonus(1.0, &quality), 0.45);
+    }
+
+    #[test]
+    fn tenure_counts_from_the_second_day() {
+        let quality = Params::shipped().quality;
+        let table = TenureTable::up_to(60, &quality);
+        near(table.bonus(0), 0.0);
+        near(table.bonus(30), 0.05 * std::f64::consts::LN_2);
+        near(table.bonus(60), tenure_bonus(60, &quality));
+    }
+
+    #[test]
+    fn the_paper_multiplies_everything_by_the_quota_factor() {
+        let experience = Experience {
+            delivered: 0.5,
+            relationship: 0.1,
+            tenure: 0.05,
+            quota: 0.5,
+            issues: 0.06,
+            ads: 0.04,
+        };
+        near(perceived_quality(experience, PerceivedQuality::Release), 0.325 - 0.1);
+        near(perceived_quality(experience, PerceivedQuality::Paper), 0.275);
+    }
+}

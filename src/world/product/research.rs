@@ -1,0 +1,154 @@
+//! R&D projects (chapter 20 §14, chapter 50 §4.4, step 6).
+
+use super::Product;
+use crate::world::canonical::canonical;
+use crate::world::events::{Facts, Notice, ResearchChange};
+use crate::world::params::{Development, Params, ResearchTier};
+use crate::world::random::{Part, Streams};
+
+/// One R&D project.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Project {
+    /// Tier, 1..=20.
+    pub tier: u8,
+    /// Number of the start of this tier, from 1.
+    pub number: u32,
+    /// Day of the start.
+    pub started_day: u32,
+    /// First day on which it is finished.
+    pub due_day: u32,
+    /// Quality it adds.
+    pub boost: f64,
+    /// Day on which it was finished.
+    pub completed_day: Option<u32>,
+}
+
+canonical! {
+    Project { tier, number, started_day, due_day, boost, completed_day }
+}
+
+impl Project {
+    /// Identifier as the tables write it, for instance t3_1.
+    pub fn id(&self) -> String {
+        format!("t{}_{}", self.tier, self.number)
+    }
+}
+
+/// Duration in days from a standard normal draw: whole days, at least 30.
+pub fn project_duration(tier: &ResearchTier, z: f64, development: &Development) -> u32 {
+    let drawn = (tier.mean_days + tier.std_days * z).trunc();
+    drawn.max(f64::from(development.rd_min_duration_days)) as u32
+}
+
+/// Quality gained from a standard normal draw, at least 0.001.
+pub fn project_boost(tier: &ResearchTier, z: f64, development: &Development) -> f64 {
+    (tier.mean_quality_boost + tier.std_quality_boost * z).max(development.rd_min_quality_boost)
+}
+
+/// Starts a project of a tier on day `day`. Duration and gain follow from (seed, tier, earlier starts).
+pub fn start(
+    product: &mut Product,
+    day: u32,
+    tier: u8,
+    params: &Params,
+    streams: &Streams,
+    facts: &mut Facts,
+) -> Project {
+    let earlier = product.research.iter().filter(|project| project.tier == tier).count() as u32;
+    let mut stream = streams.open(Part::Research, [u64::from(tier), u64::from(earlier)]);
+    let law = params.research(tier);
+    let duration = project_duration(law, stream.standard_normal(), &params.development);
+    let boost = project_boost(law, stream.standard_normal(), &params.development);
+    let project = Project {
+        tier,
+        number: earlier + 1,
+        started_day: day,
+        due_day: day + duration,
+        boost,
+        completed_day: None,
+    };
+    product.research.push(project);
+    facts.research.push(ResearchChange::Started(project));
+    project
+}
+
+/// Completes what is due: the gain reaches the product and the rivals' bank.
+pub fn complete(day: u32, product: &mut Product, facts: &mut Facts) {
+    for project in &mut product.research {
+        if project.completed_day.is_none() && project.due_day <= day {
+            project.completed_day = Some(day);
+            product.shared_bonus += project.boost;
+            product.shared_bank += project.boost;
+            facts.research.push(ResearchChange::Completed(*project));
+            facts.notices.push(Notice::ResearchComplete { tier: project.tier, number: project.number });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn check_5_of_chapter_20() {
+        let params = Params::shipped();
+        let (third, development) = (params.research(3), &params.development);
+        for (z, days, boost) in [(-3.0, 30, 0.001), (-0.7, 30, 0.0715), (0.5, 38, 0.1375), (2.0, 83, 0.22)] {
+            assert_eq!(project_duration(third, z, development), days);
+            assert!((project_boost(third, z, development) - boost).abs() < 1e-12);
+        }
+        assert_eq!(project_duration(params.research(1), 2.0, development), 36);
+        assert!((project_boost(params.research(1), 2.0, development) - 0.08).abs() < 1e-12);
+        assert_eq!(project_duration(params.research(20), 0.5, development), 1027);
+        assert!((project_boost(params.research(20), 0.5, development) - 11.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_project_acts_on_its_day_and_not_before() {
+        let params = Params::shipped();
+        let mut product = Product::opening(&params);
+        let mut facts = Facts::default();
+        let project =
+            Project { tier: 3, number: 1, started_day: 10, due_day: 48, boost: 0.1375, completed_day: None };
+        product.research.push(project);
+        complete(47, &mut product, &mut facts);
+        assert_eq!((product.shared_bonus, facts.notices.len()), (0.0, 0));
+        complete(48, &mut product, &mut facts);
+        assert_eq!((product.shared_bonus, product.shared_bank), (0.1375, 0.1375));
+        complete(49, &mut product, &mut facts);
+        assert_eq!(product.shared_bonus, 0.1375);
+        assert_eq!(facts.notices, [Notice::ResearchComplete { tier: 3, number: 1 }]);
+    }
+
+    #[test]
+    fn starts_depend_only_on_seed_tier_and_count() {
+        let params = Params::shipped();
+        let start_at = |day| {
+            let mut product = Product::opening(&params);
+            let streams = Streams::new(5);
+            let first = start(&mut product, day, 4, &params, &streams, &mut Facts::default());
+            let second = start(&mut product, day, 4, &params, &streams, &mut Facts::default());
+            (first.due_day - day, first.boost, second.due_day - day, second.boost, second.id())
+        };
+        assert_eq!(start_at(0), start_at(77));
+        assert_eq!(start_at(0).4, "t4_2");
+    }
+
+    #[test]
+    fn outcomes_over_seeds_agree_with_check_12_of_chapter_50() {
+        let params = Params::shipped();
+        for (tier, thirty, days, gain) in [(1, 0.943327, 30.3192, 0.040194), (5, 0.424790, 59.3417, 0.220957)]
+        {
+            let drawn: Vec<Project> = (0..4000)
+                .map(|seed| {
+                    let mut product = Product::opening(&params);
+                    start(&mut product, 0, tier, &params, &Streams::new(seed), &mut Facts::default())
+                })
+                .collect();
+            let mean = |value: fn(&Project) -> f64| drawn.iter().map(value).sum::<f64>() / 4000.0;
+            assert!((mean(|p| f64::from(u8::from(p.due_day == 30))) - thirty).abs() < 0.025);
+            assert!((mean(|p| f64::from(p.due_day)) / days - 1.0).abs() < 0.03);
+            assert!((mean(|p| p.boost) / gain - 1.0).abs() < 0.03);
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Service health of the day (chapter 20 §12, step 5).
+
+use crate::world::day::Morning;
+use crate::world::events::{Facts, ServiceDay};
+use crate::world::params::{Operations, Params};
+use crate::world::random::{Part, Stream, Streams};
+
+/// Usage above capacity: max(0, usage / capacity - 1).
+pub fn overload(usage: u64, capacity_units: f64, operations: &Operations) -> f64 {
+    (usage as f64 / capacity_units - operations.overload_reference_utilization).max(0.0)
+}
+
+/// Chance of an outage today: max(0.001, 0.03 exp(-ops / 500)) (1 + 4 o).
+pub fn outage_probability(spend_operations: f64, overload: f64, operations: &Operations) -> f64 {
+    let base =
+        operations.base_outage_prob * libm::exp(-spend_operations / operations.ops_outage_reduction_scale);
+    base.max(operations.ops_outage_min_prob) * (1.0 + operations.outage_overload_factor * overload)
+}
+
+/// Latency in milliseconds; `z` is a standard normal draw.
+pub fn p95_latency(overload: f64, z: f64, operations: &Operations) -> f64 {
+    operations.p95_base_ms + operations.p95_overload_factor * overload + operations.p95_noise_std * z
+}
+
+/// Share of failed requests; `z` is a standard normal draw.
+pub fn error_rate(overload: f64, z: f64, operations: &Operations) -> f64 {
+    let rate = operations.error_rate_base
+        + operations.error_rate_overload_factor * overload
+        + operations.error_rate_noise_std * z;
+    rate.clamp(operations.error_rate_min, operations.error_rate_max)
+}
+
+fn downtime(stream: &mut Stream, operations: &Operations) -> u32 {
+    let (mut u, choices) = (stream.uniform(), operations.downtime_minutes_choices);
+    for (minutes, probability) in choices.into_iter().zip(operations.downtime_minutes_probabilities) {
+        if u < probability {
+            return minutes;
+        }
+        u -= probability;
+    }
+    choices[2]
+}
+
+/// Observes the service of the day and records it.
+pub fn observe(
+    total_usage: u64,
+    morning: &Morning,
+    params: &Params,
+    streams: &Streams,
+    facts: &mut Facts,
+) -> ServiceDay {
+    let operations = &params.operations;
+    let capacity_units = params.capacity(morning.core.capacity_tier).capacity_units;
+    let overload = overload(total_usage, f64::from(capacity_units), operations);
+    let mut stream = streams.open(Part::Service, [u64::from(morning.day)]);
+    let outage = stream.bernoulli(outage_probability(morning.core.operations, overload, operations));
+    let downtime_minutes = if outage { downtime(&mut stream, operations) } else { 0 };
+    let service = ServiceDay {
+        total_usage,
+        overload,
+        outage,
+        downtime_minutes,
+        p95_ms: p95_latency(overload, stream.standard_normal(), operations),
+        error_rate: error_rate(overload, stream.standard_normal(), operations),
+        capacity_tier: morning.core.capacity_tier,
+        capacity_units,
+    };
+    facts.service = Some(service);
+    service
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(actual: f64, expected: f64) {
+        assert!((actual - expected).abs() < 1e-10, "{actual} instead of {expected}");
+    }
+
+    #[test]
+    fn check_3_of_chapter_20() {
+        let operations = Params::shipped().operations;
+        for (usage, capacity, spend, o, probability) in [
+            (75_000, 50_000.0, 0.0, 0.5, 0.09),
+            (75_000, 50_000.0, 500.0, 0.5, 0.0331091497),
+            (10_000, 50_000.0, 2_000.0, 0.0, 0.001),
+            (240_000, 200_000.0, 1_000.0, 0.2, 0.00730810529),
+        ] {
+            near(overload(usage, capacity, &operations), o);
+            near(outage_probability(spend, overload(usage, capacity, &operations), &operations), probability);
+        }
+        near(p95_latency(0.5, 1.0, &operations), 630.0);
+        near(error_rate(0.5, 1.0, &operations), 0.009);
+    }
+
+    #[test]
+    fn check_7_of_chapter_10() {
+        let operations = Params::shipped().operations;
+        for (usage, spend, probability) in [
+            (0, 0.0, 0.03),
+            (0, 500.0, 0.0110363832),
+            (0, 3_000.0, 0.001),
+            (100_000, 500.0, 0.0551819162),
+            (50_000, 100.0, 0.0245619226),
+        ] {
+            near(outage_probability(spend, overload(usage, 50_000.0, &operations), &operations), probability);
+        }
+        near(p95_latency(0.5, 0.0, &operations), 580.0);
+        near(error_rate(0.5, 0.0, &operations), 0.008);
+    }
+
+    #[test]
+    fn outages_last_10_30_or_90_minutes_with_their_chances() {
+        let (operations, streams) = (Params::shipped().operations, Streams::new(9));
+        let mut counts = std::collections::BTreeMap::new();
+        for day in 0..20_000 {
+            *counts.entry(downtime(&mut streams.open(Part::Service, [day]), &operations)).or_insert(0) += 1;
+        }
+        let share = |minutes| f64::from(counts[&minutes]) / 20_000.0;
+        assert!(
+            (share(10) - 0.5).abs() < 0.015
+                && (share(30) - 0.35).abs() < 0.015
+                && (share(90) - 0.15).abs() < 0.015
+        );
+    }
+}

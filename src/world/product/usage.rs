@@ -1,0 +1,94 @@
+//! Usage of the day (chapter 20 §12, step 4).
+
+use crate::world::customers::Customers;
+use crate::world::customers::columns::Block;
+use crate::world::day::Morning;
+use crate::world::events::{Facts, UsageRows};
+use crate::world::identifiers::{ByPlan, Plan};
+use crate::world::params::{CustomerGeneration, Params, UsageQuota};
+
+/// Units used today.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Metered {
+    /// By everybody.
+    pub total: u64,
+    /// By plan, for the cost of compute.
+    pub by_plan: ByPlan<u64>,
+}
+
+/// Usage rate of a billing period, units a day for the whole account: max(0, N(u, 0.2 u)) times seats;
+/// `z` is a standard normal draw.
+pub fn usage_rate(usage_demand: f64, seats: f64, z: f64, bounds: &CustomerGeneration) -> f64 {
+    let spread = bounds.daily_usage_rate_std_fraction * usage_demand;
+    (usage_demand + spread * z).max(bounds.daily_usage_rate_min) * seats
+}
+
+/// Usage of one account today: its rate on this weekday, limited by the quota, rounded half away from zero.
+pub fn usage_today(usage_rate: f64, weekday: f64, quota: f64) -> u32 {
+    let limited = (usage_rate * weekday).min(quota.max(0.0));
+    // Casting truncates; the remainder decides. Faster than a rounding call, and equal to it below 2^32.
+    let whole = limited as u32;
+    whole.saturating_add(u32::from(limited - f64::from(whole) >= 0.5))
+}
+
+/// Meters every active subscription: one row each, also when nothing was used.
+pub fn meter(customers: &mut Customers, morning: &Morning, params: &Params, facts: &mut Facts) -> Metered {
+    let by_block = customers.sweep(|_, _, block| meter_block(block, morning, params));
+    let mut metered = Metered::default();
+    for (by_plan, rows) in by_block {
+        for plan in Plan::ALL {
+            metered.by_plan[plan] += by_plan[plan];
+            metered.total += by_plan[plan];
+        }
+        facts.usage.push(rows);
+    }
+    metered
+}
+
+fn meter_block(block: &mut Block, morning: &Morning, params: &Params) -> (ByPlan<u64>, UsageRows) {
+    let mut by_plan = ByPlan([0u64; 3]);
+    let mut units = Vec::with_capacity(block.len());
+    let per_period = params.fidelity.usage_quota == UsageQuota::Period;
+    for at in 0..block.len() {
+        let plan = block.plan[at];
+        let mut quota = morning.quotas[plan];
+        if per_period {
+            quota = (quota - block.period_usage[at] as f64).max(0.0);
+        }
+        let used = usage_today(block.usage_rate[at], morning.weekday, quota);
+        by_plan[plan] += u64::from(used);
+        units.push(used);
+    }
+    if per_period {
+        block.period_usage.iter_mut().zip(&units).for_each(|(sum, used)| *sum += u64::from(*used));
+    }
+    (by_plan, UsageRows { customers: block.customer.clone(), units })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_vary_with_demand_and_cover_all_seats() {
+        // Check 9 of chapter 20.
+        let bounds = Params::shipped().customer_generation;
+        assert_eq!(usage_rate(80.0, 1.0, 1.0, &bounds), 96.0);
+        assert_eq!(usage_rate(60.0, 100.0, 1.0, &bounds), 7200.0);
+        assert_eq!(usage_rate(80.0, 1.0, -6.0, &bounds), 0.0);
+    }
+
+    #[test]
+    fn usage_is_limited_by_the_quota_and_rounded_half_up() {
+        // Check 19 of chapter 20: rates 80, 40.4, 75, 2.27.. on a weekday of 1.1.
+        assert_eq!(usage_today(80.0, 1.1, 60.0), 60);
+        assert_eq!(usage_today(40.4, 1.1, 60.0), 44);
+        assert_eq!(usage_today(75.0, 1.1, 100.0), 83);
+        assert_eq!(usage_today(2.2727272727, 1.1, 100.0), 2);
+        assert_eq!(usage_today(50.0, 1.1, 0.0), 0);
+        assert_eq!(usage_today(2.5, 1.0, 100.0), 3);
+        assert_eq!(usage_today(0.499_999_999_999_999_94, 1.0, 100.0), 0);
+        assert_eq!(usage_today(50.0, 1.0, -5.0), 0);
+        assert_eq!(usage_today(1e300, 1.0, 1e300), u32::MAX);
+    }
+}

@@ -1,0 +1,294 @@
+//! Named random streams: every draw of the world goes through here.
+//!
+//! A stream is derived from (run seed, part, entity keys) by hashing into a ChaCha8 key, so parts are
+//! independent: a draw in one never shifts another, work can be split over threads, and two runs with the same
+//! seed share their luck whatever their players decide (specification, chapter 90 §3; keys: chapter 20 §4).
+//!
+//! Each continuous draw uses exactly one 64-bit word, so a customer's traits stand at fixed positions. Normal
+//! numbers come from the inverse distribution function (algorithm AS 241 of Wichura), which needs one word,
+//! no rejection, and no more than a logarithm.
+
+mod quantile;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+pub use quantile::inverse_normal;
+
+macro_rules! parts {
+    ($($(#[$doc:meta])* $name:ident = $text:literal,)*) => {
+        /// A part of the world that draws, with the keys its streams are opened with.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[repr(usize)]
+        pub enum Part { $($(#[$doc])* $name,)* }
+
+        impl Part {
+            const ALL: &'static [Part] = &[$(Part::$name,)*];
+
+            fn name(self) -> &'static str {
+                match self { $(Part::$name => $text,)* }
+            }
+        }
+    };
+}
+
+parts! {
+    /// (day): outage, downtime, latency, error rate.
+    Service = "service",
+    /// (day): daily noise of the shared quality.
+    QualityNoise = "quality_noise",
+    /// (tier, earlier starts): duration and gain of an R&D project.
+    Research = "research",
+    /// (group, n, day): usage rate of a billing period.
+    UsageRate = "usage_rate",
+    /// (day, pool kind, pool, group): resolved support issues.
+    IssueResolution = "issue_resolution",
+    /// (day, group, block): new support issues.
+    IssueOpening = "issue_opening",
+    /// (group, month): rate of involuntary churn.
+    InvoluntaryMu = "involuntary_mu",
+    /// (day, group, block): involuntary cancellations.
+    InvoluntaryRoll = "involuntary_roll",
+    /// (day, group, n, thread): size of a reputation damage; thread 0 for individuals.
+    ReputationEvent = "reputation_event",
+    /// (group, n): traits and persona of a customer.
+    Traits = "traits",
+    /// (group, n): how the customer came.
+    LeadSource = "lead_source",
+    /// (group, n): misjudged quality at the first decision.
+    LeadNoise = "lead_noise",
+    /// (day, group): number of leads.
+    LeadCount = "lead_count",
+    /// (group, month): monthly change of the channel yields.
+    LeadRateDrift = "lead_rate_drift",
+    /// (day): demand surge.
+    Surge = "surge",
+    /// (day): step of the hidden index of the economy.
+    Macro = "macro",
+    /// (day): test, size, feedback and drains of a competitor event.
+    CompetitorEvent = "competitor_event",
+}
+
+/// The random streams of one run.
+#[derive(Debug, Clone)]
+pub struct Streams {
+    seed: u64,
+    keys: Vec<[u8; 32]>,
+}
+
+impl Streams {
+    /// Streams of a run with this seed.
+    pub fn new(seed: u64) -> Self {
+        let key = |part: &Part| {
+            blake3::Hasher::new_derive_key("novamind random streams, version 1")
+                .update(&seed.to_le_bytes())
+                .update(part.name().as_bytes())
+                .finalize()
+                .into()
+        };
+        Streams { seed, keys: Part::ALL.iter().map(key).collect() }
+    }
+
+    /// The seed these streams were derived from.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The stream of a part for up to four entity keys. Equal arguments always give the same stream.
+    pub fn open<const KEYS: usize>(&self, part: Part, entity: [u64; KEYS]) -> Stream {
+        const { assert!(KEYS <= 4) };
+        let mut bytes = [0u8; 32];
+        for (slot, key) in bytes.chunks_exact_mut(8).zip(entity) {
+            slot.copy_from_slice(&key.to_le_bytes());
+        }
+        let key = blake3::keyed_hash(&self.keys[part as usize], &bytes[..8 * KEYS]);
+        Stream(ChaCha8Rng::from_seed(*key.as_bytes()))
+    }
+}
+
+/// One open stream. Draws follow each other; nothing is kept when it is dropped.
+#[derive(Debug, Clone)]
+pub struct Stream(ChaCha8Rng);
+
+impl Stream {
+    /// Uniform in [0, 1), with 53 random bits.
+    pub fn uniform(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+    }
+
+    /// Uniform in [low, high).
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// Uniform whole number in low..=high. The bias of the multiplication is below 2^-32.
+    pub fn integer(&mut self, low: u32, high: u32) -> u32 {
+        let span = u64::from(high - low) + 1;
+        low + ((u128::from(self.0.next_u64()) * u128::from(span)) >> 64) as u32
+    }
+
+    /// Uniform index below `length`, which must not be 0.
+    pub fn index(&mut self, length: usize) -> usize {
+        ((u128::from(self.0.next_u64()) * length as u128) >> 64) as usize
+    }
+
+    /// True with probability `p`.
+    pub fn bernoulli(&mut self, p: f64) -> bool {
+        self.uniform() < p
+    }
+
+    /// Standard normal number.
+    pub fn standard_normal(&mut self) -> f64 {
+        let middle = (self.0.next_u64() >> 11) as f64 + 0.5;
+        inverse_normal(middle * (1.0 / (1u64 << 53) as f64))
+    }
+
+    /// Normal number with this mean and standard deviation.
+    pub fn normal(&mut self, mean: f64, std: f64) -> f64 {
+        mean + std * self.standard_normal()
+    }
+
+    /// Exponential number with this mean.
+    pub fn exponential(&mut self, mean: f64) -> f64 {
+        -mean * libm::log1p(-self.uniform())
+    }
+
+    /// Log-normal number: exp of a normal one.
+    pub fn log_normal(&mut self, mu: f64, sigma: f64) -> f64 {
+        libm::exp(self.normal(mu, sigma))
+    }
+
+    /// Poisson number; 0 when the mean is not positive.
+    pub fn poisson(&mut self, mean: f64) -> u64 {
+        if mean < 10.0 {
+            poisson_by_inversion(mean, self.uniform())
+        } else {
+            poisson_by_rejection(mean, self)
+        }
+    }
+
+    /// Fills a slice with raw words, one per position: for blocks where each customer has a fixed place.
+    pub fn fill(&mut self, words: &mut [u32]) {
+        for word in words {
+            *word = self.0.next_u32();
+        }
+    }
+}
+
+/// True with probability `p`, decided by a raw word of [`Stream::fill`] (resolution 2^-32).
+pub fn word_below(word: u32, p: f64) -> bool {
+    f64::from(word) < p * 4_294_967_296.0
+}
+
+fn poisson_by_inversion(mean: f64, u: f64) -> u64 {
+    if mean <= 0.0 {
+        return 0;
+    }
+    let (mut count, mut term) = (0u64, libm::exp(-mean));
+    let mut below = term;
+    // The tail beyond 200 has no mass that a double could hold for means below 10.
+    while u >= below && count < 200 {
+        count += 1;
+        term *= mean / count as f64;
+        below += term;
+    }
+    count
+}
+
+/// Transformed rejection with squeeze (Hörmann 1993, algorithm PTRS), exact for means from 10 on.
+fn poisson_by_rejection(mean: f64, stream: &mut Stream) -> u64 {
+    let (root, log_mean) = (mean.sqrt(), libm::log(mean));
+    let b = 0.931 + 2.53 * root;
+    let a = -0.059 + 0.024_83 * b;
+    let inverse_alpha = 1.123_9 + 1.132_8 / (b - 3.4);
+    let v_r = 0.927_7 - 3.622_4 / (b - 2.0);
+    loop {
+        let u = stream.uniform() - 0.5;
+        let v = stream.uniform();
+        let us = 0.5 - u.abs();
+        let k = ((2.0 * a / us + b) * u + mean + 0.43).floor();
+        if us >= 0.07 && v <= v_r {
+            return k as u64;
+        }
+        if k < 0.0 || (us < 0.013 && v > us) {
+            continue;
+        }
+        let accept = libm::log(v) + libm::log(inverse_alpha) - libm::log(a / (us * us) + b);
+        if accept <= -mean + k * log_mean - libm::lgamma(k + 1.0) {
+            return k as u64;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn moments(draws: impl Iterator<Item = f64>) -> (f64, f64) {
+        let values: Vec<f64> = draws.collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let variance =
+            values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / values.len() as f64;
+        (mean, variance.sqrt())
+    }
+
+    #[test]
+    fn equal_keys_give_equal_streams_and_others_do_not() {
+        let streams = Streams::new(42);
+        let first = |streams: &Streams, part, keys| streams.open(part, keys).uniform();
+        assert_eq!(first(&streams, Part::Traits, [0, 1]), first(&Streams::new(42), Part::Traits, [0, 1]));
+        assert_ne!(first(&streams, Part::Traits, [0, 1]), first(&streams, Part::Traits, [0, 2]));
+        assert_ne!(first(&streams, Part::Traits, [0, 1]), first(&streams, Part::LeadNoise, [0, 1]));
+        assert_ne!(first(&streams, Part::Traits, [0, 1]), first(&Streams::new(43), Part::Traits, [0, 1]));
+    }
+
+    #[test]
+    fn the_first_bits_never_change() {
+        // Frozen: every recorded run depends on these bits.
+        let mut stream = Streams::new(42).open(Part::Macro, [1]);
+        assert_eq!(stream.uniform().to_bits(), FIRST_UNIFORM);
+        assert_eq!(stream.standard_normal().to_bits(), SECOND_NORMAL);
+    }
+    const FIRST_UNIFORM: u64 = 4604554976407843933;
+    const SECOND_NORMAL: u64 = 4603890776221144754;
+
+    #[test]
+    fn continuous_draws_have_their_moments() {
+        let mut stream = Streams::new(1).open(Part::Service, [0]);
+        let (mean, std) = moments((0..200_000).map(|_| stream.normal(3.0, 2.0)));
+        assert!((mean - 3.0).abs() < 0.02 && (std - 2.0).abs() < 0.02, "{mean} {std}");
+        let (mean, std) = moments((0..200_000).map(|_| stream.exponential(1.5)));
+        assert!((mean - 1.5).abs() < 0.015 && (std - 1.5).abs() < 0.02, "{mean} {std}");
+    }
+
+    #[test]
+    fn poisson_draws_have_their_moments_on_both_sides_of_the_switch() {
+        let mut stream = Streams::new(2).open(Part::LeadCount, [0]);
+        for expected in [0.3, 4.0, 9.99, 10.0, 57.5, 1200.0] {
+            let (mean, std) = moments((0..100_000).map(|_| stream.poisson(expected) as f64));
+            let standard_error = (expected / 100_000.0).sqrt();
+            assert!((mean - expected).abs() < 4.5 * standard_error, "mean of {expected}: {mean}");
+            assert!((std / expected.sqrt() - 1.0).abs() < 0.015, "spread of {expected}: {std}");
+        }
+        assert_eq!(stream.poisson(0.0), 0);
+        assert_eq!(stream.poisson(-1.0), 0);
+    }
+
+    #[test]
+    fn whole_numbers_cover_both_ends_evenly() {
+        let mut stream = Streams::new(3).open(Part::Surge, [0]);
+        let mut counts = [0u32; 8];
+        for _ in 0..80_000 {
+            counts[stream.integer(3, 10) as usize - 3] += 1;
+        }
+        assert!(counts.iter().all(|count| (9_500..10_500).contains(count)), "{counts:?}");
+    }
+
+    #[test]
+    fn words_decide_with_their_probability() {
+        assert!(!word_below(0, 0.0));
+        assert!(word_below(0, 1e-9));
+        assert!(word_below(u32::MAX, 1.0));
+        assert!(word_below(u32::MAX / 2, 0.5) && !word_below(u32::MAX / 2 + 1, 0.5));
+    }
+}

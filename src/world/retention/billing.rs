@@ -1,0 +1,194 @@
+//! Bills (chapter 20 §18, step 20).
+
+use std::collections::BTreeSet;
+
+use super::renewal::{ongoing_discount, terms};
+use super::{refresh_required, remembered_budget};
+use crate::world::customers::Customers;
+use crate::world::customers::columns::Block;
+use crate::world::day::Morning;
+use crate::world::events::{Facts, Payment, TermsChanged};
+use crate::world::identifiers::Group;
+use crate::world::params::Params;
+use crate::world::product::usage::usage_rate;
+use crate::world::random::{Part, Streams};
+use crate::world::settings::Settings;
+
+/// What bills of a day share.
+pub struct Terms<'a> {
+    /// Values frozen this morning.
+    pub morning: &'a Morning,
+    /// Settings of today.
+    pub settings: &'a Settings,
+    /// Companies that pay nothing while their threat to leave is open (chapter 40 §15.2).
+    pub suspended: &'a BTreeSet<u32>,
+    /// Parameters.
+    pub params: &'a Params,
+    /// Random streams.
+    pub streams: &'a Streams,
+}
+
+/// The price a bill is based on: a cut reaches everybody and is stored, a rise never reaches a stored price;
+/// negotiated prices stay.
+pub fn billed_list_price(stored: f64, list: f64, negotiated: bool) -> f64 {
+    if negotiated { stored } else { stored.min(list) }
+}
+
+/// Bills everybody whose day it is. Returns the payments of the day, in dollars.
+pub fn collect(customers: &mut Customers, bill: &Terms<'_>, facts: &mut Facts) -> f64 {
+    let by_block = customers.sweep(|group, _, block| bill_block(group, block, bill));
+    let mut received = 0.0;
+    for (payments, changes) in by_block {
+        received += payments.iter().map(|payment| payment.amount).sum::<f64>();
+        facts.payments.extend(payments);
+        facts.changes.extend(changes);
+    }
+    received
+}
+
+fn bill_block(group: Group, block: &mut Block, bill: &Terms<'_>) -> (Vec<Payment>, Vec<TermsChanged>) {
+    let today = (bill.morning.day % bill.params.billing.billing_period_days) as u8;
+    let (mut payments, mut changes) = (Vec::new(), Vec::new());
+    for at in 0..block.len() {
+        if block.billing_day[at] != today {
+            continue;
+        }
+        if !bill.suspended.contains(&block.customer[at]) {
+            let before = terms(block, at);
+            payments.push(pay(group, block, at, bill));
+            let after = terms(block, at);
+            if after != before {
+                changes.push(after);
+            }
+        }
+        start_period(group, block, at, bill);
+    }
+    (payments, changes)
+}
+
+/// Takes the payment and sets the terms of the next period.
+fn pay(group: Group, block: &mut Block, at: usize, bill: &Terms<'_>) -> Payment {
+    let &Terms { morning, settings, params, .. } = bill;
+    let floor = params.billing.effective_price_min;
+    let (customer, plan) = (block.customer[at], block.plan[at]);
+    let negotiated = group.is_enterprise();
+    let listed = billed_list_price(block.listed_price[at], morning.core.prices[plan], negotiated);
+    let ongoing = ongoing_discount(customer, group, plan, settings, params);
+    let price = match (block.billed_once[at], negotiated) {
+        (true, _) => (listed - ongoing).max(floor),
+        (false, false) => (listed - block.promotion[at]).max(floor),
+        (false, true) => block.effective_price[at],
+    };
+    block.listed_price[at] = listed;
+    block.promotion[at] = ongoing;
+    block.effective_price[at] = (listed - ongoing).max(floor);
+    block.effective_c_max[at] = remembered_budget(block.c_max[at], morning.expectations[group].c_max, params);
+    block.billed_once[at] = true;
+    refresh_required(block, at, morning.expectations[group].c_max, params);
+    Payment { customer, amount: price * block.seats[at].trunc() }
+}
+
+/// Draws the usage of the new period, at today's seats.
+fn start_period(group: Group, block: &mut Block, at: usize, bill: &Terms<'_>) {
+    let keys = [group.index() as u64, u64::from(block.n[at]), u64::from(bill.morning.day)];
+    let z = bill.streams.open(Part::UsageRate, keys).standard_normal();
+    let seats = block.seats[at].trunc();
+    block.usage_rate[at] = usage_rate(block.usage_demand[at], seats, z, &bill.params.customer_generation);
+    block.period_usage[at] = 0;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::customers::columns::Subscriber;
+    use crate::world::customers::columns::tests::subscriber;
+    use crate::world::day::tests::morning;
+    use crate::world::identifiers::{ByPlan, Plan};
+
+    fn billed(id: &str, row: Subscriber, list: f64, ongoing: f64) -> (f64, Subscriber) {
+        let (params, streams) = (Params::shipped(), Streams::new(1));
+        let group = Group::parse(id).expect("a group");
+        let mut day = morning(31);
+        day.core.prices = ByPlan([list; 3]);
+        let mut settings = Settings::opening(&params);
+        settings.promotion.global = ongoing;
+        let suspended = BTreeSet::new();
+        let bill = Terms {
+            morning: &day,
+            settings: &settings,
+            suspended: &suspended,
+            params: &params,
+            streams: &streams,
+        };
+        let mut block = Block::default();
+        block.push(row);
+        let payment = pay(group, &mut block, 0, &bill);
+        (payment.amount, block.row(0))
+    }
+
+    fn stored(listed_price: f64) -> Subscriber {
+        Subscriber { listed_price, effective_price: listed_price, ..subscriber(1) }
+    }
+
+    #[test]
+    fn check_9_of_chapter_20_for_individuals() {
+        let (paid, row) = billed("S1", stored(20.0), 15.0, 0.0);
+        assert_eq!((paid, row.listed_price), (15.0, 15.0));
+        assert_eq!(billed("S1", stored(20.0), 15.0, 4.0).0, 11.0);
+        assert_eq!(billed("S1", stored(20.0), 15.0, 40.0).0, 0.0);
+        let first = Subscriber { billed_once: false, promotion: 7.0, ..stored(20.0) };
+        let (paid, row) = billed("S1", first, 20.0, 4.0);
+        assert_eq!((paid, row.promotion, row.effective_price), (13.0, 4.0, 16.0));
+        let (paid, row) = billed("S1", first, 15.0, 4.0);
+        assert_eq!((paid, row.listed_price, row.effective_price), (8.0, 15.0, 11.0));
+        assert!(row.billed_once);
+    }
+
+    #[test]
+    fn check_9_of_chapter_20_for_companies() {
+        let deal = Subscriber {
+            seats: 100.9,
+            billed_once: false,
+            listed_price: 40.0,
+            promotion: 5.0,
+            effective_price: 35.0,
+            ..subscriber(1)
+        };
+        let (paid, row) = billed("E1", deal, 15.0, 4.0);
+        assert_eq!((paid, row.listed_price, row.effective_price), (3500.0, 40.0, 36.0));
+        assert_eq!(billed("E1", row, 15.0, 4.0).0, 3600.0);
+    }
+
+    /// Check 8 of chapter 20: what those who stay pay.
+    #[test]
+    fn a_rise_never_reaches_a_stored_price() {
+        for (list, promotion, paid) in [(20.0, 0.0, 20.0), (30.0, 0.0, 20.0), (45.0, 8.0, 12.0)] {
+            let (amount, row) = billed("S1", Subscriber { plan: Plan::B, ..stored(20.0) }, list, promotion);
+            assert_eq!((amount, row.listed_price), (paid, 20.0), "list price {list}");
+        }
+    }
+
+    #[test]
+    fn a_suspended_company_pays_nothing_and_starts_a_new_period() {
+        let (params, streams) = (Params::shipped(), Streams::new(1));
+        let (day, settings) = (morning(31), Settings::opening(&params));
+        let group = Group::parse("E2").expect("a group");
+        let mut customers = Customers::default();
+        let row = Subscriber { period_usage: 77, seats: 10.0, ..subscriber(1) };
+        customers.groups[group].activate(row);
+        let suspended = BTreeSet::from([row.customer]);
+        let bill = Terms {
+            morning: &day,
+            settings: &settings,
+            suspended: &suspended,
+            params: &params,
+            streams: &streams,
+        };
+        let mut facts = Facts::default();
+        assert_eq!(collect(&mut customers, &bill, &mut facts), 0.0);
+        let after = customers.groups[group].blocks[0].row(0);
+        assert!(facts.payments.is_empty() && facts.changes.is_empty());
+        assert_eq!((after.period_usage, after.listed_price), (0, row.listed_price));
+        assert_ne!(after.usage_rate, row.usage_rate);
+    }
+}

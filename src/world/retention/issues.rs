@@ -1,0 +1,384 @@
+//! Support issues: who calls, who is helped, and what waiting does to a relationship (chapter 20 §16, step 14).
+//!
+//! Everything is decided from the values of the start of the day, so the calls are read before satisfaction
+//! moves and settled after it.
+
+use crate::world::canonical::canonical;
+use crate::world::customers::Customers;
+use crate::world::customers::columns::{BLOCK, Block};
+use crate::world::events::{Facts, IssueOpened};
+use crate::world::identifiers::{ByGroup, Group, Plan};
+use crate::world::params::{Issues, Params, Quality};
+use crate::world::product::quality::relationship_as_read;
+use crate::world::random::{Part, Streams, word_below};
+use crate::world::settings::Settings;
+
+/// Chance of a new issue today, from the satisfaction of the start of the day and whole seats.
+pub fn issue_probability(satisfaction: f64, outage: bool, seats: f64, issues: &Issues) -> f64 {
+    let rate = issues.base_issue_rate
+        + issues.issue_quality_factor * (issues.issue_satisfaction_reference - satisfaction)
+        + if outage { issues.issue_outage_factor } else { 0.0 };
+    (rate * seats).clamp(issues.issue_probability_min, issues.issue_probability_max)
+}
+
+/// Mean number of a group's issues that a pool solves today: (b + lambda x) k_g / k.
+pub fn mean_resolved(
+    base: f64,
+    spend: f64,
+    group: Group,
+    of_group: u32,
+    of_pool: u32,
+    issues: &Issues,
+) -> f64 {
+    let per_dollar =
+        if group.is_enterprise() { issues.enterprise_ops_scale } else { issues.individual_ops_scale };
+    (base + per_dollar * spend) * f64::from(of_group) / f64::from(of_pool)
+}
+
+/// Relationship after an issue was solved at this many open days.
+pub fn relationship_after_solution(relationship: f64, open_days: u32, outage: bool, params: &Params) -> f64 {
+    let issues = &params.issues;
+    if open_days > issues.quick_resolution_threshold_days || outage {
+        return relationship;
+    }
+    let boost = if open_days <= issues.quick_boost_first_day {
+        issues.quick_resolution_boost_1day
+    } else {
+        issues.quick_resolution_boost_2day
+    };
+    (relationship_as_read(relationship, &params.quality) + boost).min(issues.relationship_max)
+}
+
+/// Relationship after another day without a solution.
+pub fn relationship_after_waiting(relationship: f64, issues: &Issues, quality: &Quality) -> f64 {
+    (relationship_as_read(relationship, quality) - issues.relationship_decay_per_unresolved_day)
+        .max(issues.relationship_min)
+}
+
+/// Running numbers of issues.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct IssueDesk {
+    /// Number of the next issue.
+    pub next_issue: u32,
+}
+
+canonical! { IssueDesk { next_issue } }
+
+impl Default for IssueDesk {
+    fn default() -> Self {
+        IssueDesk { next_issue: 1 }
+    }
+}
+
+/// Calls of one block, read at the start of the day: positions of rows.
+pub struct Calls {
+    group: Group,
+    block: u32,
+    /// Rows with an open issue.
+    open: Vec<u16>,
+    /// Rows whose customer opens an issue today.
+    new: Vec<u16>,
+    /// Which of the open ones are solved.
+    solved: Vec<bool>,
+}
+
+/// Reads who has an issue and who opens one today; changes nothing.
+pub fn read_calls(
+    day: u32,
+    outage: bool,
+    customers: &mut Customers,
+    params: &Params,
+    streams: &Streams,
+) -> Vec<Calls> {
+    customers.sweep(|group, block_number, block| {
+        let keys = [u64::from(day), group.index() as u64, u64::from(block_number)];
+        let mut words = [0u32; BLOCK as usize];
+        streams.open(Part::IssueOpening, keys).fill(&mut words);
+        let (mut open, mut new) = (Vec::new(), Vec::new());
+        for at in 0..block.len() {
+            if block.open_issue_days[at] > 0 {
+                open.push(at as u16);
+                continue;
+            }
+            let seats = block.seats[at].trunc();
+            let chance = issue_probability(block.satisfaction[at], outage, seats, &params.issues);
+            if word_below(words[block.place(at)], chance) {
+                new.push(at as u16);
+            }
+        }
+        let solved = vec![false; open.len()];
+        Calls { group, block: block_number, open, new, solved }
+    })
+}
+
+/// Solves, ages and opens issues; nobody may have left since the calls were read.
+#[expect(clippy::too_many_arguments, reason = "a mechanism names every part it touches")]
+pub fn settle(
+    day: u32,
+    outage: bool,
+    mut calls: Vec<Calls>,
+    settings: &Settings,
+    customers: &mut Customers,
+    desk: &mut IssueDesk,
+    params: &Params,
+    streams: &Streams,
+    facts: &mut Facts,
+) {
+    if calls.iter().any(|block| !block.open.is_empty()) {
+        Resolution { day, calls: &mut calls, customers, params, streams }.run(settings);
+        facts.issues_aged = true;
+    }
+    for own in &calls {
+        let block = &mut customers.groups[own.group].blocks[own.block as usize];
+        for (&at, &solved) in own.open.iter().zip(&own.solved) {
+            let at = usize::from(at);
+            if solved {
+                let days = block.open_issue_days[at];
+                block.relationship[at] =
+                    relationship_after_solution(block.relationship[at], days, outage, params);
+                block.open_issue_days[at] = 0;
+                facts.issues_resolved.push(std::mem::take(&mut block.issue[at]));
+            } else {
+                block.open_issue_days[at] += 1;
+                block.relationship[at] =
+                    relationship_after_waiting(block.relationship[at], &params.issues, &params.quality);
+            }
+        }
+    }
+    for own in &calls {
+        let block = &mut customers.groups[own.group].blocks[own.block as usize];
+        for at in own.new.iter().map(|&at| usize::from(at)) {
+            block.open_issue_days[at] = params.issues.new_issue_open_days;
+            block.issue[at] = desk.next_issue;
+            let (issue, customer) = (desk.next_issue, block.customer[at]);
+            facts.issues_opened.push(IssueOpened { issue, customer, group: own.group });
+            desk.next_issue += 1;
+        }
+    }
+}
+
+/// A pool of open issues that shares one amount of money.
+#[derive(Debug, Clone, Copy)]
+enum Pool {
+    Everybody,
+    Group(Group),
+    Plan(Plan),
+    GroupPlan(Group, Plan),
+    Customer(u32),
+}
+
+impl Pool {
+    /// Keys of the pool's stream: kind and which one.
+    fn keys(self) -> [u64; 2] {
+        match self {
+            Pool::Everybody => [0, 0],
+            Pool::Group(group) => [1, group.index() as u64],
+            Pool::Plan(plan) => [2, plan.index() as u64],
+            Pool::GroupPlan(group, plan) => [3, (group.index() * 3 + plan.index()) as u64],
+            Pool::Customer(customer) => [4, u64::from(customer)],
+        }
+    }
+
+    fn holds(self, group: Group, block: &Block, at: usize) -> bool {
+        match self {
+            Pool::Everybody => true,
+            Pool::Group(own) => group == own,
+            Pool::Plan(plan) => block.plan[at] == plan,
+            Pool::GroupPlan(own, plan) => group == own && block.plan[at] == plan,
+            Pool::Customer(customer) => block.customer[at] == customer,
+        }
+    }
+
+    /// The only group a pool can hold, where it names one.
+    fn only_group(self) -> Option<Group> {
+        match self {
+            Pool::Group(group) | Pool::GroupPlan(group, _) => Some(group),
+            _ => None,
+        }
+    }
+}
+
+struct Resolution<'a> {
+    day: u32,
+    calls: &'a mut [Calls],
+    customers: &'a Customers,
+    params: &'a Params,
+    streams: &'a Streams,
+}
+
+impl Resolution<'_> {
+    /// Pools in the order of chapter 20 §16; each works on what the earlier ones left.
+    fn run(&mut self, settings: &Settings) {
+        let base = self.params.issues.issue_resolution_base_rate;
+        self.work(Pool::Everybody, base, settings.core.operations);
+        let targeted = &settings.targeted_operations;
+        for (&group, &spend) in &targeted.by_group {
+            self.work(Pool::Group(group), 0.0, spend);
+        }
+        for (&plan, &spend) in &targeted.by_plan {
+            self.work(Pool::Plan(plan), 0.0, spend);
+        }
+        for (&group, plans) in &targeted.by_group_plan {
+            for (&plan, &spend) in plans {
+                self.work(Pool::GroupPlan(group, plan), 0.0, spend);
+            }
+        }
+        for (&customer, &spend) in &targeted.by_customer {
+            if let Ok(customer) = u32::try_from(customer) {
+                self.work(Pool::Customer(customer), 0.0, spend);
+            }
+        }
+    }
+
+    fn work(&mut self, pool: Pool, base: f64, spend: f64) {
+        if base <= 0.0 && spend <= 0.0 {
+            return;
+        }
+        // Members by group as (block of calls, entry in it).
+        let mut members: ByGroup<Vec<(u32, u16)>> = ByGroup::default();
+        for (number, own) in self.calls.iter().enumerate() {
+            if pool.only_group().is_some_and(|group| group != own.group) {
+                continue;
+            }
+            let block = &self.customers.groups[own.group].blocks[own.block as usize];
+            for (entry, (&at, &solved)) in own.open.iter().zip(&own.solved).enumerate() {
+                if !solved && pool.holds(own.group, block, usize::from(at)) {
+                    members[own.group].push((number as u32, entry as u16));
+                }
+            }
+        }
+        let of_pool: u32 = members.iter().map(|own| own.len() as u32).sum();
+        for (group, own) in Group::all().zip(&mut members.0).filter(|(_, own)| !own.is_empty()) {
+            let [kind, which] = pool.keys();
+            let keys = [u64::from(self.day), kind, which, group.index() as u64];
+            let mut stream = self.streams.open(Part::IssueResolution, keys);
+            let mean = mean_resolved(base, spend, group, own.len() as u32, of_pool, &self.params.issues);
+            let solved = stream.poisson(mean).min(own.len() as u64) as usize;
+            // A partial shuffle: the first `solved` members are a uniform sample without replacement.
+            for first in 0..solved {
+                let other = first + stream.index(own.len() - first);
+                own.swap(first, other);
+                let (number, entry) = own[first];
+                self.calls[number as usize].solved[usize::from(entry)] = true;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::customers::columns::tests::subscriber;
+
+    fn near(actual: f64, expected: f64) {
+        assert!((actual - expected).abs() < 1e-12, "{actual} instead of {expected}");
+    }
+
+    #[test]
+    fn check_15_of_chapter_20() {
+        let issues = Params::shipped().issues;
+        for (satisfaction, seats, quiet, outage) in [
+            (0.5, 1.0, 0.085, 0.335),
+            (0.0, 1.0, 0.16, 0.4),
+            (-0.4, 1.0, 0.22, 0.4),
+            (0.5, 3.0, 0.255, 0.4),
+            (1.2, 1.0, 0.0, 0.23),
+            (0.2, 100.0, 0.4, 0.4),
+        ] {
+            near(issue_probability(satisfaction, false, seats, &issues), quiet);
+            near(issue_probability(satisfaction, true, seats, &issues), outage);
+        }
+    }
+
+    #[test]
+    fn check_16_of_chapter_20() {
+        let params = Params::shipped();
+        let (s1, e1) = (Group::at(0).expect("S1"), Group::at(3).expect("E1"));
+        let mean = |base, spend, group, of_group, of_pool| {
+            mean_resolved(base, spend, group, of_group, of_pool, &params.issues)
+        };
+        near(mean(2.0, 10.0, e1, 1, 4), 0.75);
+        near(mean(2.0, 10.0, s1, 3, 4), 6.0);
+        near(mean(0.0, 20.0, s1, 3, 3), 12.0);
+        near(mean(0.0, 5.0, e1, 1, 1), 0.5);
+        near(mean(0.0, 7.0, e1, 1, 4), 0.175);
+        near(mean(0.0, 7.0, s1, 3, 4), 3.15);
+        near(mean(0.0, 11.0, s1, 3, 3), 6.6);
+        near(mean(0.0, 2.0, s1, 1, 1), 1.2);
+        near(relationship_after_solution(0.5, 1, false, &params), 0.9);
+        near(relationship_after_solution(0.8, 2, false, &params), 1.0);
+        near(relationship_after_solution(0.5, 3, false, &params), 0.5);
+        near(relationship_after_solution(0.5, 1, true, &params), 0.5);
+    }
+
+    #[test]
+    fn fifty_one_days_of_waiting_start_again_from_neutral() {
+        let params = Params::shipped();
+        let mut relationship: f64 = 0.5;
+        for _ in 0..50 {
+            relationship = relationship_after_waiting(relationship, &params.issues, &params.quality);
+        }
+        assert!(relationship < 1e-12, "{relationship}");
+        relationship = relationship_after_waiting(0.0, &params.issues, &params.quality);
+        near(relationship, 0.49);
+    }
+
+    fn company_with_issues(count: u32) -> Customers {
+        let mut customers = Customers::default();
+        for n in 1..=count {
+            let row = crate::world::customers::columns::Subscriber {
+                open_issue_days: 1,
+                issue: n,
+                ..subscriber(n)
+            };
+            customers.groups[Group::at(0).expect("S1")].activate(row);
+        }
+        customers
+    }
+
+    fn a_day(customers: &mut Customers, operations: f64) -> (Facts, IssueDesk) {
+        let (params, streams) = (Params::shipped(), Streams::new(4));
+        let mut settings = Settings::opening(&params);
+        settings.core.operations = operations;
+        let (mut facts, mut desk) = (Facts::default(), IssueDesk { next_issue: 10_000 });
+        let calls = read_calls(3, false, customers, &params, &streams);
+        settle(3, false, calls, &settings, customers, &mut desk, &params, &streams, &mut facts);
+        (facts, desk)
+    }
+
+    #[test]
+    fn solved_issues_please_and_the_others_age() {
+        let mut customers = company_with_issues(3000);
+        let (facts, _) = a_day(&mut customers, 2_000.0);
+        let solved = facts.issues_resolved.len();
+        assert!((1_060..1_340).contains(&solved), "Poisson of 1202: {solved}");
+        let s1 = &customers.groups[Group::at(0).expect("S1")];
+        let count = |days| s1.blocks.iter().flat_map(|b| &b.open_issue_days).filter(|d| **d == days).count();
+        assert_eq!((count(0), count(2)), (solved, 3000 - solved));
+        for block in &s1.blocks {
+            for at in 0..block.len() {
+                let expected = if block.open_issue_days[at] == 0 { 0.9 } else { 0.49 };
+                near(block.relationship[at], expected);
+                assert_eq!(block.issue[at] == 0, block.open_issue_days[at] == 0);
+            }
+        }
+        assert!(facts.issues_aged && facts.issues_opened.is_empty());
+    }
+
+    #[test]
+    fn all_are_solved_when_there_is_money_enough() {
+        let mut customers = company_with_issues(50);
+        assert_eq!(a_day(&mut customers, 1e6).0.issues_resolved.len(), 50);
+    }
+
+    #[test]
+    fn new_issues_come_at_their_rate_and_are_numbered() {
+        let mut customers = Customers::default();
+        (1..=4000).for_each(|n| customers.groups[Group::at(0).expect("S1")].activate(subscriber(n)));
+        let (facts, desk) = a_day(&mut customers, 0.0);
+        let opened = facts.issues_opened.len() as u32;
+        assert!((270..410).contains(&opened), "binomial of 340: {opened}");
+        assert!(!facts.issues_aged);
+        assert_eq!(desk.next_issue, 10_000 + opened);
+    }
+}

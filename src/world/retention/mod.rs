@@ -1,0 +1,41 @@
+//! Staying and leaving: how subscribers feel, when they call for help, what they decide, what they pay.
+
+pub mod billing;
+pub mod issues;
+pub mod renewal;
+pub mod satisfaction;
+
+use super::customers::columns::Block;
+use super::customers::curve::required_quality;
+use super::day::Morning;
+use super::identifiers::Group;
+use super::params::{DriftCounted, Params};
+
+/// Refreshes the stored required quality of a row: its curve at the price in force, with the budget of its
+/// last bill and the group's budget drift, before the market's expectations are added.
+///
+/// The budget floor applies only where the drift is not 0 (chapter 20 §15).
+pub fn refresh_required(block: &mut Block, at: usize, c_drift: f64, params: &Params) {
+    let remembered = block.effective_c_max[at];
+    let budget = if remembered != 0.0 { remembered } else { block.c_max[at] };
+    let budget =
+        if c_drift != 0.0 { (budget + c_drift).max(params.quality.read_time_c_max_min) } else { budget };
+    let curve = block.curve(at).with_budget(budget);
+    block.required[at] = required_quality(block.effective_price[at], &curve, params);
+}
+
+/// Refreshes the required quality of everybody in a block.
+pub fn refresh_block(group: Group, block: &mut Block, morning: &Morning, params: &Params) {
+    for at in 0..block.len() {
+        refresh_required(block, at, morning.expectations[group].c_max, params);
+    }
+}
+
+/// Budget remembered with a bill: max(15, c + dc); without dc when drift counts once (chapter 20 §6, §18).
+pub fn remembered_budget(c_max: f64, c_drift: f64, params: &Params) -> f64 {
+    let drift = match params.fidelity.drift_counted {
+        DriftCounted::EveryRead => c_drift,
+        DriftCounted::Once => 0.0,
+    };
+    (c_max + drift).max(params.billing.billing_c_max_min)
+}

@@ -1,0 +1,421 @@
+//! What individuals decide on their billing day: stay, switch, or leave (chapter 20 §17, step 15).
+
+use crate::world::customers::Customers;
+use crate::world::customers::columns::{BLOCK, Block};
+use crate::world::customers::curve::{Curve, required_quality};
+use crate::world::day::Morning;
+use crate::world::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
+use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
+use crate::world::market::reputation::{ReputationBook, cancel_damage};
+use crate::world::params::{DriftCounted, InvoluntaryChurn, Params, ServicePenalty};
+use crate::world::product::ads::AdLoad;
+use crate::world::product::quality::{
+    Experience, TenureTable, perceived_quality, quota_demand, quota_factor, relationship_bonus,
+};
+use crate::world::random::{Part, Streams, word_below};
+use crate::world::settings::Settings;
+
+/// Monthly rate of involuntary churn from a standard normal draw; 0 where a group has none.
+pub fn involuntary_rate(mean: f64, std: f64, z: f64, law: &InvoluntaryChurn) -> f64 {
+    if !law.enable_involuntary_churn || (mean <= 0.0 && std <= 0.0) {
+        return 0.0;
+    }
+    (mean + std * z).clamp(law.mu_min, law.mu_max)
+}
+
+/// The rate of a group in the month that holds a day.
+pub fn involuntary_rate_of(group: Group, day: u32, params: &Params, streams: &Streams) -> f64 {
+    let month = day / params.involuntary_churn.month_days;
+    let z = streams.open(Part::InvoluntaryMu, [group.index() as u64, u64::from(month)]).standard_normal();
+    let own = params.group(group);
+    involuntary_rate(own.involuntary_churn_mean, own.involuntary_churn_std, z, &params.involuntary_churn)
+}
+
+/// The acceptable plan with the largest surplus; the earlier one on a tie, none if nothing is acceptable.
+///
+/// Acceptable is a price within the budget of the curve with quality at least as required (not strict).
+pub fn best_plan(
+    prices: &ByPlan<f64>,
+    qualities: &ByPlan<f64>,
+    curve: &Curve,
+    params: &Params,
+) -> Option<Plan> {
+    let mut best: Option<(f64, Plan)> = None;
+    for plan in Plan::ALL {
+        if prices[plan] > curve.c_max {
+            continue;
+        }
+        let surplus = qualities[plan] - required_quality(prices[plan], curve, params);
+        if surplus >= 0.0 && best.is_none_or(|(most, _)| surplus > most) {
+            best = Some((surplus, plan));
+        }
+    }
+    best.map(|(_, plan)| plan)
+}
+
+/// What happened at the billing decisions of a day.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Renewals {
+    /// Cancellations of both kinds.
+    pub cancellations: u32,
+    /// Switches to a plan with a higher list price than the stored one.
+    pub upgrades: u32,
+    /// Other switches.
+    pub downgrades: u32,
+}
+
+/// What the decisions of a day share.
+pub struct Judgement<'a> {
+    /// Values frozen this morning.
+    pub morning: &'a Morning,
+    /// Settings of today.
+    pub settings: &'a Settings,
+    /// Quality lost to today's service, where fidelity makes it count here.
+    pub service_penalty: f64,
+    /// Macro multiplier of the budget by group.
+    pub willingness_to_pay: ByGroup<f64>,
+    /// In-app ads.
+    pub ads: &'a AdLoad<'a>,
+    /// Tenure bonuses by days.
+    pub tenure: &'a TenureTable,
+    /// Parameters.
+    pub params: &'a Params,
+    /// Random streams.
+    pub streams: &'a Streams,
+}
+
+struct Departure {
+    n: u32,
+    ending: SubscriptionEnded,
+    satisfaction: f64,
+}
+
+#[derive(Default)]
+struct BlockOutcome {
+    departures: Vec<Departure>,
+    switches: Vec<(bool, TermsChanged)>,
+}
+
+/// Lets every individual whose billing day it is decide. Those who find nothing acceptable harm the group's
+/// reputation; those whose payment failed do not.
+pub fn decide(
+    customers: &mut Customers,
+    reputation: &mut ReputationBook,
+    judgement: &Judgement<'_>,
+    facts: &mut Facts,
+) -> Renewals {
+    let day = judgement.morning.day;
+    let rates = ByGroup::from_fn(|group| {
+        if group.is_enterprise() {
+            0.0
+        } else {
+            involuntary_rate_of(group, day, judgement.params, judgement.streams)
+        }
+    });
+    let by_block = customers.sweep(|group, number, block| {
+        if group.is_enterprise() {
+            return BlockOutcome::default();
+        }
+        decide_block(group, number, block, rates[group], judgement)
+    });
+    let mut renewals = Renewals::default();
+    for outcome in by_block {
+        for (upgrade, terms) in outcome.switches {
+            if upgrade {
+                renewals.upgrades += 1
+            } else {
+                renewals.downgrades += 1
+            }
+            facts.changes.push(terms);
+        }
+        for departure in outcome.departures {
+            renewals.cancellations += 1;
+            if departure.ending.cause != EndCause::Involuntary {
+                harm(reputation, &departure, judgement);
+            }
+            facts.endings.push(departure.ending);
+        }
+    }
+    renewals
+}
+
+fn harm(reputation: &mut ReputationBook, departure: &Departure, judgement: &Judgement<'_>) {
+    let (day, group) = (judgement.morning.day, departure.ending.group);
+    let keys = [u64::from(day), group.index() as u64, u64::from(departure.n), 0];
+    let u = judgement.streams.open(Part::ReputationEvent, keys).uniform();
+    let subscribers = judgement.morning.subscribers[group];
+    let damage = cancel_damage(departure.satisfaction, subscribers, u, &judgement.params.reputation);
+    reputation.move_by(group, -damage, &judgement.params.reputation);
+}
+
+fn decide_block(
+    group: Group,
+    number: u32,
+    block: &mut Block,
+    rate: f64,
+    judgement: &Judgement<'_>,
+) -> BlockOutcome {
+    let morning = judgement.morning;
+    let today = (morning.day % 30) as u8;
+    let mut outcome = BlockOutcome::default();
+    let due: Vec<usize> = (0..block.len()).filter(|at| block.billing_day[*at] == today).collect();
+    if due.is_empty() {
+        return outcome;
+    }
+    let mut words = [0u32; BLOCK as usize];
+    if rate > 0.0 {
+        let keys = [u64::from(morning.day), group.index() as u64, u64::from(number)];
+        judgement.streams.open(Part::InvoluntaryRoll, keys).fill(&mut words);
+    }
+    let mut gone = Vec::new();
+    for at in due {
+        let cause = if rate > 0.0 && word_below(words[block.place(at)], rate) {
+            Some(EndCause::Involuntary)
+        } else {
+            match chosen_plan(group, block, at, judgement) {
+                None if block.satisfaction[at] < 0.0 => Some(EndCause::Quality),
+                None => Some(EndCause::Price),
+                Some(plan) if plan != block.plan[at] => {
+                    outcome.switches.push(switch(group, block, at, plan, judgement));
+                    None
+                }
+                Some(_) => None,
+            }
+        };
+        if let Some(cause) = cause {
+            gone.push(at);
+            outcome.departures.push(departure(group, block, at, cause, morning.day));
+        }
+    }
+    block.remove(&gone);
+    outcome
+}
+
+fn departure(group: Group, block: &Block, at: usize, cause: EndCause, day: u32) -> Departure {
+    let ending = SubscriptionEnded {
+        subscription: block.subscription[at],
+        customer: block.customer[at],
+        group,
+        day,
+        status: SubscriptionStatus::Cancelled,
+        cause,
+    };
+    Departure { n: block.n[at], ending, satisfaction: block.satisfaction[at] }
+}
+
+fn chosen_plan(group: Group, block: &Block, at: usize, judgement: &Judgement<'_>) -> Option<Plan> {
+    let &Judgement { morning, settings, params, .. } = judgement;
+    let prices = ByPlan::from_fn(|plan| {
+        let discount = ongoing_discount(block.customer[at], group, plan, settings, params);
+        (morning.core.prices[plan] - discount).max(params.billing.effective_price_min)
+    });
+    let qualities = renewal_quality(group, block, at, judgement);
+    let curve = drifted_curve(group, block, at, morning, params);
+    let budget = curve.c_max * judgement.willingness_to_pay[group];
+    best_plan(&prices, &qualities, &curve.with_budget(budget), params)
+}
+
+/// Perceived quality of each plan at a billing decision (chapter 20 §13, second column).
+fn renewal_quality(group: Group, block: &Block, at: usize, judgement: &Judgement<'_>) -> ByPlan<f64> {
+    let &Judgement { morning, params, .. } = judgement;
+    let quality = &params.quality;
+    let rate = block.usage_rate[at];
+    let demand = quota_demand(rate * morning.weekday, rate, params);
+    let penalty = match params.fidelity.service_penalty {
+        ServicePenalty::Satisfaction => 0.0,
+        ServicePenalty::Everywhere => judgement.service_penalty,
+    };
+    ByPlan::from_fn(|plan| {
+        perceived_quality(
+            Experience {
+                delivered: morning.delivered(group, plan) - penalty,
+                relationship: relationship_bonus(block.relationship[at], quality),
+                tenure: judgement.tenure.bonus(morning.day - block.start_day[at]),
+                quota: quota_factor(morning.quotas[plan], demand, quality),
+                issues: quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]),
+                ads: block.ads_quality_sensitivity[at] * judgement.ads.for_group(group),
+            },
+            params.fidelity.perceived_quality,
+        )
+    })
+}
+
+fn drifted_curve(group: Group, block: &Block, at: usize, morning: &Morning, params: &Params) -> Curve {
+    let expectation = morning.expectations[group];
+    block.curve(at).drifted(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
+}
+
+/// Ongoing discount of a customer on a plan, floored at 0: P(i, g, p).
+pub fn ongoing_discount(
+    customer: u32,
+    group: Group,
+    plan: Plan,
+    settings: &Settings,
+    params: &Params,
+) -> f64 {
+    settings.promotion.sum(customer, group, plan).max(params.promotions.promotion_min)
+}
+
+/// Switches a row to another plan at today's terms; the tenure stays. Returns whether it is an upgrade.
+fn switch(
+    group: Group,
+    block: &mut Block,
+    at: usize,
+    plan: Plan,
+    judgement: &Judgement<'_>,
+) -> (bool, TermsChanged) {
+    let &Judgement { morning, settings, params, .. } = judgement;
+    let listed_price = morning.core.prices[plan];
+    let upgrade = listed_price > block.listed_price[at];
+    let promotion = ongoing_discount(block.customer[at], group, plan, settings, params);
+    block.plan[at] = plan;
+    block.listed_price[at] = listed_price;
+    block.promotion[at] = promotion;
+    block.effective_price[at] = (listed_price - promotion).max(params.billing.effective_price_min);
+    block.effective_c_max[at] = match params.fidelity.drift_counted {
+        DriftCounted::EveryRead => drifted_curve(group, block, at, morning, params).c_max,
+        DriftCounted::Once => block.c_max[at],
+    };
+    (upgrade, terms(block, at))
+}
+
+/// The terms of a row as they stand.
+pub fn terms(block: &Block, at: usize) -> TermsChanged {
+    TermsChanged {
+        subscription: block.subscription[at],
+        plan: block.plan[at],
+        listed_price: block.listed_price[at],
+        promotion: block.promotion[at],
+        effective_price: block.effective_price[at],
+        seats: block.seats[at] as u32,
+        billed_once: block.billed_once[at],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::customers::columns::Subscriber;
+    use crate::world::customers::columns::tests::subscriber;
+    use crate::world::day::tests::morning;
+    use crate::world::settings::AdsStrength;
+
+    fn group() -> Group {
+        Group::at(0).expect("S1")
+    }
+
+    /// Runs `check` with the judgement of a day of which `day` and `settings` are given.
+    fn with_judgement<R>(
+        day: &Morning,
+        settings: &Settings,
+        willingness: f64,
+        check: impl FnOnce(&Judgement<'_>) -> R,
+    ) -> R {
+        let (params, streams) = (Params::shipped(), Streams::new(1));
+        let ads = AdLoad::of(&settings.ads_strength, &params);
+        let tenure = TenureTable::up_to(600, &params.quality);
+        check(&Judgement {
+            morning: day,
+            settings,
+            service_penalty: 0.0,
+            willingness_to_pay: ByGroup::from_fn(|_| willingness),
+            ads: &ads,
+            tenure: &tenure,
+            params: &params,
+            streams: &streams,
+        })
+    }
+
+    #[test]
+    fn check_14_of_chapter_20() {
+        let law = Params::shipped().involuntary_churn;
+        for (z, rate) in [(-5.0, 0.0), (1.0, 0.07), (80.0, 1.0)] {
+            assert!((involuntary_rate(0.055, 0.015, z, &law) - rate).abs() < 1e-12);
+        }
+        assert_eq!(involuntary_rate(0.0, 0.0, 3.0, &law), 0.0);
+        let off = InvoluntaryChurn { enable_involuntary_churn: false, ..law };
+        assert_eq!(involuntary_rate(0.055, 0.015, 1.0, &off), 0.0);
+    }
+
+    #[test]
+    fn check_7_of_chapter_20() {
+        let mut day = morning(31);
+        day.product[group()] = 0.4;
+        day.multipliers = ByPlan([0.6, 0.9, 1.1]);
+        day.quotas = ByPlan([60.0, 70.0, 1200.0]);
+        day.core.prices = ByPlan([12.0, 25.0, 55.0]);
+        let mut settings = Settings::opening(&Params::shipped());
+        settings.ads_strength = AdsStrength {
+            global: 0.2,
+            by_group: [(group(), 0.1)].into_iter().collect(),
+            ..AdsStrength::default()
+        };
+        let mut block = Block::default();
+        block.push(Subscriber { plan: Plan::B, relationship: 0.7, open_issue_days: 3, ..subscriber(1) });
+        with_judgement(&day, &settings, 1.0, |judgement| {
+            let qualities = renewal_quality(group(), &block, 0, judgement);
+            for (plan, expected) in Plan::ALL.into_iter().zip([0.151809447, 0.298929601, 0.496473152]) {
+                assert!((qualities[plan] - expected).abs() < 1e-9, "{plan}: {}", qualities[plan]);
+            }
+            assert_eq!(chosen_plan(group(), &block, 0, judgement), None);
+        });
+    }
+
+    /// Check 8 of chapter 20: the decision part; the bills are checked in `billing`.
+    #[test]
+    fn a_price_rise_is_judged_at_todays_list_price() {
+        for (list, willingness, promotion, stays) in [
+            (20.0, 1.0, 0.0, true),
+            (30.0, 1.0, 0.0, true),
+            (45.0, 1.0, 0.0, false),
+            (45.0, 1.0, 8.0, true),
+            (51.0, 1.0, 0.0, false),
+            (30.0, 0.7, 0.0, false),
+        ] {
+            let mut day = morning(31);
+            day.product[group()] = 0.2 + 0.3;
+            day.multipliers = ByPlan([0.0, 0.9, 0.0]);
+            day.quotas = ByPlan([1e9; 3]);
+            day.core.prices = ByPlan([list; 3]);
+            let mut settings = Settings::opening(&Params::shipped());
+            settings.promotion.global = promotion;
+            let mut block = Block::default();
+            block.push(Subscriber { plan: Plan::B, start_day: 1, ..subscriber(1) });
+            with_judgement(&day, &settings, willingness, |judgement| {
+                let quality = renewal_quality(group(), &block, 0, judgement)[Plan::B];
+                assert!((quality - 0.484657359).abs() < 1e-9);
+                assert_eq!(chosen_plan(group(), &block, 0, judgement).is_some(), stays, "list price {list}");
+            });
+        }
+    }
+
+    #[test]
+    fn leaving_and_switching_change_the_columns() {
+        let mut day = morning(31);
+        day.product[group()] = 0.9;
+        day.multipliers = ByPlan([0.6, 0.9, 1.1]);
+        day.quotas = ByPlan([1e9; 3]);
+        day.core.prices = ByPlan([12.0, 13.0, 14.0]);
+        let settings = Settings::opening(&Params::shipped());
+        let mut customers = Customers::default();
+        let picky = Subscriber { q_min: 5.0, q_max: 6.0, satisfaction: -0.2, ..subscriber(1) };
+        for row in [picky, subscriber(2), Subscriber { billing_day: 9, ..subscriber(3) }] {
+            customers.groups[group()].activate(row);
+        }
+        let (mut reputation, mut facts) = (ReputationBook::opening(&Params::shipped()), Facts::default());
+        let renewals = with_judgement(&day, &settings, 1.0, |judgement| {
+            let mut judgement = Judgement { ..*judgement };
+            let mut params = judgement.params.clone();
+            params.involuntary_churn.enable_involuntary_churn = false;
+            judgement.params = &params;
+            decide(&mut customers, &mut reputation, &judgement, &mut facts)
+        });
+        assert_eq!(renewals, Renewals { cancellations: 1, upgrades: 1, downgrades: 0 });
+        assert_eq!(facts.endings[0].cause, EndCause::Quality);
+        assert!(reputation.of(group()) < 0.5);
+        let block = &customers.groups[group()].blocks[0];
+        assert_eq!(block.n, [2, 3]);
+        assert_eq!((block.plan[0], block.listed_price[0], block.start_day[0]), (Plan::C, 14.0, 1));
+        assert_eq!(block.plan[1], Plan::A);
+    }
+}

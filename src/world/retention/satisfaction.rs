@@ -1,0 +1,164 @@
+//! Daily satisfaction of every active subscriber (chapter 20 §15, step 13).
+
+use crate::world::customers::Customers;
+use crate::world::customers::columns::Block;
+use crate::world::day::Morning;
+use crate::world::events::ServiceDay;
+use crate::world::identifiers::{ByGroup, ByPlan, Group};
+use crate::world::market::reputation::contribution;
+use crate::world::params::Params;
+use crate::world::product::ads::AdLoad;
+use crate::world::product::quality::{
+    Experience, TenureTable, perceived_quality, quota_demand, quota_factor, relationship_as_read,
+    relationship_bonus, service_penalty,
+};
+
+/// Moving average: (1 - alpha) old + alpha instant.
+pub fn moved_satisfaction(old: f64, instant: f64, alpha: f64) -> f64 {
+    (1.0 - alpha) * old + alpha * instant
+}
+
+/// What a group's subscribers contribute to its reputation today.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Mood {
+    /// Sum of the contributions of chapter 30 §2.2.
+    pub sum: f64,
+    /// How many contributed.
+    pub count: u32,
+}
+
+/// What the whole sweep shares.
+pub struct Conditions<'a> {
+    /// Values frozen this morning.
+    pub morning: &'a Morning,
+    /// Service of today.
+    pub service: &'a ServiceDay,
+    /// In-app ads.
+    pub ads: &'a AdLoad<'a>,
+    /// Tenure bonuses by days.
+    pub tenure: &'a TenureTable,
+    /// Parameters.
+    pub params: &'a Params,
+}
+
+/// Moves everybody's satisfaction and returns what each group contributes to its reputation.
+pub fn update(customers: &mut Customers, conditions: &Conditions<'_>) -> ByGroup<Mood> {
+    let by_block = customers.sweep(|group, _, block| (group, update_block(group, block, conditions)));
+    let mut moods = ByGroup::<Mood>::default();
+    for (group, mood) in by_block {
+        moods[group].sum += mood.sum;
+        moods[group].count += mood.count;
+    }
+    moods
+}
+
+fn update_block(group: Group, block: &mut Block, conditions: &Conditions<'_>) -> Mood {
+    let &Conditions { morning, service, ads, tenure, params } = conditions;
+    let quality = &params.quality;
+    let penalty = service_penalty(service.overload, service.outage, quality);
+    let delivered = ByPlan::from_fn(|plan| morning.delivered(group, plan) - penalty);
+    let expectation = morning.expectations[group].quality;
+    let alpha = params.satisfaction.satisfaction_ema_alpha;
+    let mut sum = 0.0;
+    for at in 0..block.len() {
+        let (plan, rate) = (block.plan[at], block.usage_rate[at]);
+        let demand = quota_demand(rate * morning.weekday, rate, params);
+        let relationship = relationship_as_read(block.relationship[at], quality);
+        let effect = ads.for_customer(group, block.customer[at]);
+        let perceived = perceived_quality(
+            Experience {
+                delivered: delivered[plan],
+                relationship: relationship_bonus(relationship, quality),
+                tenure: tenure.bonus(morning.day - block.start_day[at]),
+                quota: quota_factor(morning.quotas[plan], demand, quality),
+                issues: quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]),
+                ads: block.ads_quality_sensitivity[at] * effect,
+            },
+            params.fidelity.perceived_quality,
+        );
+        let instant = perceived - (block.required[at] + expectation);
+        let satisfaction = moved_satisfaction(block.satisfaction[at], instant, alpha);
+        block.satisfaction[at] = satisfaction;
+        sum += contribution(satisfaction, &params.reputation);
+    }
+    Mood { sum, count: block.len() as u32 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::customers::columns::Subscriber;
+    use crate::world::customers::columns::tests::subscriber;
+    use crate::world::day::tests::morning;
+    use crate::world::identifiers::Plan;
+    use crate::world::retention::{refresh_required, remembered_budget};
+    use crate::world::settings::{AdsStrength, PerCustomer, PerGroup};
+
+    fn group() -> Group {
+        Group::at(0).expect("S1")
+    }
+
+    fn next_satisfaction(row: Subscriber, day: &Morning, service: ServiceDay, setting: &AdsStrength) -> f64 {
+        let params = Params::shipped();
+        let mut block = Block::default();
+        block.push(row);
+        refresh_required(&mut block, 0, day.expectations[group()].c_max, &params);
+        let ads = AdLoad::of(setting, &params);
+        let tenure = TenureTable::up_to(200, &params.quality);
+        let conditions =
+            Conditions { morning: day, service: &service, ads: &ads, tenure: &tenure, params: &params };
+        update_block(group(), &mut block, &conditions);
+        block.satisfaction[0]
+    }
+
+    #[test]
+    fn check_6_of_chapter_20() {
+        let mut day = morning(31);
+        day.product[group()] = 0.2 + 0.15 + 0.05;
+        day.multipliers[Plan::B] = 0.9;
+        day.quotas[Plan::B] = 70.0;
+        let row = Subscriber {
+            plan: Plan::B,
+            effective_price: 18.0,
+            effective_c_max: 48.0,
+            relationship: 0.7,
+            open_issue_days: 3,
+            satisfaction: 0.2,
+            customer: 9,
+            ..subscriber(1)
+        };
+        let service = ServiceDay { overload: 0.5, outage: true, ..ServiceDay::quiet() };
+        let setting = AdsStrength {
+            global: 0.2,
+            by_group: PerGroup::from([(group(), 0.1)]),
+            by_customer: PerCustomer::from([(9, 0.4)]),
+        };
+        let moved = next_satisfaction(row, &day, service, &setting);
+        assert!((moved - 0.158865172).abs() < 1e-9, "{moved}");
+    }
+
+    #[test]
+    fn check_18_of_chapter_20_counts_drift_twice() {
+        let params = Params::shipped();
+        let mut day = morning(100);
+        day.multipliers[Plan::A] = 1.0;
+        day.quotas[Plan::A] = 1000.0;
+        day.product[group()] = 0.2;
+        day.expectations[group()].quality = 0.08;
+        day.expectations[group()].c_max = 2.0;
+        let mut row = Subscriber {
+            effective_price: 20.0,
+            effective_c_max: 50.0,
+            start_day: 70,
+            satisfaction: 0.0,
+            ..subscriber(1)
+        };
+        let service = ServiceDay::quiet();
+        let moved = next_satisfaction(row, &day, service, &AdsStrength::default());
+        assert!((moved - -0.0133028107).abs() < 1e-9, "{moved}");
+        row.effective_c_max = remembered_budget(row.c_max, 2.0, &params);
+        assert_eq!(row.effective_c_max, 52.0);
+        let instant = next_satisfaction(row, &day, service, &AdsStrength::default()) / 0.1;
+        assert!((instant - -0.127399581).abs() < 1e-8, "{instant}");
+    }
+}

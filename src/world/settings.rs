@@ -1,0 +1,279 @@
+//! What the player has set: the levers of the company (specification, chapter 20 §2, chapter 50 §3).
+//!
+//! A setting made between two days is first read on the next day and stays until it is changed again, so the
+//! world needs only the newest values; their history is in the tables.
+
+use indexmap::IndexMap;
+use serde::Serialize;
+
+use super::canonical::canonical;
+use super::identifiers::{ByPlan, Channel, Group, Plan};
+use super::params::Params;
+
+/// Dollars (or strengths) per group, in the order in which the player listed them.
+pub type PerGroup = IndexMap<Group, f64>;
+/// Dollars per plan.
+pub type PerPlan = IndexMap<Plan, f64>;
+/// Dollars (or strengths) per customer number; numbers that exist nowhere are allowed and act on nobody.
+pub type PerCustomer = IndexMap<i64, f64>;
+
+/// All settings in force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Prices, tiers, quotas, daily spend, capacity: one row of `config_history`.
+    pub core: CoreSettings,
+    /// Ongoing discounts.
+    pub promotion: Promotion,
+    /// Discounts for new leads.
+    pub lead_promotion: LeadPromotion,
+    /// In-app advertising.
+    pub ads_strength: AdsStrength,
+    /// Advertising budget, dollars a day.
+    pub targeted_ads: TargetedAds,
+    /// Extra operations, dollars a day.
+    pub targeted_operations: TargetedOperations,
+    /// Development for single groups, dollars a day.
+    pub targeted_development: TargetedDevelopment,
+}
+
+/// The settings that `config_history` records.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoreSettings {
+    /// List prices, dollars a month.
+    pub prices: ByPlan<f64>,
+    /// Model tiers, 1..=5.
+    pub tiers: ByPlan<u8>,
+    /// Quotas, units a day and customer.
+    pub quotas: ByPlan<u64>,
+    /// Operations, dollars a day.
+    pub operations: f64,
+    /// Development, dollars a day.
+    pub development: f64,
+    /// Capacity tier, 0..=7.
+    pub capacity_tier: u8,
+}
+
+/// Ongoing discounts, dollars a month and seat; scopes add up, floored at 0 (chapter 20 §11).
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Promotion {
+    /// For everybody.
+    pub global: f64,
+    /// For subscribers of a group.
+    pub by_group: PerGroup,
+    /// For single customers.
+    pub by_customer: PerCustomer,
+    /// For a group's subscribers on a plan.
+    pub by_group_plan: IndexMap<Group, PerPlan>,
+}
+
+/// Discounts of a lead's choice and first bill, dollars a month; scopes add up, floored at 0.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct LeadPromotion {
+    /// For every lead.
+    pub global: f64,
+    /// For leads of a group.
+    pub by_group: PerGroup,
+    /// For leads of an advertising channel.
+    pub by_channel: IndexMap<Channel, f64>,
+    /// For a group's leads of a channel.
+    pub by_channel_group: IndexMap<Channel, PerGroup>,
+}
+
+/// In-app advertising load, each level 0..=1; levels add up and are clamped (chapter 20 §19).
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct AdsStrength {
+    /// For everybody.
+    pub global: f64,
+    /// For a group.
+    pub by_group: PerGroup,
+    /// For single customers.
+    pub by_customer: PerCustomer,
+}
+
+/// Advertising budget by channel and group, dollars a day.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct TargetedAds {
+    /// Channel, then group.
+    pub targeted_spend: IndexMap<Channel, PerGroup>,
+}
+
+/// Operations aimed at a part of the open issues, dollars a day; each entry is a pool of its own.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct TargetedOperations {
+    /// Issues of a group.
+    pub by_group: PerGroup,
+    /// Issues on a plan.
+    pub by_plan: PerPlan,
+    /// Issues of a group on a plan.
+    pub by_group_plan: IndexMap<Group, PerPlan>,
+    /// Issues of one customer.
+    pub by_customer: PerCustomer,
+}
+
+/// Development aimed at groups, dollars a day.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct TargetedDevelopment {
+    /// By group.
+    pub targeted_spend: PerGroup,
+}
+
+canonical! {
+    Settings { core, promotion, lead_promotion, ads_strength, targeted_ads, targeted_operations, targeted_development }
+    CoreSettings { prices, tiers, quotas, operations, development, capacity_tier }
+    Promotion { global, by_group, by_customer, by_group_plan }
+    LeadPromotion { global, by_group, by_channel, by_channel_group }
+    AdsStrength { global, by_group, by_customer }
+    TargetedAds { targeted_spend }
+    TargetedOperations { by_group, by_plan, by_group_plan, by_customer }
+    TargetedDevelopment { targeted_spend }
+}
+
+fn entry<K: std::hash::Hash + Eq>(map: &IndexMap<K, f64>, key: &K) -> f64 {
+    map.get(key).copied().unwrap_or(0.0)
+}
+
+fn total<K>(map: &IndexMap<K, f64>) -> f64 {
+    map.values().sum()
+}
+
+impl Settings {
+    /// The settings of day 0.
+    pub fn opening(params: &Params) -> Settings {
+        let initial = &params.initial;
+        let core = CoreSettings {
+            prices: ByPlan([initial.default_price_a, initial.default_price_b, initial.default_price_c]),
+            tiers: ByPlan([initial.default_tier_a, initial.default_tier_b, initial.default_tier_c]),
+            quotas: ByPlan([initial.default_quota_a, initial.default_quota_b, initial.default_quota_c]),
+            operations: initial.default_spend_operations,
+            development: initial.default_spend_development,
+            capacity_tier: initial.default_capacity_tier,
+        };
+        Settings {
+            core,
+            promotion: Promotion::default(),
+            lead_promotion: LeadPromotion::default(),
+            ads_strength: AdsStrength::default(),
+            targeted_ads: TargetedAds::default(),
+            targeted_operations: TargetedOperations::default(),
+            targeted_development: TargetedDevelopment::default(),
+        }
+    }
+}
+
+impl Promotion {
+    /// Sum of the scopes for a customer who is on, or judges, a plan: P(i, g, p), not yet floored.
+    pub fn sum(&self, customer: u32, group: Group, plan: Plan) -> f64 {
+        self.global
+            + entry(&self.by_group, &group)
+            + entry(&self.by_customer, &i64::from(customer))
+            + self.by_group_plan.get(&group).map_or(0.0, |plans| entry(plans, &plan))
+    }
+}
+
+impl LeadPromotion {
+    /// Sum of the scopes for a lead: LP(g, ch), not yet floored; the channel scopes need a channel.
+    pub fn sum(&self, group: Group, channel: Option<Channel>) -> f64 {
+        let by_channel = channel.map_or(0.0, |channel| {
+            entry(&self.by_channel, &channel)
+                + self.by_channel_group.get(&channel).map_or(0.0, |groups| entry(groups, &group))
+        });
+        self.global + entry(&self.by_group, &group) + by_channel
+    }
+}
+
+impl AdsStrength {
+    /// Sum of the levels that decisions and negotiations see: global + group, not yet clamped.
+    pub fn for_group(&self, group: Group) -> f64 {
+        self.global + entry(&self.by_group, &group)
+    }
+
+    /// What a customer's own level adds.
+    pub fn for_customer(&self, customer: u32) -> f64 {
+        entry(&self.by_customer, &i64::from(customer))
+    }
+
+    /// Whether anybody may be shown ads at all.
+    pub fn is_used(&self) -> bool {
+        self.global > 0.0 || !self.by_group.is_empty() || !self.by_customer.is_empty()
+    }
+}
+
+impl TargetedAds {
+    /// Budget of a pair, dollars a day.
+    pub fn spend(&self, channel: Channel, group: Group) -> f64 {
+        self.targeted_spend.get(&channel).map_or(0.0, |groups| entry(groups, &group))
+    }
+
+    /// Sum of the matrix, dollars a day.
+    pub fn total(&self) -> f64 {
+        self.targeted_spend.values().map(total).sum()
+    }
+}
+
+impl TargetedOperations {
+    /// Sum of all scopes, dollars a day.
+    pub fn total(&self) -> f64 {
+        total(&self.by_group)
+            + total(&self.by_plan)
+            + self.by_group_plan.values().map(total).sum::<f64>()
+            + total(&self.by_customer)
+    }
+}
+
+impl TargetedDevelopment {
+    /// Sum over groups, dollars a day.
+    pub fn total(&self) -> f64 {
+        total(&self.targeted_spend)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn group(id: &str) -> Group {
+        Group::parse(id).expect("a group")
+    }
+
+    #[test]
+    fn promotions_add_up_as_in_check_6_of_chapter_50() {
+        let promotion = Promotion {
+            global: 5.0,
+            by_group: PerGroup::from([(group("S1"), 2.0)]),
+            by_customer: PerCustomer::from([(7, 1.5)]),
+            by_group_plan: IndexMap::from([(group("S1"), PerPlan::from([(Plan::A, 3.0)]))]),
+        };
+        for (customer, id, plan, expected) in [
+            (1, "E1", Plan::A, 5.0),
+            (1, "S1", Plan::B, 7.0),
+            (1, "S1", Plan::A, 10.0),
+            (7, "S1", Plan::A, 11.5),
+            (7, "E1", Plan::C, 6.5),
+        ] {
+            assert_eq!(promotion.sum(customer, group(id), plan), expected);
+        }
+    }
+
+    #[test]
+    fn lead_promotions_add_up_as_in_check_7_of_chapter_50() {
+        let promotion = LeadPromotion {
+            global: 4.0,
+            by_group: PerGroup::from([(group("S1"), 1.0)]),
+            by_channel: IndexMap::from([(Channel::Linkedin, 2.0)]),
+            by_channel_group: IndexMap::from([(
+                Channel::Linkedin,
+                PerGroup::from([(group("S1"), 0.5), (group("E1"), 15.0)]),
+            )]),
+        };
+        for (id, channel, expected) in [
+            ("S1", None, 5.0),
+            ("S1", Some(Channel::Linkedin), 7.5),
+            ("E1", Some(Channel::Linkedin), 21.0),
+            ("S2", Some(Channel::Linkedin), 6.0),
+            ("S2", Some(Channel::SearchAds), 4.0),
+            ("E1", None, 4.0),
+        ] {
+            assert_eq!(promotion.sum(group(id), channel), expected);
+        }
+    }
+}

@@ -1,2 +1,4 @@
 //! NovaMind console.
+pub mod notation;
+pub mod tools;
 pub mod world;

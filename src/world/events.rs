@@ -140,6 +140,23 @@ pub enum SettingsChange {
     TargetedDevelopment(TargetedDevelopment),
 }
 
+impl SettingsChange {
+    /// The family as JSON, with the field names of `config_overrides.settings_json`; none for the core settings,
+    /// which have a table of their own.
+    pub fn family(&self) -> Option<serde_json::Value> {
+        let value = match self {
+            SettingsChange::Core(_) => return None,
+            SettingsChange::Promotion(value) => serde_json::to_value(value),
+            SettingsChange::LeadPromotion(value) => serde_json::to_value(value),
+            SettingsChange::AdsStrength(value) => serde_json::to_value(value),
+            SettingsChange::TargetedAds(value) => serde_json::to_value(value),
+            SettingsChange::TargetedOperations(value) => serde_json::to_value(value),
+            SettingsChange::TargetedDevelopment(value) => serde_json::to_value(value),
+        };
+        Some(value.expect("settings have text keys and finite numbers"))
+    }
+}
+
 impl super::canonical::Canonical for SettingsChange {
     fn feed(&self, hasher: &mut super::canonical::CanonicalHasher) {
         match self {

@@ -6,6 +6,7 @@
 pub mod canonical;
 pub mod customers;
 pub mod day;
+pub mod effect;
 pub mod enterprise;
 pub mod events;
 pub mod finance;

@@ -130,24 +130,13 @@ pub fn override_table(below: &mut Table, above: Table) -> Result<(), (String, St
             }
             (Some(slot), value) => *slot = value,
             (None, _) => {
-                let mut known: Vec<&str> = below.keys().map(String::as_str).collect();
-                known.sort_by_key(|candidate| strangeness(candidate, &key));
-                known.truncate(3);
-                return Err((
-                    key.clone(),
-                    format!("there is no such parameter; near it: {}", known.join(", ")),
-                ));
+                let near = crate::notation::nearest(&key, below.keys().map(String::as_str));
+                let problem = format!("there is no such parameter; near it: {}", near.join(", "));
+                return Err((key, problem));
             }
         }
     }
     Ok(())
-}
-
-/// How unlike two names are: letters that are not in the common start or in both.
-fn strangeness(known: &str, wanted: &str) -> usize {
-    let same_start = known.bytes().zip(wanted.bytes()).take_while(|(a, b)| a == b).count();
-    let shared = wanted.split('_').filter(|word| known.split('_').any(|other| other == *word)).count();
-    known.len() + wanted.len() - 2 * same_start.min(known.len()) + 100 - (shared * 10).min(100)
 }
 
 /// An error at the place where the first of `sources` that holds `key` has it.

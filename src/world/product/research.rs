@@ -45,31 +45,21 @@ pub fn project_boost(tier: &ResearchTier, z: f64, development: &Development) -> 
     (tier.mean_quality_boost + tier.std_quality_boost * z).max(development.rd_min_quality_boost)
 }
 
-/// Starts a project of a tier on day `day`. Duration and gain follow from (seed, tier, earlier starts).
-pub fn start(
-    product: &mut Product,
-    day: u32,
-    tier: u8,
-    params: &Params,
-    streams: &Streams,
-    facts: &mut Facts,
-) -> Project {
+/// The project that a start on day `day` would be. Duration and gain follow from (seed, tier, earlier starts).
+pub fn draw(product: &Product, day: u32, tier: u8, params: &Params, streams: &Streams) -> Project {
     let earlier = product.research.iter().filter(|project| project.tier == tier).count() as u32;
     let mut stream = streams.open(Part::Research, [u64::from(tier), u64::from(earlier)]);
     let law = params.research(tier);
     let duration = project_duration(law, stream.standard_normal(), &params.development);
     let boost = project_boost(law, stream.standard_normal(), &params.development);
-    let project = Project {
+    Project {
         tier,
         number: earlier + 1,
         started_day: day,
         due_day: day + duration,
         boost,
         completed_day: None,
-    };
-    product.research.push(project);
-    facts.research.push(ResearchChange::Started(project));
-    project
+    }
 }
 
 /// Completes what is due: the gain reaches the product and the rivals' bank.
@@ -126,8 +116,9 @@ mod tests {
         let start_at = |day| {
             let mut product = Product::opening(&params);
             let streams = Streams::new(5);
-            let first = start(&mut product, day, 4, &params, &streams, &mut Facts::default());
-            let second = start(&mut product, day, 4, &params, &streams, &mut Facts::default());
+            let first = draw(&product, day, 4, &params, &streams);
+            product.research.push(first);
+            let second = draw(&product, day, 4, &params, &streams);
             (first.due_day - day, first.boost, second.due_day - day, second.boost, second.id())
         };
         assert_eq!(start_at(0), start_at(77));
@@ -139,12 +130,9 @@ mod tests {
         let params = Params::shipped();
         for (tier, thirty, days, gain) in [(1, 0.943327, 30.3192, 0.040194), (5, 0.424790, 59.3417, 0.220957)]
         {
-            let drawn: Vec<Project> = (0..4000)
-                .map(|seed| {
-                    let mut product = Product::opening(&params);
-                    start(&mut product, 0, tier, &params, &Streams::new(seed), &mut Facts::default())
-                })
-                .collect();
+            let product = Product::opening(&params);
+            let drawn: Vec<Project> =
+                (0..4000).map(|seed| draw(&product, 0, tier, &params, &Streams::new(seed))).collect();
             let mean = |value: fn(&Project) -> f64| drawn.iter().map(value).sum::<f64>() / 4000.0;
             assert!((mean(|p| f64::from(u8::from(p.due_day == 30))) - thirty).abs() < 0.025);
             assert!((mean(|p| f64::from(p.due_day)) / days - 1.0).abs() < 0.03);

@@ -1,0 +1,147 @@
+//! How numbers are written: the same on every screen, in every report and every message.
+//!
+//! Rounding is half to even on the exact binary value everywhere (specification, chapter 60 §8.2).
+
+use serde_json::{Number, Value};
+
+/// A number with thousands separators and fixed decimals, for instance `1,234,567.5`.
+pub fn grouped(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let (sign, digits) = text.strip_prefix('-').map_or(("", text.as_str()), |digits| ("-", digits));
+    let (whole, fraction) =
+        digits.split_once('.').map_or((digits, None), |(whole, rest)| (whole, Some(rest)));
+    let mut grouped = String::with_capacity(text.len() + whole.len() / 3);
+    for (at, digit) in whole.chars().enumerate() {
+        if at > 0 && (whole.len() - at).is_multiple_of(3) {
+            grouped.push(',');
+        }
+        grouped.push(digit);
+    }
+    match fraction {
+        Some(fraction) => format!("{sign}{grouped}.{fraction}"),
+        None => format!("{sign}{grouped}"),
+    }
+}
+
+/// Money without cents, as dashboards and refusals show it: `$1,234,568`, negative `$-1,234`.
+pub fn dollars(value: f64) -> String {
+    format!("${}", grouped(value, 0))
+}
+
+/// Money with cents: `$1,234.50`.
+pub fn cents(value: f64) -> String {
+    format!("${}", grouped(value, 2))
+}
+
+/// Money with its sign in front, for changes: `+$45,210`, `-$45,210`.
+pub fn signed_dollars(value: f64) -> String {
+    let sign = if value < 0.0 { '-' } else { '+' };
+    format!("{sign}${}", grouped(value.abs(), 0))
+}
+
+/// A share as a percentage: `0.1234` with one decimal is `12.3%`.
+pub fn percent(share: f64, decimals: usize) -> String {
+    format!("{:.decimals$}%", share * 100.0)
+}
+
+/// A large number in three significant digits with a suffix: `1.23M`, `45.6k`, `789`.
+pub fn compact(value: f64) -> String {
+    let size = value.abs();
+    let (scaled, suffix) = match size {
+        _ if size >= 999_500_000.0 => (value / 1e9, "B"),
+        _ if size >= 999_500.0 => (value / 1e6, "M"),
+        _ if size >= 999.5 => (value / 1e3, "k"),
+        _ => (value, ""),
+    };
+    let decimals = match scaled.abs() {
+        _ if suffix.is_empty() && scaled.fract() == 0.0 => 0,
+        tens if tens >= 99.95 => 0,
+        tens if tens >= 9.995 => 1,
+        _ => 2,
+    };
+    format!("{scaled:.decimals$}{suffix}")
+}
+
+/// A number as JSON: whole numbers without a decimal point, others in their shortest exact form.
+pub fn json_number(value: f64) -> Value {
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    if value.fract() == 0.0 && value.abs() < EXACT {
+        Value::from(value as i64)
+    } else {
+        Number::from_f64(value).map_or(Value::Null, Value::Number)
+    }
+}
+
+/// Rewrites all numbers of a JSON value as [`json_number`] does.
+pub fn plain_numbers(value: Value) -> Value {
+    match value {
+        Value::Number(number) if number.is_f64() => number.as_f64().map_or(Value::Null, json_number),
+        Value::Array(values) => values.into_iter().map(plain_numbers).collect(),
+        Value::Object(map) => map.into_iter().map(|(key, value)| (key, plain_numbers(value))).collect(),
+        other => other,
+    }
+}
+
+/// Up to three of the known names that look most like a name that does not exist, best first.
+pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let name = name.to_lowercase();
+    let mut scored: Vec<(usize, &str)> = known
+        .map(|candidate| (strsim::damerau_levenshtein(&name, &candidate.to_lowercase()), candidate))
+        .collect();
+    scored.retain(|(distance, candidate)| *distance <= candidate.len().max(name.len()) / 2);
+    scored.sort_by_key(|(distance, _)| *distance);
+    scored.into_iter().take(3).map(|(_, candidate)| candidate).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn check_3_of_chapter_60() {
+        for (value, text) in [(9.5, "10"), (8.5, "8"), (10.5, "10"), (0.5, "0"), (1.5, "2"), (250.5, "250")] {
+            assert_eq!(grouped(value, 0), text);
+        }
+        for (value, text) in [
+            (1_234_567.5, "$1,234,568"),
+            (1_234_568.5, "$1,234,568"),
+            (-1234.5, "$-1,234"),
+            (-0.4, "$-0"),
+            (-2095.0, "$-2,095"),
+        ] {
+            assert_eq!(dollars(value), text);
+        }
+        assert_eq!(percent(0.12345, 1), "12.3%");
+        assert_eq!(percent(0.012345, 2), "1.23%");
+        assert_eq!(percent(0.00474, 2), "0.47%");
+    }
+
+    #[test]
+    fn large_numbers_keep_three_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (789.0, "789"),
+            (999.6, "1.00k"),
+            (45_640.0, "45.6k"),
+            (999_600.0, "1.00M"),
+            (1_234_567.0, "1.23M"),
+            (-12_345_678.0, "-12.3M"),
+            (2.5e9, "2.50B"),
+            (1.5, "1.50"),
+        ] {
+            assert_eq!(compact(value), text);
+        }
+    }
+
+    #[test]
+    fn whole_numbers_lose_their_point_in_json() {
+        let value = serde_json::json!({"a": 12.0, "b": [0.5, 3.0], "c": "4.0"});
+        assert_eq!(plain_numbers(value).to_string(), r#"{"a":12,"b":[0.5,3],"c":"4.0"}"#);
+    }
+
+    #[test]
+    fn changes_show_their_sign() {
+        assert_eq!(signed_dollars(45_210.4), "+$45,210");
+        assert_eq!(signed_dollars(-3.0), "-$3");
+    }
+}

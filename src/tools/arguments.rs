@@ -1,0 +1,216 @@
+//! Reading arguments: from JSON to typed values, with the refusals of chapter 50.
+
+use indexmap::IndexMap;
+use serde_json::{Map, Value};
+
+use super::refusal::Refusal;
+use super::spec::{Range, Spec};
+use super::view::View;
+use crate::world::identifiers::{Channel, Group, Plan};
+use crate::world::settings::{PerCustomer, PerGroup, PerPlan};
+
+/// Arguments of a call whose names are right: absent and null ones are left out.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Arguments(Map<String, Value>);
+
+impl Arguments {
+    /// Takes the arguments of a call as they came.
+    ///
+    /// # Errors
+    /// `wrong_type` when they are no object, `unknown_argument`, `argument_missing`.
+    pub fn of(spec: &Spec, given: &Value) -> Result<Arguments, Refusal> {
+        let mut map = match given {
+            Value::Null => Map::new(),
+            Value::Object(map) => map.clone(),
+            _ => {
+                return Err(Refusal::new(
+                    "wrong_type",
+                    "the arguments must be an object of names and values",
+                ));
+            }
+        };
+        if let Some(whole) = spec.whole
+            && !map.is_empty()
+            && !map.keys().any(|name| is_named(spec, name))
+        {
+            map = Map::from_iter([(whole.to_owned(), Value::Object(map))]);
+        }
+        if !spec.own_unknown
+            && let Some(name) = map.keys().find(|name| !is_named(spec, name))
+        {
+            let message = format!("{} has no argument {name}; it has {}", spec.name, names(spec));
+            return Err(Refusal::at(name.clone(), "unknown_argument", message));
+        }
+        map.retain(|_, value| !value.is_null());
+        for argument in spec.arguments.iter().filter(|argument| argument.required) {
+            let given = map.contains_key(argument.name)
+                || argument.alias.is_some_and(|alias| map.contains_key(alias));
+            if !given {
+                let message = format!("{} is required: {}", argument.name, argument.doc);
+                return Err(Refusal::at(argument.name, "argument_missing", message));
+            }
+        }
+        Ok(Arguments(map))
+    }
+
+    /// The arguments as a JSON object.
+    pub fn as_map(&self) -> &Map<String, Value> {
+        &self.0
+    }
+
+    /// An argument, if it was given.
+    pub fn get(&self, name: &str) -> Option<&Value> {
+        self.0.get(name)
+    }
+
+    /// Whether nothing was given.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+fn is_named(spec: &Spec, name: &str) -> bool {
+    spec.arguments.iter().any(|argument| argument.name == name || argument.alias == Some(name))
+}
+
+fn names(spec: &Spec) -> String {
+    let names: Vec<&str> = spec.arguments.iter().map(|argument| argument.name).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// A JSON number; booleans and texts are none.
+pub fn number(value: &Value) -> Option<f64> {
+    value.as_f64().filter(|number| number.is_finite())
+}
+
+/// A JSON whole number; integral floats count, booleans and texts do not.
+pub fn integer(value: &Value) -> Option<i64> {
+    let exact = |number: &f64| number.fract() == 0.0 && number.abs() < 9.0e15;
+    value.as_i64().or_else(|| value.as_f64().filter(exact).map(|number| number as i64))
+}
+
+/// `wrong_type` for an argument.
+pub fn wrong_type(field: &str, expected: &str) -> Refusal {
+    Refusal::at(field, "wrong_type", format!("{field} has the wrong type: {expected} is expected"))
+}
+
+/// What a number of a map must be, with the code and words of its refusal.
+#[derive(Clone, Copy)]
+pub struct Amount {
+    /// Code of the refusal.
+    pub code: &'static str,
+    /// Words, after "the value for KEY".
+    pub words: &'static str,
+    /// Allowed numbers.
+    pub range: Range,
+}
+
+impl Amount {
+    /// Reads one value.
+    pub fn read(&self, value: &Value, field: &str) -> Result<f64, Refusal> {
+        match number(value) {
+            Some(number) if self.range.holds(number) => Ok(number),
+            _ => Err(Refusal::at(field, self.code, format!("the value for {} {}", last(field), self.words))),
+        }
+    }
+}
+
+fn last(field: &str) -> &str {
+    field.rsplit('.').next().unwrap_or(field)
+}
+
+fn map<'a>(value: &'a Value, field: &str) -> Result<&'a Map<String, Value>, Refusal> {
+    value.as_object().ok_or_else(|| Refusal::at(field, "not_a_map", format!("{field} must be a map")))
+}
+
+/// A known group.
+pub fn known_group(key: &str, field: &str, view: &View<'_>) -> Result<Group, Refusal> {
+    Group::parse(key).filter(|group| view.knows(*group)).ok_or_else(|| {
+        let known: Vec<&str> = view.known_groups().map(Group::id).collect();
+        Refusal::at(field, "unknown_group", format!("group {key} is not known; known: {}", known.join(", ")))
+    })
+}
+
+/// A plan.
+pub fn plan(key: &str, field: &str) -> Result<Plan, Refusal> {
+    Plan::parse(key).ok_or_else(|| {
+        Refusal::at(field, "unknown_plan", format!("plan {key} does not exist; plans are A, B, C"))
+    })
+}
+
+/// A channel.
+pub fn channel(key: &str, field: &str) -> Result<Channel, Refusal> {
+    Channel::parse(key).ok_or_else(|| {
+        let known = Channel::ALL.map(Channel::id).join(", ");
+        Refusal::at(field, "unknown_channel", format!("channel {key} does not exist; channels: {known}"))
+    })
+}
+
+/// A customer number; existence is not checked.
+pub fn customer(key: &str, field: &str) -> Result<i64, Refusal> {
+    key.trim().parse().map_err(|_| {
+        Refusal::at(field, "customer_not_integer", format!("customer id {key} is not an integer"))
+    })
+}
+
+/// A map from keys to amounts; keys and amounts are checked entry by entry.
+fn amounts<K: std::hash::Hash + Eq>(
+    value: &Value,
+    field: &str,
+    amount: Amount,
+    key: impl Fn(&str, &str) -> Result<K, Refusal>,
+) -> Result<IndexMap<K, f64>, Refusal> {
+    let entry = |(name, value): (&String, &Value)| {
+        let field = format!("{field}.{name}");
+        Ok((key(name, &field)?, amount.read(value, &field)?))
+    };
+    map(value, field)?.iter().map(entry).collect()
+}
+
+/// A map of groups.
+pub fn per_group(value: &Value, field: &str, amount: Amount, view: &View<'_>) -> Result<PerGroup, Refusal> {
+    amounts(value, field, amount, |key, field| known_group(key, field, view))
+}
+
+/// A map of plans.
+pub fn per_plan(value: &Value, field: &str, amount: Amount) -> Result<PerPlan, Refusal> {
+    amounts(value, field, amount, plan)
+}
+
+/// A map of channels.
+pub fn per_channel(value: &Value, field: &str, amount: Amount) -> Result<IndexMap<Channel, f64>, Refusal> {
+    amounts(value, field, amount, channel)
+}
+
+/// A map of customers.
+pub fn per_customer(value: &Value, field: &str, amount: Amount) -> Result<PerCustomer, Refusal> {
+    amounts(value, field, amount, customer)
+}
+
+/// A map of groups to maps of plans.
+pub fn per_group_plan(
+    value: &Value,
+    field: &str,
+    amount: Amount,
+    view: &View<'_>,
+) -> Result<IndexMap<Group, PerPlan>, Refusal> {
+    let entry = |(name, value): (&String, &Value)| {
+        let field = format!("{field}.{name}");
+        Ok((known_group(name, &field, view)?, per_plan(value, &field, amount)?))
+    };
+    map(value, field)?.iter().map(entry).collect()
+}
+
+/// A map of channels to maps of groups.
+pub fn per_channel_group(
+    value: &Value,
+    field: &str,
+    amount: Amount,
+    view: &View<'_>,
+) -> Result<IndexMap<Channel, PerGroup>, Refusal> {
+    let entry = |(name, value): (&String, &Value)| {
+        let field = format!("{field}.{name}");
+        Ok((channel(name, &field)?, per_group(value, &field, amount, view)?))
+    };
+    map(value, field)?.iter().map(entry).collect()
+}

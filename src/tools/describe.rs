@@ -1,0 +1,102 @@
+//! The catalogue as text and as JSON, for help, documentation and programs.
+
+use std::fmt::Write;
+
+use serde_json::{Value, json};
+
+use super::Tool;
+use super::spec::{Argument, ArgumentKind, Module, Spec};
+
+impl ArgumentKind {
+    /// The kind in words, for instance `map channel -> map group -> number, >= 0`.
+    pub fn words(&self) -> String {
+        match self {
+            ArgumentKind::Number(range) => format!("number, {}", range.words()),
+            ArgumentKind::Integer(range) => format!("whole number, {}", range.words()),
+            ArgumentKind::Text => "text".to_owned(),
+            ArgumentKind::Structure(words) => (*words).to_owned(),
+            ArgumentKind::Map(key, range) => format!("map {} -> number, {}", key.id(), range.words()),
+            ArgumentKind::Matrix(outer, inner, range) => {
+                format!("map {} -> map {} -> number, {}", outer.id(), inner.id(), range.words())
+            }
+        }
+    }
+}
+
+/// All tools by module, one line each.
+pub fn overview() -> String {
+    let mut text = String::new();
+    for module in Module::ALL {
+        let _ = writeln!(text, "{}", module.id());
+        for spec in super::CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.module == module) {
+            let _ = writeln!(text, "  {:<24} {}", spec.name, spec.summary);
+        }
+    }
+    text
+}
+
+/// Everything about one tool.
+pub fn manual(spec: &Spec) -> String {
+    let mut text = format!("{}.{}: {}\n", spec.module.id(), spec.name, spec.summary);
+    for argument in spec.arguments {
+        let _ = writeln!(text, "  {}", argument_line(argument));
+    }
+    if !spec.effect.is_empty() {
+        let _ = writeln!(text, "Effect ({}): {}", spec.when.id(), spec.effect);
+    }
+    let _ = writeln!(text, "Cost: {}.", spec.cost);
+    if !spec.writes.is_empty() {
+        let _ = writeln!(text, "Tables: {}.", spec.writes.join(", "));
+    }
+    if !spec.refusals.is_empty() {
+        let _ = writeln!(text, "Refusals: {}.", spec.refusals.join(", "));
+    }
+    for output in spec.returns {
+        let _ = writeln!(text, "Returns {} ({}): {}.", output.name, output.kind, output.doc);
+    }
+    let _ = writeln!(text, "Example: {}({})", spec.name, spec.example);
+    text
+}
+
+fn argument_line(argument: &Argument) -> String {
+    let need = if argument.required { "required" } else { "optional" };
+    let unit = if argument.unit.is_empty() { String::new() } else { format!(", {}", argument.unit) };
+    format!("{} ({}{unit}, {need}): {}", argument.name, argument.kind.words(), argument.doc)
+}
+
+/// One tool as JSON.
+pub fn as_json(tool: &dyn Tool) -> Value {
+    let spec = tool.spec();
+    let arguments: Vec<Value> = spec
+        .arguments
+        .iter()
+        .map(|argument| {
+            json!({
+                "name": argument.name,
+                "alias": argument.alias,
+                "type": argument.kind.words(),
+                "required": argument.required,
+                "unit": argument.unit,
+                "description": argument.doc,
+            })
+        })
+        .collect();
+    let returns: Vec<Value> = spec
+        .returns
+        .iter()
+        .map(|output| json!({ "name": output.name, "type": output.kind, "description": output.doc }))
+        .collect();
+    json!({
+        "name": spec.name,
+        "module": spec.module.id(),
+        "kind": spec.kind.id(),
+        "summary": spec.summary,
+        "arguments": arguments,
+        "effect": { "when": spec.when.id(), "description": spec.effect },
+        "cost": spec.cost,
+        "writes": spec.writes,
+        "refusals": spec.refusals,
+        "returns": returns,
+        "example": serde_json::from_str::<Value>(spec.example).unwrap_or(Value::Null),
+    })
+}

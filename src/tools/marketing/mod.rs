@@ -1,0 +1,21 @@
+//! Spend, advertising, in-app ads, discounts for leads.
+
+mod set_ads_strength;
+mod set_daily_spend;
+mod set_lead_promotion;
+mod set_targeted_ad_spend;
+
+pub use set_ads_strength::SetAdsStrength;
+pub use set_daily_spend::SetDailySpend;
+pub use set_lead_promotion::SetLeadPromotion;
+pub use set_targeted_ad_spend::SetTargetedAdSpend;
+
+use super::arguments::Amount;
+use super::spec::Range;
+
+/// A daily budget.
+pub(super) const BUDGET: Amount = Amount {
+    code: "amount_invalid",
+    words: "must be a number of at least zero, in dollars a day",
+    range: Range::AT_LEAST_ZERO,
+};

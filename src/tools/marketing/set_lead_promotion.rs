@@ -1,0 +1,96 @@
+use serde_json::{Map, Value};
+
+use super::super::arguments::{Arguments, per_channel, per_channel_group, per_group};
+use super::super::pricing::{DISCOUNT, global_discount};
+use super::super::{
+    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When,
+};
+use super::super::{as_data, family_of};
+use crate::notation::json_number;
+use crate::world::effect::{Deed, Effect};
+use crate::world::events::SettingsChange;
+use crate::world::settings::Settings;
+
+/// Grants discounts to new leads.
+pub struct SetLeadPromotion;
+
+const fn scope(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {
+    Argument { name, alias: None, kind, required: false, unit: "$/month", doc }
+}
+
+static SPEC: Spec = Spec {
+    name: "set_lead_promotion",
+    module: Module::Marketing,
+    kind: Kind::Setting,
+    summary: "Grant discounts on the first bill of new individuals; the scopes add up",
+    arguments: &[
+        scope("global_promotion", ArgumentKind::Number(Range::AT_LEAST_ZERO), "for every lead"),
+        scope("by_group", ArgumentKind::Map(Key::Group, Range::AT_LEAST_ZERO), "for leads of a group"),
+        scope(
+            "by_channel",
+            ArgumentKind::Map(Key::Channel, Range::AT_LEAST_ZERO),
+            "for leads of an ad channel",
+        ),
+        scope(
+            "by_channel_group",
+            ArgumentKind::Matrix(Key::Channel, Key::Group, Range::AT_LEAST_ZERO),
+            "for a group's leads of an ad channel",
+        ),
+    ],
+    own_unknown: false,
+    whole: None,
+    when: When::NextDay,
+    effect: "Leads choose their plan at the price less the discount and pay it on the day they sign up; from the \
+             second bill on it is gone. Channel scopes need a lead that came through an ad. Companies get none.",
+    cost: "less revenue from first bills",
+    writes: &["config_overrides"],
+    refusals: &[
+        "global_promotion_negative",
+        "not_a_map",
+        "unknown_group",
+        "unknown_channel",
+        "promotion_negative",
+    ],
+    returns: &[
+        Output { name: "global", kind: "number", doc: "$/month" },
+        Output { name: "by_group", kind: "map group -> number", doc: "$/month" },
+        Output { name: "by_channel", kind: "map channel -> number", doc: "$/month" },
+        Output { name: "by_channel_group", kind: "map channel -> map group -> number", doc: "$/month" },
+    ],
+    example: r#"{"by_channel": {"social_media": 3}}"#,
+};
+
+impl Tool for SetLeadPromotion {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn current(&self, settings: &Settings) -> Map<String, Value> {
+        let promotion = &settings.lead_promotion;
+        Map::from_iter([
+            ("global_promotion".to_owned(), json_number(promotion.global)),
+            ("by_group".to_owned(), as_data(&promotion.by_group)),
+            ("by_channel".to_owned(), as_data(&promotion.by_channel)),
+            ("by_channel_group".to_owned(), as_data(&promotion.by_channel_group)),
+        ])
+    }
+
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+        let mut promotion = view.settings().lead_promotion.clone();
+        promotion.global = global_discount(arguments, promotion.global)?;
+        if let Some(value) = arguments.get("by_group") {
+            promotion.by_group = per_group(value, "by_group", DISCOUNT, view)?;
+        }
+        if let Some(value) = arguments.get("by_channel") {
+            promotion.by_channel = per_channel(value, "by_channel", DISCOUNT)?;
+        }
+        if let Some(value) = arguments.get("by_channel_group") {
+            promotion.by_channel_group = per_channel_group(value, "by_channel_group", DISCOUNT, view)?;
+        }
+        Ok(Effect::Set(SettingsChange::LeadPromotion(promotion)))
+    }
+
+    fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
+        family_of(deed)
+    }
+}

@@ -1,0 +1,68 @@
+//! The tools: every action and reading of the player, one file each (specification, chapter 50).
+//!
+//! A tool is data ([`Spec`]) and three small functions: what its arguments are now ([`Tool::current`]), what a
+//! call would do ([`Tool::plan`], pure, so it also previews), and what it answers ([`Tool::answer`]). Adding a
+//! tool touches one file and the list in [`catalogue`].
+
+pub mod arguments;
+pub mod catalogue;
+pub mod describe;
+pub mod refusal;
+pub mod spec;
+pub mod view;
+
+mod analytics;
+mod infrastructure;
+mod marketing;
+mod pricing;
+mod research;
+mod time;
+
+#[cfg(test)]
+mod tests;
+
+use serde_json::{Map, Value};
+
+pub use arguments::Arguments;
+pub use catalogue::{CATALOGUE, find};
+pub use refusal::Refusal;
+pub use spec::{Argument, ArgumentKind, Key, Kind, Module, Output, Range, Spec, When};
+pub use time::{FORECAST_KEYS, Forecast, forecasts, rationale};
+pub use view::View;
+
+use crate::notation::plain_numbers;
+use crate::world::effect::{Deed, Effect};
+use crate::world::settings::Settings;
+
+/// An action or reading of the player.
+pub trait Tool: Sync {
+    /// Everything there is to know about it.
+    fn spec(&self) -> &'static Spec;
+
+    /// The present values of its arguments, as a call would send them; empty where there are none.
+    fn current(&self, _settings: &Settings) -> Map<String, Value> {
+        Map::new()
+    }
+
+    /// What a call with these arguments would do.
+    ///
+    /// # Errors
+    /// The refusals of its specification, in the order of its checks.
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal>;
+
+    /// The data of the answer, given what was decided. Numbers as chapter 50 says.
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, deed: &Deed) -> Value;
+}
+
+/// A settings family as answers show it: whole numbers without a decimal point.
+fn as_data(family: &impl serde::Serialize) -> Value {
+    plain_numbers(serde_json::to_value(family).unwrap_or(Value::Null))
+}
+
+/// The settings family that a deed leaves, as answers show it.
+fn family_of(deed: &Deed) -> Value {
+    match deed {
+        Deed::Set(change) => plain_numbers(change.family().unwrap_or(Value::Null)),
+        _ => Value::Null,
+    }
+}

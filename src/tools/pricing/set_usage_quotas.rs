@@ -1,0 +1,70 @@
+use serde_json::{Map, Value, json};
+
+use super::super::arguments::{Arguments, integer, number, wrong_type};
+use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
+use super::{by_plan, core_of};
+use crate::world::effect::{Deed, Effect};
+use crate::world::events::SettingsChange;
+use crate::world::identifiers::Plan;
+use crate::world::settings::Settings;
+
+/// Caps usage.
+pub struct SetUsageQuotas;
+
+const fn quota(name: &'static str, doc: &'static str) -> Argument {
+    let kind = ArgumentKind::Integer(Range::AT_LEAST_ZERO);
+    Argument { name, alias: None, kind, required: false, unit: "units/day", doc }
+}
+
+static SPEC: Spec = Spec {
+    name: "set_usage_quotas",
+    module: Module::Pricing,
+    kind: Kind::Setting,
+    summary: "Cap the daily usage of a customer; all three plans at once",
+    arguments: &[
+        quota("A", "quota of plan A per customer; a company shares one over all its seats"),
+        quota("B", "quota of plan B per customer"),
+        quota("C", "quota of plan C per customer"),
+    ],
+    own_unknown: false,
+    whole: None,
+    when: When::NextDay,
+    effect: "Usage of a day is the demand up to the quota. A demand above the quota lowers the quality a customer \
+             perceives in the same proportion; a quota of 0 delivers nothing.",
+    cost: "nothing itself; compute is charged per unit used",
+    writes: &["config_history"],
+    refusals: &["quota_missing", "quota_negative"],
+    returns: &[Output { name: "quotas", kind: "map plan -> integer", doc: "all three quotas, units/day" }],
+    example: r#"{"A": 50000, "B": 200000, "C": 900000}"#,
+};
+
+impl Tool for SetUsageQuotas {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn current(&self, settings: &Settings) -> Map<String, Value> {
+        by_plan(|plan| Value::from(settings.core.quotas[plan]))
+    }
+
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+        let mut core = view.settings().core;
+        for plan in Plan::ALL {
+            let Some(value) = arguments.get(plan.id()) else {
+                let message = format!("quota of plan {plan} is missing; give all three");
+                return Err(Refusal::at(plan.id(), "quota_missing", message));
+            };
+            if number(value).is_some_and(|quota| quota < 0.0) {
+                let message = format!("quota of plan {plan} must not be negative");
+                return Err(Refusal::at(plan.id(), "quota_negative", message));
+            }
+            core.quotas[plan] = integer(value).ok_or_else(|| wrong_type(plan.id(), "a whole number"))? as u64;
+        }
+        Ok(Effect::Set(SettingsChange::Core(core)))
+    }
+
+    fn answer(&self, view: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
+        let core = core_of(deed, &view.settings().core);
+        json!({ "quotas": by_plan(|plan| Value::from(core.quotas[plan])) })
+    }
+}

@@ -1,0 +1,241 @@
+//! What a tool is, as data: the single source for its form, its command, its route, its documentation and the
+//! check of its arguments.
+
+/// Everything there is to know about a tool but its code.
+#[derive(Debug)]
+pub struct Spec {
+    /// Name, for instance `set_prices`.
+    pub name: &'static str,
+    /// Module of the client library it belongs to.
+    pub module: Module,
+    /// What calling it means.
+    pub kind: Kind,
+    /// One line.
+    pub summary: &'static str,
+    /// Arguments, in the order in which they are checked.
+    pub arguments: &'static [Argument],
+    /// Unknown arguments have a code of the tool's own.
+    pub own_unknown: bool,
+    /// The argument that a call without its name gives as a whole, for instance the matrix of ad spend.
+    pub whole: Option<&'static str>,
+    /// When the effect is felt.
+    pub when: When,
+    /// What the effect is.
+    pub effect: &'static str,
+    /// What it costs.
+    pub cost: &'static str,
+    /// Tables it writes.
+    pub writes: &'static [&'static str],
+    /// Codes of its refusals, in the order of its checks.
+    pub refusals: &'static [&'static str],
+    /// Fields of its result.
+    pub returns: &'static [Output],
+    /// Arguments of an example, as JSON.
+    pub example: &'static str,
+}
+
+/// Modules of the tools.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Module {
+    /// Prices, tiers, quotas, discounts.
+    Pricing,
+    /// Spend, ads, posts.
+    Marketing,
+    /// Targeted spend and readings.
+    Analytics,
+    /// R&D.
+    Research,
+    /// Capacity and costs.
+    Infrastructure,
+    /// Time and data.
+    Time,
+}
+
+impl Module {
+    /// All modules in the order in which they are shown.
+    pub const ALL: [Module; 6] = [
+        Module::Pricing,
+        Module::Marketing,
+        Module::Analytics,
+        Module::Research,
+        Module::Infrastructure,
+        Module::Time,
+    ];
+
+    /// Name as calls write it.
+    pub fn id(self) -> &'static str {
+        match self {
+            Module::Pricing => "pricing",
+            Module::Marketing => "marketing",
+            Module::Analytics => "analytics",
+            Module::Research => "research",
+            Module::Infrastructure => "infrastructure",
+            Module::Time => "time",
+        }
+    }
+}
+
+/// What calling a tool means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Changes what holds from the next day on.
+    Setting,
+    /// Spends money at once.
+    Purchase,
+    /// Reads.
+    Read,
+    /// Lets time pass.
+    Time,
+}
+
+impl Kind {
+    /// Word for documentation.
+    pub fn id(self) -> &'static str {
+        match self {
+            Kind::Setting => "setting",
+            Kind::Purchase => "purchase",
+            Kind::Read => "read",
+            Kind::Time => "time",
+        }
+    }
+}
+
+/// When the effect of a tool is felt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum When {
+    /// From the next simulated day on.
+    NextDay,
+    /// On each customer's next bill.
+    NextBilling,
+    /// At once.
+    Now,
+    /// After a delay that the answer states.
+    AtCompletion,
+    /// It changes nothing.
+    Never,
+}
+
+impl When {
+    /// Word for documentation.
+    pub fn id(self) -> &'static str {
+        match self {
+            When::NextDay => "next day",
+            When::NextBilling => "next bill of each customer",
+            When::Now => "at once",
+            When::AtCompletion => "at completion",
+            When::Never => "changes nothing",
+        }
+    }
+}
+
+/// One argument.
+#[derive(Debug)]
+pub struct Argument {
+    /// Name.
+    pub name: &'static str,
+    /// A second name that older callers use.
+    pub alias: Option<&'static str>,
+    /// What it holds.
+    pub kind: ArgumentKind,
+    /// Its absence is refused as `argument_missing`.
+    pub required: bool,
+    /// Unit of its numbers.
+    pub unit: &'static str,
+    /// What it means.
+    pub doc: &'static str,
+}
+
+/// What an argument holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ArgumentKind {
+    /// A number.
+    Number(Range),
+    /// A whole number.
+    Integer(Range),
+    /// Text.
+    Text,
+    /// A list or an object of another shape, described in words.
+    Structure(&'static str),
+    /// A map from a key to a number.
+    Map(Key, Range),
+    /// A map of maps to a number.
+    Matrix(Key, Key, Range),
+}
+
+/// Allowed numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Least value.
+    pub least: f64,
+    /// Whether the least value itself is excluded.
+    pub above: bool,
+    /// Greatest value.
+    pub most: f64,
+}
+
+impl Range {
+    /// Numbers of at least 0.
+    pub const AT_LEAST_ZERO: Range = Range { least: 0.0, above: false, most: f64::INFINITY };
+    /// Numbers above 0.
+    pub const ABOVE_ZERO: Range = Range { least: 0.0, above: true, most: f64::INFINITY };
+    /// Numbers from 0 to 1.
+    pub const SHARE: Range = Range { least: 0.0, above: false, most: 1.0 };
+
+    /// Whole numbers from one to another.
+    pub const fn between(least: f64, most: f64) -> Range {
+        Range { least, above: false, most }
+    }
+
+    /// Whether a number is allowed.
+    pub fn holds(&self, value: f64) -> bool {
+        value.is_finite()
+            && value <= self.most
+            && if self.above { value > self.least } else { value >= self.least }
+    }
+
+    /// The range in words, for instance `> 0`, `0 to 7`.
+    pub fn words(&self) -> String {
+        match (self.above, self.most.is_finite()) {
+            (true, false) => format!("> {}", self.least),
+            (false, false) => format!(">= {}", self.least),
+            (true, true) => format!("> {} to {}", self.least, self.most),
+            (false, true) => format!("{} to {}", self.least, self.most),
+        }
+    }
+}
+
+/// What the keys of a map are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Key {
+    /// Known groups.
+    Group,
+    /// Plans.
+    Plan,
+    /// Advertising channels.
+    Channel,
+    /// Customer numbers.
+    Customer,
+}
+
+impl Key {
+    /// Word for documentation.
+    pub fn id(self) -> &'static str {
+        match self {
+            Key::Group => "group",
+            Key::Plan => "plan",
+            Key::Channel => "channel",
+            Key::Customer => "customer",
+        }
+    }
+}
+
+/// One field of a result.
+#[derive(Debug)]
+pub struct Output {
+    /// Name.
+    pub name: &'static str,
+    /// Type in words, for instance `map plan -> number`.
+    pub kind: &'static str,
+    /// Unit or meaning.
+    pub doc: &'static str,
+}

@@ -1,0 +1,403 @@
+//! Every refusal and result of chapter 50 for these tools, against a fresh world.
+
+use serde_json::{Value, json};
+
+use super::{Arguments, Refusal, View, find};
+use crate::world::effect::Deed;
+use crate::world::events::Facts;
+use crate::world::identifiers::Group;
+use crate::world::params::Params;
+use crate::world::random::Streams;
+use crate::world::state::World;
+
+/// A company that tools are called on.
+struct Company {
+    params: Params,
+    streams: Streams,
+    world: World,
+}
+
+impl Company {
+    fn new() -> Company {
+        let params = Params::shipped();
+        let world = World::open(500, 1_000_000.0, &params, &mut Facts::default());
+        Company { params, streams: Streams::new(42), world }
+    }
+
+    fn try_call(&mut self, name: &str, arguments: Value) -> Result<Value, Refusal> {
+        let tool = find(name).expect("the tool exists");
+        let view = View::new(&self.world, &self.params);
+        let arguments = Arguments::of(tool.spec(), &arguments)?;
+        let effect = tool.plan(&view, &arguments)?;
+        let deed = self.world.resolve(effect, &self.params, &self.streams);
+        let data = tool.answer(&view, &arguments, &deed);
+        if deed != Deed::None {
+            self.world.apply(deed, &mut Facts::default());
+        }
+        Ok(data)
+    }
+
+    fn call(&mut self, name: &str, arguments: Value) -> Value {
+        self.try_call(name, arguments.clone())
+            .unwrap_or_else(|refusal| panic!("{name} {arguments}: {refusal}"))
+    }
+
+    /// Code and field of a refusal; nothing may have changed.
+    fn refused(&mut self, name: &str, arguments: Value) -> (&'static str, Option<String>) {
+        let before = self.world.part_hashes();
+        let refusal =
+            self.try_call(name, arguments.clone()).expect_err(&format!("{name} {arguments} is wrong"));
+        assert_eq!(self.world.part_hashes(), before, "{name} {arguments} changed something");
+        assert!(!refusal.message.is_empty());
+        (refusal.code, refusal.field)
+    }
+
+    fn assert_refused(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
+        for (arguments, code, field) in cases {
+            let (own_code, own_field) = self.refused(name, arguments.clone());
+            assert_eq!((own_code, own_field.as_deref().unwrap_or("")), (*code, *field), "{name} {arguments}");
+        }
+        let spec = find(name).expect("the tool exists").spec();
+        let general = ["wrong_type", "argument_missing", "unknown_argument"];
+        for code in spec.refusals {
+            assert!(cases.iter().any(|(_, tested, _)| tested == code), "{name}: {code} is not tested");
+        }
+        for (_, code, _) in cases {
+            assert!(
+                spec.refusals.contains(code) || general.contains(code),
+                "{name}: {code} is not documented"
+            );
+        }
+    }
+}
+
+#[test]
+fn set_prices() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_prices",
+        &[
+            (json!({}), "nothing_given", ""),
+            (json!({"A": null}), "nothing_given", ""),
+            (json!({"D": 5}), "unknown_plan", "D"),
+            (json!({"A": 5, "a": 5}), "unknown_plan", "a"),
+            (json!({"A": 0}), "price_not_positive", "A"),
+            (json!({"A": 1, "B": -3}), "price_not_positive", "B"),
+            (json!({"A": "12"}), "wrong_type", "A"),
+            (json!({"A": true}), "wrong_type", "A"),
+            (json!([1]), "wrong_type", ""),
+        ],
+    );
+    company.call("set_prices", json!({"A": 12, "B": 25, "C": 55}));
+    let data = company.call("pricing.set_prices", json!({"A": 14, "C": 60}));
+    assert_eq!(data, json!({"updated": {"A": 14, "C": 60}, "current": {"A": 14, "B": 25, "C": 60}}));
+}
+
+#[test]
+fn set_model_tiers() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_model_tiers",
+        &[
+            (json!({}), "nothing_given", ""),
+            (json!({"X": 1}), "unknown_plan", "X"),
+            (json!({"A": 0}), "tier_out_of_range", "A"),
+            (json!({"A": 6}), "tier_out_of_range", "A"),
+            (json!({"A": 2.5}), "tier_out_of_range", "A"),
+            (json!({"A": "2"}), "tier_out_of_range", "A"),
+        ],
+    );
+    let data = company.call("set_model_tiers", json!({"B": 3.0, "C": 4}));
+    assert_eq!(data, json!({"updated": {"B": 3, "C": 4}, "current": {"A": 1, "B": 3, "C": 4}}));
+}
+
+#[test]
+fn set_usage_quotas() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_usage_quotas",
+        &[
+            (json!({"C": 5}), "quota_missing", "A"),
+            (json!({"A": 5, "B": 5, "C": null}), "quota_missing", "C"),
+            (json!({"A": 5, "B": -1, "C": 5}), "quota_negative", "B"),
+            (json!({"A": 5, "B": 1.5, "C": 5}), "wrong_type", "B"),
+            (json!({"A": 5, "B": "many", "C": 5}), "wrong_type", "B"),
+            (json!({"A": 5, "B": 5, "C": 5, "D": 5}), "unknown_argument", "D"),
+        ],
+    );
+    let data = company.call("set_usage_quotas", json!({"A": 50000, "B": 200000, "C": 900000}));
+    assert_eq!(data, json!({"quotas": {"A": 50000, "B": 200000, "C": 900000}}));
+}
+
+#[test]
+fn set_promotion() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_promotion",
+        &[
+            (json!({"global_promotion": -1}), "global_promotion_negative", "global_promotion"),
+            (json!({"global_promotion": "5"}), "global_promotion_negative", "global_promotion"),
+            (json!({"by_group": 5}), "not_a_map", "by_group"),
+            (json!({"by_group": {"D_S01": 5}}), "unknown_group", "by_group.D_S01"),
+            (json!({"by_group": {"S1": -5}}), "promotion_negative", "by_group.S1"),
+            (json!({"by_customer": {"x": 5}}), "customer_not_integer", "by_customer.x"),
+            (json!({"by_customer": {"7": null}}), "promotion_negative", "by_customer.7"),
+            (json!({"by_group_plan": {"S1": 4}}), "not_a_map", "by_group_plan.S1"),
+            (json!({"by_group_plan": {"S1": {"D": 4}}}), "unknown_plan", "by_group_plan.S1.D"),
+            (json!({"by_channel": {}}), "unknown_argument", "by_channel"),
+        ],
+    );
+    // Check 6 of chapter 50.
+    let all = json!({
+        "global_promotion": 5,
+        "by_group": {"S1": 2},
+        "by_customer": {"7": 1.5},
+        "by_group_plan": {"S1": {"A": 3}},
+    });
+    company.call("set_promotion", all);
+    let data = company.call("set_promotion", json!({"by_group": {}}));
+    let expected =
+        json!({"global": 5, "by_group": {}, "by_customer": {"7": 1.5}, "by_group_plan": {"S1": {"A": 3}}});
+    assert_eq!(data, expected);
+}
+
+#[test]
+fn set_daily_spend() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_daily_spend",
+        &[
+            (json!({}), "nothing_given", ""),
+            (json!({"sales": 5}), "unknown_category", "sales"),
+            (json!({"sales": 5, "advertising": 5}), "advertising_not_here", "advertising"),
+            (json!({"operations": -1}), "spend_negative", "operations"),
+            (json!({"development": "1"}), "wrong_type", "development"),
+        ],
+    );
+    company.call("set_daily_spend", json!({"development": 200}));
+    let data = company.call("set_daily_spend", json!({"operations": 350}));
+    assert_eq!(
+        data,
+        json!({"updated": {"operations": 350}, "current": {"operations": 350, "development": 200}})
+    );
+}
+
+#[test]
+fn set_targeted_ad_spend() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_targeted_ad_spend",
+        &[
+            (json!({}), "argument_missing", "targeted_spend"),
+            (json!({"targeted_spend": 5}), "not_a_map", "targeted_spend"),
+            (json!({"targeted_spend": {"foo": {"S1": 5}}}), "unknown_channel", "targeted_spend.foo"),
+            (
+                json!({"targeted_spend": {"E1": {"linkedin": 200}, "search_ads": {"S1": 10}}}),
+                "nesting_inverted",
+                "targeted_spend.S1",
+            ),
+            (json!({"targeted_spend": {"linkedin": 5}}), "not_a_map", "targeted_spend.linkedin"),
+            (
+                json!({"targeted_spend": {"linkedin": {"D_S01": 5}}}),
+                "unknown_group",
+                "targeted_spend.linkedin.D_S01",
+            ),
+            (
+                json!({"targeted_spend": {"linkedin": {"E9": 5}}}),
+                "unknown_group",
+                "targeted_spend.linkedin.E9",
+            ),
+            (
+                json!({"targeted_spend": {"linkedin": {"E1": -5}}}),
+                "amount_invalid",
+                "targeted_spend.linkedin.E1",
+            ),
+            (json!({"targeted_spend": {}, "more": 1}), "unknown_argument", "more"),
+        ],
+    );
+    // Check 8 of chapter 50.
+    let turned =
+        json!({"targeted_spend": {"E1": {"linkedin": 200, "search_ads": 50}, "S1": {"linkedin": 20}}});
+    let data = company.call("set_targeted_ad_spend", turned);
+    let upright = json!({"linkedin": {"E1": 200, "S1": 20}, "search_ads": {"E1": 50}});
+    assert_eq!(data, json!({"targeted_spend": upright, "total_per_day": 270}));
+    let vanished = company.call("set_targeted_ad_spend", json!({"targeted_spend": {"E1": 5}}));
+    assert_eq!(vanished, json!({"targeted_spend": {}, "total_per_day": 0}));
+    let whole = company.call("set_targeted_ad_spend", json!({"search_ads": {"S1": 80, "S3": 40}}));
+    assert_eq!(whole["total_per_day"], 120);
+}
+
+#[test]
+fn set_ads_strength() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_ads_strength",
+        &[
+            (json!({"global_strength": 1.1}), "global_strength_out_of_range", "global_strength"),
+            (json!({"global_strength": "x"}), "global_strength_out_of_range", "global_strength"),
+            (json!({"by_group": [1]}), "not_a_map", "by_group"),
+            (json!({"by_group": {"Q": 0.1}}), "unknown_group", "by_group.Q"),
+            (json!({"by_group": {"S1": 2}}), "strength_out_of_range", "by_group.S1"),
+            (json!({"by_customer": {"5.5": 0.1}}), "customer_not_integer", "by_customer.5.5"),
+        ],
+    );
+    // Check 5 of chapter 50: nothing is applied when a later scope is wrong.
+    let wrong = json!({"global_strength": 0.4, "by_group": {"S2": 0.1}, "by_customer": {"5": 3}});
+    assert_eq!(company.refused("set_ads_strength", wrong).0, "strength_out_of_range");
+    let data =
+        company.call("set_ads_strength", json!({"global_strength": 0.05, "by_customer": {" 42 ": 0.5}}));
+    assert_eq!(data, json!({"global": 0.05, "by_group": {}, "by_customer": {"42": 0.5}}));
+}
+
+#[test]
+fn set_lead_promotion() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_lead_promotion",
+        &[
+            (json!({"global_promotion": -1}), "global_promotion_negative", "global_promotion"),
+            (json!({"by_group": "S1"}), "not_a_map", "by_group"),
+            (json!({"by_group": {"D_E01": 1}}), "unknown_group", "by_group.D_E01"),
+            (json!({"by_channel": {"tv": 1}}), "unknown_channel", "by_channel.tv"),
+            (json!({"by_channel": {"linkedin": -1}}), "promotion_negative", "by_channel.linkedin"),
+            (json!({"by_channel_group": {"tv": {"S1": 1}}}), "unknown_channel", "by_channel_group.tv"),
+            (json!({"by_channel_group": {"linkedin": 4}}), "not_a_map", "by_channel_group.linkedin"),
+        ],
+    );
+    let data = company.call("set_lead_promotion", json!({"by_channel": {"social_media": 3}}));
+    let expected =
+        json!({"global": 0, "by_group": {}, "by_channel": {"social_media": 3}, "by_channel_group": {}});
+    assert_eq!(data, expected);
+}
+
+#[test]
+fn set_targeted_ops_spend() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_targeted_ops_spend",
+        &[
+            (json!({"by_group": {}, "targeted_spend": {}}), "both_aliases", "targeted_spend"),
+            (json!({"by_plan": 4}), "not_a_map", "by_plan"),
+            (json!({"by_group": {"E9": 4}}), "unknown_group", "by_group.E9"),
+            (json!({"by_plan": {"D": 4}}), "unknown_plan", "by_plan.D"),
+            (json!({"by_group_plan": {"S1": {"A": -4}}}), "amount_invalid", "by_group_plan.S1.A"),
+            (json!({"by_customer": {"x": 4}}), "customer_not_integer", "by_customer.x"),
+            // Check 5 of chapter 50: the port leaves the first scope unchanged.
+            (json!({"by_group": {"S2": 9}, "by_plan": {"D": 1}}), "unknown_plan", "by_plan.D"),
+        ],
+    );
+    // Check 2 of chapter 50.
+    company.call("set_targeted_ops_spend", json!({"E1": 30, "S1": 20}));
+    company.call("set_targeted_ops_spend", json!({"by_plan": {"A": 10}}));
+    company.call("set_targeted_ops_spend", json!({"by_group_plan": {"S1": {"A": 5}}}));
+    let data = company.call("set_targeted_ops_spend", json!({"by_customer": {"42": 7}}));
+    assert_eq!(data["total_extra_per_day"], 72);
+    assert_eq!(data["targeted_spend"], json!({"E1": 30, "S1": 20}));
+    assert_eq!(company.call("set_targeted_ops_spend", json!({}))["total_extra_per_day"], 72);
+}
+
+#[test]
+fn set_targeted_dev_spend() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_targeted_dev_spend",
+        &[
+            (json!({}), "argument_missing", "targeted_spend"),
+            (json!({"targeted_spend": 3}), "not_a_map", "targeted_spend"),
+            (json!({"targeted_spend": {"D_S02": 3}}), "unknown_group", "targeted_spend.D_S02"),
+            (json!({"targeted_spend": {"S1": "3"}}), "amount_invalid", "targeted_spend.S1"),
+        ],
+    );
+    let data = company.call("set_targeted_dev_spend", json!({"S1": 2500, "E3": 400}));
+    assert_eq!(data, json!({"targeted_spend": {"S1": 2500, "E3": 400}, "total_extra_per_day": 2900}));
+    assert_eq!(
+        company.call("set_targeted_dev_spend", json!({"targeted_spend": {}}))["total_extra_per_day"],
+        0
+    );
+}
+
+#[test]
+fn start_research_project() {
+    let mut company = Company::new();
+    company.call("start_research_project", json!({"tier": 1}));
+    company.assert_refused(
+        "start_research_project",
+        &[
+            (json!({}), "argument_missing", "tier"),
+            (json!({"tier": 0}), "rd_tier_unknown", "tier"),
+            (json!({"tier": 21}), "rd_tier_unknown", "tier"),
+            (json!({"tier": "1"}), "rd_tier_unknown", "tier"),
+            (json!({"tier": 1}), "rd_in_progress", "tier"),
+            (json!({"tier": 20}), "insufficient_funds", ""),
+        ],
+    );
+    // Check 12 of chapter 50.
+    assert_eq!(company.world.finance.cash, 833_333.0);
+    let project = company.world.product.research[0];
+    assert!(project.due_day >= 30);
+    let tiers = company.call("list_research_projects", json!({}));
+    assert_eq!(tiers["tiers"].as_array().map(Vec::len), Some(20));
+    assert_eq!((&tiers["tiers"][0]["in_progress"], &tiers["tiers"][0]["completed"]), (&json!(1), &json!(0)));
+}
+
+#[test]
+fn money_in_refusals_is_rounded_as_shown() {
+    let mut company = Company::new();
+    company.world.finance.cash = 166_666.99;
+    let refusal = company.try_call("start_research_project", json!({"tier": 1})).expect_err("too dear");
+    assert_eq!(refusal.message, "costs $166,667, cash is $166,667");
+    company.world.finance.cash = 166_667.0;
+    company.call("start_research_project", json!({"tier": 1}));
+    assert_eq!(company.world.finance.cash, 0.0);
+}
+
+#[test]
+fn set_capacity_tier() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "set_capacity_tier",
+        &[
+            (json!({}), "argument_missing", "tier"),
+            (json!({"tier": 8}), "capacity_out_of_range", "tier"),
+            (json!({"tier": -1}), "capacity_out_of_range", "tier"),
+            (json!({"tier": 1.5}), "capacity_out_of_range", "tier"),
+        ],
+    );
+    let data = company.call("set_capacity_tier", json!({"capacity_tier": 2}));
+    assert_eq!(data, json!({"tier": 2, "capacity_units": 800000, "cost_per_day": 530}));
+}
+
+#[test]
+fn readings_tell_what_they_should() {
+    let mut company = Company::new();
+    let costs = company.call("get_cost_info", json!({}));
+    assert_eq!(costs["model_tiers"]["4"]["cost_per_usage_unit"], 0.012);
+    assert_eq!(costs["capacity_tiers"]["1"], json!({"capacity_units": 200000, "cost_per_day": 215}));
+    assert_eq!(company.call("get_vars", json!({})), json!({"current_day": 0}));
+    assert_eq!(company.refused("get_vars", json!({"day": 1})).0, "unknown_argument");
+}
+
+#[test]
+fn what_a_tool_calls_current_can_be_sent_back() {
+    let mut company = Company::new();
+    company.call("set_prices", json!({"A": 12, "B": 25, "C": 55}));
+    company.call("set_promotion", json!({"by_group_plan": {"S1": {"A": 3}}, "by_customer": {"7": 1.5}}));
+    company.call("set_targeted_ad_spend", json!({"linkedin": {"E1": 20}}));
+    for tool in super::CATALOGUE {
+        let current = tool.current(&company.world.settings);
+        if current.is_empty() {
+            continue;
+        }
+        let before = company.world.settings.clone();
+        company.call(tool.spec().name, Value::Object(current));
+        assert_eq!(company.world.settings, before, "{}", tool.spec().name);
+    }
+}
+
+#[test]
+fn undiscovered_groups_become_known_by_discovery() {
+    let mut company = Company::new();
+    let group = Group::parse("D_S06").expect("a group");
+    company.world.market.knowledge[group].level = 1;
+    company.call("set_targeted_dev_spend", json!({"D_S06": 5}));
+}

@@ -1,0 +1,39 @@
+use serde_json::{Value, json};
+
+use super::super::arguments::Arguments;
+use super::super::{Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use crate::world::effect::{Deed, Effect};
+
+/// Tells the day.
+pub struct GetVars;
+
+static SPEC: Spec = Spec {
+    name: "get_vars",
+    module: Module::Time,
+    kind: Kind::Read,
+    summary: "Tell the current day",
+    arguments: &[],
+    own_unknown: false,
+    whole: None,
+    when: When::Never,
+    effect: "",
+    cost: "nothing",
+    writes: &[],
+    refusals: &[],
+    returns: &[Output { name: "current_day", kind: "integer", doc: "the last simulated day" }],
+    example: "{}",
+};
+
+impl Tool for GetVars {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
+        Ok(Effect::None)
+    }
+
+    fn answer(&self, view: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+        json!({ "current_day": view.day() })
+    }
+}

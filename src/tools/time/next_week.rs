@@ -1,0 +1,198 @@
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::super::arguments::{Arguments, number};
+use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use crate::world::effect::{Deed, Effect};
+
+/// Lets a week pass. The session does it; this entry documents it and checks what must be filed first.
+pub struct NextWeek;
+
+static SPEC: Spec = Spec {
+    name: "next_week",
+    module: Module::Time,
+    kind: Kind::Time,
+    summary: "File a rationale and four forecasts of cash, then let seven days pass",
+    arguments: &[
+        Argument {
+            name: "rationale",
+            alias: None,
+            kind: ArgumentKind::Text,
+            required: false,
+            unit: "",
+            doc: "why this week looks the way it does; not empty",
+        },
+        Argument {
+            name: "predictions",
+            alias: None,
+            kind: ArgumentKind::Structure(
+                "cash_1wk, cash_4wk, cash_12wk, cash_26wk: each {point, lower, upper}",
+            ),
+            required: false,
+            unit: "$",
+            doc: "cash in 7, 28, 84 and 182 days with the interval that should hold it 95 times in 100",
+        },
+    ],
+    own_unknown: false,
+    whole: None,
+    when: When::Now,
+    effect: "Seven days are simulated, fewer when the run reaches its last day or cash falls below zero.",
+    cost: "the daily costs of every day",
+    writes: &["predictions", "everything the days bring"],
+    refusals: &[
+        "rationale_missing",
+        "predictions_missing",
+        "prediction_missing",
+        "prediction_not_object",
+        "prediction_field_missing",
+        "prediction_not_number",
+        "prediction_interval_inverted",
+        "prediction_point_outside",
+        "run_over",
+    ],
+    returns: &[
+        Output { name: "day", kind: "integer", doc: "the last simulated day" },
+        Output { name: "dashboard", kind: "text", doc: "the weekly dashboard" },
+    ],
+    example: r#"{"rationale": "hold", "predictions": {"cash_1wk": {"point": 990000, "lower": 980000, "upper": 995000}}}"#,
+};
+
+impl Tool for NextWeek {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+        rationale(arguments.get("rationale").unwrap_or(&Value::Null))?;
+        forecasts(arguments.get("predictions").unwrap_or(&Value::Null), &[7, 28, 84, 182])?;
+        Ok(Effect::None)
+    }
+
+    fn answer(&self, _: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+        Value::Null
+    }
+}
+
+/// Names of the four forecasts, in order.
+pub const FORECAST_KEYS: [&str; 4] = ["cash_1wk", "cash_4wk", "cash_12wk", "cash_26wk"];
+
+/// A forecast of cash.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Forecast {
+    /// Days ahead: 7, 28, 84 or 182.
+    pub horizon_days: u32,
+    /// Most likely value, dollars.
+    pub point: f64,
+    /// Lower end of the 95 % interval, dollars.
+    pub lower: f64,
+    /// Upper end of the 95 % interval, dollars.
+    pub upper: f64,
+}
+
+/// The rationale of a week: text that is not blank.
+pub fn rationale(given: &Value) -> Result<String, Refusal> {
+    match given.as_str() {
+        Some(text) if !text.trim().is_empty() => Ok(text.to_owned()),
+        _ => Err(Refusal::at(
+            "rationale",
+            "rationale_missing",
+            "a rationale is required: say why, in a sentence or two",
+        )),
+    }
+}
+
+/// The four forecasts of a week, checked in the order of chapter 50 §4.8.
+pub fn forecasts(given: &Value, horizons: &[u32]) -> Result<[Forecast; 4], Refusal> {
+    let Some(map) = given.as_object() else {
+        let message = format!("the forecasts are required: {}", FORECAST_KEYS.join(", "));
+        return Err(Refusal::at("predictions", "predictions_missing", message));
+    };
+    let mut all = [Forecast { horizon_days: 0, point: 0.0, lower: 0.0, upper: 0.0 }; 4];
+    for ((key, forecast), horizon) in FORECAST_KEYS.into_iter().zip(&mut all).zip(horizons) {
+        *forecast = read_forecast(key, map.get(key), *horizon)?;
+    }
+    Ok(all)
+}
+
+fn read_forecast(key: &str, given: Option<&Value>, horizon_days: u32) -> Result<Forecast, Refusal> {
+    let field = format!("predictions.{key}");
+    let refuse = |code, message: String| Refusal::at(field.clone(), code, message);
+    let Some(given) = given.filter(|value| !value.is_null()) else {
+        return Err(refuse("prediction_missing", format!("forecast {key} is missing")));
+    };
+    let Some(map) = given.as_object() else {
+        return Err(refuse(
+            "prediction_not_object",
+            format!("forecast {key} must hold point, lower and upper"),
+        ));
+    };
+    let read = |name: &str| {
+        let field = format!("{field}.{name}");
+        let value = map.get(name).filter(|value| !value.is_null()).ok_or_else(|| {
+            Refusal::at(field.clone(), "prediction_field_missing", format!("forecast {key} lacks {name}"))
+        })?;
+        number(value).ok_or_else(|| {
+            Refusal::at(field, "prediction_not_number", format!("forecast {key} must hold numbers"))
+        })
+    };
+    // All three must be there before any of them is read as a number.
+    for name in ["point", "lower", "upper"] {
+        if map.get(name).is_none_or(Value::is_null) {
+            read(name)?;
+        }
+    }
+    let forecast =
+        Forecast { horizon_days, point: read("point")?, lower: read("lower")?, upper: read("upper")? };
+    if forecast.lower > forecast.upper {
+        let message = format!("forecast {key}: lower {} is above upper {}", forecast.lower, forecast.upper);
+        return Err(refuse("prediction_interval_inverted", message));
+    }
+    if forecast.point < forecast.lower || forecast.point > forecast.upper {
+        let (point, lower, upper) = (forecast.point, forecast.lower, forecast.upper);
+        let message = format!("forecast {key}: the point {point} lies outside {lower} to {upper}");
+        return Err(refuse("prediction_point_outside", message));
+    }
+    Ok(forecast)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn code(predictions: Value) -> &'static str {
+        match forecasts(&predictions, &[7, 28, 84, 182]) {
+            Ok(_) => "accepted",
+            Err(refusal) => refusal.code,
+        }
+    }
+
+    fn with_first(first: Value) -> Value {
+        let fine = json!({"point": 1, "lower": 1, "upper": 1});
+        json!({"cash_1wk": first, "cash_4wk": fine, "cash_12wk": fine, "cash_26wk": fine})
+    }
+
+    #[test]
+    fn check_16_of_chapter_50_and_60() {
+        assert_eq!(rationale(&Value::Null).map_err(|refusal| refusal.code), Err("rationale_missing"));
+        assert_eq!(rationale(&json!("  ")).map_err(|refusal| refusal.code), Err("rationale_missing"));
+        assert_eq!(rationale(&json!(5)).map_err(|refusal| refusal.code), Err("rationale_missing"));
+        assert_eq!(code(Value::Null), "predictions_missing");
+        let mut three = with_first(json!({"point": 1, "lower": 1, "upper": 1}));
+        three.as_object_mut().expect("an object").shift_remove("cash_12wk");
+        assert_eq!(code(three), "prediction_missing");
+        for (first, expected) in [
+            (json!([1, 2, 3]), "prediction_not_object"),
+            (json!(5), "prediction_not_object"),
+            (json!({"point": 1, "lower": 1}), "prediction_field_missing"),
+            (json!({"point": "a", "lower": 1, "upper": 1}), "prediction_not_number"),
+            (json!({"point": 1, "lower": 1, "upper": "2"}), "prediction_not_number"),
+            (json!({"point": true, "lower": 1, "upper": 2}), "prediction_not_number"),
+            (json!({"point": 1, "lower": 3, "upper": 1}), "prediction_interval_inverted"),
+            (json!({"point": 5, "lower": 0, "upper": 1}), "prediction_point_outside"),
+            (json!({"point": 1, "lower": 1, "upper": 1, "note": "ignored"}), "accepted"),
+        ] {
+            assert_eq!(code(with_first(first)), expected);
+        }
+    }
+}

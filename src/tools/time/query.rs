@@ -1,0 +1,52 @@
+use serde_json::Value;
+
+use super::super::arguments::Arguments;
+use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use crate::world::effect::{Deed, Effect};
+
+/// Asks the database. The session answers it; this entry documents it.
+pub struct Query;
+
+static SPEC: Spec = Spec {
+    name: "query",
+    module: Module::Time,
+    kind: Kind::Read,
+    summary: "Ask the company's database with one read-only SQL statement",
+    arguments: &[Argument {
+        name: "sql",
+        alias: None,
+        kind: ArgumentKind::Text,
+        required: false,
+        unit: "",
+        doc: "one SELECT statement over the 19 visible tables",
+    }],
+    own_unknown: false,
+    whole: None,
+    when: When::Never,
+    effect: "",
+    cost: "nothing",
+    writes: &[],
+    refusals: &["sql_empty", "sql_schema", "sql_hidden_table", "sql_write", "sql_timeout", "sql_error"],
+    returns: &[
+        Output { name: "columns", kind: "list of text", doc: "names of the columns" },
+        Output { name: "rows", kind: "list of objects", doc: "at most 5,000" },
+        Output { name: "row_count", kind: "integer", doc: "number of rows" },
+        Output { name: "truncated", kind: "boolean", doc: "more rows exist; then also warning" },
+        Output { name: "hint", kind: "text", doc: "why an empty result may be empty" },
+    ],
+    example: r#"{"sql": "SELECT SUM(amount) AS cash FROM ledger"}"#,
+};
+
+impl Tool for Query {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
+        Ok(Effect::None)
+    }
+
+    fn answer(&self, _: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+        Value::Null
+    }
+}

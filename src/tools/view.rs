@@ -1,0 +1,56 @@
+//! What a tool may look at when it is planned.
+
+use crate::world::identifiers::Group;
+use crate::world::params::Params;
+use crate::world::settings::Settings;
+use crate::world::state::World;
+
+/// A read-only look at the company. A tool turns it into what a player may know, never more.
+#[derive(Clone, Copy)]
+pub struct View<'a> {
+    world: &'a World,
+    params: &'a Params,
+}
+
+impl<'a> View<'a> {
+    /// A look at a world.
+    pub fn new(world: &'a World, params: &'a Params) -> View<'a> {
+        View { world, params }
+    }
+
+    /// Decision day: the last simulated day.
+    pub fn day(&self) -> u32 {
+        self.world.day
+    }
+
+    /// Cash, in dollars.
+    pub fn cash(&self) -> f64 {
+        self.world.finance.cash
+    }
+
+    /// Settings in force.
+    pub fn settings(&self) -> &'a Settings {
+        &self.world.settings
+    }
+
+    /// Parameters of the world; a tool shows only what chapter 50 lets it show.
+    pub fn params(&self) -> &'a Params {
+        self.params
+    }
+
+    /// The world itself, for tools whose answers are made from its state.
+    pub(super) fn world(&self) -> &'a World {
+        self.world
+    }
+
+    /// Whether a group has been discovered.
+    pub fn knows(&self, group: Group) -> bool {
+        self.world.market.is_known(group)
+    }
+
+    /// Discovered groups in their fixed order.
+    pub fn known_groups(&self) -> impl Iterator<Item = Group> + 'a {
+        let world = self.world;
+        Group::all().filter(|group| world.market.is_known(*group))
+    }
+}

@@ -10,6 +10,7 @@ use super::random::Streams;
 use super::state::World;
 
 /// A decided change.
+#[expect(clippy::large_enum_variant, reason = "there is one at a time")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
     /// Nothing changes: the tool only reads.
@@ -21,6 +22,7 @@ pub enum Effect {
 }
 
 /// A decided change whose draws are known.
+#[expect(clippy::large_enum_variant, reason = "there is one at a time")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum Deed {
     /// Nothing changes.

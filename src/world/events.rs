@@ -65,7 +65,7 @@ canonical! {
     ServiceDay { total_usage, overload, outage, downtime_minutes, p95_ms, error_rate, capacity_tier, capacity_units }
     IssueOpened { issue, customer, group }
     SubscriptionEnded { subscription, customer, group, day, status, cause }
-    TermsChanged { subscription, plan, listed_price, promotion, effective_price, seats, billed_once }
+    TermsChanged { subscription, customer, plan, listed_price, promotion, effective_price, seats, billed_once }
     ThreadTurn { thread, customer, kind, number, sender, seats }
     ChannelLeads { channel, group, leads, spend }
     Arrival { customer, group, n, source, persona, usage_demand, c_max, seats }
@@ -303,6 +303,8 @@ pub struct SubscriptionEnded {
 pub struct TermsChanged {
     /// Subscription number.
     pub subscription: u32,
+    /// Customer number.
+    pub customer: u32,
     /// Plan.
     pub plan: Plan,
     /// Dollars a month and seat before discounts.

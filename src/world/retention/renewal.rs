@@ -283,6 +283,7 @@ fn switch(
 pub fn terms(block: &Block, at: usize) -> TermsChanged {
     TermsChanged {
         subscription: block.subscription[at],
+        customer: block.customer[at],
         plan: block.plan[at],
         listed_price: block.listed_price[at],
         promotion: block.promotion[at],

@@ -1,0 +1,122 @@
+//! Help for the SQL prompt: what an error means here, and why a result may be empty (chapter 60 §3.3).
+
+use super::catalogue::{Table, tables};
+
+/// The message of the engine, with what is valid instead.
+pub(super) fn explain_error(message: &str, sql: &str) -> String {
+    if let Some(column) = message.strip_prefix("no such column: ") {
+        return unknown_column(column, sql);
+    }
+    if let Some(name) = message.strip_prefix("no such table: ") {
+        let mut names: Vec<&str> = tables().iter().map(|table| table.name.as_str()).collect();
+        names.sort_unstable();
+        return format!("there is no table {name}; the tables are {}", names.join(", "));
+    }
+    if let Some(column) = message.strip_prefix("ambiguous column name: ") {
+        let holders: Vec<&str> = tables()
+            .iter()
+            .filter(|table| table.columns.iter().any(|own| own.name.eq_ignore_ascii_case(column)))
+            .map(|table| table.name.as_str())
+            .collect();
+        return format!(
+            "column {column} is ambiguous: {} have it; write it with its table",
+            holders.join(", ")
+        );
+    }
+    message.to_owned()
+}
+
+fn unknown_column(column: &str, sql: &str) -> String {
+    let mentioned = mentioned_tables(sql);
+    if mentioned.is_empty() {
+        return format!("there is no column {column}; the table browser lists the columns of every table");
+    }
+    let lists: Vec<String> = mentioned
+        .iter()
+        .map(|table| {
+            let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+            format!("{} has {}", table.name, columns.join(", "))
+        })
+        .collect();
+    format!("there is no column {column}; {}", lists.join("; "))
+}
+
+/// Visible tables whose names stand in a statement as whole words.
+fn mentioned_tables(sql: &str) -> Vec<&'static Table> {
+    let words: Vec<&str> = sql.split(|letter: char| !letter.is_alphanumeric() && letter != '_').collect();
+    tables().iter().filter(|table| words.iter().any(|word| word.eq_ignore_ascii_case(&table.name))).collect()
+}
+
+/// For a statement without rows: comparisons `column = 'text'` with a text the column can never hold.
+pub(super) fn hints(sql: &str) -> Option<String> {
+    let mentioned = mentioned_tables(sql);
+    let mut hints = Vec::new();
+    for (column, value) in text_comparisons(sql) {
+        let lists = mentioned
+            .iter()
+            .flat_map(|table| &table.columns)
+            .filter(|own| own.name.eq_ignore_ascii_case(column) && !own.values.is_empty());
+        let lists: Vec<&Vec<String>> = lists.map(|own| &own.values).collect();
+        if !lists.is_empty() && !lists.iter().any(|values| values.iter().any(|known| known == value)) {
+            let valid: Vec<String> = lists[0].iter().map(|known| format!("'{known}'")).collect();
+            hints.push(format!("{column} is never '{value}'; it is one of {}", valid.join(", ")));
+        }
+    }
+    (!hints.is_empty()).then(|| hints.join("; "))
+}
+
+/// Pairs of column and text out of `column = 'text'`, wherever they stand.
+fn text_comparisons(sql: &str) -> Vec<(&str, &str)> {
+    let mut found = Vec::new();
+    for (at, _) in sql.match_indices('=') {
+        let name_end = sql[..at].trim_end_matches(['=', ' ', '\n', '\t']);
+        let start =
+            name_end.rfind(|letter: char| !letter.is_alphanumeric() && letter != '_').map_or(0, |at| at + 1);
+        let rest = sql[at + 1..].trim_start_matches(['=', ' ', '\n', '\t']);
+        if let Some(text) = rest.strip_prefix('\'')
+            && let Some(end) = text.find('\'')
+            && start < name_end.len()
+        {
+            found.push((&name_end[start..], &text[..end]));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_columns_are_answered_with_the_valid_ones() {
+        let text = explain_error("no such column: c_max", "SELECT c_max FROM issues");
+        assert!(text.starts_with("there is no column c_max; issues has issue_id, customer_id"), "{text}");
+        assert!(explain_error("no such column: x", "SELECT x").contains("table browser"));
+    }
+
+    #[test]
+    fn unknown_tables_are_answered_with_all_19() {
+        let text = explain_error("no such table: customer", "SELECT 1 FROM customer");
+        assert!(text.contains("ad_channel_leads, ads_revenue, agent_social_media_posts"));
+        assert_eq!(text.matches(", ").count(), 18);
+    }
+
+    #[test]
+    fn ambiguous_columns_name_their_tables() {
+        let text = explain_error("ambiguous column name: status", "");
+        assert!(text.contains("subscriptions, research_projects, issues"), "{text}");
+    }
+
+    #[test]
+    fn hints_keep_case_and_know_ad_revenue() {
+        let sql = "SELECT * FROM subscriptions WHERE status = 'active'";
+        let hint = hints(sql).expect("a hint");
+        assert!(hint.contains("'lead', 'subscribed', 'cancelled', 'lost'"), "{hint}");
+        assert_eq!(hints("SELECT * FROM subscriptions WHERE plan = 'A'"), None);
+        assert!(hints("SELECT * FROM subscriptions WHERE plan = 'a'").is_some());
+        assert_eq!(hints("SELECT * FROM ledger WHERE category='ad_revenue'"), None);
+        assert_eq!(hints("SELECT * FROM ledger WHERE note = 'x'"), None);
+        assert_eq!(hints("SELECT 1 WHERE status = 'active'"), None);
+        assert!(hints("SELECT * FROM issues i WHERE i.status=='closed'").is_some());
+    }
+}

@@ -1,0 +1,60 @@
+//! Where a database lives: a file of a run, or memory that several connections share.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use rusqlite::{Connection, OpenFlags};
+
+/// Place of a database.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Location {
+    /// A file.
+    File(PathBuf),
+    /// Memory of this process, under a name.
+    Memory(String),
+}
+
+impl Location {
+    /// A new place in memory.
+    pub fn memory() -> Location {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        Location::Memory(format!("file:/novamind-{}-{number}?vfs=memdb", std::process::id()))
+    }
+
+    /// The file, if it is one.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Location::File(path) => Some(path),
+            Location::Memory(_) => None,
+        }
+    }
+
+    /// Opens the one connection that writes.
+    pub(super) fn open_writer(&self) -> rusqlite::Result<Connection> {
+        let connection = self.open(OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE)?;
+        if self.path().is_some() {
+            // Readers see the state before a week while the week is written.
+            connection.pragma_update(None, "journal_mode", "WAL")?;
+            connection.pragma_update(None, "synchronous", "NORMAL")?;
+        }
+        connection.pragma_update(None, "cache_size", -65_536)?;
+        Ok(connection)
+    }
+
+    /// Opens a connection that only reads.
+    pub(super) fn open_reader(&self) -> rusqlite::Result<Connection> {
+        self.open(OpenFlags::SQLITE_OPEN_READ_ONLY)
+    }
+
+    fn open(&self, flags: OpenFlags) -> rusqlite::Result<Connection> {
+        let flags = flags | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
+        let connection = match self {
+            Location::File(path) => Connection::open_with_flags(path, flags)?,
+            Location::Memory(name) => Connection::open_with_flags(name, flags)?,
+        };
+        connection.busy_timeout(Duration::from_secs(150))?;
+        Ok(connection)
+    }
+}

@@ -1,0 +1,25 @@
+//! The observable company: what a player may ask with SQL, and nothing else.
+//!
+//! `world.db` is a projection of the facts of each day, never the truth: a writer thread ([`Projector`]) turns
+//! facts into rows while the player reads and decides, and the file can be rebuilt from the trajectory at any
+//! time. Queries go through a guarded read-only connection ([`Desk`]). What is hidden is never written here, so
+//! no query, tool or editor can find it (specification, chapters 60 §2-§3, 90 §4).
+
+pub mod catalogue;
+pub mod query;
+
+mod block_table;
+mod blocks;
+mod help;
+mod location;
+mod projector;
+mod rows;
+
+#[cfg(test)]
+mod tests;
+
+pub use catalogue::{Column, Table, table, tables};
+pub use location::Location;
+pub use projector::{Position, ProjectionError, Projector};
+pub use query::{Cell, Desk, Interrupt, QueryError, Rows};
+pub use rows::{Entry, ForecastRow};

@@ -1,0 +1,274 @@
+//! The writer thread: takes entries as they happen and commits them in one transaction per week or call.
+
+use std::fmt;
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::sync::{Arc, RwLock};
+use std::thread::JoinHandle;
+
+use rusqlite::{Connection, OptionalExtension};
+
+use super::blocks::{AdsDay, SharedShelf, Shelf, UsageDay};
+use super::location::Location;
+use super::query::Desk;
+use super::rows::{Entry, RowWriter, create};
+use crate::world::params::Params;
+
+/// Entries that may wait before the simulation has to; a bound on memory.
+const QUEUE: usize = 16;
+
+/// How far a database has come: the trajectory line it holds everything up to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Position {
+    /// Number of the line.
+    pub seq: u64,
+    /// Hash of the line.
+    pub line_hash: String,
+}
+
+/// Why the database could not be written. The run itself is safe: the trajectory holds everything.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ProjectionError(pub String);
+
+impl fmt::Display for ProjectionError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            formatter,
+            "the database could not be written ({}); the run is safe, and the database is rebuilt when it is opened again",
+            self.0
+        )
+    }
+}
+
+impl std::error::Error for ProjectionError {}
+
+enum Job {
+    Write(Box<Entry>),
+    Commit(Position),
+    Wait(Sender<Result<(), ProjectionError>>),
+}
+
+/// Keeps a database up to date in the background.
+pub struct Projector {
+    jobs: Option<SyncSender<Job>>,
+    thread: Option<JoinHandle<()>>,
+    location: Location,
+    shelf: SharedShelf,
+    gate: Arc<RwLock<()>>,
+}
+
+impl Projector {
+    /// Starts a projector on a database. If there is one whose position `known` accepts, it is continued from
+    /// there; otherwise it is made anew.
+    ///
+    /// # Errors
+    /// The database can neither be read nor made.
+    pub fn start(
+        location: Location,
+        params: Arc<Params>,
+        known: impl Fn(&Position) -> bool,
+    ) -> Result<(Projector, Option<Position>), ProjectionError> {
+        let shelf = SharedShelf::default();
+        let opened = open_existing(&location, &shelf, known);
+        let (mut connection, position, issue_clock) = match opened {
+            Some(opened) => opened,
+            None => (make_anew(&location, &params).map_err(told)?, None, 0),
+        };
+        let gate = Arc::new(RwLock::new(()));
+        let (jobs, queue) = sync_channel(QUEUE);
+        let (writer_gate, writer_shelf) = (gate.clone(), shelf.clone());
+        let early = location.path().is_some();
+        let thread = std::thread::Builder::new()
+            .name("projection".to_owned())
+            .spawn(move || {
+                let rows = RowWriter::new(params, writer_shelf, issue_clock);
+                Worker { connection: &mut connection, rows, gate: writer_gate, early, failed: None }
+                    .run(&queue);
+            })
+            .map_err(|error| ProjectionError(error.to_string()))?;
+        Ok((Projector { jobs: Some(jobs), thread: Some(thread), location, shelf, gate }, position))
+    }
+
+    /// Hands over an entry. Waits only when too many are waiting already.
+    pub fn write(&self, entry: Entry) {
+        self.send(Job::Write(Box::new(entry)));
+    }
+
+    /// Makes everything handed over so far visible, as of a trajectory position.
+    pub fn commit(&self, position: Position) {
+        self.send(Job::Commit(position));
+    }
+
+    /// Waits until everything handed over so far is in the database.
+    ///
+    /// # Errors
+    /// What kept the database from being written.
+    pub fn wait(&self) -> Result<(), ProjectionError> {
+        let (done, answer) = channel();
+        self.send(Job::Wait(done));
+        answer.recv().unwrap_or_else(|_| Err(ProjectionError("the writer has stopped".to_owned())))
+    }
+
+    /// A desk for guarded queries; any number of them may work at the same time as the writer.
+    ///
+    /// # Errors
+    /// The database cannot be opened for reading.
+    pub fn desk(&self) -> Result<Desk, ProjectionError> {
+        Desk::open(&self.location, &self.shelf, self.gate.clone()).map_err(told)
+    }
+
+    fn send(&self, job: Job) {
+        if let Some(jobs) = &self.jobs {
+            // A writer that has stopped is noticed by the next wait.
+            let _ = jobs.send(job);
+        }
+    }
+}
+
+impl Drop for Projector {
+    fn drop(&mut self) {
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn told(error: rusqlite::Error) -> ProjectionError {
+    ProjectionError(error.to_string())
+}
+
+struct Worker<'a> {
+    connection: &'a mut Connection,
+    rows: RowWriter,
+    gate: Arc<RwLock<()>>,
+    /// Whether a transaction may begin before its commit is due: in a file readers see the state before it, in
+    /// memory they would have to wait.
+    early: bool,
+    failed: Option<ProjectionError>,
+}
+
+impl Worker<'_> {
+    fn run(mut self, queue: &Receiver<Job>) {
+        let mut pending: Vec<Entry> = Vec::new();
+        loop {
+            let Ok(job) = queue.recv() else { return };
+            match job {
+                Job::Wait(done) => {
+                    let _ = done.send(self.failed.clone().map_or(Ok(()), Err));
+                }
+                Job::Commit(position) => {
+                    self.try_to(|worker| worker.transact(&mut pending, Some(&position), queue))
+                }
+                Job::Write(entry) => {
+                    pending.push(*entry);
+                    if self.early {
+                        self.try_to(|worker| worker.transact(&mut pending, None, queue));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Works unless something failed before: a database with a gap is worse than one that stops.
+    fn try_to(&mut self, work: impl FnOnce(&mut Self) -> rusqlite::Result<()>) {
+        if self.failed.is_none()
+            && let Err(error) = work(self)
+        {
+            self.failed = Some(told(error));
+        }
+    }
+
+    /// One transaction: writes what is pending and what still comes, until the commit.
+    fn transact(
+        &mut self,
+        pending: &mut Vec<Entry>,
+        position: Option<&Position>,
+        queue: &Receiver<Job>,
+    ) -> rusqlite::Result<()> {
+        let transaction = self.connection.transaction()?;
+        for entry in pending.drain(..) {
+            self.rows.write(&transaction, &entry)?;
+        }
+        let mut waiting = Vec::new();
+        let position = match position {
+            Some(position) => position.clone(),
+            None => loop {
+                match queue.recv() {
+                    Ok(Job::Write(entry)) => self.rows.write(&transaction, &entry)?,
+                    Ok(Job::Commit(position)) => break position,
+                    Ok(Job::Wait(done)) => waiting.push(done),
+                    // The program ends in the middle of a week: the week is simulated again when the run is opened.
+                    Err(_) => return Ok(()),
+                }
+            },
+        };
+        self.rows.flush(&transaction)?;
+        transaction.execute(
+            "INSERT OR REPLACE INTO projection VALUES (1, ?1, ?2)",
+            rusqlite::params![position.seq as i64, position.line_hash],
+        )?;
+        let closed = self.gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());
+        transaction.commit()?;
+        self.rows.publish();
+        drop(closed);
+        for done in waiting {
+            let _ = done.send(Ok(()));
+        }
+        Ok(())
+    }
+}
+
+/// Opens a database that is there, whole, and at a known position; loads its blocks onto the shelf.
+fn open_existing(
+    location: &Location,
+    shelf: &SharedShelf,
+    known: impl Fn(&Position) -> bool,
+) -> Option<(Connection, Option<Position>, u32)> {
+    if !location.path()?.exists() {
+        return None;
+    }
+    let connection = location.open_writer().ok()?;
+    let position = stored_position(&connection).ok()??;
+    if !known(&position) {
+        return None;
+    }
+    let issue_clock = connection.query_row("SELECT aged FROM issue_clock", [], |row| row.get(0)).ok()?;
+    let loaded = Shelf {
+        usage: Arc::new(load(&connection, "usage_blocks", UsageDay::unpack)?),
+        ads: Arc::new(load(&connection, "ads_blocks", AdsDay::unpack)?),
+    };
+    *shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = loaded;
+    Some((connection, Some(position), issue_clock))
+}
+
+fn stored_position(connection: &Connection) -> rusqlite::Result<Option<Position>> {
+    connection
+        .query_row("SELECT seq, line_hash FROM projection", [], |row| {
+            Ok(Position { seq: row.get::<_, i64>(0)? as u64, line_hash: row.get(1)? })
+        })
+        .optional()
+}
+
+fn load<T>(
+    connection: &Connection,
+    table: &str,
+    unpack: impl Fn(u32, &[u8]) -> Option<T>,
+) -> Option<Vec<Arc<T>>> {
+    let mut statement = connection.prepare(&format!("SELECT day, packed FROM {table} ORDER BY day")).ok()?;
+    let rows = statement.query_map([], |row| Ok((row.get::<_, u32>(0)?, row.get::<_, Vec<u8>>(1)?))).ok()?;
+    rows.map(|row| row.ok().and_then(|(day, packed)| unpack(day, &packed)).map(Arc::new)).collect()
+}
+
+fn make_anew(location: &Location, params: &Params) -> rusqlite::Result<Connection> {
+    if let Some(path) = location.path() {
+        for suffix in ["", "-wal", "-shm", "-journal"] {
+            let mut file = path.as_os_str().to_owned();
+            file.push(suffix);
+            // What is not there need not be removed; what cannot be removed shows when the tables are made.
+            let _ = std::fs::remove_file(file);
+        }
+    }
+    let mut connection = location.open_writer()?;
+    create(&mut connection, params)?;
+    Ok(connection)
+}

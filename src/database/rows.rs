@@ -1,0 +1,621 @@
+//! From facts to rows: what the writer thread does with a day.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use rusqlite::{Connection, Transaction, params};
+
+use super::blocks::{AdsDay, SharedShelf, UsageDay};
+use crate::notation::plain_numbers;
+use crate::world::customers::persona::PersonaPicks;
+use crate::world::events::{
+    Arrival, Category, Facts, LedgerNote, Notice, ResearchChange, SettingsChange, Source, SubscriptionEnded,
+    SubscriptionOpened, SubscriptionStatus, TermsChanged,
+};
+use crate::world::identifiers::{Group, Plan};
+use crate::world::market::Knowledge;
+use crate::world::params::Params;
+
+/// What is to be written: the facts of a day or a call, and the words that belong to them.
+#[derive(Debug, Clone, Default)]
+pub struct Entry {
+    /// Facts.
+    pub facts: Facts,
+    /// Text of each notice of the facts.
+    pub notices: Vec<String>,
+    /// Description of each published reading of the facts.
+    pub readings: Vec<String>,
+    /// Address of each company among the arrivals, by customer number.
+    pub addresses: BTreeMap<u32, String>,
+    /// Forecasts that were filed.
+    pub forecasts: Vec<ForecastRow>,
+    /// Groups whose knowledge changed.
+    pub knowledge: Vec<(Group, Knowledge)>,
+}
+
+/// A row of `predictions`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForecastRow {
+    /// Day it was filed.
+    pub submit_day: u32,
+    /// Days ahead.
+    pub horizon_days: u32,
+    /// Point, lower, upper: dollars.
+    pub point: f64,
+    /// Lower end of the interval.
+    pub lower: f64,
+    /// Upper end of the interval.
+    pub upper: f64,
+    /// Seconds since 1970.
+    pub submitted_at: f64,
+}
+
+#[derive(Debug, Clone)]
+struct SubscriptionRow {
+    subscription: u32,
+    plan: &'static str,
+    listed_price: f64,
+    promotion: f64,
+    start_day: u32,
+    end_day: Option<u32>,
+    status: SubscriptionStatus,
+    seats: u32,
+    billed_once: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct IssueRow {
+    customer: u32,
+    group: Group,
+    open_day: u32,
+    aged_from: u32,
+    resolved: Option<(u32, u32)>,
+}
+
+/// Collects what changes until the next commit, so that several changes of a row become one write.
+pub(super) struct RowWriter {
+    params: Arc<Params>,
+    shelf: SharedShelf,
+    issue_clock: u32,
+    new_subscriptions: BTreeMap<u32, SubscriptionRow>,
+    changed_terms: BTreeMap<u32, TermsChanged>,
+    endings: BTreeMap<u32, SubscriptionEnded>,
+    new_issues: BTreeMap<u32, IssueRow>,
+    resolved_issues: BTreeMap<u32, (u32, u32)>,
+    new_usage: Vec<Arc<UsageDay>>,
+    new_ads: Vec<Arc<AdsDay>>,
+    keep_usage_from: Option<u32>,
+}
+
+impl RowWriter {
+    /// A writer for a database that has its tables; `issue_clock` is the stored one.
+    pub fn new(params: Arc<Params>, shelf: SharedShelf, issue_clock: u32) -> RowWriter {
+        RowWriter {
+            params,
+            shelf,
+            issue_clock,
+            new_subscriptions: BTreeMap::new(),
+            changed_terms: BTreeMap::new(),
+            endings: BTreeMap::new(),
+            new_issues: BTreeMap::new(),
+            resolved_issues: BTreeMap::new(),
+            new_usage: Vec::new(),
+            new_ads: Vec::new(),
+            keep_usage_from: None,
+        }
+    }
+
+    /// Writes an entry; what may still change before the commit is kept back.
+    pub fn write(&mut self, transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
+        let facts = &entry.facts;
+        self.usage(transaction, facts)?;
+        service(transaction, facts)?;
+        research(transaction, facts)?;
+        for (reading, words) in facts.readings.iter().zip(&entry.readings) {
+            transaction
+                .prepare_cached(
+                    "INSERT OR REPLACE INTO macroeconomic_conditions VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+                )?
+                .execute(params![
+                    reading.measured_day,
+                    reading.value,
+                    reading.trend.id(),
+                    reading.change,
+                    reading.phase.id(),
+                    words
+                ])?;
+        }
+        self.issues(facts);
+        self.departures(facts);
+        turns(transaction, facts)?;
+        channel_leads(transaction, facts)?;
+        self.arrivals(transaction, entry)?;
+        self.ledger(transaction, facts)?;
+        self.ads(transaction, facts)?;
+        notices(transaction, facts, &entry.notices)?;
+        settings(transaction, facts)?;
+        forecasts(transaction, &entry.forecasts)?;
+        knowledge(transaction, &entry.knowledge)
+    }
+
+    fn usage(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+        if facts.service.is_none() {
+            return Ok(());
+        }
+        let day = UsageDay { day: facts.day, runs: facts.usage.clone() };
+        transaction
+            .prepare_cached("INSERT OR REPLACE INTO usage_blocks VALUES (?1, ?2)")?
+            .execute(params![day.day, day.pack()])?;
+        self.new_usage.push(Arc::new(day));
+        let operations = &self.params.operations;
+        if facts.day.is_multiple_of(operations.daily_usage_prune_every_days) {
+            let first = facts.day.saturating_sub(operations.daily_usage_keep_days);
+            transaction.prepare_cached("DELETE FROM usage_blocks WHERE day < ?1")?.execute([first])?;
+            self.keep_usage_from = Some(first);
+        }
+        Ok(())
+    }
+
+    fn ads(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+        if facts.ads_revenue.is_empty() {
+            return Ok(());
+        }
+        let day = AdsDay::from_rows(facts.day, &facts.ads_revenue);
+        transaction
+            .prepare_cached("INSERT OR REPLACE INTO ads_blocks VALUES (?1, ?2)")?
+            .execute(params![day.day, day.pack()])?;
+        self.new_ads.push(Arc::new(day));
+        Ok(())
+    }
+
+    /// Solutions come before the clock ticks, new issues after it.
+    fn issues(&mut self, facts: &Facts) {
+        for &issue in &facts.issues_resolved {
+            let resolved = (facts.day, self.issue_clock);
+            match self.new_issues.get_mut(&issue) {
+                Some(row) => row.resolved = Some(resolved),
+                None => {
+                    self.resolved_issues.insert(issue, resolved);
+                }
+            }
+        }
+        self.issue_clock += u32::from(facts.issues_aged);
+        for opened in &facts.issues_opened {
+            let row = IssueRow {
+                customer: opened.customer,
+                group: opened.group,
+                open_day: facts.day,
+                aged_from: self.issue_clock,
+                resolved: None,
+            };
+            self.new_issues.insert(opened.issue, row);
+        }
+    }
+
+    fn departures(&mut self, facts: &Facts) {
+        for ending in &facts.endings {
+            match self.new_subscriptions.get_mut(&ending.customer) {
+                Some(row) => (row.end_day, row.status) = (Some(ending.day), ending.status),
+                None => {
+                    self.endings.insert(ending.customer, *ending);
+                }
+            }
+        }
+    }
+
+    fn arrivals(&mut self, transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
+        let facts = &entry.facts;
+        if !facts.arrivals.is_empty() {
+            let mut insert = transaction.prepare_cached(
+                "INSERT INTO customer_rows VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, NULL)",
+            )?;
+            for arrival in &facts.arrivals {
+                let company = arrival.group.is_enterprise();
+                insert.execute(params![
+                    arrival.customer,
+                    arrival.group.id(),
+                    facts.day,
+                    arrival.source as u8,
+                    packed_persona(company, arrival.persona),
+                    self.usage_label(arrival),
+                    self.budget_label(arrival),
+                    company.then_some(arrival.seats),
+                    entry.addresses.get(&arrival.customer),
+                ])?;
+            }
+        }
+        for opened in &facts.openings {
+            self.new_subscriptions.insert(opened.customer, opened_row(opened, facts.day));
+        }
+        for change in &facts.changes {
+            match self.new_subscriptions.get_mut(&change.customer) {
+                Some(row) => {
+                    row.plan = change.plan.id();
+                    row.listed_price = change.listed_price;
+                    row.promotion = change.promotion;
+                    row.seats = change.seats;
+                    row.billed_once = change.billed_once;
+                }
+                None => {
+                    self.changed_terms.insert(change.customer, *change);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn usage_label(&self, arrival: &Arrival) -> u8 {
+        let edges = &self.params.personas.individual.usage_thresholds;
+        edges.iter().position(|edge| arrival.usage_demand < *edge).unwrap_or(edges.len()) as u8
+    }
+
+    fn budget_label(&self, arrival: &Arrival) -> u8 {
+        let mean = self.params.group(arrival.group).c_max_mean;
+        let factors = &self.params.personas.individual.budget_factors;
+        factors.iter().position(|factor| arrival.c_max < factor * mean).unwrap_or(factors.len()) as u8
+    }
+
+    /// Lead costs, payments, then everything else, as chapter 60 §5 orders them.
+    fn ledger(&self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+        let mut insert = transaction.prepare_cached(
+            "INSERT INTO ledger_rows (day, category, amount, about, note) VALUES (?1, ?2, ?3, ?4, ?5)",
+        )?;
+        let nobody: Option<&str> = None;
+        let lead_cost = -self.params.leads.lead_acquisition_cost;
+        for arrival in &facts.arrivals {
+            let category = Category::LeadAcquisitionCost as u8;
+            insert.execute(params![facts.day, category, lead_cost, arrival.customer, nobody])?;
+        }
+        for payment in &facts.payments {
+            let category = Category::SubscriptionPayment as u8;
+            insert.execute(params![facts.day, category, payment.amount, payment.customer, nobody])?;
+        }
+        for entry in &facts.ledger {
+            let note = self.note(entry.category, entry.note);
+            insert.execute(params![facts.day, entry.category as u8, entry.amount, None::<u32>, note])?;
+        }
+        Ok(())
+    }
+
+    fn note(&self, category: Category, note: LedgerNote) -> String {
+        match (category, note) {
+            (_, LedgerNote::Subscribers(count)) => format!("In-app ad revenue ({count} subscribers)"),
+            (_, LedgerNote::Project(tier, number)) => {
+                format!("R&D Tier {tier}: {} (t{tier}_{number})", self.params.research(tier).name)
+            }
+            (Category::InitialFunding, _) => "Initial seed funding".to_owned(),
+            (Category::Capacity, _) => "Daily capacity cost".to_owned(),
+            (Category::Compute, _) => "Compute costs".to_owned(),
+            (Category::Operations, LedgerNote::Targeted) => "Targeted ops spend".to_owned(),
+            (Category::Operations, _) => "Daily operations spend".to_owned(),
+            (Category::Development, LedgerNote::Targeted) => "Targeted dev spend".to_owned(),
+            (Category::Development, _) => "Daily development spend".to_owned(),
+            (Category::Advertising, _) => "Targeted ad spend".to_owned(),
+            (other, _) => other.id().replace('_', " "),
+        }
+    }
+
+    /// Writes what was kept back. The shelf follows with [`RowWriter::publish`], once the commit succeeded.
+    pub fn flush(&mut self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
+        self.flush_subscriptions(transaction)?;
+        let mut insert =
+            transaction.prepare_cached("INSERT INTO issue_rows VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")?;
+        for (issue, row) in std::mem::take(&mut self.new_issues) {
+            let (day, aged_to) = row.resolved.unzip();
+            insert.execute(params![
+                issue,
+                row.customer,
+                row.group.id(),
+                row.open_day,
+                row.aged_from,
+                aged_to,
+                day
+            ])?;
+        }
+        let mut resolve = transaction
+            .prepare_cached("UPDATE issue_rows SET resolved_day = ?2, aged_to = ?3 WHERE issue_id = ?1")?;
+        for (issue, (day, aged_to)) in std::mem::take(&mut self.resolved_issues) {
+            resolve.execute(params![issue, day, aged_to])?;
+        }
+        transaction.prepare_cached("UPDATE issue_clock SET aged = ?1")?.execute([self.issue_clock])?;
+        Ok(())
+    }
+
+    fn flush_subscriptions(&mut self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
+        let mut insert = transaction.prepare_cached(
+            "INSERT INTO subscription_rows VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, NULL, ?11)",
+        )?;
+        let period = self.params.billing.billing_period_days;
+        for (customer, row) in std::mem::take(&mut self.new_subscriptions) {
+            insert.execute(params![
+                customer,
+                row.subscription,
+                row.plan,
+                row.listed_price,
+                row.promotion,
+                row.start_day,
+                row.end_day,
+                row.status as u8,
+                row.start_day % period,
+                row.seats,
+                row.billed_once,
+            ])?;
+        }
+        let mut change = transaction.prepare_cached(
+            "UPDATE subscription_rows SET plan = ?2, listed_price = ?3, promotion = ?4, seats = ?5, billed_once = ?6 \
+             WHERE customer_id = ?1",
+        )?;
+        for (customer, terms) in std::mem::take(&mut self.changed_terms) {
+            change.execute(params![
+                customer,
+                terms.plan.id(),
+                terms.listed_price,
+                terms.promotion,
+                terms.seats,
+                terms.billed_once,
+            ])?;
+        }
+        let mut end = transaction.prepare_cached(
+            "UPDATE subscription_rows SET end_day = ?2, status = ?3 WHERE customer_id = ?1",
+        )?;
+        for (customer, ending) in std::mem::take(&mut self.endings) {
+            end.execute(params![customer, ending.day, ending.status as u8])?;
+        }
+        Ok(())
+    }
+
+    /// Puts the new days on the shelf and takes the old ones off.
+    pub fn publish(&mut self) {
+        if self.new_usage.is_empty() && self.new_ads.is_empty() {
+            return;
+        }
+        let mut shelf = self.shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let mut usage = shelf.usage.to_vec();
+        usage.append(&mut self.new_usage);
+        if let Some(first) = self.keep_usage_from.take() {
+            usage.retain(|day| day.day >= first);
+        }
+        shelf.usage = Arc::new(usage);
+        if !self.new_ads.is_empty() {
+            let mut ads = shelf.ads.to_vec();
+            ads.append(&mut self.new_ads);
+            shelf.ads = Arc::new(ads);
+        }
+    }
+}
+
+fn opened_row(opened: &SubscriptionOpened, day: u32) -> SubscriptionRow {
+    SubscriptionRow {
+        subscription: opened.subscription,
+        plan: opened.plan.map_or("pending", Plan::id),
+        listed_price: opened.listed_price,
+        promotion: opened.promotion,
+        start_day: day,
+        end_day: None,
+        status: opened.status,
+        seats: opened.seats,
+        billed_once: false,
+    }
+}
+
+/// One byte per axis, in the order of the `words` table; companies pick fewer axes of persons and more of their own.
+fn packed_persona(company: bool, picks: PersonaPicks) -> i64 {
+    let [a, b, c, d, e, f, g] = picks.0;
+    // industry, role, experience, work style, technical skill, size, decision, concern
+    let axes = if company { [a, b, 0, e, c, d, f, g] } else { [a, b, c, d, e, 0, 0, 0] };
+    i64::from_le_bytes(axes)
+}
+
+fn service(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    let Some(service) = facts.service else { return Ok(()) };
+    transaction
+        .prepare_cached("INSERT OR REPLACE INTO service_day VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")?
+        .execute(params![
+            facts.day,
+            service.total_usage as i64,
+            service.p95_ms,
+            service.error_rate,
+            service.downtime_minutes,
+            service.capacity_tier,
+            service.capacity_units,
+        ])?;
+    Ok(())
+}
+
+fn research(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    let mut write = transaction
+        .prepare_cached("INSERT OR REPLACE INTO research_projects VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")?;
+    for change in &facts.research {
+        let (project, status, applied) = match change {
+            ResearchChange::Started(project) => (project, "in_progress", 0.0),
+            ResearchChange::Completed(project) => (project, "completed", project.boost),
+        };
+        write.execute(params![
+            project.id(),
+            project.tier,
+            status,
+            project.started_day,
+            project.due_day,
+            project.boost,
+            applied,
+        ])?;
+    }
+    Ok(())
+}
+
+fn turns(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    let mut insert = transaction.prepare_cached(
+        "INSERT INTO enterprise_turns (thread_id, customer_id, thread_type, turn_number, sender, day, seat_count) \
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+    )?;
+    for turn in &facts.turns {
+        insert.execute(params![
+            turn.thread,
+            turn.customer,
+            turn.kind.id(),
+            turn.number,
+            turn.sender.id(),
+            facts.day,
+            turn.seats,
+        ])?;
+    }
+    Ok(())
+}
+
+fn channel_leads(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    let mut insert = transaction.prepare_cached(
+        "INSERT INTO ad_channel_leads (day, channel_id, group_id, leads_generated, spend) VALUES (?1, ?2, ?3, ?4, ?5)",
+    )?;
+    for pair in &facts.channel_leads {
+        insert.execute(params![facts.day, pair.channel.id(), pair.group.id(), pair.leads, pair.spend])?;
+    }
+    Ok(())
+}
+
+fn notices(transaction: &Transaction<'_>, facts: &Facts, words: &[String]) -> rusqlite::Result<()> {
+    let mut insert =
+        transaction.prepare_cached("INSERT INTO notifications (day, type, message) VALUES (?1, ?2, ?3)")?;
+    for (notice, words) in facts.notices.iter().zip(words) {
+        insert.execute(params![facts.day, Notice::kind(notice), words])?;
+    }
+    Ok(())
+}
+
+fn settings(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    for change in &facts.settings {
+        let (tool, kind) = match change {
+            SettingsChange::Core(core) => {
+                let quota = |plan| core.quotas[plan] as i64;
+                transaction
+                    .prepare_cached(
+                        "INSERT OR REPLACE INTO config_history (day, price_A, price_B, price_C, tier_A, tier_B, tier_C, \
+                         spend_operations, spend_development, capacity_tier, quota_A, quota_B, quota_C) \
+                         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
+                    )?
+                    .execute(params![
+                        facts.day,
+                        core.prices[Plan::A],
+                        core.prices[Plan::B],
+                        core.prices[Plan::C],
+                        core.tiers[Plan::A],
+                        core.tiers[Plan::B],
+                        core.tiers[Plan::C],
+                        core.operations,
+                        core.development,
+                        core.capacity_tier,
+                        quota(Plan::A),
+                        quota(Plan::B),
+                        quota(Plan::C),
+                    ])?;
+                continue;
+            }
+            SettingsChange::Promotion(_) => ("set_promotion", "promotion"),
+            SettingsChange::LeadPromotion(_) => ("set_lead_promotion", "lead_promotion"),
+            SettingsChange::AdsStrength(_) => ("set_ads_strength", "ads_strength"),
+            SettingsChange::TargetedAds(_) => ("set_targeted_ad_spend", "targeted_ad_spend"),
+            SettingsChange::TargetedOperations(_) => ("set_targeted_ops_spend", "targeted_ops_spend"),
+            SettingsChange::TargetedDevelopment(_) => ("set_targeted_dev_spend", "targeted_dev_spend"),
+        };
+        let json = plain_numbers(change.family().unwrap_or_default()).to_string();
+        transaction
+            .prepare_cached(
+                "INSERT INTO config_overrides (day, tool_name, setting_type, settings_json) VALUES (?1, ?2, ?3, ?4)",
+            )?
+            .execute(params![facts.day, tool, kind, json])?;
+    }
+    Ok(())
+}
+
+fn forecasts(transaction: &Transaction<'_>, rows: &[ForecastRow]) -> rusqlite::Result<()> {
+    let mut insert = transaction
+        .prepare_cached("INSERT OR REPLACE INTO predictions VALUES (?1, ?2, 'cash', ?3, ?4, ?5, ?6)")?;
+    for row in rows {
+        insert.execute(params![
+            row.submit_day,
+            row.horizon_days,
+            row.point,
+            row.lower,
+            row.upper,
+            row.submitted_at
+        ])?;
+    }
+    Ok(())
+}
+
+fn knowledge(transaction: &Transaction<'_>, rows: &[(Group, Knowledge)]) -> rusqlite::Result<()> {
+    let mut write =
+        transaction.prepare_cached("INSERT OR REPLACE INTO group_info_levels VALUES (?1, ?2, ?3, ?4, ?5)")?;
+    for (group, own) in rows {
+        let hidden = !group.initially_known();
+        write.execute(params![group.id(), own.level, hidden, own.discovered_day, own.last_research_day])?;
+    }
+    Ok(())
+}
+
+/// Creates the tables, the words, and row 1 of `customers`: the market observer.
+pub(super) fn create(connection: &mut Connection, params: &Params) -> rusqlite::Result<()> {
+    let transaction = connection.transaction()?;
+    transaction.execute_batch(include_str!("schema.sql"))?;
+    transaction.execute(
+        "INSERT INTO customer_rows (customer_id, group_id, created_day, email) \
+         VALUES (1, 'S1', 0, 'market_observer@external')",
+        [],
+    )?;
+    {
+        let mut insert = transaction.prepare("INSERT INTO words VALUES (?1, ?2, ?3, ?4)")?;
+        for group in Group::all() {
+            for (axis, words) in axes(group, params) {
+                for (n, word) in (0u32..).zip(&words) {
+                    insert.execute(params![axis, group.id(), n, word])?;
+                }
+            }
+            if group.is_enterprise() {
+                insert.execute(params![
+                    "plus",
+                    group.id(),
+                    params.personas.enterprise.size_plus_from_seats,
+                    "+"
+                ])?;
+            }
+        }
+    }
+    transaction.commit()
+}
+
+/// Word lists of a group by axis.
+fn axes(group: Group, params: &Params) -> Vec<(&'static str, Vec<String>)> {
+    let (own, personas) = (&params.personas.group[group.index()], &params.personas);
+    let floor = params.group(group).q_min_mean;
+    let quality = |edges: &[f64], labels: &[String]| {
+        vec![labels[edges.iter().position(|edge| floor < *edge).unwrap_or(edges.len())].clone()]
+    };
+    let mut axes = vec![("industry", own.industry.clone()), ("role", own.role.clone())];
+    if group.is_enterprise() {
+        let common = &personas.enterprise;
+        axes.extend([
+            ("experience", vec![common.experience.clone()]),
+            ("work_style", own.culture.clone()),
+            ("tech_savvy", common.tech_savvy.clone()),
+            ("size", own.company_size.clone()),
+            ("decision", own.decision_style.clone()),
+            ("concern", own.primary_concern.clone()),
+            ("quality", quality(&common.quality_thresholds, &common.quality_labels)),
+        ]);
+    } else {
+        let common = &personas.individual;
+        axes.extend([
+            ("experience", common.experience_levels.clone()),
+            ("work_style", own.work_style.clone()),
+            ("tech_savvy", common.tech_savvy.clone()),
+            ("usage", common.usage_labels.to_vec()),
+            ("budget", common.budget_labels.to_vec()),
+            ("quality", quality(&common.quality_thresholds, &common.quality_labels)),
+        ]);
+    }
+    axes
+}
+
+/// All sources fit the CASE of the view `customers`.
+const _: () = assert!(Source::Organic as u8 == 6);
+/// All categories fit the CASE of the view `ledger`.
+const _: () = assert!(Category::ResearchProject as u8 == 11);

@@ -1,0 +1,59 @@
+//! Addresses of companies: a pure function of the customer number (chapter 40 §16.4).
+
+use md5::{Digest, Md5};
+
+use crate::world::params::EmailParts;
+
+/// Positions in the word lists: first name, last name, company, suffix, and the form of the local part.
+fn picks(customer: u32) -> [u32; 5] {
+    let digest = Md5::digest(format!("email_{customer}"));
+    let h = u32::from_be_bytes([digest[0], digest[1], digest[2], digest[3]]);
+    [h % 48, h / 48 % 48, h / 2_304 % 20, h / 46_080 % 6, h / 1_000 % 4]
+}
+
+/// Address of a company.
+pub fn address(customer: u32, parts: &EmailParts) -> String {
+    let [first, last, company, suffix, form] = picks(customer);
+    let word = |list: &[String], at: u32| list[at as usize % list.len()].to_lowercase();
+    let (first, last) = (word(&parts.first_names, first), word(&parts.last_names, last));
+    let initial = |name: &str| name.chars().next().map(String::from).unwrap_or_default();
+    let local = match form {
+        0 => format!("{first}.{last}"),
+        1 => format!("{}{last}", initial(&first)),
+        2 => format!("{first}{}", initial(&last)),
+        _ => format!("{first}_{last}"),
+    };
+    format!("{local}@{}.{}", word(&parts.company_domains, company), word(&parts.domain_suffixes, suffix))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::params::Params;
+
+    #[test]
+    fn check_15_of_chapter_40() {
+        for (customer, expected) in [
+            (1, [28, 43, 10, 0, 3]),
+            (2, [28, 41, 0, 5, 0]),
+            (3, [7, 25, 17, 4, 1]),
+            (88, [31, 19, 11, 2, 0]),
+            (312, [27, 37, 2, 1, 1]),
+            (1000, [15, 9, 1, 4, 2]),
+        ] {
+            assert_eq!(picks(customer), expected, "customer {customer}");
+        }
+    }
+
+    #[test]
+    fn addresses_are_lower_case_and_of_four_forms() {
+        let parts = Params::shipped().personas.email;
+        let local = format!("{}.{}", parts.first_names[28], parts.last_names[41]).to_lowercase();
+        assert_eq!(address(2, &parts), format!("{local}@{}.biz", parts.company_domains[0]));
+        assert!(
+            (1..500)
+                .map(|customer| address(customer, &parts))
+                .all(|a| a == a.to_lowercase() && a.contains('@'))
+        );
+    }
+}

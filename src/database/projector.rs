@@ -233,12 +233,34 @@ fn open_existing(
         return None;
     }
     let issue_clock = connection.query_row("SELECT aged FROM issue_clock", [], |row| row.get(0)).ok()?;
-    let loaded = Shelf {
-        usage: Arc::new(load(&connection, "usage_blocks", UsageDay::unpack)?),
-        ads: Arc::new(load(&connection, "ads_blocks", AdsDay::unpack)?),
-    };
+    let loaded = load_shelf(&connection)?;
     *shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = loaded;
     Some((connection, Some(position), issue_clock))
+}
+
+/// A desk on a database as it stands, without a writer, and the position it stands at.
+///
+/// # Errors
+/// There is none, or it is no database of a run.
+pub fn desk_of(location: &Location) -> Result<(Desk, Position), ProjectionError> {
+    let missing = || ProjectionError("there is no database yet".to_owned());
+    if location.path().is_none_or(|path| !path.exists()) {
+        return Err(missing());
+    }
+    let connection = location.open_reader().map_err(told)?;
+    let position = stored_position(&connection).map_err(told)?.ok_or_else(missing)?;
+    let shelf = SharedShelf::default();
+    *shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner()) =
+        load_shelf(&connection).ok_or_else(missing)?;
+    let desk = Desk::open(location, &shelf, Arc::new(RwLock::new(()))).map_err(told)?;
+    Ok((desk, position))
+}
+
+fn load_shelf(connection: &Connection) -> Option<Shelf> {
+    Some(Shelf {
+        usage: Arc::new(load(connection, "usage_blocks", UsageDay::unpack)?),
+        ads: Arc::new(load(connection, "ads_blocks", AdsDay::unpack)?),
+    })
 }
 
 fn stored_position(connection: &Connection) -> rusqlite::Result<Option<Position>> {

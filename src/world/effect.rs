@@ -52,7 +52,7 @@ impl World {
         match deed {
             Deed::None => {}
             Deed::Set(change) => {
-                self.set(change.clone());
+                self.settings.set(change.clone());
                 facts.settings.push(change);
             }
             Deed::StartResearch(project, cost) => {
@@ -62,19 +62,6 @@ impl World {
                 self.product.research.push(project);
                 facts.research.push(ResearchChange::Started(project));
             }
-        }
-    }
-
-    fn set(&mut self, change: SettingsChange) {
-        let settings = &mut self.settings;
-        match change {
-            SettingsChange::Core(value) => settings.core = value,
-            SettingsChange::Promotion(value) => settings.promotion = value,
-            SettingsChange::LeadPromotion(value) => settings.lead_promotion = value,
-            SettingsChange::AdsStrength(value) => settings.ads_strength = value,
-            SettingsChange::TargetedAds(value) => settings.targeted_ads = value,
-            SettingsChange::TargetedOperations(value) => settings.targeted_operations = value,
-            SettingsChange::TargetedDevelopment(value) => settings.targeted_development = value,
         }
     }
 }

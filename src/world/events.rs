@@ -64,7 +64,7 @@ canonical! {
     UsageRows { customers, units }
     ServiceDay { total_usage, overload, outage, downtime_minutes, p95_ms, error_rate, capacity_tier, capacity_units }
     IssueOpened { issue, customer, group }
-    SubscriptionEnded { subscription, customer, group, day, status, cause }
+    SubscriptionEnded { subscription, customer, group, seats, day, status, cause }
     TermsChanged { subscription, customer, plan, listed_price, promotion, effective_price, seats, billed_once }
     ThreadTurn { thread, customer, kind, number, sender, seats }
     ChannelLeads { channel, group, leads, spend }
@@ -290,6 +290,8 @@ pub struct SubscriptionEnded {
     pub customer: u32,
     /// The customer's group.
     pub group: Group,
+    /// Whole seats.
+    pub seats: u32,
     /// End day that is recorded.
     pub day: u32,
     /// Cancelled or lost.

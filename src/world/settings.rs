@@ -7,6 +7,7 @@ use indexmap::IndexMap;
 use serde::Serialize;
 
 use super::canonical::canonical;
+use super::events::SettingsChange;
 use super::identifiers::{ByPlan, Channel, Group, Plan};
 use super::params::Params;
 
@@ -156,6 +157,21 @@ impl Settings {
             targeted_ads: TargetedAds::default(),
             targeted_operations: TargetedOperations::default(),
             targeted_development: TargetedDevelopment::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// Replaces a family.
+    pub fn set(&mut self, change: SettingsChange) {
+        match change {
+            SettingsChange::Core(value) => self.core = value,
+            SettingsChange::Promotion(value) => self.promotion = value,
+            SettingsChange::LeadPromotion(value) => self.lead_promotion = value,
+            SettingsChange::AdsStrength(value) => self.ads_strength = value,
+            SettingsChange::TargetedAds(value) => self.targeted_ads = value,
+            SettingsChange::TargetedOperations(value) => self.targeted_operations = value,
+            SettingsChange::TargetedDevelopment(value) => self.targeted_development = value,
         }
     }
 }

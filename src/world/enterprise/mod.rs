@@ -27,13 +27,15 @@ pub struct WaitingLead {
     pub group: Group,
     /// Subscription number of the lead.
     pub subscription: u32,
+    /// Whole seats.
+    pub seats: u32,
     /// Day on which it asked.
     pub day: u32,
 }
 
 canonical! {
     Enterprise { next_thread, waiting }
-    WaitingLead { thread, customer, group, subscription, day }
+    WaitingLead { thread, customer, group, subscription, seats, day }
 }
 
 impl Default for Enterprise {
@@ -55,7 +57,7 @@ impl Enterprise {
     ) {
         let thread = self.next_thread;
         self.next_thread += 1;
-        self.waiting.push(WaitingLead { thread, customer, group, subscription, day });
+        self.waiting.push(WaitingLead { thread, customer, group, subscription, seats, day });
         let (kind, sender) = (ThreadKind::NewLead, Sender::System);
         facts.turns.push(ThreadTurn { thread, customer, kind, number: 0, sender, seats });
         facts.notices.push(Notice::EnterpriseLead);
@@ -73,6 +75,7 @@ impl Enterprise {
                 subscription: lead.subscription,
                 customer: lead.customer,
                 group: lead.group,
+                seats: lead.seats,
                 day,
                 status: SubscriptionStatus::Lost,
                 cause: EndCause::LeadTimeout,

@@ -196,6 +196,7 @@ fn departure(group: Group, block: &Block, at: usize, cause: EndCause, day: u32) 
         subscription: block.subscription[at],
         customer: block.customer[at],
         group,
+        seats: block.seats[at] as u32,
         day,
         status: SubscriptionStatus::Cancelled,
         cause,

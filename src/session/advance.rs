@@ -1,0 +1,289 @@
+//! Letting time pass.
+
+use serde_json::{Map, Value, json};
+
+use super::act::{Via, not_saved};
+use super::trajectory::{Durability, Line, seconds};
+use super::week::{Forecasts, WeekFigures};
+use super::xray::Xray;
+use super::{Ended, Session};
+use crate::database::{Entry, ForecastRow};
+use crate::notation::json_number;
+use crate::tools::{self, Kind, Refusal};
+use crate::voice;
+use crate::world::day::step_day;
+use crate::world::events::{DayFigures, SubscriptionEnded, SubscriptionStatus};
+use crate::world::market::surges::week_end;
+
+/// A day that was just simulated.
+pub struct DayReport<'a> {
+    /// Its figures.
+    pub figures: &'a DayFigures,
+    /// Day on which the week will end, unless cash runs out.
+    pub week_end: u32,
+    /// The hidden state, in debug runs.
+    pub xray: Option<Xray<'a>>,
+}
+
+/// A week, or the rest of one, that was simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Week {
+    /// Its figures.
+    pub figures: WeekFigures,
+    /// The dashboard.
+    pub dashboard: String,
+    /// What was put into the inbox: day and text.
+    pub notices: Vec<(u32, String)>,
+    /// How the run ended with it, if it did.
+    pub ended: Option<Ended>,
+    /// What the person should know: the disk did not take the closing line.
+    pub remark: Option<String>,
+}
+
+impl Session {
+    /// Files rationale and forecasts and simulates the days until the next decision day, or the last day, or
+    /// bankruptcy.
+    ///
+    /// # Errors
+    /// `run_over`, the refusals of next_week, `not_saved`. Nothing has happened then.
+    pub fn advance(
+        &mut self,
+        rationale: &str,
+        forecasts: &Forecasts,
+        via: Via,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Week, Refusal> {
+        let predictions = forecasts.as_predictions();
+        self.advance_given(&json!(rationale), &predictions, forecasts.filled_naively, via, progress)
+    }
+
+    /// As [`Session::advance`], with rationale and predictions as a program sends them.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn advance_given(
+        &mut self,
+        rationale: &Value,
+        predictions: &Value,
+        filled_naively: bool,
+        via: Via,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Week, Refusal> {
+        let checked = self.refuse_if_over(Kind::Time).and_then(|()| {
+            let text = tools::rationale(rationale)?;
+            let all = tools::forecasts(predictions, &self.params.limits.prediction_horizons_days)?;
+            Ok((text, Forecasts { all, filled_naively }))
+        });
+        let (text, forecasts) = match checked {
+            Ok(checked) => checked,
+            Err(refusal) => {
+                let arguments = json!({ "rationale": rationale, "predictions": predictions });
+                self.record_refusal("next_week", &arguments, via, &refusal);
+                return Err(refusal);
+            }
+        };
+        let day = self.world.day;
+        let fields = advance_fields(&text, &forecasts, via);
+        let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
+        let at = self.append("advance", day, fields, durability).map_err(not_saved)?;
+        self.project_forecasts(&forecasts, &at);
+        Ok(self.run_week(progress))
+    }
+
+    /// Simulates single days of a debug run, at most to the end of the week.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `run_over`, `not_saved`.
+    pub fn step(&mut self, days: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> Result<Week, Refusal> {
+        if self.manifest.mode != super::Mode::Debug {
+            return Err(Refusal::new("not_in_this_mode", "single days can be stepped in debug runs only"));
+        }
+        self.refuse_if_over(Kind::Time)?;
+        let until = self.next_decision_day().min(self.world.day + days.max(1));
+        let from = self.world.day;
+        self.run_days(until, progress);
+        let remark = self.close_days("step", from);
+        Ok(self.report(remark))
+    }
+
+    /// Gives up an unfinished run for good.
+    ///
+    /// # Errors
+    /// `run_over`, `not_saved`.
+    pub fn end(&mut self) -> Result<(), Refusal> {
+        self.refuse_if_over(Kind::Time)?;
+        self.close_run(Ended::Abandoned).map_or(Ok(()), |remark| Err(Refusal::new("not_saved", remark)))
+    }
+
+    /// The day on which the week that holds the next day ends.
+    pub fn next_decision_day(&self) -> u32 {
+        week_end(self.world.day + 1, self.params.run.days_per_week, self.manifest.days)
+    }
+
+    /// Runs the week of an `advance` line and closes it.
+    pub(super) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
+        let from = self.world.day;
+        self.run_days(self.next_decision_day(), progress);
+        let remark = self.close_days("week", from);
+        self.report(remark)
+    }
+
+    /// Simulates days until one of them is reached, or cash is below zero.
+    pub(super) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) {
+        let week_end = self.next_decision_day();
+        self.notices.clear();
+        while self.world.day < until && !self.world.is_over(&self.params) {
+            let (figures, trace) = step_day(&mut self.world, &self.params, &self.streams, &mut self.facts);
+            self.trace = trace;
+            self.cash_by_day.push(figures.cash);
+            self.count_day(&figures);
+            self.notices.extend(self.facts.notices.iter().map(|notice| (figures.day, voice::notice(notice))));
+            self.chain_facts();
+            self.project_facts();
+            let debug = self.manifest.mode == super::Mode::Debug;
+            let xray = debug.then(|| Xray::new(&self.world, &self.params, &self.facts, &self.trace));
+            progress(&DayReport { figures: &figures, week_end, xray });
+        }
+    }
+
+    fn count_day(&mut self, figures: &DayFigures) {
+        let week = &mut self.running_week;
+        week.add(figures);
+        for turn in self.facts.turns.iter().filter(|turn| turn.number == 0) {
+            week.threads_opened += 1;
+            week.thread_seats += turn.seats;
+        }
+        let left = |ending: &&SubscriptionEnded| {
+            ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
+        };
+        for ending in self.facts.endings.iter().filter(left) {
+            week.companies_lost += 1;
+            week.seats_lost += ending.seats;
+        }
+    }
+
+    /// Ends the figures of the days that ran, and the week if it is complete.
+    pub(super) fn settle_figures(&mut self) -> WeekFigures {
+        let before = self.weeks.last().map_or(self.manifest.cash, |week| week.cash);
+        self.running_week.cash_change = self.world.finance.cash - before;
+        self.running_week.open_issues = self.open_issues();
+        let figures = self.running_week;
+        let complete = self.world.day.is_multiple_of(self.params.run.days_per_week);
+        if complete || self.world.is_over(&self.params) {
+            self.weeks.push(figures);
+            self.running_week = WeekFigures::default();
+        }
+        self.this_week.settings = self.world.settings.clone();
+        self.this_week.undo.clear();
+        self.this_week.done.clear();
+        figures
+    }
+
+    /// Writes the line that closes days that ran. Returns a remark if the disk did not take it.
+    fn close_days(&mut self, kind: &'static str, from: u32) -> Option<String> {
+        let figures = self.settle_figures();
+        let fields = self.closing_fields(from, &figures);
+        let day = self.world.day;
+        let mut remark = self.append_done(kind, day, fields);
+        self.commit_projection();
+        self.facts_hash = blake3::hash(b"");
+        remark = remark.or_else(|| self.close_if_over());
+        remark.map(|problem| {
+            format!("{problem}; the days are simulated again when the run is opened, with the same result")
+        })
+    }
+
+    /// Closes a run whose last day has passed or whose cash is gone.
+    pub(super) fn close_if_over(&mut self) -> Option<String> {
+        if self.world.finance.is_bankrupt(&self.params) {
+            self.close_run(Ended::Bankruptcy)
+        } else if self.world.is_over(&self.params) {
+            self.close_run(Ended::Horizon)
+        } else {
+            None
+        }
+    }
+
+    fn close_run(&mut self, ended: Ended) -> Option<String> {
+        self.ended = Some(ended);
+        let fields = Map::from_iter([
+            ("reason".to_owned(), ended.id().into()),
+            ("cash".to_owned(), json_number(self.world.finance.cash)),
+            ("score".to_owned(), self.score().map_or(Value::Null, json_number)),
+        ]);
+        let day = self.world.day;
+        let remark = self.append_done("end", day, fields);
+        self.commit_projection();
+        remark
+    }
+
+    /// Fields of a `week` or `step` line: what a replay has to arrive at.
+    pub(super) fn closing_fields(&self, from: u32, figures: &WeekFigures) -> Map<String, Value> {
+        let (state_hash, parts) = self.state_hash();
+        Map::from_iter([
+            ("days_run".to_owned(), (self.world.day - from).into()),
+            ("figures".to_owned(), Value::Object(figures.as_json())),
+            ("cash".to_owned(), json_number(self.world.finance.cash)),
+            ("state_hash".to_owned(), state_hash.into()),
+            ("parts".to_owned(), json!(parts)),
+        ])
+    }
+
+    fn report(&self, remark: Option<String>) -> Week {
+        let figures = match self.running_week.days_run {
+            0 => self.weeks.last().copied().unwrap_or_default(),
+            _ => self.running_week,
+        };
+        Week {
+            figures,
+            dashboard: self.dashboard(),
+            notices: self.notices.clone(),
+            ended: self.ended,
+            remark,
+        }
+    }
+
+    /// Hands the forecasts of an `advance` line to the database again.
+    pub(super) fn replay_forecasts(&mut self, line: &Line) -> Result<(), String> {
+        let all: Vec<crate::tools::Forecast> = line
+            .fields
+            .get("forecasts")
+            .and_then(|forecasts| serde_json::from_value(forecasts.clone()).ok())
+            .ok_or("the forecasts cannot be read")?;
+        let all = all.try_into().map_err(|_| "there are not four forecasts")?;
+        self.project_forecasts(&Forecasts { all, filled_naively: false }, &line.at);
+        Ok(())
+    }
+
+    fn project_forecasts(&self, forecasts: &Forecasts, at: &str) {
+        if let Some(projector) = &self.projector {
+            let submitted_at = seconds(at);
+            let row = |forecast: &crate::tools::Forecast| ForecastRow {
+                submit_day: self.world.day,
+                horizon_days: forecast.horizon_days,
+                point: forecast.point,
+                lower: forecast.lower,
+                upper: forecast.upper,
+                submitted_at,
+            };
+            projector.write(Entry { forecasts: forecasts.all.iter().map(row).collect(), ..Entry::default() });
+        }
+    }
+}
+
+fn advance_fields(rationale: &str, forecasts: &Forecasts, via: Via) -> Map<String, Value> {
+    let one = |forecast: &crate::tools::Forecast| {
+        json!({
+            "horizon_days": forecast.horizon_days,
+            "point": json_number(forecast.point),
+            "lower": json_number(forecast.lower),
+            "upper": json_number(forecast.upper),
+            "filled_naively": forecasts.filled_naively,
+        })
+    };
+    Map::from_iter([
+        ("rationale".to_owned(), rationale.into()),
+        ("forecasts".to_owned(), forecasts.all.iter().map(one).collect()),
+        ("via".to_owned(), json!(via)),
+    ])
+}

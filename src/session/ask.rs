@@ -1,0 +1,154 @@
+//! Asking the database.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serde_json::{Map, Value, json};
+
+use super::Session;
+use super::trajectory::Durability;
+use crate::database::query::Limits;
+use crate::database::{Cell, Desk, Interrupt, Location, QueryError, Rows, desk_of};
+use crate::notation::json_number;
+use crate::tools::Refusal;
+
+impl Session {
+    /// Answers one guarded statement and records that it was asked.
+    ///
+    /// # Errors
+    /// The `sql_` codes of chapter 50.
+    pub fn query(&mut self, sql: &str) -> Result<Rows, Refusal> {
+        let started = Instant::now();
+        let limits = limits(self);
+        let answer = self.desk().and_then(|desk| desk.ask(sql, limits).map_err(Refusal::from));
+        self.note_query(sql, answer.as_ref(), started.elapsed());
+        answer
+    }
+
+    /// A handle that stops the running query.
+    ///
+    /// # Errors
+    /// The run has no database.
+    pub fn interrupt(&mut self) -> Result<Interrupt, Refusal> {
+        self.desk().map(|desk| desk.interrupt())
+    }
+
+    /// A desk of its own, for a thread that asks while the session works. What it asks is recorded with
+    /// [`Session::note_query`].
+    ///
+    /// # Errors
+    /// The run has no database, or it cannot be read.
+    pub fn open_desk(&self) -> Result<Desk, Refusal> {
+        let Some(projector) = &self.projector else {
+            return Err(Refusal::new("sql_error", "this run is played without a database"));
+        };
+        projector.desk().map_err(|error| Refusal::new("sql_error", error.to_string()))
+    }
+
+    /// Waits until the database holds everything up to the last decision day and this week's calls.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn wait_for_database(&self) -> Result<(), Refusal> {
+        match &self.projector {
+            Some(projector) => projector.wait().map_err(|error| Refusal::new("sql_error", error.to_string())),
+            None => Ok(()),
+        }
+    }
+
+    /// Limits of a query in this run.
+    pub fn query_limits(&self) -> Limits {
+        limits(self)
+    }
+
+    /// Records a query that was asked elsewhere.
+    pub fn note_query(&mut self, sql: &str, answer: Result<&Rows, &Refusal>, took: Duration) {
+        if self.ended.is_some() {
+            return;
+        }
+        let rows = answer.ok();
+        let fields = json!({
+            "sql": sql,
+            "rows": rows.map(|rows| rows.rows.len()),
+            "truncated": rows.is_some_and(|rows| rows.truncated),
+            "error": answer.err().map(|refusal| refusal.code),
+            "took_ms": (took.as_secs_f64() * 1e6).round() / 1e3,
+        });
+        let day = self.world.day;
+        // A query changes nothing; a disk that refuses its line takes nothing away.
+        let _ =
+            self.append("query", day, fields.as_object().cloned().unwrap_or_default(), Durability::Written);
+    }
+
+    fn desk(&mut self) -> Result<&Desk, Refusal> {
+        self.wait_for_database()?;
+        if self.desk.is_none() {
+            self.desk = Some(self.open_desk()?);
+        }
+        Ok(self.desk.as_ref().expect("the desk was just opened"))
+    }
+}
+
+fn limits(session: &Session) -> Limits {
+    let own = &session.params.limits;
+    Limits {
+        rows: own.query_row_limit as usize,
+        time: Duration::from_secs(u64::from(own.query_timeout_seconds)),
+    }
+}
+
+impl From<QueryError> for Refusal {
+    fn from(error: QueryError) -> Self {
+        let message = match error.position {
+            Some(at) => format!("{} (at character {})", error.message, at + 1),
+            None => error.message,
+        };
+        Refusal { code: error.code, message, field: None }
+    }
+}
+
+/// A desk on the database file of a run as it stands, and whether it holds everything up to the run's last line.
+///
+/// # Errors
+/// The file is missing or no database of a run.
+pub fn desk_of_file(folder: &Path) -> Result<(Desk, crate::database::Position), Refusal> {
+    desk_of(&Location::File(folder.join("world.db")))
+        .map_err(|error| Refusal::new("sql_error", error.to_string()))
+}
+
+/// A result as chapter 50 gives it to programs: rows as objects, of equal column names the first wins.
+pub fn rows_as_json(rows: &Rows) -> Map<String, Value> {
+    let object = |row: &Vec<Cell>| {
+        let mut fields = Map::new();
+        for (column, cell) in rows.columns.iter().zip(row) {
+            fields.entry(column.clone()).or_insert_with(|| cell_as_json(cell));
+        }
+        Value::Object(fields)
+    };
+    let mut data = Map::from_iter([
+        ("columns".to_owned(), json!(rows.columns)),
+        ("rows".to_owned(), rows.rows.iter().map(object).collect()),
+        ("row_count".to_owned(), rows.rows.len().into()),
+    ]);
+    if rows.truncated {
+        data.insert("truncated".to_owned(), true.into());
+    }
+    if let Some(warning) = &rows.warning {
+        data.insert("warning".to_owned(), warning.clone().into());
+    }
+    if let Some(hint) = &rows.hint {
+        data.insert("hint".to_owned(), hint.clone().into());
+    }
+    data
+}
+
+/// A value as JSON; numbers that JSON cannot hold become null.
+pub fn cell_as_json(cell: &Cell) -> Value {
+    match cell {
+        Cell::Null => Value::Null,
+        Cell::Integer(number) => (*number).into(),
+        Cell::Real(number) if number.fract() == 0.0 => json!(number),
+        Cell::Real(number) => json_number(*number),
+        Cell::Text(text) => text.clone().into(),
+    }
+}

@@ -1,0 +1,100 @@
+//! What can go wrong with a run as a whole: which file, which line, what is safe, what to do next.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::database::ProjectionError;
+use crate::world::params::ParameterError;
+
+/// Why a run cannot be created, opened or read.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// A file cannot be read or written.
+    #[error("{path}: {error}", path = .path.display())]
+    Io {
+        /// File or folder.
+        path: PathBuf,
+        /// What the system said.
+        error: std::io::Error,
+    },
+    /// A file of a run is not what was written.
+    #[error("{path}, line {line}: {problem}. {safe}", path = .path.display())]
+    Damaged {
+        /// File.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong.
+        problem: String,
+        /// What is still good, and what can be done.
+        safe: String,
+    },
+    /// A manifest or configuration is wrong.
+    #[error("{0}")]
+    Configuration(#[from] ParameterError),
+    /// The run was recorded with other parameters than this program has.
+    #[error(
+        "run {id} was recorded by version {version} with parameters {recorded}, this program has {own}; \
+         open it with that version: nothing was changed"
+    )]
+    OtherParameters {
+        /// Run.
+        id: String,
+        /// Version that recorded it.
+        version: String,
+        /// Digest in the manifest.
+        recorded: String,
+        /// Digest of the parameters as this program reads them.
+        own: String,
+    },
+    /// The run was written in a format this program does not know.
+    #[error(
+        "run {id} has format {format}, this program reads format {known}; use a newer version: nothing was changed"
+    )]
+    OtherFormat {
+        /// Run.
+        id: String,
+        /// Format in the manifest.
+        format: u32,
+        /// Format of this program.
+        known: u32,
+    },
+    /// Another program is writing the run.
+    #[error("run {id} is open in another program ({holder}); close it there, or open it to read only")]
+    InUse {
+        /// Run.
+        id: String,
+        /// Who holds it.
+        holder: String,
+    },
+    /// There is no such run.
+    #[error("there is no run {id} in {folder}; `novamind runs` lists those there are", folder = .folder.display())]
+    NotFound {
+        /// What was asked for.
+        id: String,
+        /// Where it was looked for.
+        folder: PathBuf,
+    },
+    /// There is no such scenario.
+    #[error("there is no scenario {name}; there are {known}")]
+    NoScenario {
+        /// What was asked for.
+        name: String,
+        /// Those there are.
+        known: String,
+    },
+    /// The run cannot be started as asked.
+    #[error("{0}")]
+    NotPossible(String),
+    /// The database cannot be written.
+    #[error("{0}")]
+    Projection(#[from] ProjectionError),
+}
+
+impl RunError {
+    /// An error of the system at a path.
+    pub fn io(path: &Path) -> impl FnOnce(std::io::Error) -> RunError + '_ {
+        move |error| RunError::Io { path: path.to_owned(), error }
+    }
+}

@@ -1,0 +1,224 @@
+//! One run: open, act, query, advance, record, resume, replay. The only door to a world.
+//!
+//! Plan, log, apply: a call is planned without effect, its line is on the disk, and only then the world
+//! changes; applying cannot fail. So memory is never ahead of the trajectory, the trajectory never ahead of
+//! what was confirmed, and a run can always be rebuilt from `run.toml` and `trajectory.jsonl`.
+
+mod act;
+mod advance;
+mod ask;
+mod changes;
+mod configuration;
+mod create;
+mod dashboard;
+mod error;
+mod manifest;
+mod mode;
+mod observe;
+mod open;
+mod record;
+mod runs;
+mod trajectory;
+mod week;
+mod xray;
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::Serialize;
+
+pub use act::{Preview, Via};
+pub use advance::{DayReport, Week};
+pub use ask::{desk_of_file, rows_as_json};
+pub use changes::Change;
+pub use configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
+pub use create::{NewRun, Storage};
+pub use dashboard::DeliveredQuality;
+pub use error::RunError;
+pub use manifest::{FORMAT, Manifest, Parent};
+pub use mode::Mode;
+pub use observe::{Observation, WaitingThread};
+pub use open::{Access, Verification, verify};
+pub use runs::{RunSummary, delete_run, end_run, find_run, list_runs, run_folder};
+pub use trajectory::{Line, Trajectory};
+pub use week::{Forecasts, WeekFigures, week_of};
+pub use xray::Xray;
+
+pub use crate::database::{Cell, Desk, Interrupt, QueryError, Rows};
+pub use crate::tools::Refusal;
+
+use crate::database::{Position, Projector};
+use crate::world::day::DayTrace;
+use crate::world::events::Facts;
+use crate::world::params::Params;
+use crate::world::random::Streams;
+use crate::world::settings::Settings;
+use crate::world::state::World;
+use trajectory::TrajectoryWriter;
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ended {
+    /// It reached its last day.
+    Horizon,
+    /// Cash fell below zero.
+    Bankruptcy,
+    /// Somebody gave it up.
+    Abandoned,
+}
+
+impl Ended {
+    /// Word as trajectories write it.
+    pub fn id(self) -> &'static str {
+        match self {
+            Ended::Horizon => "horizon",
+            Ended::Bankruptcy => "bankruptcy",
+            Ended::Abandoned => "abandoned",
+        }
+    }
+
+    fn parse(id: &str) -> Option<Ended> {
+        [Ended::Horizon, Ended::Bankruptcy, Ended::Abandoned].into_iter().find(|ended| ended.id() == id)
+    }
+}
+
+/// A run that is open.
+pub struct Session {
+    manifest: Manifest,
+    /// Folder of the run; none in memory.
+    folder: Option<PathBuf>,
+    /// Held while the run may be written.
+    _lock: Option<File>,
+    params: Arc<Params>,
+    streams: Streams,
+    world: World,
+    /// Facts of the last day or call.
+    facts: Facts,
+    trace: DayTrace,
+    /// None when the run is only read.
+    trajectory: Option<TrajectoryWriter>,
+    /// The last line that was written, or applied again.
+    position: Position,
+    /// Every confirmed call is on the disk before it is confirmed; headless runs sync once a week.
+    sync_calls: bool,
+    projector: Option<Projector>,
+    desk: Option<Desk>,
+    /// Cash at the end of each day, day 0 first.
+    cash_by_day: Vec<f64>,
+    /// Every full or shortened week that ran.
+    weeks: Vec<WeekFigures>,
+    /// The week that has begun with single steps.
+    running_week: WeekFigures,
+    /// What the last days put into the inbox: day and text.
+    notices: Vec<(u32, String)>,
+    /// What has been set since the last week.
+    this_week: ThisWeek,
+    /// Chain of the hashes of this week's facts.
+    facts_hash: blake3::Hash,
+    ended: Option<Ended>,
+    /// What the person should know about the opening of the run.
+    remarks: Vec<String>,
+}
+
+/// What happened since the last week ran.
+#[derive(Debug, Clone)]
+struct ThisWeek {
+    /// Settings before the first call.
+    settings: Settings,
+    /// Setting calls that can be taken back, newest last.
+    undo: Vec<UndoStep>,
+    /// Purchases and the like, in words.
+    done: Vec<String>,
+}
+
+/// A setting call and what was before it.
+#[derive(Debug, Clone)]
+struct UndoStep {
+    seq: u64,
+    tool: &'static str,
+    before: Settings,
+}
+
+impl Session {
+    /// What the run is.
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// Folder of the run; none in memory.
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
+    /// Last simulated day.
+    pub fn day(&self) -> u32 {
+        self.world.day
+    }
+
+    /// How the run ended, if it did.
+    pub fn ended(&self) -> Option<Ended> {
+        self.ended
+    }
+
+    /// Cash at the end of each day, day 0 first.
+    pub fn cash_by_day(&self) -> &[f64] {
+        &self.cash_by_day
+    }
+
+    /// Figures of every week that ran.
+    pub fn weeks(&self) -> &[WeekFigures] {
+        &self.weeks
+    }
+
+    /// What the person should know about the opening of the run.
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
+
+    /// The effective parameters.
+    pub fn params(&self) -> &Params {
+        &self.params
+    }
+
+    /// Score: cash after the last day, 0 after a bankruptcy, none before the end or when abandoned.
+    pub fn score(&self) -> Option<f64> {
+        match self.ended {
+            Some(Ended::Horizon) => Some(self.world.finance.cash),
+            Some(Ended::Bankruptcy) => Some(0.0),
+            Some(Ended::Abandoned) | None => None,
+        }
+    }
+
+    /// Hash of the whole state with one hash per part, by name.
+    pub fn state_hash(&self) -> (String, BTreeMap<&'static str, String>) {
+        record::state_hash(&self.world, self.facts_hash)
+    }
+
+    /// The hidden state; only in debug runs.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`.
+    pub fn xray(&self) -> Result<Xray<'_>, Refusal> {
+        if self.manifest.mode != Mode::Debug {
+            return Err(Refusal::new("not_in_this_mode", "hidden state is shown in debug runs only"));
+        }
+        Ok(Xray::new(&self.world, &self.params, &self.facts, &self.trace))
+    }
+
+    /// Puts everything on the disk.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn save(&mut self) -> Result<(), RunError> {
+        if let Some(projector) = &self.projector {
+            projector.wait()?;
+        }
+        match &mut self.trajectory {
+            Some(trajectory) => trajectory.sync(),
+            None => Ok(()),
+        }
+    }
+}

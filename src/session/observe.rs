@@ -1,0 +1,185 @@
+//! What a player can see at a glance.
+
+use serde::Serialize;
+
+use super::changes::Change;
+use super::dashboard::{self, DeliveredQuality, Waiting, delivered_quality};
+use super::mode::Mode;
+use super::week::{Forecasts, WeekFigures, week_of};
+use super::{Ended, Session};
+use crate::world::day::closing_figures;
+
+/// The company at a glance.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Observation {
+    /// Run.
+    pub run: String,
+    /// Mode.
+    pub mode: Mode,
+    /// Seed.
+    pub seed: u64,
+    /// Scenario.
+    pub scenario: String,
+    /// Who plays.
+    pub participant: Option<String>,
+    /// Last simulated day.
+    pub day: u32,
+    /// Last day of the run.
+    pub last_day: u32,
+    /// Week that holds the day.
+    pub week: u32,
+    /// Cash, dollars.
+    pub cash: f64,
+    /// Its change over the last week, dollars.
+    pub cash_change: f64,
+    /// Weeks until cash is gone at the burn of the last four weeks; none while cash grows.
+    pub runway_weeks: Option<f64>,
+    /// Active subscriptions of individuals.
+    pub subscribers: u32,
+    /// Seats of active companies.
+    pub seats: u32,
+    /// How the run ended, if it did.
+    pub ended: Option<Ended>,
+    /// Score of a run that is over.
+    pub score: Option<f64>,
+    /// Figures of the last week, none before the first.
+    pub last_week: Option<WeekFigures>,
+    /// The dashboard of the last week, or a fresh one before the first.
+    pub dashboard: String,
+    /// Settings changed since the last week.
+    pub changes: Vec<Change>,
+    /// Purchases since the last week, in words.
+    pub purchases: Vec<String>,
+    /// Threads that wait for an answer.
+    pub waiting: Vec<WaitingThread>,
+    /// R&D projects that run.
+    pub running_research: u32,
+}
+
+/// A thread that waits for an answer.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct WaitingThread {
+    /// Number of the thread.
+    pub thread: u32,
+    /// The company.
+    pub customer: u32,
+    /// Its group.
+    pub group: &'static str,
+    /// Whole seats.
+    pub seats: u32,
+    /// How the thread began.
+    pub kind: &'static str,
+    /// Number of its last turn.
+    pub turn: u32,
+    /// Days left before it is lost.
+    pub days_left: u32,
+}
+
+impl Session {
+    /// The company at a glance.
+    pub fn observe(&self) -> Observation {
+        let closing = closing_figures(self.world());
+        Observation {
+            run: self.manifest.id.clone(),
+            mode: self.manifest.mode,
+            seed: self.manifest.seed,
+            scenario: self.manifest.scenario.clone(),
+            participant: self.manifest.participant.clone(),
+            day: self.world.day,
+            last_day: self.manifest.days,
+            week: week_of(self.world.day),
+            cash: self.world.finance.cash,
+            cash_change: self.cash_change(),
+            runway_weeks: self.runway_weeks(),
+            subscribers: closing.individual_subscribers,
+            seats: closing.enterprise_seats,
+            ended: self.ended,
+            score: self.score(),
+            last_week: self.weeks.last().copied(),
+            dashboard: self.dashboard(),
+            changes: self.changes(),
+            purchases: self.this_week.done.clone(),
+            waiting: self.waiting(),
+            running_research: self.running_research(),
+        }
+    }
+
+    /// The weekly dashboard as text.
+    pub fn dashboard(&self) -> String {
+        let closing = closing_figures(self.world());
+        let stocks = WeekFigures {
+            cash: closing.cash,
+            individual_subscribers: closing.individual_subscribers,
+            enterprise_seats: closing.enterprise_seats,
+            open_issues: self.open_issues(),
+            ..WeekFigures::default()
+        };
+        let waiting = self.waiting();
+        let waiting = Waiting {
+            threads: waiting.len() as u32,
+            days_left: waiting.iter().map(|thread| thread.days_left).min().unwrap_or(0),
+        };
+        let week = if self.running_week.days_run > 0 { Some(&self.running_week) } else { self.weeks.last() };
+        dashboard::build(&self.world, &self.params, week, &stocks, waiting)
+    }
+
+    /// Quality delivered to every known group, as the dashboard shows it.
+    pub fn delivered_quality(&self) -> Vec<DeliveredQuality> {
+        delivered_quality(&self.world, &self.params)
+    }
+
+    /// Quality before any improvement, and what development has added for everybody.
+    pub fn quality_base(&self) -> (f64, f64) {
+        (self.params.quality.base_product_quality, self.world.product.shared_bonus)
+    }
+
+    /// The naive projection of cash.
+    pub fn naive_forecasts(&self) -> Forecasts {
+        Forecasts::naive(&self.cash_by_day, &self.params.limits.prediction_horizons_days)
+    }
+
+    /// Active subscribers with an open issue.
+    pub(super) fn open_issues(&self) -> u32 {
+        let open = |days: &&u32| **days > 0;
+        self.world
+            .customers
+            .blocks()
+            .map(|(_, block)| block.open_issue_days.iter().filter(open).count() as u32)
+            .sum()
+    }
+
+    /// Threads that wait for an answer, the first to be lost first.
+    fn waiting(&self) -> Vec<WaitingThread> {
+        let patience = self.params.enterprise.agent_response_timeout_days;
+        let waiting = self.world.enterprise.waiting.iter().map(|lead| WaitingThread {
+            thread: lead.thread,
+            customer: lead.customer,
+            group: lead.group.id(),
+            seats: lead.seats,
+            kind: "new_lead",
+            turn: 0,
+            days_left: (lead.day + patience).saturating_sub(self.world.day),
+        });
+        let mut waiting: Vec<WaitingThread> = waiting.collect();
+        waiting.sort_by_key(|thread| (thread.days_left, std::cmp::Reverse(thread.seats), thread.thread));
+        waiting
+    }
+
+    fn running_research(&self) -> u32 {
+        self.world.product.research.iter().filter(|project| project.completed_day.is_none()).count() as u32
+    }
+
+    fn cash_change(&self) -> f64 {
+        let days = self.cash_by_day.len();
+        let before = self.cash_by_day[days.saturating_sub(8)];
+        self.world.finance.cash - before
+    }
+
+    /// Weeks that cash lasts at the mean daily loss of the last 28 days.
+    fn runway_weeks(&self) -> Option<f64> {
+        let days = (self.cash_by_day.len() - 1).min(28);
+        let before = self.cash_by_day[self.cash_by_day.len() - 1 - days];
+        let lost_per_day = (before - self.world.finance.cash) / days.max(1) as f64;
+        (lost_per_day > 0.0).then(|| self.world.finance.cash / lost_per_day / 7.0)
+    }
+}

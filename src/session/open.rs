@@ -1,0 +1,231 @@
+//! Going on with a run: reading its trajectory and simulating it again.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::error::RunError;
+use super::manifest::Manifest;
+use super::runs::lock_run;
+use super::trajectory::{Line, Trajectory, TrajectoryWriter};
+use super::{Ended, Session};
+use crate::database::{Location, Position, Projector};
+use crate::world::events::Facts;
+use crate::world::state::World;
+
+/// What may be done with an opened run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Access {
+    /// Go on with it. One program at a time.
+    Write,
+    /// Look at it; nothing of it is changed.
+    Read,
+}
+
+/// What a verification found out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Verification {
+    /// Run.
+    pub run: String,
+    /// Lines that were checked.
+    pub lines: usize,
+    /// Weeks and steps whose state was reached again.
+    pub states: usize,
+    /// Last day.
+    pub day: u32,
+    /// Hash of the last state.
+    pub state_hash: String,
+}
+
+impl Session {
+    /// Opens the run in a folder and simulates it up to its last line.
+    ///
+    /// # Errors
+    /// The run is missing, damaged, of another version, or in use; the error names the place and what is safe.
+    pub fn open(folder: &Path, access: Access, projection: bool) -> Result<Session, RunError> {
+        let manifest = Manifest::read(folder)?;
+        let params = Arc::new(manifest.params()?);
+        let lock = match access {
+            Access::Write => Some(lock_run(folder, &manifest.id)?),
+            Access::Read => None,
+        };
+        let path = folder.join("trajectory.jsonl");
+        let trajectory = Trajectory::read(&path)?;
+        check_start(&path, trajectory.lines.first(), &manifest)?;
+        let (projector, projected) = open_projector(folder, access, projection, &params, &trajectory)?;
+        let mut facts = Facts::default();
+        let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
+        let in_memory = TrajectoryWriter::in_memory();
+        let own = Some(folder.to_owned());
+        let mut session = Session::assemble(manifest, own, lock, params, world, facts, in_memory, None, true);
+        session.trajectory = None;
+        session.replay(&path, &trajectory, projector, projected.as_ref())?;
+        if access == Access::Write {
+            session.trajectory = Some(TrajectoryWriter::resume(&path, &trajectory)?);
+        }
+        if trajectory.unfinished > 0 {
+            let bytes = trajectory.unfinished;
+            session.remarks.push(format!(
+                "The last line of the trajectory was unfinished ({bytes} bytes) and was dropped: it was never confirmed."
+            ));
+        }
+        session.finish_week(&trajectory);
+        Ok(session)
+    }
+
+    /// Applies every line again; the database gets only what it does not have yet.
+    fn replay(
+        &mut self,
+        path: &Path,
+        trajectory: &Trajectory,
+        mut projector: Option<Projector>,
+        projected: Option<&Position>,
+    ) -> Result<(), RunError> {
+        for line in &trajectory.lines {
+            let missing = projected.is_none_or(|position| line.seq > position.seq);
+            if missing && projector.is_some() {
+                self.projector = projector.take();
+            }
+            self.position = line.position();
+            self.replay_line(line).map_err(|problem| RunError::Damaged {
+                path: path.to_owned(),
+                line: line.seq as usize + 1,
+                problem,
+                safe: format!("Lines 1 to {} are good; nothing was changed", line.seq),
+            })?;
+        }
+        if projector.is_some() {
+            self.projector = projector;
+        }
+        Ok(())
+    }
+
+    fn replay_line(&mut self, line: &Line) -> Result<(), String> {
+        match line.kind.as_str() {
+            "start" => self.project_opening(),
+            "call" if line.fields.get("ok") == Some(&Value::Bool(true)) => self.replay_call(&line.fields)?,
+            "advance" => self.replay_forecasts(line)?,
+            "week" | "step" => {
+                let from = self.world.day;
+                let days =
+                    line.fields.get("days_run").and_then(Value::as_u64).ok_or("the line lacks days_run")?;
+                self.run_days(from + days as u32, &mut |_| {});
+                self.compare(from, line)?;
+                self.commit_projection();
+            }
+            "end" => {
+                let reason = line.fields.get("reason").and_then(Value::as_str).and_then(Ended::parse);
+                self.ended = Some(reason.ok_or("the line names no known reason")?);
+                self.commit_projection();
+            }
+            // Refused calls, queries, views and memos change nothing.
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Settles the figures of days that ran again and compares the state with the recorded one.
+    fn compare(&mut self, from: u32, line: &Line) -> Result<(), String> {
+        let figures = self.settle_figures();
+        let reached = self.closing_fields(from, &figures);
+        self.facts_hash = blake3::hash(b"");
+        if reached.get("state_hash") == line.fields.get("state_hash") {
+            return Ok(());
+        }
+        let part = |fields: &serde_json::Map<String, Value>, name: &str| {
+            fields.get("parts").and_then(|parts| parts.get(name)).cloned()
+        };
+        let parts =
+            reached.get("parts").and_then(Value::as_object).map(|parts| parts.keys().cloned().collect());
+        let parts: Vec<String> = parts.unwrap_or_default();
+        let differing: Vec<String> =
+            parts.into_iter().filter(|name| part(&reached, name) != part(&line.fields, name)).collect();
+        Err(format!(
+            "the state on day {} is not the recorded one (different: {}); a line before it was changed, or another \
+             version recorded it",
+            self.world.day,
+            differing.join(", ")
+        ))
+    }
+
+    /// A week that was confirmed but not finished is simulated now.
+    fn finish_week(&mut self, trajectory: &Trajectory) {
+        let closing = ["week", "step", "end"];
+        let open = trajectory.lines.iter().rev().find_map(|line| match line.kind.as_str() {
+            "advance" => Some(true),
+            kind if closing.contains(&kind) => Some(false),
+            _ => None,
+        });
+        if open == Some(true) {
+            let week = self.run_week(&mut |_| {});
+            self.remarks.push(format!("The week up to day {} was simulated again.", week.figures.day));
+        } else if self.ended.is_none() && self.world.is_over(&self.params) {
+            // The program ended between the last week and the line that closes the run.
+            let remark = self.close_if_over();
+            self.remarks.extend(remark);
+        }
+    }
+}
+
+/// The first line must say what the manifest says: otherwise one of the two files belongs to another run.
+fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
+    let damaged = |problem: &str| RunError::Damaged {
+        path: path.to_owned(),
+        line: 1,
+        problem: problem.to_owned(),
+        safe: "Nothing was changed; restore run.toml or the trajectory from a copy".to_owned(),
+    };
+    let Some(first) = first.filter(|line| line.kind == "start") else {
+        return Err(damaged("the trajectory does not begin with the start of a run"));
+    };
+    let says = |name: &str, value: Value| first.fields.get(name) == Some(&value);
+    let same = says("run", manifest.id.clone().into())
+        && says("seed", manifest.seed.into())
+        && says("days", manifest.days.into())
+        && says("cash", crate::notation::json_number(manifest.cash))
+        && says("mode", manifest.mode.id().into())
+        && says("parameters_digest", manifest.parameters_digest.clone().into());
+    if same { Ok(()) } else { Err(damaged("the start of the trajectory contradicts run.toml")) }
+}
+
+fn open_projector(
+    folder: &Path,
+    access: Access,
+    wanted: bool,
+    params: &Arc<crate::world::params::Params>,
+    trajectory: &Trajectory,
+) -> Result<(Option<Projector>, Option<Position>), RunError> {
+    if !wanted {
+        return Ok((None, None));
+    }
+    let location = match access {
+        Access::Write => Location::File(folder.join("world.db")),
+        // Somebody else may be writing the file; a reader makes its own.
+        Access::Read => Location::memory(),
+    };
+    let known = |position: &Position| {
+        trajectory.lines.get(position.seq as usize).is_some_and(|line| line.hash == position.line_hash)
+    };
+    let (projector, position) = Projector::start(location, params.clone(), known)?;
+    Ok((Some(projector), position))
+}
+
+/// Simulates a run again and compares every recorded state; nothing is changed.
+///
+/// # Errors
+/// The first line that does not fit.
+pub fn verify(folder: &Path) -> Result<Verification, RunError> {
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
+    let session = Session::open(folder, Access::Read, false)?;
+    let states =
+        trajectory.lines.iter().filter(|line| ["week", "step"].contains(&line.kind.as_str())).count();
+    let last = trajectory.lines.iter().rev().find_map(|line| line.fields.get("state_hash")?.as_str());
+    Ok(Verification {
+        run: session.manifest().id.clone(),
+        lines: trajectory.lines.len(),
+        states,
+        day: session.day(),
+        state_hash: last.unwrap_or_default().to_owned(),
+    })
+}

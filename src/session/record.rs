@@ -1,0 +1,91 @@
+//! What a session records besides its lines: rows for the database, and the state hash.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde_json::{Map, Value};
+
+use super::Session;
+use super::error::RunError;
+use super::trajectory::Durability;
+use crate::database::Entry;
+use crate::voice;
+use crate::world::canonical::hash_of;
+use crate::world::events::Facts;
+use crate::world::params::Params;
+use crate::world::state::{PartHash, World, combined_hash};
+
+/// Facts with the words that belong to them.
+pub(super) fn entry_of(facts: Facts, params: &Arc<Params>) -> Entry {
+    let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
+    Entry {
+        notices: facts.notices.iter().map(voice::notice).collect(),
+        readings: facts.readings.iter().map(voice::reading).collect(),
+        addresses: companies
+            .map(|arrival| (arrival.customer, voice::address(arrival.customer, &params.personas.email)))
+            .collect(),
+        facts,
+        ..Entry::default()
+    }
+}
+
+/// Hash of the state and of the week's facts, with the hash of each part.
+pub(super) fn state_hash(world: &World, facts: blake3::Hash) -> (String, BTreeMap<&'static str, String>) {
+    let mut parts = world.part_hashes();
+    parts.push(PartHash { part: "facts", hash: facts });
+    let short = |hash: &blake3::Hash| hash.to_hex()[..16].to_owned();
+    let by_name = parts.iter().map(|part| (part.part, short(&part.hash))).collect();
+    (combined_hash(&parts).to_hex().to_string(), by_name)
+}
+
+impl Session {
+    /// Adds the facts of a day or call to this week's chain.
+    pub(super) fn chain_facts(&mut self) {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.facts_hash.as_bytes());
+        hasher.update(hash_of(&self.facts).as_bytes());
+        self.facts_hash = hasher.finalize();
+    }
+
+    /// Hands the facts of a day or call to the database, if there is one; the session's own are then empty
+    /// unless a debug run may still look at them.
+    pub(super) fn project_facts(&mut self) {
+        if let Some(projector) = &self.projector {
+            projector.write(entry_of(self.facts.clone(), &self.params));
+        }
+    }
+
+    /// Makes everything handed over visible, as of the last line.
+    pub(super) fn commit_projection(&self) {
+        if let Some(projector) = &self.projector {
+            projector.commit(self.position.clone());
+        }
+    }
+
+    /// Appends a line; a run that is only read has none.
+    pub(super) fn append(
+        &mut self,
+        kind: &'static str,
+        day: u32,
+        fields: Map<String, Value>,
+        durability: Durability,
+    ) -> Result<String, RunError> {
+        let Some(trajectory) = &mut self.trajectory else { return Ok(String::new()) };
+        let at = trajectory.append(kind, day, fields, durability)?;
+        self.position = trajectory.position();
+        Ok(at)
+    }
+
+    /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
+    pub(super) fn append_done(
+        &mut self,
+        kind: &'static str,
+        day: u32,
+        fields: Map<String, Value>,
+    ) -> Option<String> {
+        let trajectory = self.trajectory.as_mut()?;
+        let written = trajectory.append_done(kind, day, fields);
+        self.position = trajectory.position();
+        written.err().map(|error| error.to_string())
+    }
+}

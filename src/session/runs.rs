@@ -1,0 +1,211 @@
+//! The folder of runs: names, locks, the list.
+
+use std::fs::{File, TryLockError};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::error::RunError;
+use super::manifest::Manifest;
+use super::mode::Mode;
+use super::open::Access;
+use super::{Ended, Session};
+
+/// A run in the list.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunSummary {
+    /// Name.
+    pub id: String,
+    /// When it was created, RFC 3339.
+    pub created: String,
+    /// When it was last played, RFC 3339.
+    pub played: String,
+    /// Mode.
+    pub mode: Option<Mode>,
+    /// Seed.
+    pub seed: u64,
+    /// Scenario.
+    pub scenario: String,
+    /// Who plays.
+    pub participant: Option<String>,
+    /// Last simulated day.
+    pub day: u32,
+    /// Last day of the run.
+    pub days: u32,
+    /// Cash after the last week, dollars.
+    pub cash: f64,
+    /// How it ended, if it did.
+    pub ended: Option<Ended>,
+    /// Why it cannot be read, if it cannot.
+    pub problem: Option<String>,
+}
+
+/// Folder of a run.
+pub fn run_folder(runs: &Path, id: &str) -> PathBuf {
+    runs.join(id)
+}
+
+/// All runs, the last played first.
+///
+/// # Errors
+/// The folder exists and cannot be read.
+pub fn list_runs(runs: &Path) -> Result<Vec<RunSummary>, RunError> {
+    let entries = match std::fs::read_dir(runs) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(RunError::Io { path: runs.to_owned(), error }),
+    };
+    let mut list: Vec<RunSummary> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|folder| folder.join("run.toml").exists())
+        .map(|folder| summarise(&folder))
+        .collect();
+    list.sort_by(|left, right| right.played.cmp(&left.played).then_with(|| left.id.cmp(&right.id)));
+    Ok(list)
+}
+
+fn summarise(folder: &Path) -> RunSummary {
+    let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let manifest = match Manifest::read(folder) {
+        Ok(manifest) => manifest,
+        Err(error) => return unreadable(id, error.to_string()),
+    };
+    let last = last_lines(&folder.join("trajectory.jsonl"));
+    let field = |kind: &[&str], name: &str| {
+        last.iter()
+            .rev()
+            .find(|line| line.get("kind").and_then(Value::as_str).is_some_and(|own| kind.contains(&own)))
+            .and_then(|line| line.get(name).cloned())
+    };
+    let word = |value: Option<Value>| value.and_then(|value| value.as_str().map(str::to_owned));
+    RunSummary {
+        id,
+        created: manifest.created.clone(),
+        played: last.last().and_then(|line| word(line.get("at").cloned())).unwrap_or(manifest.created),
+        mode: Some(manifest.mode),
+        seed: manifest.seed,
+        scenario: manifest.scenario,
+        participant: manifest.participant,
+        day: field(&["week", "step", "end"], "day").and_then(|day| day.as_u64()).unwrap_or(0) as u32,
+        days: manifest.days,
+        cash: field(&["week", "step", "end"], "cash").and_then(|cash| cash.as_f64()).unwrap_or(manifest.cash),
+        ended: word(field(&["end"], "reason")).as_deref().and_then(Ended::parse),
+        problem: None,
+    }
+}
+
+fn unreadable(id: String, problem: String) -> RunSummary {
+    RunSummary {
+        id,
+        created: String::new(),
+        played: String::new(),
+        mode: None,
+        seed: 0,
+        scenario: String::new(),
+        participant: None,
+        day: 0,
+        days: 0,
+        cash: 0.0,
+        ended: None,
+        problem: Some(problem),
+    }
+}
+
+/// The lines at the end of a trajectory, enough to hold its last week; read from the end, for runs may be long.
+fn last_lines(path: &Path) -> Vec<Value> {
+    let mut window: u64 = 64 << 10;
+    loop {
+        let Some((text, whole)) = tail(path, window) else { return Vec::new() };
+        let lines: Vec<Value> = text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();
+        let has_week = lines.iter().any(|line| line.get("state_hash").is_some());
+        if has_week || whole {
+            return lines;
+        }
+        window *= 8;
+    }
+}
+
+fn tail(path: &Path, window: u64) -> Option<(String, bool)> {
+    let mut file = File::open(path).ok()?;
+    let length = file.metadata().ok()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(window))).ok()?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).ok()?;
+    Some((String::from_utf8_lossy(&bytes).into_owned(), window >= length))
+}
+
+/// The folder of a run by its name, a unique beginning of it, or `latest`: the newest unfinished one.
+///
+/// # Errors
+/// There is none, or several begin like this.
+pub fn find_run(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
+    let missing = || RunError::NotFound { id: id.to_owned(), folder: runs.to_owned() };
+    let list = list_runs(runs)?;
+    if id == "latest" {
+        let newest = list.iter().find(|run| run.ended.is_none() && run.problem.is_none());
+        return newest.map(|run| runs.join(&run.id)).ok_or_else(missing);
+    }
+    let folder = runs.join(id);
+    if !id.is_empty() && list.iter().any(|run| run.id == id) {
+        return Ok(folder);
+    }
+    let mut fitting = list.iter().filter(|run| id.len() >= 2 && run.id.starts_with(id));
+    match (fitting.next(), fitting.next()) {
+        (Some(only), None) => Ok(runs.join(&only.id)),
+        (Some(_), Some(_)) => {
+            Err(RunError::NotPossible(format!("several runs begin with {id}; write more of the name")))
+        }
+        _ => Err(missing()),
+    }
+}
+
+/// Ends an unfinished run for good.
+///
+/// # Errors
+/// It is over already, in use, or cannot be read.
+pub fn end_run(runs: &Path, id: &str) -> Result<(), RunError> {
+    let mut session = Session::open(&find_run(runs, id)?, Access::Write, false)?;
+    session.end().map_err(|refusal| RunError::NotPossible(refusal.message))
+}
+
+/// Deletes a run with everything in its folder.
+///
+/// # Errors
+/// It is in use, or cannot be removed.
+pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
+    let folder = find_run(runs, id)?;
+    let lock = lock_run(&folder, id)?;
+    drop(lock);
+    std::fs::remove_dir_all(&folder).map_err(RunError::io(&folder))
+}
+
+/// Claims a run for writing; the claim ends with the program, however it ends.
+pub(super) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
+    let path = folder.join("lock");
+    let open = File::options().create(true).truncate(false).read(true).write(true).open(&path);
+    let mut file = open.map_err(RunError::io(&path))?;
+    match file.try_lock() {
+        Ok(()) => {
+            // Only for people who look; the lock itself is what counts.
+            let _ = file.set_len(0).and_then(|()| writeln!(file, "process {}", std::process::id()));
+            Ok(file)
+        }
+        Err(TryLockError::WouldBlock) => {
+            let holder = std::fs::read_to_string(&path).unwrap_or_default().trim().to_owned();
+            Err(RunError::InUse { id: id.to_owned(), holder })
+        }
+        Err(TryLockError::Error(error)) => Err(RunError::Io { path, error }),
+    }
+}
+
+/// Earlier runs of a seed and scenario on this machine.
+pub(super) fn earlier_runs(runs: &Path, seed: u64, scenario: &str) -> u32 {
+    let entries = std::fs::read_dir(runs).into_iter().flatten().flatten();
+    let same = |folder: &PathBuf| {
+        Manifest::read(folder).is_ok_and(|manifest| manifest.seed == seed && manifest.scenario == scenario)
+    };
+    entries.map(|entry| entry.path()).filter(same).count() as u32
+}

@@ -1,0 +1,340 @@
+//! `trajectory.jsonl`: the truth of a run, one line per action (chapter 70 §5, format 1).
+//!
+//! Lines are appended and never changed. Each names the hash of the one before, so what is cut, flipped or
+//! inserted shows. A line whose last byte is missing was never confirmed and is dropped.
+
+use std::fs::File;
+use std::io::{Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value};
+use time::OffsetDateTime;
+use time::format_description::well_known::Rfc3339;
+
+use super::error::RunError;
+use crate::database::Position;
+
+/// When a line has to be on the disk (chapter 90 §4).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Durability {
+    /// Before anything is confirmed.
+    Synced,
+    /// With the next synced line.
+    Written,
+}
+
+/// A line that was read back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Number, from 0.
+    pub seq: u64,
+    /// Kind, for instance `call`.
+    pub kind: String,
+    /// Day of the run.
+    pub day: u32,
+    /// When it was written, RFC 3339.
+    pub at: String,
+    /// All fields.
+    pub fields: Map<String, Value>,
+    /// Hash of the line.
+    pub hash: String,
+}
+
+impl Line {
+    /// Number and hash.
+    pub fn position(&self) -> Position {
+        Position { seq: self.seq, line_hash: self.hash.clone() }
+    }
+}
+
+/// Hash of a line's bytes, in hexadecimal digits.
+fn line_hash(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
+/// The present moment, RFC 3339.
+pub fn now() -> String {
+    OffsetDateTime::now_utc().format(&Rfc3339).unwrap_or_default()
+}
+
+/// Seconds since 1970 of a moment of a line.
+pub fn seconds(at: &str) -> f64 {
+    OffsetDateTime::parse(at, &Rfc3339).map_or(0.0, |moment| moment.unix_timestamp_nanos() as f64 / 1e9)
+}
+
+/// Appends lines.
+pub struct TrajectoryWriter {
+    /// The file; none for a run in memory.
+    file: Option<File>,
+    path: PathBuf,
+    /// Bytes of the file that are good.
+    length: u64,
+    /// Lines that could not be written yet, in order, and must come first.
+    backlog: Vec<u8>,
+    next_seq: u64,
+    last_hash: String,
+}
+
+impl TrajectoryWriter {
+    /// A trajectory in memory: only numbers and hashes are kept.
+    pub fn in_memory() -> TrajectoryWriter {
+        TrajectoryWriter {
+            file: None,
+            path: PathBuf::new(),
+            length: 0,
+            backlog: Vec::new(),
+            next_seq: 0,
+            last_hash: line_hash(b""),
+        }
+    }
+
+    /// A new file.
+    ///
+    /// # Errors
+    /// It exists already, or cannot be made.
+    pub fn create(path: &Path) -> Result<TrajectoryWriter, RunError> {
+        let file = File::options().create_new(true).append(true).open(path).map_err(RunError::io(path))?;
+        Ok(TrajectoryWriter { file: Some(file), path: path.to_owned(), ..TrajectoryWriter::in_memory() })
+    }
+
+    /// Goes on with a file that was read; bytes after the good ones are cut off.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn resume(path: &Path, read: &Trajectory) -> Result<TrajectoryWriter, RunError> {
+        let mut file = File::options().write(true).open(path).map_err(RunError::io(path))?;
+        file.set_len(read.length).map_err(RunError::io(path))?;
+        file.seek(SeekFrom::End(0)).map_err(RunError::io(path))?;
+        Ok(TrajectoryWriter {
+            file: Some(file),
+            path: path.to_owned(),
+            length: read.length,
+            backlog: Vec::new(),
+            next_seq: read.lines.len() as u64,
+            last_hash: read.lines.last().map_or_else(|| line_hash(b""), |line| line.hash.clone()),
+        })
+    }
+
+    /// Number and hash of the last line.
+    pub fn position(&self) -> Position {
+        Position { seq: self.next_seq.saturating_sub(1), line_hash: self.last_hash.clone() }
+    }
+
+    /// Appends a line and returns the moment it carries.
+    ///
+    /// # Errors
+    /// The disk refuses: then the line does not exist, and the file is as it was.
+    pub fn append(
+        &mut self,
+        kind: &str,
+        day: u32,
+        fields: Map<String, Value>,
+        durability: Durability,
+    ) -> Result<String, RunError> {
+        let (bytes, hash, at) = self.line(kind, day, fields);
+        let written = self.write(&bytes, durability);
+        if written.is_ok() {
+            self.accept(hash);
+        }
+        written.map(|()| at)
+    }
+
+    /// Appends a line about something that cannot be taken back. If the disk refuses, the line waits in memory
+    /// and goes first with the next one.
+    ///
+    /// # Errors
+    /// The disk refuses for now.
+    pub fn append_done(&mut self, kind: &str, day: u32, fields: Map<String, Value>) -> Result<(), RunError> {
+        let (bytes, hash, _) = self.line(kind, day, fields);
+        let written = self.write(&bytes, Durability::Synced);
+        if written.is_err() {
+            self.backlog.extend_from_slice(&bytes);
+        }
+        self.accept(hash);
+        written
+    }
+
+    fn accept(&mut self, hash: String) {
+        self.next_seq += 1;
+        self.last_hash = hash;
+    }
+
+    fn line(&self, kind: &str, day: u32, fields: Map<String, Value>) -> (Vec<u8>, String, String) {
+        let at = now();
+        let mut line = Map::new();
+        line.insert("seq".to_owned(), self.next_seq.into());
+        line.insert("kind".to_owned(), kind.into());
+        line.insert("day".to_owned(), day.into());
+        line.insert("at".to_owned(), at.clone().into());
+        line.insert("prev".to_owned(), self.last_hash.clone().into());
+        line.extend(fields);
+        let mut bytes = Value::Object(line).to_string().into_bytes();
+        let hash = line_hash(&bytes);
+        bytes.push(b'\n');
+        (bytes, hash, at)
+    }
+
+    fn write(&mut self, bytes: &[u8], durability: Durability) -> Result<(), RunError> {
+        let Some(file) = &mut self.file else { return Ok(()) };
+        let mut all = self.backlog.clone();
+        all.extend_from_slice(bytes);
+        let written = file.write_all(&all).and_then(|()| match durability {
+            Durability::Synced => file.sync_data(),
+            Durability::Written => Ok(()),
+        });
+        match written {
+            Ok(()) => {
+                self.length += all.len() as u64;
+                self.backlog.clear();
+                Ok(())
+            }
+            Err(error) => {
+                // Whatever got through is no line yet; the file ends where it ended.
+                let _ = file.set_len(self.length);
+                let _ = file.seek(SeekFrom::Start(self.length));
+                Err(RunError::Io { path: self.path.clone(), error })
+            }
+        }
+    }
+
+    /// Puts everything on the disk.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn sync(&mut self) -> Result<(), RunError> {
+        self.write(b"", Durability::Synced)
+    }
+}
+
+/// A trajectory that was read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trajectory {
+    /// Its lines.
+    pub lines: Vec<Line>,
+    /// Bytes of the file that hold them.
+    pub length: u64,
+    /// Bytes after the last complete line: a line that was never confirmed.
+    pub unfinished: usize,
+}
+
+impl Trajectory {
+    /// Reads and checks a file: every line is JSON, numbered, and names the hash of the one before.
+    ///
+    /// # Errors
+    /// The file cannot be read, or a line is damaged; the error names it and says what is still good.
+    pub fn read(path: &Path) -> Result<Trajectory, RunError> {
+        let bytes = std::fs::read(path).map_err(RunError::io(path))?;
+        Trajectory::parse(&bytes).map_err(|(line, problem)| RunError::Damaged {
+            path: path.to_owned(),
+            line,
+            problem,
+            safe: match line {
+                1 => "Nothing before it can be used".to_owned(),
+                _ => format!("Lines 1 to {} are good; nothing was changed", line - 1),
+            },
+        })
+    }
+
+    /// Checks bytes as [`Trajectory::read`] does.
+    ///
+    /// # Errors
+    /// (line, problem), lines from 1.
+    pub fn parse(bytes: &[u8]) -> Result<Trajectory, (usize, String)> {
+        let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        let mut lines: Vec<Line> = Vec::new();
+        for text in bytes[..end].split_inclusive(|byte| *byte == b'\n') {
+            let text = &text[..text.len() - 1];
+            let expected = lines.last().map_or_else(|| line_hash(b""), |line| line.hash.clone());
+            let line = parse_line(text, lines.len() as u64, &expected)
+                .map_err(|problem| (lines.len() + 1, problem))?;
+            lines.push(line);
+        }
+        Ok(Trajectory { lines, length: end as u64, unfinished: bytes.len() - end })
+    }
+}
+
+fn parse_line(text: &[u8], seq: u64, previous: &str) -> Result<Line, String> {
+    let fields: Map<String, Value> =
+        serde_json::from_slice(text).map_err(|error| format!("this is no line of a trajectory ({error})"))?;
+    if fields.get("seq").and_then(Value::as_u64) != Some(seq) {
+        return Err(format!("the line should have number {seq}: lines are missing or out of order"));
+    }
+    if fields.get("prev").and_then(Value::as_str) != Some(previous) {
+        return Err("the line does not follow from the one before: one of the two was changed".to_owned());
+    }
+    let word = |name: &str| fields.get(name).and_then(Value::as_str).map(str::to_owned);
+    let day = fields.get("day").and_then(Value::as_u64).and_then(|day| u32::try_from(day).ok());
+    match (word("kind"), word("at"), day) {
+        (Some(kind), Some(at), Some(day)) => Ok(Line { seq, kind, day, at, hash: line_hash(text), fields }),
+        _ => Err("the line lacks its kind, its moment or its day".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn fields(value: Value) -> Map<String, Value> {
+        value.as_object().cloned().unwrap_or_default()
+    }
+
+    fn written(folder: &Path, count: u64) -> PathBuf {
+        let path = folder.join("trajectory.jsonl");
+        let mut writer = TrajectoryWriter::create(&path).expect("a file");
+        for number in 0..count {
+            let line = fields(json!({"tool": "set_prices", "number": number, "text": "größer"}));
+            writer.append("call", number as u32, line, Durability::Synced).expect("a line");
+        }
+        path
+    }
+
+    #[test]
+    fn lines_come_back_and_can_be_continued() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = written(folder.path(), 3);
+        let read = Trajectory::read(&path).expect("it reads");
+        assert_eq!(read.lines.len(), 3);
+        assert_eq!(read.lines[2].fields["number"], 2);
+        let mut writer = TrajectoryWriter::resume(&path, &read).expect("it opens");
+        assert_eq!(writer.position(), read.lines[2].position());
+        writer.append("memo", 9, Map::new(), Durability::Written).expect("a line");
+        assert_eq!(Trajectory::read(&path).expect("it reads").lines[3].kind, "memo");
+        assert!(TrajectoryWriter::create(&path).is_err());
+    }
+
+    #[test]
+    fn an_unfinished_line_is_dropped() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = written(folder.path(), 3);
+        let bytes = std::fs::read(&path).expect("bytes");
+        std::fs::write(&path, &bytes[..bytes.len() - 5]).expect("a cut");
+        let read = Trajectory::read(&path).expect("it reads");
+        assert_eq!(read.lines.len(), 2);
+        assert!(read.unfinished > 0);
+        let mut writer = TrajectoryWriter::resume(&path, &read).expect("it opens");
+        writer.append("call", 2, Map::new(), Durability::Synced).expect("a line");
+        assert_eq!(Trajectory::read(&path).expect("it reads").lines.len(), 3);
+    }
+
+    #[test]
+    fn every_flipped_byte_and_every_missing_line_is_found() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let bytes = std::fs::read(written(folder.path(), 4)).expect("bytes");
+        let whole = Trajectory::parse(&bytes).expect("it reads");
+        // The last line has no successor to vouch for it; the position of the database and the state hash do.
+        let last = bytes[..bytes.len() - 1].iter().rposition(|byte| *byte == b'\n').expect("a line end") + 1;
+        for at in 0..last {
+            let mut damaged = bytes.clone();
+            damaged[at] ^= 0x04;
+            assert!(Trajectory::parse(&damaged).is_err(), "byte {at} was changed unseen");
+        }
+        let mut lines: Vec<&[u8]> = bytes.split_inclusive(|byte| *byte == b'\n').collect();
+        lines.remove(1);
+        assert_eq!(Trajectory::parse(&lines.concat()).expect_err("a line is missing").0, 2);
+        lines.swap(0, 1);
+        assert_eq!(Trajectory::parse(&lines.concat()).expect_err("out of order").0, 1);
+        assert_eq!(whole.unfinished, 0);
+        assert_eq!(Trajectory::parse(b"").expect("an empty file").lines.len(), 0);
+    }
+}

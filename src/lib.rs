@@ -1,6 +1,9 @@
 //! NovaMind console.
+pub mod cli;
 pub mod database;
+pub mod lab;
 pub mod notation;
+pub mod plain;
 pub mod session;
 pub mod tools;
 pub mod voice;

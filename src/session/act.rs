@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use super::changes::{Change, changes, daily_cost};
 use super::error::RunError;
 use super::trajectory::Durability;
-use super::{Session, UndoStep};
+use super::{JournalEntry, Session, UndoStep};
 use crate::tools::{Arguments, Kind, Refusal, Tool, View, find};
 use crate::world::effect::{Deed, Effect};
 use crate::world::settings::Settings;
@@ -118,14 +118,18 @@ impl Session {
                 fields.arguments = &given;
                 let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
                 self.record_call(fields.accepted(&answer), durability).map_err(not_saved)?;
-                self.apply(tool, deed);
+                self.apply(tool, given, undoes, deed);
                 Ok(answer)
             }
         }
     }
 
-    fn apply(&mut self, tool: &'static dyn Tool, deed: Deed) {
+    fn apply(&mut self, tool: &'static dyn Tool, args: Value, undoes: Option<u64>, deed: Deed) {
         let spec = tool.spec();
+        if deed != Deed::None {
+            let (day, tool) = (self.world.day, spec.name.to_owned());
+            self.journal.push(JournalEntry::Call { day, tool, args, undoes });
+        }
         match &deed {
             Deed::None => return,
             Deed::Set(_) => {
@@ -322,8 +326,9 @@ impl Session {
         if fields.get("result") != Some(&answer) {
             return Err("the call answers differently now".to_owned());
         }
-        self.apply(tool, deed);
-        if fields.contains_key("undoes") {
+        let undoes = fields.get("undoes").and_then(Value::as_u64);
+        self.apply(tool, Value::Object(given.as_map().clone()), undoes, deed);
+        if undoes.is_some() {
             self.this_week.undo.truncate(self.this_week.undo.len().saturating_sub(2));
         }
         Ok(())

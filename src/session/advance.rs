@@ -6,7 +6,7 @@ use super::act::{Via, not_saved};
 use super::trajectory::{Durability, Line, seconds};
 use super::week::{Forecasts, WeekFigures};
 use super::xray::Xray;
-use super::{Ended, Session};
+use super::{Ended, JournalEntry, Session};
 use crate::database::{Entry, ForecastRow};
 use crate::notation::json_number;
 use crate::tools::{self, Kind, Refusal};
@@ -86,7 +86,7 @@ impl Session {
         let fields = advance_fields(&text, &forecasts, via);
         let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
         let at = self.append("advance", day, fields, durability).map_err(not_saved)?;
-        self.project_forecasts(&forecasts, &at);
+        self.file(text, &forecasts, &at);
         Ok(self.run_week(progress))
     }
 
@@ -173,6 +173,7 @@ impl Session {
             self.weeks.push(figures);
             self.running_week = WeekFigures::default();
         }
+        self.journal.push(JournalEntry::Week { figures });
         self.this_week.settings = self.world.settings.clone();
         self.this_week.undo.clear();
         self.this_week.done.clear();
@@ -243,7 +244,18 @@ impl Session {
         }
     }
 
-    /// Hands the forecasts of an `advance` line to the database again.
+    /// Keeps rationale and forecasts in the journal and the database.
+    fn file(&mut self, rationale: String, forecasts: &Forecasts, at: &str) {
+        self.project_forecasts(forecasts, at);
+        self.journal.push(JournalEntry::Advance {
+            day: self.world.day,
+            rationale,
+            forecasts: forecasts.all.to_vec(),
+            filled_naively: forecasts.filled_naively,
+        });
+    }
+
+    /// Files the rationale and forecasts of an `advance` line again.
     pub(super) fn replay_forecasts(&mut self, line: &Line) -> Result<(), String> {
         let all: Vec<crate::tools::Forecast> = line
             .fields
@@ -251,7 +263,10 @@ impl Session {
             .and_then(|forecasts| serde_json::from_value(forecasts.clone()).ok())
             .ok_or("the forecasts cannot be read")?;
         let all = all.try_into().map_err(|_| "there are not four forecasts")?;
-        self.project_forecasts(&Forecasts { all, filled_naively: false }, &line.at);
+        let first = line.fields.get("forecasts").and_then(|forecasts| forecasts.get(0));
+        let filled_naively = first.and_then(|first| first.get("filled_naively")) == Some(&Value::Bool(true));
+        let rationale = line.fields.get("rationale").and_then(Value::as_str).unwrap_or_default();
+        self.file(rationale.to_owned(), &Forecasts { all, filled_naively }, &line.at);
         Ok(())
     }
 

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value, json};
 
 use super::Session;
-use super::trajectory::Durability;
 use crate::database::query::Limits;
 use crate::database::{Cell, Desk, Interrupt, Location, QueryError, Rows, desk_of};
 use crate::notation::json_number;
@@ -63,9 +62,6 @@ impl Session {
 
     /// Records a query that was asked elsewhere.
     pub fn note_query(&mut self, sql: &str, answer: Result<&Rows, &Refusal>, took: Duration) {
-        if self.ended.is_some() {
-            return;
-        }
         let rows = answer.ok();
         let fields = json!({
             "sql": sql,
@@ -74,10 +70,7 @@ impl Session {
             "error": answer.err().map(|refusal| refusal.code),
             "took_ms": (took.as_secs_f64() * 1e6).round() / 1e3,
         });
-        let day = self.world.day;
-        // A query changes nothing; a disk that refuses its line takes nothing away.
-        let _ =
-            self.append("query", day, fields.as_object().cloned().unwrap_or_default(), Durability::Written);
+        self.note("query", fields.as_object().cloned().unwrap_or_default());
     }
 
     fn desk(&mut self) -> Result<&Desk, Refusal> {

@@ -168,6 +168,8 @@ impl Session {
             running_week: WeekFigures::default(),
             notices: Vec::new(),
             this_week: ThisWeek { settings, undo: Vec::new(), done: Vec::new() },
+            journal: Vec::new(),
+            memo_in_memory: String::new(),
             facts_hash: blake3::hash(b""),
             ended: None,
             remarks: Vec::new(),
@@ -250,7 +252,7 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
 }
 
 /// Eight hexadecimal digits that no other run has, as good as certainly.
-fn new_id() -> String {
+pub(super) fn new_id() -> String {
     static COUNT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
     let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     let moment =
@@ -260,7 +262,7 @@ fn new_id() -> String {
 }
 
 /// Fields of the first line: what the manifest says.
-fn start_fields(manifest: &Manifest) -> Map<String, Value> {
+pub(super) fn start_fields(manifest: &Manifest) -> Map<String, Value> {
     let fields = json!({
         "format": manifest.format,
         "version": manifest.version,

@@ -7,11 +7,13 @@
 mod act;
 mod advance;
 mod ask;
+mod branch;
 mod changes;
 mod configuration;
 mod create;
 mod dashboard;
 mod error;
+mod journal;
 mod manifest;
 mod mode;
 mod observe;
@@ -37,6 +39,7 @@ pub use configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
 pub use create::{NewRun, Storage};
 pub use dashboard::DeliveredQuality;
 pub use error::RunError;
+pub use journal::{ForecastScore, JournalEntry};
 pub use manifest::{FORMAT, Manifest, Parent};
 pub use mode::Mode;
 pub use observe::{Observation, WaitingThread};
@@ -116,6 +119,10 @@ pub struct Session {
     notices: Vec<(u32, String)>,
     /// What has been set since the last week.
     this_week: ThisWeek,
+    /// Everything that was done, in order.
+    journal: Vec<JournalEntry>,
+    /// Notes of a run without a folder.
+    memo_in_memory: String,
     /// Chain of the hashes of this week's facts.
     facts_hash: blake3::Hash,
     ended: Option<Ended>,

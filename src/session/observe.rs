@@ -8,6 +8,7 @@ use super::mode::Mode;
 use super::week::{Forecasts, WeekFigures, week_of};
 use super::{Ended, Session};
 use crate::world::day::closing_figures;
+use crate::world::identifiers::Group;
 
 /// The company at a glance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -36,8 +37,12 @@ pub struct Observation {
     pub runway_weeks: Option<f64>,
     /// Active subscriptions of individuals.
     pub subscribers: u32,
+    /// Active companies.
+    pub companies: u32,
     /// Seats of active companies.
     pub seats: u32,
+    /// Groups the company knows, in their fixed order.
+    pub known_groups: Vec<Group>,
     /// How the run ended, if it did.
     pub ended: Option<Ended>,
     /// Score of a run that is over.
@@ -92,7 +97,9 @@ impl Session {
             cash_change: self.cash_change(),
             runway_weeks: self.runway_weeks(),
             subscribers: closing.individual_subscribers,
+            companies: self.companies(),
             seats: closing.enterprise_seats,
+            known_groups: Group::all().filter(|group| self.world.market.is_known(*group)).collect(),
             ended: self.ended,
             score: self.score(),
             last_week: self.weeks.last().copied(),
@@ -163,6 +170,11 @@ impl Session {
         let mut waiting: Vec<WaitingThread> = waiting.collect();
         waiting.sort_by_key(|thread| (thread.days_left, std::cmp::Reverse(thread.seats), thread.thread));
         waiting
+    }
+
+    fn companies(&self) -> u32 {
+        let enterprise = Group::all().filter(|group| group.is_enterprise());
+        enterprise.map(|group| self.world.customers.groups[group].active()).sum()
     }
 
     fn running_research(&self) -> u32 {

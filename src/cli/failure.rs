@@ -1,0 +1,96 @@
+//! Failures of commands and their exit codes (chapter 70 §1).
+
+use std::fmt;
+
+use crate::lab;
+use crate::session::{Refusal, RunError};
+
+/// Why a command did not do what it was asked.
+#[derive(Debug)]
+pub struct Failure {
+    /// Exit code.
+    pub code: u8,
+    message: String,
+}
+
+impl Failure {
+    /// It was tried and failed: 1.
+    pub fn failed(message: impl Into<String>) -> Failure {
+        Failure { code: 1, message: message.into() }
+    }
+
+    /// It was asked for wrongly: 2.
+    pub fn usage(message: impl Into<String>) -> Failure {
+        Failure { code: 2, message: message.into() }
+    }
+
+    /// A run, file or configuration cannot be read: 3.
+    pub fn unreadable(message: impl Into<String>) -> Failure {
+        Failure { code: 3, message: message.into() }
+    }
+
+    /// A run ended in bankruptcy and the caller wanted to know: 4.
+    pub fn bankrupt() -> Failure {
+        Failure { code: 4, message: String::new() }
+    }
+
+    /// Stopped by a signal: 128 + its number.
+    pub fn signal(number: i32) -> Failure {
+        Failure { code: 128u8.saturating_add(number as u8), message: String::new() }
+    }
+
+    /// Nobody reads on; nothing is said.
+    pub fn quiet() -> Failure {
+        Failure { code: 0, message: String::new() }
+    }
+
+    /// An exit code without words of its own.
+    pub fn code_only(code: u8) -> Failure {
+        Failure { code, message: String::new() }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Failure {
+        match error {
+            RunError::NotPossible(_) | RunError::NoScenario { .. } => Failure::usage(error.to_string()),
+            RunError::InUse { .. } => Failure::failed(error.to_string()),
+            _ => Failure::unreadable(error.to_string()),
+        }
+    }
+}
+
+impl From<Refusal> for Failure {
+    fn from(refusal: Refusal) -> Failure {
+        Failure::failed(refusal.to_string())
+    }
+}
+
+impl From<lab::PolicyError> for Failure {
+    fn from(error: lab::PolicyError) -> Failure {
+        Failure::unreadable(error.to_string())
+    }
+}
+
+impl From<lab::GoldenError> for Failure {
+    fn from(error: lab::GoldenError) -> Failure {
+        Failure::unreadable(error.to_string())
+    }
+}
+
+impl From<lab::RunError> for Failure {
+    fn from(error: lab::RunError) -> Failure {
+        match error {
+            lab::RunError::Start(error) => error.into(),
+            refused @ lab::RunError::Refused { .. } => Failure::failed(refused.to_string()),
+        }
+    }
+}

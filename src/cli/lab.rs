@@ -1,0 +1,226 @@
+//! `novamind lab`: comparison with reference figures.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use rayon::prelude::*;
+
+use super::run::{Seeds, parse_seeds, progress_bar, thread_pool};
+use super::{Context, Failure, print};
+use crate::lab::{Collector, Comparison, Figure, Policy, Reference, RunSpec, compare, play, read_reference};
+
+/// Options of `lab`.
+#[derive(Debug, Args)]
+pub struct Options {
+    #[command(subcommand)]
+    command: Laboratory,
+}
+
+#[derive(Debug, Subcommand)]
+enum Laboratory {
+    /// Run the policies of a reference folder over many seeds and compare with its figures.
+    Golden(Golden),
+}
+
+/// Options of `lab golden`.
+#[derive(Debug, Args)]
+struct Golden {
+    /// Folder with one <policy>.csv per policy.
+    folder: PathBuf,
+    /// Folder of policy files [default: the reference folder, else the shipped ones].
+    #[arg(long, value_name = "DIR")]
+    policies: Option<PathBuf>,
+    /// Seeds, at least 24; suspects are run again on as many following ones.
+    #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
+    seeds: Seeds,
+    /// Only this policy; may be repeated.
+    #[arg(long, value_name = "NAME")]
+    only: Vec<String>,
+    /// Figures that are left out, for instance those of mechanics not built yet; a name ending in * stands for all
+    /// that begin with it.
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    without: Vec<String>,
+    /// Seeds played at the same time.
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+    /// Print every compared cell.
+    #[arg(long)]
+    all: bool,
+}
+
+/// Least share of |z| < 3 in one policy.
+const SHARE_OF_POLICY: f64 = 0.95;
+/// Least share of |z| < 3 over all policies.
+const SHARE_OF_ALL: f64 = 0.97;
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    match &options.command {
+        Laboratory::Golden(golden) => run_golden(golden, context),
+    }
+}
+
+struct Verdict {
+    comparison: Comparison,
+    biased: Vec<(String, f64, f64)>,
+}
+
+impl Verdict {
+    fn passes(&self) -> bool {
+        self.comparison.share_below(3.0) >= SHARE_OF_POLICY
+            && self.biased.is_empty()
+            && self.comparison.missing.is_empty()
+    }
+}
+
+fn run_golden(golden: &Golden, context: &Context) -> Result<(), Failure> {
+    let names = policies_of(&golden.folder, &golden.only)?;
+    let pool = thread_pool(golden.jobs)?;
+    let mut verdicts = Vec::new();
+    for name in &names {
+        let mut reference = read_reference(&golden.folder, name)?;
+        reference.cells.retain(|(figure, group, _), _| !left_out(&golden.without, figure, group));
+        let policy = find_policy(golden, context, name)?;
+        let seeds = &golden.seeds;
+        let comparison = compare(&reference, &figures(&policy, &reference, seeds, context, &pool)?);
+        let biased = confirm(&comparison, &policy, &reference, seeds, context, &pool)?;
+        let verdict = Verdict { comparison, biased };
+        print(&describe(&verdict, golden.all))?;
+        verdicts.push(verdict);
+    }
+    conclude(&verdicts, &golden.seeds)
+}
+
+fn left_out(without: &[String], figure: &str, group: &str) -> bool {
+    let full = if group.is_empty() { figure.to_owned() } else { format!("{figure}:{group}") };
+    without.iter().any(|pattern| match pattern.strip_suffix('*') {
+        Some(start) => full.starts_with(start),
+        None => *pattern == figure || *pattern == full,
+    })
+}
+
+fn policies_of(folder: &Path, only: &[String]) -> Result<Vec<String>, Failure> {
+    let entries = std::fs::read_dir(folder)
+        .map_err(|error| Failure::unreadable(format!("{}: {error}", folder.display())))?;
+    let mut names: Vec<String> = entries
+        .flatten()
+        .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(".csv")?.to_owned()))
+        .filter(|name| only.is_empty() || only.contains(name))
+        .collect();
+    names.sort_unstable();
+    if names.is_empty() {
+        return Err(Failure::usage(format!("{} holds no figures of these policies", folder.display())));
+    }
+    Ok(names)
+}
+
+fn find_policy(golden: &Golden, context: &Context, name: &str) -> Result<Policy, Failure> {
+    for folder in [golden.policies.as_ref(), Some(&golden.folder)].into_iter().flatten() {
+        let file = folder.join(format!("{name}.toml"));
+        if file.exists() {
+            return Ok(Policy::find(&file.to_string_lossy(), &context.configuration)?);
+        }
+    }
+    Ok(Policy::find(name, &context.configuration)?)
+}
+
+/// Figures of every seed at the checkpoint days of a reference.
+fn figures(
+    policy: &Policy,
+    reference: &Reference,
+    seeds: &Seeds,
+    context: &Context,
+    pool: &rayon::ThreadPool,
+) -> Result<Vec<Vec<Figure>>, Failure> {
+    let progress = progress_bar(seeds.last - seeds.first + 1, "runs");
+    let until = reference.last_day();
+    let one = |seed: u64| {
+        let spec = RunSpec {
+            days: policy.start.days.or(Some(500)),
+            until: Some(until),
+            surges: Some(policy.start.surges == Some(true)),
+            ..RunSpec::of_seed(seed)
+        };
+        let mut collector = Collector::new(Some(reference.days()));
+        let played = play(policy, &spec, &context.configuration, &mut collector);
+        progress.inc(1);
+        played.map(|_| collector.finish(until)).map_err(Failure::from)
+    };
+    let range: Vec<u64> = (seeds.first..=seeds.last).collect();
+    let all = pool.install(|| range.into_par_iter().with_max_len(1).map(one).collect());
+    progress.finish_and_clear();
+    all
+}
+
+/// Runs the following seeds for figures that look biased: (figure, first median, second median) of those that
+/// are off to the same side again.
+fn confirm(
+    comparison: &Comparison,
+    policy: &Policy,
+    reference: &Reference,
+    seeds: &Seeds,
+    context: &Context,
+    pool: &rayon::ThreadPool,
+) -> Result<Vec<(String, f64, f64)>, Failure> {
+    let suspects = comparison.suspects();
+    if suspects.is_empty() {
+        return Ok(Vec::new());
+    }
+    let count = seeds.last - seeds.first + 1;
+    let following = Seeds { first: seeds.last + 1, last: seeds.last + count };
+    let again = compare(reference, &figures(policy, reference, &following, context, pool)?).suspects();
+    let confirmed = suspects.into_iter().filter_map(|(figure, first)| {
+        let (_, second) = again.iter().find(|(other, second)| *other == figure && second.signum() == first.signum())?;
+        Some((figure, first, *second))
+    });
+    Ok(confirmed.collect())
+}
+
+fn describe(verdict: &Verdict, all: bool) -> String {
+    let comparison = &verdict.comparison;
+    let mut text = format!(
+        "{}  {} cells  |z| < 2: {:.1} %  |z| < 3: {:.1} %  {}\n",
+        comparison.policy,
+        comparison.cells.len(),
+        100.0 * comparison.share_below(2.0),
+        100.0 * comparison.share_below(3.0),
+        if verdict.passes() { "passes" } else { "FAILS" },
+    );
+    let listed: Vec<_> =
+        if all { comparison.cells.iter().collect() } else { comparison.worst(10) };
+    for cell in listed.into_iter().chain(&comparison.shown) {
+        text += &format!("  {cell}\n");
+    }
+    for (figure, first, second) in &verdict.biased {
+        text += &format!("  biased: {figure}, median z {first:.2} and {second:.2} on following seeds\n");
+    }
+    for name in &comparison.missing {
+        text += &format!("  missing: {name}\n");
+    }
+    text
+}
+
+fn conclude(verdicts: &[Verdict], seeds: &Seeds) -> Result<(), Failure> {
+    let cells: usize = verdicts.iter().map(|verdict| verdict.comparison.cells.len()).sum();
+    let below = |bound: f64| {
+        let counts = verdicts.iter().map(|verdict| {
+            verdict.comparison.share_below(bound) * verdict.comparison.cells.len() as f64
+        });
+        counts.sum::<f64>() / cells.max(1) as f64
+    };
+    print(&format!(
+        "all  {cells} cells  |z| < 2: {:.1} %  |z| < 3: {:.1} %  seeds {}..{}\n",
+        100.0 * below(2.0),
+        100.0 * below(3.0),
+        seeds.first,
+        seeds.last
+    ))?;
+    if seeds.last - seeds.first + 1 < 24 {
+        return Err(Failure::usage("a verdict needs at least 24 seeds"));
+    }
+    if verdicts.iter().all(Verdict::passes) && below(3.0) >= SHARE_OF_ALL {
+        Ok(())
+    } else {
+        Err(Failure::failed("the figures differ from the reference"))
+    }
+}

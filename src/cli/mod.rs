@@ -1,0 +1,122 @@
+//! The command line: one file per subcommand (chapter 70 §1).
+
+mod bench;
+mod completions;
+mod failure;
+mod lab;
+mod play;
+mod query;
+mod replay;
+mod run;
+mod runs;
+mod scenario;
+mod tables;
+mod tools;
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+pub use failure::Failure;
+
+use crate::session::Configuration;
+
+/// Run a simulated AI subscription company for 500 days.
+///
+/// Without a command the console opens. Every run is recorded completely and can be replayed to the same state.
+#[derive(Debug, Parser)]
+#[command(name = "novamind", version, max_term_width = 110)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    play: play::Options,
+    /// Folder of the runs [default: the platform's data folder].
+    #[arg(long, global = true, env = "NOVAMIND_RUNS", value_name = "DIR")]
+    runs_dir: Option<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Open the console, or play line by line with --plain.
+    Play(play::Options),
+    /// Play a policy without a person.
+    Run(run::Options),
+    /// List, show, end and delete runs.
+    Runs(runs::Options),
+    /// Simulate a recorded run again and compare every state.
+    Replay(replay::Options),
+    /// Ask the database of a run.
+    Query(query::Options),
+    /// Show the catalogue of tools.
+    Tools(tools::Options),
+    /// Show the tables that can be asked.
+    Tables(tables::Options),
+    /// Show the scenarios and their parameters.
+    Scenario(scenario::Options),
+    /// Compare policies with reference figures.
+    Lab(lab::Options),
+    /// Measure the speed of this machine's simulator.
+    Bench(bench::Options),
+    /// Print a completion script for a shell.
+    Completions(completions::Options),
+}
+
+/// What every command may need.
+pub struct Context {
+    /// Configuration of this person.
+    pub configuration: Configuration,
+    /// Folder of the runs, if one was named or the platform has one.
+    runs: Option<PathBuf>,
+}
+
+impl Context {
+    /// Folder of the runs.
+    ///
+    /// # Errors
+    /// The platform has none and none was named.
+    pub fn runs(&self) -> Result<PathBuf, Failure> {
+        self.runs.clone().ok_or_else(|| {
+            Failure::usage("this system names no folder for data; give one with --runs-dir or NOVAMIND_RUNS")
+        })
+    }
+}
+
+/// Runs a command.
+///
+/// # Errors
+/// What went wrong, with the exit code that says so.
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    let context = Context {
+        configuration: Configuration::of_user(),
+        runs: arguments.runs_dir.or_else(Configuration::runs_folder),
+    };
+    match arguments.command {
+        None => play::run(arguments.play, &context),
+        Some(Command::Play(options)) => play::run(options, &context),
+        Some(Command::Run(options)) => run::run(&options, &context),
+        Some(Command::Runs(options)) => runs::run(&options, &context),
+        Some(Command::Replay(options)) => replay::run(&options, &context),
+        Some(Command::Query(options)) => query::run(&options, &context),
+        Some(Command::Tools(options)) => tools::run(&options),
+        Some(Command::Tables(options)) => tables::run(&options),
+        Some(Command::Scenario(options)) => scenario::run(&options, &context),
+        Some(Command::Lab(options)) => lab::run(&options, &context),
+        Some(Command::Bench(options)) => bench::run(&options, &context),
+        Some(Command::Completions(options)) => completions::run(&options),
+    }
+}
+
+/// Writes to standard output; a reader that has gone away ends the program quietly.
+///
+/// # Errors
+/// Standard output fails.
+pub fn print(text: &str) -> Result<(), Failure> {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::quiet()),
+        Err(error) => Err(Failure::failed(format!("standard output: {error}"))),
+        Ok(()) => Ok(()),
+    }
+}

@@ -1,0 +1,83 @@
+//! `novamind query`: SQL on a run.
+
+use clap::{Args, ValueEnum};
+
+use super::{Context, Failure, print};
+use crate::session::{Access, Cell, Rows, Session, Trajectory, desk_of_file, find_run, rows_as_json};
+
+/// Options of `query`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Run, or `latest`.
+    run: String,
+    /// One read-only statement.
+    sql: String,
+    /// Format of the result.
+    #[arg(long, value_enum, default_value = "table")]
+    format: Format,
+}
+
+/// Format of a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Aligned columns.
+    Table,
+    /// Comma-separated values.
+    Csv,
+    /// One JSON object.
+    Json,
+}
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let folder = find_run(&context.runs()?, &options.run)?;
+    let rows = ask(&folder, &options.sql)?;
+    match options.format {
+        Format::Table => print(&crate::plain::table(&rows)),
+        Format::Csv => print(&as_csv(&rows)?),
+        Format::Json => print(&format!("{}\n", serde_json::Value::Object(rows_as_json(&rows)))),
+    }
+}
+
+/// Asks the run's database if it is complete, otherwise one made from the trajectory.
+fn ask(folder: &std::path::Path, sql: &str) -> Result<Rows, Failure> {
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
+    // Queries and views do not move the database on; only lines that change the company do.
+    let moves = |kind: &str| ["start", "call", "week", "step", "end"].contains(&kind);
+    let last = trajectory.lines.iter().rev().find(|line| {
+        moves(&line.kind) && (line.kind != "call" || changes_rows(&line.fields))
+    });
+    if let (Ok((desk, position)), Some(last)) = (desk_of_file(folder), last)
+        && position.seq >= last.seq
+        && trajectory.lines.get(position.seq as usize).is_some_and(|line| line.hash == position.line_hash)
+    {
+        let limits = crate::database::query::Limits { rows: 5000, time: std::time::Duration::from_secs(120) };
+        return desk.ask(sql, limits).map_err(|error| crate::session::Refusal::from(error).into());
+    }
+    let mut session = Session::open(folder, Access::Read, true)?;
+    Ok(session.query(sql)?)
+}
+
+fn changes_rows(fields: &serde_json::Map<String, serde_json::Value>) -> bool {
+    let reads = |name: &str| {
+        crate::tools::find(name).is_some_and(|tool| tool.spec().kind == crate::tools::Kind::Read)
+    };
+    let tool = fields.get("tool").and_then(serde_json::Value::as_str).unwrap_or_default();
+    fields.get("ok") == Some(&serde_json::Value::Bool(true)) && !reads(tool)
+}
+
+/// A result as comma-separated values with a header.
+pub fn as_csv(rows: &Rows) -> Result<String, Failure> {
+    let wrong = |error: String| Failure::failed(format!("the result cannot be written as CSV: {error}"));
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&rows.columns).map_err(|error| wrong(error.to_string()))?;
+    for row in &rows.rows {
+        let cells = row.iter().map(|cell| match cell {
+            Cell::Null => String::new(),
+            other => crate::plain::cell_text(other),
+        });
+        writer.write_record(cells).map_err(|error| wrong(error.to_string()))?;
+    }
+    let bytes = writer.into_inner().map_err(|error| wrong(error.to_string()))?;
+    String::from_utf8(bytes).map_err(|error| wrong(error.to_string()))
+}

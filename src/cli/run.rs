@@ -1,0 +1,233 @@
+//! `novamind run`: a policy over one or many seeds.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::PathBuf;
+use std::sync::mpsc::channel;
+
+use clap::{Args, ValueEnum};
+use rayon::prelude::*;
+
+use super::{Context, Failure, print};
+use crate::lab::{Collector, Figure, Outcome, Policy, RunEnd, RunSpec, play};
+
+/// Options of `run`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Name of a policy, or path of a policy file.
+    #[arg(long, value_name = "NAME|FILE")]
+    policy: String,
+    /// Seed, or a range with both ends: 1..24.
+    #[arg(long, default_value = "42", value_name = "N|A..B", value_parser = parse_seeds)]
+    seed: Seeds,
+    /// Last day of the run; enters the mechanics [default: as policy or scenario say, else 500].
+    #[arg(long, value_name = "N")]
+    days: Option<u32>,
+    /// Stop after this day; the horizon stays.
+    #[arg(long, value_name = "N")]
+    until: Option<u32>,
+    /// Demand surges [default: as policy or scenario say].
+    #[arg(long, value_enum)]
+    surges: Option<Switch>,
+    /// Starting cash in dollars.
+    #[arg(long, value_name = "X")]
+    cash: Option<f64>,
+    /// Scenario.
+    #[arg(long, value_name = "NAME")]
+    scenario: Option<String>,
+    /// Set a parameter; may be repeated.
+    #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
+    set: Vec<(String, String)>,
+    /// Seeds played at the same time [default: as many as there are processors].
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+    /// Write figures of every day as CSV.
+    #[arg(long, value_name = "FILE.csv")]
+    metrics: Option<PathBuf>,
+    /// Days whose figures are written [default: all].
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',', requires = "metrics")]
+    metrics_days: Option<Vec<u32>>,
+    /// Keep the runs with their databases.
+    #[arg(long)]
+    save: bool,
+    /// Exit with code 4 if a run ends in bankruptcy.
+    #[arg(long)]
+    fail_on_bankruptcy: bool,
+    /// One JSON object per seed.
+    #[arg(long)]
+    json: bool,
+}
+
+/// On or off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Switch {
+    /// On.
+    On,
+    /// Off.
+    Off,
+}
+
+/// A seed or a range of seeds, both ends included.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Seeds {
+    /// First seed.
+    pub first: u64,
+    /// Last seed.
+    pub last: u64,
+}
+
+/// Reads `7` or `1..24`.
+pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
+    let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is no seed"));
+    let seeds = match text.split_once("..") {
+        Some((first, last)) => Seeds { first: number(first)?, last: number(last)? },
+        None => number(text).map(|seed| Seeds { first: seed, last: seed })?,
+    };
+    if seeds.first > seeds.last {
+        return Err(format!("{}..{} holds no seed; write the smaller end first", seeds.first, seeds.last));
+    }
+    Ok(seeds)
+}
+
+/// Reads `table.key=value`.
+pub fn parse_override(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
+        _ => Err("a parameter is written table.key=value".to_owned()),
+    }
+}
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let policy = Policy::find(&options.policy, &context.configuration)?;
+    let save = if options.save { Some(context.runs()?) } else { None };
+    let spec = RunSpec {
+        seed: 0,
+        days: options.days,
+        until: options.until,
+        surges: options.surges.map(|switch| switch == Switch::On),
+        cash: options.cash,
+        scenario: options.scenario.clone(),
+        overrides: options.set.clone(),
+        projection: save.is_some(),
+        save,
+    };
+    let mut metrics = options.metrics.as_ref().map(open_metrics).transpose()?;
+    let collector = || match &metrics {
+        Some(_) => Collector::new(options.metrics_days.clone()),
+        None => Collector::idle(),
+    };
+    let seeds: Vec<u64> = (options.seed.first..=options.seed.last).collect();
+    let pool = thread_pool(options.jobs)?;
+    let progress = progress_bar(seeds.len() as u64, "runs");
+    let (done, results) = channel();
+    let mut failure: Option<Failure> = None;
+    let mut bankrupt = false;
+    std::thread::scope(|scope| {
+        let (policy, spec, context) = (&policy, &spec, &context);
+        let collectors: Vec<Collector> = seeds.iter().map(|_| collector()).collect();
+        scope.spawn(move || {
+            pool.install(|| {
+                let jobs: Vec<(u64, Collector)> = seeds.into_iter().zip(collectors).collect();
+                jobs.into_par_iter().with_max_len(1).for_each_with(done, |done, (seed, mut collector)| {
+                    let own = RunSpec { seed, ..spec.clone() };
+                    let outcome = play(policy, &own, &context.configuration, &mut collector);
+                    // Nobody listens any more once an earlier seed has failed.
+                    let _ = done.send((seed, outcome, collector));
+                });
+            });
+        });
+        let mut waiting = BTreeMap::new();
+        let mut next = options.seed.first;
+        for (seed, outcome, collector) in results {
+            progress.inc(1);
+            waiting.insert(seed, (outcome, collector));
+            while let Some((outcome, collector)) = waiting.remove(&next) {
+                next += 1;
+                let written = outcome.map_err(Failure::from).and_then(|outcome| {
+                    bankrupt |= outcome.ended == RunEnd::Bankruptcy;
+                    if let Some(file) = &mut metrics {
+                        let until = options.until.unwrap_or(outcome.days).min(outcome.days);
+                        write_figures(file, outcome.seed, &collector.finish(until))?;
+                    }
+                    progress.suspend(|| print(&summary(&outcome, options.json)))
+                });
+                if let Err(problem) = written {
+                    failure.get_or_insert(problem);
+                }
+            }
+            if failure.is_some() {
+                break;
+            }
+        }
+    });
+    progress.finish_and_clear();
+    if let Some(mut file) = metrics {
+        file.flush().map_err(|error| Failure::failed(format!("the figures cannot be written: {error}")))?;
+    }
+    match failure {
+        Some(failure) => Err(failure),
+        None if bankrupt && options.fail_on_bankruptcy => Err(Failure::bankrupt()),
+        None => Ok(()),
+    }
+}
+
+fn summary(outcome: &Outcome, json: bool) -> String {
+    if json {
+        serde_json::to_string(outcome).expect("an outcome holds plain values") + "\n"
+    } else {
+        format!("{outcome}\n")
+    }
+}
+
+fn open_metrics(path: &PathBuf) -> Result<BufWriter<File>, Failure> {
+    let failed = |error: std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
+    let mut file = BufWriter::new(File::create(path).map_err(failed)?);
+    writeln!(file, "seed,day,figure,group,value").map_err(failed)?;
+    Ok(file)
+}
+
+fn write_figures(file: &mut BufWriter<File>, seed: u64, figures: &[Figure]) -> Result<(), Failure> {
+    for Figure { day, figure, group, value } in figures {
+        writeln!(file, "{seed},{day},{figure},{group},{value}")
+            .map_err(|error| Failure::failed(format!("the figures cannot be written: {error}")))?;
+    }
+    Ok(())
+}
+
+/// A pool of worker threads.
+pub fn thread_pool(jobs: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+    if jobs == Some(0) {
+        return Err(Failure::usage("--jobs must be at least 1"));
+    }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(jobs.unwrap_or(0))
+        .build()
+        .map_err(|error| Failure::failed(format!("no threads: {error}")))
+}
+
+/// A bar on standard error if that is a terminal; it appears only once work takes longer than half a second.
+pub fn progress_bar(length: u64, what: &'static str) -> indicatif::ProgressBar {
+    use std::io::IsTerminal;
+    if length < 2 || !std::io::stderr().is_terminal() {
+        return indicatif::ProgressBar::hidden();
+    }
+    let style = "{bar:40} {pos} of {len} {msg}  {elapsed}, about {eta} left";
+    let style = indicatif::ProgressStyle::with_template(style).unwrap_or_else(|_| indicatif::ProgressStyle::default_bar());
+    indicatif::ProgressBar::new(length).with_style(style).with_message(what)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seeds_are_one_or_a_range_with_both_ends() {
+        assert_eq!(parse_seeds("7"), Ok(Seeds { first: 7, last: 7 }));
+        assert_eq!(parse_seeds("1..24"), Ok(Seeds { first: 1, last: 24 }));
+        assert!(parse_seeds("5..4").is_err() && parse_seeds("x").is_err() && parse_seeds("1..").is_err());
+        assert_eq!(parse_override("a.b = 3"), Ok(("a.b".to_owned(), "3".to_owned())));
+        assert!(parse_override("a.b").is_err());
+    }
+}

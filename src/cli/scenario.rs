@@ -1,0 +1,53 @@
+//! `novamind scenario`: the scenarios and their parameters.
+
+use clap::{Args, Subcommand};
+
+use super::{Context, Failure, print};
+
+/// Options of `scenario`.
+#[derive(Debug, Args)]
+pub struct Options {
+    #[command(subcommand)]
+    command: Choice,
+}
+
+#[derive(Debug, Subcommand)]
+enum Choice {
+    /// List all scenarios.
+    List,
+    /// Show the effective parameters of a scenario as TOML.
+    Show {
+        /// Scenario.
+        name: String,
+    },
+}
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let configuration = &context.configuration;
+    match &options.command {
+        Choice::List => {
+            let mut text = String::new();
+            for name in configuration.scenarios() {
+                let scenario = configuration.scenario(&name)?;
+                text += &format!("{name:<24}  {}\n", scenario.description);
+            }
+            print(&text)
+        }
+        Choice::Show { name } => {
+            let scenario = configuration.scenario(name)?;
+            let params = configuration.parameters(&scenario, &[], true)?;
+            let table = toml::to_string(&params)
+                .map_err(|error| Failure::failed(format!("the parameters cannot be written: {error}")))?;
+            let days = scenario.days.unwrap_or(params.run.total_days);
+            let cash = scenario.cash.unwrap_or(params.initial.initial_cash);
+            print(&format!(
+                "# {}: {}\n# {days} days, {} at the start; digest {}\n\n{table}",
+                scenario.title,
+                scenario.description,
+                crate::notation::dollars(cash),
+                params.digest()
+            ))
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! `novamind tables`: the visible schema.
+
+use clap::Args;
+
+use super::{Failure, print};
+use crate::database::{table, tables};
+
+/// Options of `tables`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Show the columns of this table.
+    name: Option<String>,
+    /// As JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let as_json = |value: Result<String, serde_json::Error>| value.unwrap_or_default() + "\n";
+    let text = match (&options.name, options.json) {
+        (None, true) => as_json(serde_json::to_string_pretty(tables())),
+        (None, false) => {
+            let width = tables().iter().map(|table| table.name.len()).max().unwrap_or(0);
+            tables().iter().map(|table| format!("{:<width$}  {}\n", table.name, table.description)).collect()
+        }
+        (Some(name), json) => {
+            let table = table(name).ok_or_else(|| {
+                let near = crate::notation::nearest(name, tables().iter().map(|table| table.name.as_str()));
+                Failure::usage(format!("there is no table {name}; near it: {}", near.join(", ")))
+            })?;
+            if json { as_json(serde_json::to_string_pretty(table)) } else { table.describe() }
+        }
+    };
+    print(&text)
+}

@@ -1,0 +1,35 @@
+//! `novamind tools`: the catalogue.
+
+use clap::Args;
+use serde_json::Value;
+
+use super::{Failure, print};
+use crate::tools::{CATALOGUE, catalogue, describe, find};
+
+/// Options of `tools`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Show everything about this tool.
+    name: Option<String>,
+    /// As JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let text = match (&options.name, options.json) {
+        (None, false) => describe::overview(),
+        (None, true) => {
+            let all: Value = CATALOGUE.iter().map(|tool| describe::as_json(*tool)).collect();
+            format!("{all:#}\n")
+        }
+        (Some(name), json) => {
+            let tool = find(name).ok_or_else(|| {
+                Failure::usage(format!("there is no tool {name}; near it: {}", catalogue::nearest(name).join(", ")))
+            })?;
+            if json { format!("{:#}\n", describe::as_json(tool)) } else { describe::manual(tool.spec()) }
+        }
+    };
+    print(&text)
+}

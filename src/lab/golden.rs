@@ -1,0 +1,295 @@
+//! Comparison with reference figures (chapter 70 §4).
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use super::metrics::Figure;
+use super::statistics::{Sample, median};
+
+/// A cell: figure, group, checkpoint day.
+type Cell = (String, String, u32);
+
+/// Figures of the released simulator under one policy.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Reference {
+    /// Name of the policy.
+    pub policy: String,
+    /// Mean, spread and number of seeds by cell.
+    pub cells: BTreeMap<Cell, Sample>,
+    /// Single values, where the reference has them: for figures that are compared as logarithms.
+    per_seed: BTreeMap<Cell, Vec<f64>>,
+}
+
+/// Why reference figures cannot be read.
+#[derive(Debug)]
+pub struct GoldenError {
+    path: PathBuf,
+    problem: String,
+}
+
+impl fmt::Display for GoldenError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}: {}", self.path.display(), self.problem)
+    }
+}
+
+impl std::error::Error for GoldenError {}
+
+/// Figures that grow by compounding and are compared as ln(1 + x).
+const COMPOUNDING: [&str; 17] = [
+    "subs",
+    "subs_total",
+    "individual_subs",
+    "plan_subs",
+    "leads_cum",
+    "leads_expected_cum",
+    "network_leads_cum",
+    "new_leads_cum",
+    "new_leads_m30",
+    "new_individual_leads_cum",
+    "new_subs_cum",
+    "new_individual_subscribers_cum",
+    "total_usage_cum",
+    "total_usage_m30",
+    "payments_received_cum",
+    "mrr",
+    "lost_leads_cum",
+];
+
+/// Shown and kept out of the verdict: the mood of churned authors differs by design.
+const SHOWN_ONLY: [&str; 1] = ["posts_customer_cum"];
+
+/// Cells of fewer seeds say too little.
+const FEWEST_SEEDS: usize = 5;
+
+impl Reference {
+    /// Last checkpoint day.
+    pub fn last_day(&self) -> u32 {
+        self.cells.keys().map(|(_, _, day)| *day).max().unwrap_or(0)
+    }
+
+    /// Checkpoint days.
+    pub fn days(&self) -> Vec<u32> {
+        let days: BTreeSet<u32> = self.cells.keys().map(|(_, _, day)| *day).collect();
+        days.into_iter().collect()
+    }
+}
+
+/// Reads `<policy>.csv` of a reference folder, and `per_seed/<policy>.csv` if it is there.
+///
+/// # Errors
+/// The file is missing or no table of figures.
+pub fn read_reference(folder: &Path, policy: &str) -> Result<Reference, GoldenError> {
+    let path = folder.join(format!("{policy}.csv"));
+    let mut reference = Reference { policy: policy.to_owned(), ..Reference::default() };
+    for row in read_table(&path, &["figure", "group", "day", "n_seeds", "mean", "std"])? {
+        let [figure, group, day, seeds, mean, std] = row;
+        let number = |text: &str| text.parse::<f64>().ok();
+        let parsed = (day.parse().ok(), seeds.parse().ok(), number(&mean), number(&std).or(Some(0.0)));
+        let (Some(day), Some(count), Some(mean), Some(std)) = parsed else {
+            return Err(GoldenError {
+                path,
+                problem: format!("{figure} {group} {day} is no row of figures"),
+            });
+        };
+        reference.cells.insert((figure, group, day), Sample { count, mean, std });
+    }
+    let path = folder.join("per_seed").join(format!("{policy}.csv"));
+    if path.exists() {
+        for row in read_table(&path, &["figure", "group", "day", "value"])? {
+            let [figure, group, day, value] = row;
+            if let (Ok(day), Ok(value)) = (day.parse(), value.parse()) {
+                reference.per_seed.entry((figure, group, day)).or_default().push(value);
+            }
+        }
+    }
+    Ok(reference)
+}
+
+fn read_table<const WIDTH: usize>(
+    path: &Path,
+    columns: &[&str; WIDTH],
+) -> Result<Vec<[String; WIDTH]>, GoldenError> {
+    let wrong = |problem: String| GoldenError { path: path.to_owned(), problem };
+    let mut reader = csv::Reader::from_path(path).map_err(|error| wrong(error.to_string()))?;
+    let headers = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
+    let mut places = [0; WIDTH];
+    for (place, column) in places.iter_mut().zip(columns) {
+        let found = headers.iter().position(|header| header == *column);
+        *place = found.ok_or_else(|| wrong(format!("there is no column {column}")))?;
+    }
+    let rows = reader.records().map(|record| {
+        let record = record.map_err(|error| wrong(error.to_string()))?;
+        Ok(places.map(|place| record.get(place).unwrap_or_default().to_owned()))
+    });
+    rows.collect()
+}
+
+/// One compared cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparedCell {
+    /// Figure.
+    pub figure: String,
+    /// Group.
+    pub group: String,
+    /// Checkpoint day.
+    pub day: u32,
+    /// The reference.
+    pub reference: Sample,
+    /// Ours.
+    pub own: Sample,
+    /// Difference of the means in standard errors.
+    pub z: f64,
+}
+
+/// The comparison of one policy.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// Policy.
+    pub policy: String,
+    /// Cells that count.
+    pub cells: Vec<ComparedCell>,
+    /// Cells that are only shown.
+    pub shown: Vec<ComparedCell>,
+    /// Figures of the reference that ours lacks.
+    pub missing: Vec<String>,
+}
+
+/// Compares our runs, one list of figures per seed, with a reference.
+pub fn compare(reference: &Reference, runs: &[Vec<Figure>]) -> Comparison {
+    let mut own: BTreeMap<(&str, &str, u32), Vec<f64>> = BTreeMap::new();
+    for figure in runs.iter().flatten() {
+        own.entry((figure.figure, figure.group, figure.day)).or_default().push(figure.value);
+    }
+    let mut comparison =
+        Comparison { policy: reference.policy.clone(), cells: vec![], shown: vec![], missing: vec![] };
+    let mut missing = BTreeSet::new();
+    let countable = reference.cells.iter().filter(|(_, sample)| sample.count >= FEWEST_SEEDS);
+    for (cell @ (figure, group, day), sample) in countable {
+        let Some(values) = own.get(&(figure.as_str(), group.as_str(), *day)) else {
+            let known = own.keys().any(|(own, split, _)| own == figure && split == group);
+            if !known {
+                missing.insert(if group.is_empty() { figure.clone() } else { format!("{figure} {group}") });
+            }
+            continue;
+        };
+        let logarithms =
+            COMPOUNDING.contains(&figure.as_str()).then(|| reference.per_seed.get(cell)).flatten();
+        let (theirs, ours) = match logarithms {
+            Some(singles) => (Sample::of(&logged(singles)), Sample::of(&logged(values))),
+            None => (*sample, Sample::of(values)),
+        };
+        let compared = ComparedCell {
+            figure: figure.clone(),
+            group: group.clone(),
+            day: *day,
+            reference: *sample,
+            own: Sample::of(values),
+            z: z_score(&theirs, &ours),
+        };
+        if SHOWN_ONLY.contains(&figure.as_str()) {
+            comparison.shown.push(compared);
+        } else {
+            comparison.cells.push(compared);
+        }
+    }
+    comparison.missing = missing.into_iter().collect();
+    comparison
+}
+
+fn logged(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|value| libm::log1p(value.max(0.0))).collect()
+}
+
+/// Difference of two means in standard errors: 0 where they agree to a millionth, 99 where neither varies.
+fn z_score(reference: &Sample, own: &Sample) -> f64 {
+    let difference = own.mean - reference.mean;
+    if difference.abs() < 1e-9 + 1e-6 * reference.mean.abs() {
+        return 0.0;
+    }
+    let variance = |sample: &Sample| sample.std * sample.std / sample.count.max(1) as f64;
+    let error = (variance(reference) + variance(own)).sqrt();
+    if error == 0.0 { 99.0f64.copysign(difference) } else { difference / error }
+}
+
+impl Comparison {
+    /// Share of cells with |z| below a bound.
+    pub fn share_below(&self, bound: f64) -> f64 {
+        let below = self.cells.iter().filter(|cell| cell.z.abs() < bound).count();
+        below as f64 / self.cells.len().max(1) as f64
+    }
+
+    /// Figures with at least five cells whose |median of z| is above 3.5, with that median.
+    pub fn suspects(&self) -> Vec<(String, f64)> {
+        let mut by_figure: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+        self.cells.iter().for_each(|cell| by_figure.entry(&cell.figure).or_default().push(cell.z));
+        by_figure
+            .into_iter()
+            .filter(|(_, scores)| scores.len() >= 5)
+            .filter_map(|(figure, scores)| Some((figure.to_owned(), median(&scores)?)))
+            .filter(|(_, middle)| middle.abs() > 3.5)
+            .collect()
+    }
+
+    /// The cells that differ most.
+    pub fn worst(&self, count: usize) -> Vec<&ComparedCell> {
+        let mut cells: Vec<&ComparedCell> = self.cells.iter().collect();
+        cells.sort_by(|left, right| right.z.abs().total_cmp(&left.z.abs()));
+        cells.truncate(count);
+        cells
+    }
+}
+
+impl fmt::Display for ComparedCell {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let error = self.reference.std / (self.reference.count.max(1) as f64).sqrt();
+        write!(
+            formatter,
+            "{:<32} {:<18} day {:>3}  {:>16.6} ± {:<14.6} {:>16.6}  z {:>7.2}",
+            self.figure, self.group, self.day, self.reference.mean, error, self.own.mean, self.z
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(mean: f64, std: f64, count: usize) -> Sample {
+        Sample { count, mean, std }
+    }
+
+    #[test]
+    fn scores_are_differences_in_standard_errors() {
+        assert_eq!(z_score(&sample(10.0, 2.0, 4), &sample(12.0, 0.0, 24)), 2.0);
+        assert_eq!(z_score(&sample(10.0, 0.0, 4), &sample(10.000001, 0.0, 4)), 0.0);
+        assert_eq!(z_score(&sample(10.0, 0.0, 4), &sample(9.0, 0.0, 4)), -99.0);
+    }
+
+    #[test]
+    fn a_figure_that_is_off_everywhere_is_suspect_and_a_missing_one_is_named() {
+        let days = [30, 60, 90, 120, 150];
+        let mut reference = Reference { policy: "x".to_owned(), ..Reference::default() };
+        for day in days {
+            reference.cells.insert(("cash".to_owned(), String::new(), day), sample(100.0, 1.0, 8));
+            reference.cells.insert(("mrr".to_owned(), String::new(), day), sample(5.0, 1.0, 8));
+            reference.cells.insert(("pmi".to_owned(), String::new(), day), sample(5.0, 1.0, 4));
+            reference.cells.insert(("subs".to_owned(), "S1".to_owned(), day), sample(5.0, 1.0, 8));
+        }
+        let run = |shift: f64| -> Vec<Figure> {
+            days.iter()
+                .flat_map(|&day| {
+                    let figure = |figure, value| Figure { day, figure, group: "", value };
+                    [figure("cash", 103.0 + shift), figure("mrr", 5.0 + shift)]
+                })
+                .collect()
+        };
+        let comparison = compare(&reference, &[run(-0.5), run(0.5), run(0.0)]);
+        assert_eq!(comparison.cells.len(), 10);
+        assert_eq!(comparison.suspects().iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["cash"]);
+        assert_eq!(comparison.missing, ["subs S1"]);
+        assert_eq!(comparison.share_below(3.0), 0.5);
+        assert_eq!(comparison.worst(1)[0].figure, "cash");
+    }
+}

@@ -1,0 +1,18 @@
+//! Runs without a person: policies, figures over many seeds, comparison with reference figures.
+//!
+//! A policy acts on what a player can see, except for the channel choice of the paper's baseline, which reads
+//! the starting yields from the parameters. Figures include hidden state, so policy runs are debug runs.
+
+mod golden;
+mod metrics;
+mod policy;
+mod routine;
+mod runner;
+mod statistics;
+mod symbols;
+
+pub use golden::{Comparison, GoldenError, Reference, compare, read_reference};
+pub use metrics::{Collector, Figure};
+pub use policy::{Policy, PolicyError, shipped_policies};
+pub use runner::{Outcome, RunEnd, RunError, RunSpec, play};
+pub use statistics::{Sample, median};

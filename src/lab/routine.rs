@@ -1,0 +1,106 @@
+//! The weekly routine of the paper's rule-based baseline (chapter 70 §3).
+
+use serde_json::{Map, Value, json};
+
+use super::policy::{CapacityRule, OperationsRule, RuleBased, Target};
+use crate::session::{Observation, Session};
+use crate::world::identifiers::{Channel, Group, Plan};
+use crate::world::params::Params;
+
+/// Ads wait for this day.
+const ADS_FROM_DAY: u32 = 20;
+/// The second target group waits for this day.
+const SECOND_GROUP_FROM_DAY: u32 = 30;
+/// Share of capacity that usage should take.
+const UTILISATION: f64 = 0.8;
+
+/// The calls of the routine on a decision day, in their order.
+pub fn calls(rules: &RuleBased, session: &Session) -> Vec<(&'static str, Value)> {
+    let seen = session.observe();
+    let on = seen.cash > rules.cash_floor;
+    let (prices, tiers, quotas) = rules.price_book.book();
+    let mut calls = vec![
+        ("set_prices", per_plan(|plan| json!(prices.of(plan)))),
+        ("set_model_tiers", per_plan(|plan| json!(tiers.of(plan)))),
+        ("set_usage_quotas", per_plan(|plan| json!(quotas.of(plan)))),
+        ("set_daily_spend", daily_spend(rules, &seen, on)),
+    ];
+    if rules.target != Target::None {
+        calls.extend(targeted(rules, &seen, on, session.params()));
+    }
+    if rules.capacity == CapacityRule::Utilisation {
+        calls.push(("set_capacity_tier", json!({ "tier": capacity_tier(&seen, session) })));
+    }
+    calls
+}
+
+fn per_plan(value: impl Fn(Plan) -> Value) -> Value {
+    Plan::ALL.into_iter().map(|plan| (plan.id().to_owned(), value(plan))).collect()
+}
+
+fn daily_spend(rules: &RuleBased, seen: &Observation, on: bool) -> Value {
+    let operations = match rules.operations {
+        OperationsRule::Named(_) => (0.05 * f64::from(seen.subscribers + seen.companies)).max(100.0),
+        OperationsRule::Fixed(amount) => amount,
+    };
+    json!({ "operations": operations, "development": if on { rules.global_development } else { 0.0 } })
+}
+
+fn targeted(rules: &RuleBased, seen: &Observation, on: bool, params: &Params) -> [(&'static str, Value); 2] {
+    let (s1, s3) = rules.spend.budgets();
+    let mut targets = vec![("S1", s1)];
+    if rules.target == Target::S1ThenS3 && seen.day >= SECOND_GROUP_FROM_DAY {
+        targets.push(("S3", s3));
+    }
+    let (mut development, mut ads) = (Map::new(), Map::new());
+    for (id, budget) in targets {
+        if on {
+            development.insert(id.to_owned(), json!(budget.development));
+        }
+        if on && seen.day >= ADS_FROM_DAY {
+            let channel = best_starting_channel(Group::parse(id).expect("S1 and S3 exist"), params);
+            let groups = ads.entry(channel.id()).or_insert_with(|| Value::Object(Map::new()));
+            if let Value::Object(groups) = groups {
+                groups.insert(id.to_owned(), json!(budget.ads));
+            }
+        }
+    }
+    [
+        ("set_targeted_dev_spend", json!({ "targeted_spend": development })),
+        ("set_targeted_ad_spend", json!({ "targeted_spend": ads })),
+    ]
+}
+
+/// The channel with the highest starting yield for a group; the first in channel order on a tie.
+fn best_starting_channel(group: Group, params: &Params) -> Channel {
+    let yields = params.starting_yields();
+    let better =
+        |best: Channel, next: Channel| if yields[next][group] > yields[best][group] { next } else { best };
+    Channel::ALL.into_iter().reduce(better).expect("there are five channels")
+}
+
+/// One tier towards the smallest that holds the mean usage of the week at 80 %.
+fn capacity_tier(seen: &Observation, session: &Session) -> u8 {
+    let mean = seen.last_week.map_or(0.0, |week| week.usage as f64 / f64::from(week.days_run.max(1)));
+    let need = if seen.day == 0 { 0.0 } else { mean / UTILISATION };
+    let tiers = &session.params().capacity_tier;
+    let target = tiers.iter().find(|tier| f64::from(tier.capacity_units) >= need).map_or(7, |tier| tier.tier);
+    let now = session.current("set_capacity_tier").get("tier").and_then(Value::as_u64).unwrap_or(0) as u8;
+    match now.cmp(&target) {
+        std::cmp::Ordering::Less => now + 1,
+        std::cmp::Ordering::Equal => now,
+        std::cmp::Ordering::Greater => now - 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_starting_channels_are_those_of_chapter_70() {
+        let params = Params::shipped();
+        let best = |id| best_starting_channel(Group::parse(id).expect("a group"), &params).id();
+        assert_eq!((best("S1"), best("S3")), ("content_marketing", "referral_program"));
+    }
+}

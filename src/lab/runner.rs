@@ -1,0 +1,259 @@
+//! Playing a policy.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::metrics::Collector;
+use super::policy::Policy;
+use super::routine;
+use super::symbols::Symbols;
+use crate::session::{
+    Configuration, Ended, Mode, NewRun, Refusal, RunError as SessionError, Session, Storage, Via,
+};
+
+/// What to run.
+#[derive(Debug, Clone)]
+pub struct RunSpec {
+    /// Seed of all chance.
+    pub seed: u64,
+    /// Last day of the run; enters the mechanics.
+    pub days: Option<u32>,
+    /// Stop after this day.
+    pub until: Option<u32>,
+    /// Demand surges; none: as policy or scenario says.
+    pub surges: Option<bool>,
+    /// Cash on day 0, dollars.
+    pub cash: Option<f64>,
+    /// Scenario.
+    pub scenario: Option<String>,
+    /// Single parameters, `(table.key, value)`.
+    pub overrides: Vec<(String, String)>,
+    /// Folder to keep the run in.
+    pub save: Option<PathBuf>,
+    /// Whether the database of a kept run is made too.
+    pub projection: bool,
+}
+
+impl RunSpec {
+    /// A run of a seed as the policy says.
+    pub fn of_seed(seed: u64) -> RunSpec {
+        RunSpec {
+            seed,
+            days: None,
+            until: None,
+            surges: None,
+            cash: None,
+            scenario: None,
+            overrides: Vec::new(),
+            save: None,
+            projection: false,
+        }
+    }
+}
+
+/// How a run of a policy ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RunEnd {
+    /// On its last day.
+    Horizon,
+    /// On the day it was to stop.
+    Until,
+    /// Without cash.
+    Bankruptcy,
+}
+
+/// What became of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outcome {
+    /// Seed.
+    pub seed: u64,
+    /// Policy.
+    pub policy: String,
+    /// Last day of the run.
+    pub days: u32,
+    /// Last simulated day.
+    pub day: u32,
+    /// Cash, dollars.
+    pub cash: f64,
+    /// Active subscriptions of individuals.
+    pub subscribers: u32,
+    /// Seats of active companies.
+    pub seats: u32,
+    /// How it ended.
+    pub ended: RunEnd,
+    /// Hash of the last state.
+    pub state_hash: String,
+    /// Name of the kept run.
+    pub run: Option<String>,
+    /// Time it took, seconds.
+    pub seconds: f64,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            formatter,
+            "seed {}  day {}  cash {}  subscribers {}  seats {}  ",
+            self.seed,
+            self.day,
+            crate::notation::dollars(self.cash),
+            crate::notation::grouped(f64::from(self.subscribers), 0),
+            crate::notation::grouped(f64::from(self.seats), 0),
+        )?;
+        match self.ended {
+            RunEnd::Bankruptcy => write!(formatter, "bankrupt on day {}", self.day),
+            RunEnd::Horizon | RunEnd::Until => formatter.write_str("alive"),
+        }
+    }
+}
+
+/// Why a run of a policy stopped.
+#[derive(Debug)]
+pub enum RunError {
+    /// The run could not begin.
+    Start(SessionError),
+    /// A tool refused a call.
+    Refused {
+        /// Seed.
+        seed: u64,
+        /// Decision day.
+        day: u32,
+        /// Tool.
+        tool: String,
+        /// What it said.
+        refusal: Refusal,
+    },
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RunError::Start(error) => error.fmt(formatter),
+            RunError::Refused { seed, day, tool, refusal } => {
+                write!(formatter, "seed {seed}, day {day}: {tool} was refused: {refusal}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for RunError {}
+
+/// Plays a policy to its end; `collector` sees every day.
+///
+/// # Errors
+/// The run cannot begin, or a tool refuses a call that may not fail.
+pub fn play(
+    policy: &Policy,
+    spec: &RunSpec,
+    configuration: &Configuration,
+    collector: &mut Collector,
+) -> Result<Outcome, RunError> {
+    let started = Instant::now();
+    let mut session = Session::create(new_run(policy, spec), configuration).map_err(RunError::Start)?;
+    let until = spec.until.unwrap_or(u32::MAX);
+    while session.ended().is_none() && session.day() < until {
+        decide(policy, spec.seed, &mut session)?;
+        advance(policy, spec.seed, until, &mut session, collector)?;
+    }
+    session.save().map_err(RunError::Start)?;
+    Ok(outcome(policy, spec.seed, &session, started.elapsed()))
+}
+
+fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
+    let mut overrides = spec.overrides.clone();
+    match spec.surges.or(policy.start.surges) {
+        Some(false) => overrides.push(("demand_surge.probability".to_owned(), "0.0".to_owned())),
+        Some(true) | None => {}
+    }
+    let standard = NewRun::default();
+    NewRun {
+        seed: Some(spec.seed),
+        days: spec.days.or(policy.start.days),
+        cash: spec.cash.or(policy.start.cash),
+        scenario: spec.scenario.clone().or(policy.start.scenario.clone()).unwrap_or(standard.scenario),
+        overrides,
+        mode: Mode::Debug,
+        participant: None,
+        storage: spec.save.clone().map_or(Storage::Memory, Storage::Runs),
+        projection: spec.projection,
+        sync_calls: false,
+    }
+}
+
+fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Result<(), RunError> {
+    let day = session.day();
+    if let Some(rules) = &policy.rule_based {
+        for (tool, arguments) in routine::calls(rules, session) {
+            call(seed, session, tool, &arguments, false)?;
+        }
+    }
+    for scheduled in policy.calls.iter().filter(|call| call.is_due(day)) {
+        for _ in 0..scheduled.repeat {
+            let symbols = Symbols::of(session.observe().known_groups);
+            for arguments in symbols.resolve(&scheduled.arguments) {
+                call(seed, session, &scheduled.tool, &arguments, scheduled.may_fail)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn call(
+    seed: u64,
+    session: &mut Session,
+    tool: &str,
+    arguments: &Value,
+    may_fail: bool,
+) -> Result<(), RunError> {
+    match session.call(tool, arguments, Via::Policy) {
+        Err(refusal) if !may_fail => {
+            Err(RunError::Refused { seed, day: session.day(), tool: tool.to_owned(), refusal })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A week, or the days up to the one to stop after.
+fn advance(
+    policy: &Policy,
+    seed: u64,
+    until: u32,
+    session: &mut Session,
+    collector: &mut Collector,
+) -> Result<(), RunError> {
+    let day = session.day();
+    let mut watch = |report: &crate::session::DayReport<'_>| collector.day(report);
+    let ran = if until < session.next_decision_day() {
+        session.step(until - day, &mut watch)
+    } else {
+        let forecasts = session.naive_forecasts();
+        session.advance(&format!("policy {}", policy.name), &forecasts, Via::Policy, &mut watch)
+    };
+    ran.map(|_| ()).map_err(|refusal| RunError::Refused { seed, day, tool: "next_week".to_owned(), refusal })
+}
+
+fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> Outcome {
+    let seen = session.observe();
+    Outcome {
+        seed,
+        policy: policy.name.clone(),
+        days: seen.last_day,
+        day: seen.day,
+        cash: seen.cash,
+        subscribers: seen.subscribers,
+        seats: seen.seats,
+        ended: match session.ended() {
+            Some(Ended::Bankruptcy) => RunEnd::Bankruptcy,
+            Some(_) => RunEnd::Horizon,
+            None => RunEnd::Until,
+        },
+        state_hash: session.state_hash().0,
+        run: session.folder().map(|_| session.manifest().id.clone()),
+        seconds: took.as_secs_f64(),
+    }
+}

@@ -1,0 +1,119 @@
+//! Symbols in the arguments of policies: names that are resolved when a call is made (chapter 70 §3).
+
+use serde_json::{Map, Value};
+
+use crate::world::identifiers::{Channel, Group};
+
+/// What symbols stand for.
+pub struct Symbols {
+    known: Vec<Group>,
+}
+
+impl Symbols {
+    /// Symbols for a company that knows these groups.
+    pub fn of(known: impl IntoIterator<Item = Group>) -> Symbols {
+        Symbols { known: known.into_iter().collect() }
+    }
+
+    fn discovered(&self) -> impl Iterator<Item = Group> + '_ {
+        self.known.iter().copied().filter(|group| !group.initially_known())
+    }
+
+    /// Names a symbol stands for; none if the text is no symbol.
+    fn members(&self, text: &str) -> Option<Vec<String>> {
+        let names =
+            |groups: &mut dyn Iterator<Item = Group>| groups.map(|group| group.id().to_owned()).collect();
+        Some(match text {
+            "@first_discovered" => {
+                self.discovered().map(|group| group.id().to_owned()).min().into_iter().collect()
+            }
+            "@discovered_individuals" => names(&mut self.discovered().filter(|group| !group.is_enterprise())),
+            "@discovered_enterprises" => names(&mut self.discovered().filter(|group| group.is_enterprise())),
+            "@known" => names(&mut self.known.iter().copied()),
+            "@channels" => Channel::ALL.iter().map(|channel| channel.id().to_owned()).collect(),
+            _ => return None,
+        })
+    }
+
+    /// The calls that arguments with symbols stand for: one per member of a symbol that is the value of an
+    /// argument, none if any symbol stands for nothing.
+    pub fn resolve(&self, arguments: &Value) -> Vec<Value> {
+        let Some(map) = arguments.as_object() else { return vec![arguments.clone()] };
+        let mut calls = vec![Map::new()];
+        for (name, value) in map {
+            let values = match value.as_str().and_then(|text| self.members(text)) {
+                Some(members) => members.into_iter().map(Value::String).collect(),
+                None => self.expanded(value).map_or_else(Vec::new, |value| vec![value]),
+            };
+            calls = calls
+                .iter()
+                .flat_map(|call| {
+                    values.iter().map(move |value| {
+                        let mut call = call.clone();
+                        call.insert(name.clone(), value.clone());
+                        call
+                    })
+                })
+                .collect();
+        }
+        calls.into_iter().map(Value::Object).collect()
+    }
+
+    /// A map with its symbol keys spread out; written entries win. None if a symbol stands for nothing.
+    fn expanded(&self, value: &Value) -> Option<Value> {
+        let Some(map) = value.as_object() else { return Some(value.clone()) };
+        let mut spread = Map::new();
+        for (key, inner) in map {
+            let inner = self.expanded(inner)?;
+            match self.members(key) {
+                Some(members) if members.is_empty() => return None,
+                Some(members) => members.into_iter().for_each(|name| {
+                    spread.insert(name, inner.clone());
+                }),
+                None => {}
+            }
+        }
+        for (key, inner) in map.iter().filter(|(key, _)| self.members(key).is_none()) {
+            spread.insert(key.clone(), self.expanded(inner)?);
+        }
+        Some(Value::Object(spread))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn symbols(discovered: &[&str]) -> Symbols {
+        let group = |id: &&str| Group::parse(id).expect("a group");
+        Symbols::of(Group::all().filter(|group| group.initially_known()).chain(discovered.iter().map(group)))
+    }
+
+    #[test]
+    fn keys_spread_and_written_entries_win() {
+        let given =
+            json!({"targeted_spend": {"@channels": {"S1": 50, "@discovered_individuals": 9, "D_S02": 1}}});
+        let calls = symbols(&["D_S02", "D_S07", "D_E01"]).resolve(&given);
+        assert_eq!(calls.len(), 1);
+        let linkedin = &calls[0]["targeted_spend"]["linkedin"];
+        assert_eq!(linkedin, &json!({"D_S02": 1, "D_S07": 9, "S1": 50}));
+        assert_eq!(calls[0]["targeted_spend"].as_object().map(Map::len), Some(5));
+    }
+
+    #[test]
+    fn values_make_one_call_per_member_and_nothing_makes_none() {
+        let given = json!({"group_id": "@first_discovered", "target_level": 2});
+        assert_eq!(symbols(&[]).resolve(&given), Vec::<Value>::new());
+        let calls = symbols(&["D_S02", "D_E09"]).resolve(&given);
+        assert_eq!(calls, [json!({"group_id": "D_E09", "target_level": 2})]);
+        let all = symbols(&["D_S02", "D_E09"]).resolve(&json!({"group_id": "@discovered_enterprises"}));
+        assert_eq!(all, [json!({"group_id": "D_E09"})]);
+        assert_eq!(
+            symbols(&[]).resolve(&json!({"by_group": {"@discovered_individuals": 1}})),
+            Vec::<Value>::new()
+        );
+        assert_eq!(symbols(&[]).resolve(&json!({"group_id": "@known"})).len(), 6);
+        assert_eq!(symbols(&[]).resolve(&json!({"tier": 2})), [json!({"tier": 2})]);
+    }
+}

@@ -1,0 +1,224 @@
+//! Answers as text and as JSON (chapter 70 §8.3).
+
+use serde_json::{Map, Value, json};
+use unicode_width::UnicodeWidthStr;
+
+use crate::session::{Cell, Refusal, Rows};
+
+/// The answer to a line.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Answer {
+    /// It was done.
+    Done {
+        /// Command.
+        command: String,
+        /// Text, complete.
+        text: String,
+        /// Data.
+        data: Value,
+    },
+    /// It was refused; nothing changed.
+    Refused {
+        /// Command.
+        command: String,
+        /// Why.
+        refusal: Refusal,
+    },
+    /// It could not be read.
+    Usage {
+        /// What is wrong and what is near.
+        problem: String,
+        /// Column, from 1.
+        column: usize,
+    },
+    /// It was `quit`.
+    Quit,
+}
+
+impl Answer {
+    /// A command with text and data.
+    pub fn done(command: &str, text: String, data: Value) -> Answer {
+        Answer::Done { command: command.to_owned(), text, data }
+    }
+
+    /// An accepted tool call: its name and the fields of its data.
+    pub fn call(command: &str, data: Value) -> Answer {
+        let mut text = format!("ok {command}\n");
+        match &data {
+            Value::Object(fields) => fields.iter().for_each(|(name, value)| text += &field(name, value)),
+            Value::Null => {}
+            other => text += &format!("  {other}\n"),
+        }
+        Answer::done(command, text, data)
+    }
+
+    /// A refused command.
+    pub fn refused(command: &str, refusal: Refusal) -> Answer {
+        Answer::Refused { command: command.to_owned(), refusal }
+    }
+
+    /// An unreadable line.
+    pub fn usage(problem: impl Into<String>, column: usize) -> Answer {
+        Answer::Usage { problem: problem.into(), column }
+    }
+
+    /// Whether it was done.
+    pub fn is_ok(&self) -> bool {
+        matches!(self, Answer::Done { .. })
+    }
+
+    /// Whether the dialogue ends.
+    pub fn is_quit(&self) -> bool {
+        matches!(self, Answer::Quit)
+    }
+
+    /// The answer as lines of text.
+    pub fn as_text(&self) -> String {
+        match self {
+            Answer::Done { text, .. } => text.clone(),
+            Answer::Refused { refusal, .. } => match &refusal.field {
+                Some(field) => format!("refused {} ({field}): {}", refusal.code, refusal.message),
+                None => format!("refused {}: {}", refusal.code, refusal.message),
+            },
+            Answer::Usage { problem, column } => format!("error usage: {problem} (column {column})"),
+            Answer::Quit => String::new(),
+        }
+    }
+
+    /// The answer as one object; `day` is the day on which the line was read.
+    pub fn as_json(&self, line: u32, day: u32) -> Value {
+        match self {
+            Answer::Done { command, data, .. } => {
+                json!({ "line": line, "command": command, "ok": true, "day": day, "data": data })
+            }
+            Answer::Refused { command, refusal } => json!({
+                "line": line,
+                "command": command,
+                "ok": false,
+                "day": day,
+                "code": refusal.code,
+                "field": refusal.field,
+                "error": refusal.message,
+            }),
+            Answer::Usage { problem, column } => json!({
+                "line": line,
+                "command": null,
+                "ok": false,
+                "day": day,
+                "code": "usage",
+                "column": column,
+                "error": problem,
+            }),
+            Answer::Quit => Value::Null,
+        }
+    }
+}
+
+/// A field of an answer; a list of objects becomes a table.
+fn field(name: &str, value: &Value) -> String {
+    match value.as_array() {
+        Some(list) if !list.is_empty() && list.iter().all(Value::is_object) => {
+            let table: String = table_of(list).lines().map(|line| format!("    {line}\n")).collect();
+            format!("  {name}:\n{table}")
+        }
+        _ => format!("  {name}: {value}\n"),
+    }
+}
+
+fn table_of(list: &[Value]) -> String {
+    let objects: Vec<&Map<String, Value>> = list.iter().filter_map(Value::as_object).collect();
+    let mut columns: Vec<String> = Vec::new();
+    for key in objects.iter().flat_map(|object| object.keys()) {
+        if !columns.contains(key) {
+            columns.push(key.clone());
+        }
+    }
+    let cell = |object: &Map<String, Value>, column: &String| match object.get(column) {
+        None | Some(Value::Null) => String::new(),
+        Some(Value::String(text)) => text.clone(),
+        Some(other) => other.to_string(),
+    };
+    let row = |object: &&Map<String, Value>| columns.iter().map(|column| cell(object, column)).collect();
+    let rows: Vec<Vec<String>> = objects.iter().map(row).collect();
+    aligned(&columns, &rows)
+}
+
+/// A value of a result as text.
+pub fn cell_text(cell: &Cell) -> String {
+    match cell {
+        Cell::Null => "NULL".to_owned(),
+        Cell::Integer(number) => number.to_string(),
+        Cell::Real(number) => format!("{number:?}"),
+        Cell::Text(text) => text.clone(),
+    }
+}
+
+/// A result as aligned columns under their names, with the count of rows, warning and hint.
+pub fn table(rows: &Rows) -> String {
+    let cells: Vec<Vec<String>> = rows
+        .rows
+        .iter()
+        .map(|row| row.iter().map(|cell| cell_text(cell).replace(['\n', '\r', '\t'], " ")).collect())
+        .collect();
+    let mut text = aligned(&rows.columns, &cells);
+    text += &match (rows.rows.len(), rows.truncated) {
+        (count, true) => format!("({count} rows, more exist)\n"),
+        (1, false) => "(1 row)\n".to_owned(),
+        (count, false) => format!("({count} rows)\n"),
+    };
+    if let Some(warning) = &rows.warning {
+        text += &format!("warning: {warning}\n");
+    }
+    if let Some(hint) = &rows.hint {
+        text += &format!("hint: {hint}\n");
+    }
+    text
+}
+
+fn aligned(columns: &[String], rows: &[Vec<String>]) -> String {
+    let width = |at: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(at)).chain([&columns[at]]);
+        cells.map(|cell| cell.width()).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
+    let line = |cells: &[String]| {
+        let mut text = String::new();
+        for (cell, width) in cells.iter().zip(&widths) {
+            text += cell;
+            text += &" ".repeat(width - cell.width() + 2);
+        }
+        text.trim_end().to_owned() + "\n"
+    };
+    let mut text = line(columns);
+    rows.iter().for_each(|row| text += &line(row));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_look_like_the_example_of_chapter_70() {
+        let data = json!({"updated": {"A": 12, "B": 25}, "total_per_day": 120});
+        let answer = Answer::call("set_prices", data);
+        assert_eq!(answer.as_text(), "ok set_prices\n  updated: {\"A\":12,\"B\":25}\n  total_per_day: 120\n");
+        let refusal = Refusal::at("A", "price_not_positive", "price of plan A must be above zero");
+        let refused = Answer::refused("set_prices", refusal);
+        assert_eq!(refused.as_text(), "refused price_not_positive (A): price of plan A must be above zero");
+        assert_eq!(refused.as_json(4, 0)["field"], "A");
+        let rows = Rows {
+            columns: vec!["category".to_owned(), "total".to_owned()],
+            rows: vec![vec![Cell::Text("initial_funding".to_owned()), Cell::Real(1_000_000.0)]],
+            ..Rows::default()
+        };
+        assert_eq!(table(&rows), "category         total\ninitial_funding  1000000.0\n(1 row)\n");
+    }
+
+    #[test]
+    fn lists_of_objects_become_tables() {
+        let data = json!({"tiers": [{"tier": 1, "name": "a"}, {"tier": 20, "name": "b c"}]});
+        let text = Answer::call("list", data).as_text();
+        assert_eq!(text, "ok list\n  tiers:\n    tier  name\n    1     a\n    20    b c\n");
+    }
+}

@@ -1,0 +1,337 @@
+//! The grammar of a line (chapter 70 §8.1).
+
+use serde_json::{Map, Value};
+
+/// What a line says.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Line {
+    /// Nothing: empty, or a comment.
+    Empty,
+    /// A command that takes the rest of the line as it stands.
+    Text {
+        /// First word.
+        word: String,
+        /// The rest, without blanks around it.
+        rest: String,
+    },
+    /// A command or tool with arguments.
+    Call {
+        /// First word, as written.
+        word: String,
+        /// Column of the first word, from 1.
+        column: usize,
+        /// Arguments in order.
+        arguments: Vec<Argument>,
+    },
+}
+
+/// One argument.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Argument {
+    /// Its name, if it was given one.
+    pub key: Option<String>,
+    /// Its value.
+    pub value: Value,
+    /// Column where it begins, from 1.
+    pub column: usize,
+}
+
+/// What is wrong with a line, and in which column.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// What is wrong.
+    pub text: String,
+    /// Column, from 1, in characters.
+    pub column: usize,
+}
+
+/// Commands whose text is the rest of the line as it stands.
+const TEXT_COMMANDS: [&str; 3] = ["sql", "query", "memo"];
+
+/// Reads a line.
+pub fn parse(line: &str) -> Result<Line, Problem> {
+    let mut reader = Reader { line, at: 0 };
+    reader.skip_blanks();
+    if reader.rest().is_empty() || reader.rest().starts_with('#') {
+        return Ok(Line::Empty);
+    }
+    let column = reader.column();
+    let word = reader.word();
+    if word.is_empty() {
+        return Err(reader.problem("a line begins with the name of a command or tool"));
+    }
+    if TEXT_COMMANDS.contains(&word.as_str()) {
+        return Ok(Line::Text { word, rest: reader.rest().trim().to_owned() });
+    }
+    Ok(Line::Call { word, column, arguments: reader.arguments()? })
+}
+
+struct Reader<'a> {
+    line: &'a str,
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn rest(&self) -> &'a str {
+        &self.line[self.at..]
+    }
+
+    fn column(&self) -> usize {
+        self.line[..self.at].chars().count() + 1
+    }
+
+    fn problem(&self, text: impl Into<String>) -> Problem {
+        Problem { text: text.into(), column: self.column() }
+    }
+
+    fn skip_blanks(&mut self) {
+        self.at += self.rest().len() - self.rest().trim_start().len();
+    }
+
+    /// Letters, digits, dots, dashes and underscores.
+    fn word(&mut self) -> String {
+        let is_word = |letter: char| letter.is_alphanumeric() || ['_', '.', '-'].contains(&letter);
+        let end = self.rest().find(|letter| !is_word(letter)).unwrap_or(self.rest().len());
+        let word = self.rest()[..end].to_owned();
+        self.at += end;
+        word
+    }
+
+    fn arguments(&mut self) -> Result<Vec<Argument>, Problem> {
+        self.skip_blanks();
+        let opened = self.rest().starts_with('(');
+        self.at += usize::from(opened);
+        let mut arguments: Vec<Argument> = Vec::new();
+        let mut after_comma = false;
+        loop {
+            let before = self.at;
+            self.skip_blanks();
+            let rest = self.rest();
+            let comment = rest.starts_with('#') && (self.at > before || arguments.is_empty());
+            if rest.is_empty() || comment {
+                return if opened { Err(self.problem("the bracket is not closed")) } else { Ok(arguments) };
+            }
+            if opened && rest.starts_with(')') {
+                self.at += 1;
+                return self.nothing_more(arguments);
+            }
+            if rest.starts_with(',') {
+                if arguments.is_empty() || after_comma {
+                    return Err(self.problem("a comma stands between two arguments"));
+                }
+                self.at += 1;
+                after_comma = true;
+                continue;
+            }
+            let argument = self.argument()?;
+            if let Some(key) = &argument.key
+                && arguments.iter().any(|other| other.key.as_ref() == Some(key))
+            {
+                return Err(Problem { text: format!("{key} is given twice"), column: argument.column });
+            }
+            arguments.push(argument);
+            after_comma = false;
+        }
+    }
+
+    fn nothing_more(&mut self, arguments: Vec<Argument>) -> Result<Vec<Argument>, Problem> {
+        self.skip_blanks();
+        if self.rest().is_empty() || self.rest().starts_with('#') {
+            Ok(arguments)
+        } else {
+            Err(self.problem("nothing can follow the closing bracket but a comment"))
+        }
+    }
+
+    /// `key = value`, or a value alone.
+    fn argument(&mut self) -> Result<Argument, Problem> {
+        let (column, start) = (self.column(), self.at);
+        let word = self.word();
+        self.skip_blanks();
+        if !word.is_empty() && self.rest().starts_with('=') {
+            self.at += 1;
+            self.skip_blanks();
+            return Ok(Argument { key: Some(word), value: self.value()?, column });
+        }
+        self.at = start;
+        Ok(Argument { key: None, value: self.value()?, column })
+    }
+
+    fn value(&mut self) -> Result<Value, Problem> {
+        match self.rest().chars().next() {
+            Some('{' | '[' | '"') => self.json(),
+            _ => self.bare(),
+        }
+    }
+
+    fn json(&mut self) -> Result<Value, Problem> {
+        let mut values = serde_json::Deserializer::from_str(self.rest()).into_iter::<Value>();
+        match values.next() {
+            Some(Ok(value)) => {
+                self.at += values.byte_offset();
+                Ok(value)
+            }
+            Some(Err(error)) => {
+                self.at += offset_of(self.rest(), error.line(), error.column());
+                while !self.line.is_char_boundary(self.at) {
+                    self.at -= 1;
+                }
+                let message = error.to_string();
+                let message = message.split(" at line ").next().unwrap_or_default();
+                Err(self.problem(format!("the value is no JSON: {message}")))
+            }
+            None => Err(self.problem("a value is missing")),
+        }
+    }
+
+    fn bare(&mut self) -> Result<Value, Problem> {
+        let ends = |letter: char| letter.is_whitespace() || ",=#\"()[]{}".contains(letter);
+        let end = self.rest().find(ends).unwrap_or(self.rest().len());
+        if end == 0 {
+            return Err(match self.rest().chars().next() {
+                Some(letter) => self.problem(format!("a value is expected, not {letter}")),
+                None => self.problem("a value is missing"),
+            });
+        }
+        let text = &self.rest()[..end];
+        self.at += end;
+        Ok(plain_value(text))
+    }
+}
+
+/// What a bare word stands for: null, true, false, a number (also 1_000_000), otherwise itself.
+fn plain_value(text: &str) -> Value {
+    let digits = text.replace('_', "");
+    let json = digits.strip_prefix('+').unwrap_or(&digits);
+    match text {
+        "null" => Value::Null,
+        "true" => Value::Bool(true),
+        "false" => Value::Bool(false),
+        _ => match serde_json::from_str::<Value>(json) {
+            Ok(number) if number.is_number() => number,
+            _ => text.into(),
+        },
+    }
+}
+
+/// Byte offset of serde_json's line and column.
+fn offset_of(text: &str, line: usize, column: usize) -> usize {
+    let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    (before + column.saturating_sub(1)).min(text.len())
+}
+
+/// Puts arguments into the object that a tool takes. One object without a name is all of them; one other value
+/// without a name is the tool's only required argument.
+pub fn as_object(arguments: &[Argument], only_required: Option<&str>) -> Result<Value, Problem> {
+    if let [Argument { key: None, value: Value::Object(map), .. }] = arguments {
+        return Ok(Value::Object(map.clone()));
+    }
+    let mut map = Map::new();
+    for argument in arguments {
+        let key = match (&argument.key, only_required) {
+            (Some(key), _) => key.clone(),
+            (None, Some(required)) if arguments.len() == 1 => required.to_owned(),
+            (None, _) => {
+                let text = "an argument is written name=value, or all together as one {…}".to_owned();
+                return Err(Problem { text, column: argument.column });
+            }
+        };
+        map.insert(key, argument.value.clone());
+    }
+    Ok(Value::Object(map))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use serde_json::json;
+
+    fn call(line: &str) -> (String, Value) {
+        match parse(line) {
+            Ok(Line::Call { word, arguments, .. }) => {
+                (word, as_object(&arguments, Some("tier")).unwrap_or_else(|problem| panic!("{line}: {problem:?}")))
+            }
+            other => panic!("{line}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn calls_may_be_written_in_many_ways() {
+        let prices = json!({"A": 12, "B": 25, "C": 55.5});
+        for line in [
+            "pricing.set_prices(A=12, B=25, C=55.5)",
+            "pricing.set_prices A=12 B=25 C=55.5",
+            "pricing.set_prices A = 12, B = 25 C=55.5 # a comment",
+            "pricing.set_prices {\"A\": 12, \"B\": 25, \"C\": 55.5}",
+            "  pricing.set_prices( A=12 ,B=25, C=55.5 )  # done",
+            "pricing.set_prices(\nA=12\nB=25 C=+55.5)",
+        ] {
+            assert_eq!(call(line), ("pricing.set_prices".to_owned(), prices.clone()), "{line}");
+        }
+        assert_eq!(call("set_capacity_tier 3").1, json!({"tier": 3}));
+        let mixed = "x a=1_000_000 b=null c=true d=word e=\"two words # no comment\" f=[1, 2]";
+        let expected =
+            json!({"a": 1_000_000, "b": null, "c": true, "d": "word", "e": "two words # no comment", "f": [1, 2]});
+        assert_eq!(call(mixed).1, expected);
+        assert_eq!(call("get_cost_info").1, json!({}));
+        assert_eq!(call("get_cost_info()").1, json!({}));
+        assert_eq!(call("x a=12-3").1, json!({"a": "12-3"}));
+    }
+
+    #[test]
+    fn text_is_taken_as_it_stands() {
+        let text = |line: &str| match parse(line) {
+            Ok(Line::Text { word, rest }) => (word, rest),
+            other => panic!("{other:?}"),
+        };
+        let sql = "SELECT '# no comment', \"x\" FROM ledger -- (";
+        assert_eq!(text(&format!("sql {sql}")), ("sql".to_owned(), sql.to_owned()));
+        assert_eq!(text("memo  remember: prices = 12 "), ("memo".to_owned(), "remember: prices = 12".to_owned()));
+        assert_eq!(text("sql"), ("sql".to_owned(), String::new()));
+    }
+
+    #[test]
+    fn empty_lines_and_comments_say_nothing() {
+        for line in ["", "   ", "# comment", "  # comment"] {
+            assert_eq!(parse(line), Ok(Line::Empty));
+        }
+    }
+
+    #[test]
+    fn problems_name_their_column() {
+        for (line, column, part) in [
+            ("set_prices A=12 A=13", 17, "twice"),
+            ("set_prices(A=12", 16, "not closed"),
+            ("set_prices(A=12) B=3", 18, "closing bracket"),
+            ("set_prices A=", 14, "missing"),
+            ("set_prices A=)", 14, "not )"),
+            ("set_prices ,A=3", 12, "comma"),
+            ("set_prices A=1,,B=2", 16, "comma"),
+            ("set_prices {\"A\": }", 18, "JSON"),
+            ("set_prices A={\"größe\": ]}", 24, "JSON"),
+            ("(A=3)", 1, "name of a command"),
+        ] {
+            let problem = parse(line).expect_err(line);
+            assert_eq!(problem.column, column, "{line}: {problem:?}");
+            assert!(problem.text.contains(part), "{line}: {problem:?}");
+        }
+        let Ok(Line::Call { arguments, .. }) = parse("set_prices 12 13") else { panic!("a call") };
+        assert_eq!(as_object(&arguments, None).expect_err("no names").column, 12);
+    }
+
+    proptest! {
+        #[test]
+        fn no_line_panics(line in "\\PC{0,60}") {
+            let _ = parse(&line);
+        }
+
+        #[test]
+        fn objects_come_back(a in any::<i32>(), b in "[a-z ]{0,8}", c in any::<bool>()) {
+            let given = json!({"a": a, "b": b, "c": [c, {"d": a}]});
+            prop_assert_eq!(call(&format!("tool {given}")).1, given.clone());
+            let keyed = format!("tool a={a} b={} c={}", given["b"], given["c"]);
+            prop_assert_eq!(call(&keyed).1, given);
+        }
+    }
+}

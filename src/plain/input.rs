@@ -1,0 +1,143 @@
+//! Reading lines: continued ones, byte order marks, carriage returns, too long and unreadable ones.
+
+use std::io::{self, BufRead, Read as _};
+
+/// Longest line in bytes.
+const LONGEST: usize = 1 << 20;
+
+/// One logical line, or what came instead.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Read {
+    /// A line without its end; continued lines are joined by line breaks.
+    Line(String),
+    /// A line that cannot be read, and why.
+    Unreadable(String),
+    /// The end of input.
+    End,
+}
+
+/// Input with line numbers.
+pub struct Input<R> {
+    source: R,
+    lines: u32,
+}
+
+impl<R: BufRead> Input<R> {
+    /// Input from a source.
+    pub fn new(source: R) -> Input<R> {
+        Input { source, lines: 0 }
+    }
+
+    /// Number of the next line, from 1.
+    pub fn next_number(&self) -> u32 {
+        self.lines + 1
+    }
+
+    /// Reads a logical line.
+    ///
+    /// # Errors
+    /// The source fails.
+    pub fn read(&mut self) -> io::Result<Read> {
+        let mut whole: Option<String> = None;
+        loop {
+            let text = match self.physical()? {
+                Read::Line(text) => text,
+                Read::End => return Ok(whole.map_or(Read::End, Read::Line)),
+                unreadable => return Ok(unreadable),
+            };
+            let joined = match whole.take() {
+                Some(before) => before + "\n" + &text,
+                None => text,
+            };
+            if joined.len() > LONGEST {
+                return Ok(Read::Unreadable("the line is longer than 1 MiB".to_owned()));
+            }
+            match joined.strip_suffix('\\') {
+                Some(rest) => whole = Some(rest.to_owned()),
+                None => return Ok(Read::Line(joined)),
+            }
+        }
+    }
+
+    /// Reads one line of the source as it stands.
+    fn physical(&mut self) -> io::Result<Read> {
+        let mut bytes = Vec::new();
+        let limit = LONGEST as u64 + 2;
+        if self.source.by_ref().take(limit).read_until(b'\n', &mut bytes)? == 0 {
+            return Ok(Read::End);
+        }
+        self.lines += 1;
+        let complete = bytes.last() == Some(&b'\n');
+        if !complete && bytes.len() as u64 == limit {
+            self.skip_line()?;
+            return Ok(Read::Unreadable("the line is longer than 1 MiB".to_owned()));
+        }
+        if complete {
+            bytes.pop();
+            if bytes.last() == Some(&b'\r') {
+                bytes.pop();
+            }
+        }
+        match String::from_utf8(bytes) {
+            Ok(text) if self.lines == 1 => Ok(Read::Line(text.trim_start_matches('\u{feff}').to_owned())),
+            Ok(text) => Ok(Read::Line(text)),
+            Err(_) => Ok(Read::Unreadable("the line is not UTF-8".to_owned())),
+        }
+    }
+
+    fn skip_line(&mut self) -> io::Result<()> {
+        loop {
+            let (used, done) = {
+                let buffer = self.source.fill_buf()?;
+                match buffer.iter().position(|byte| *byte == b'\n') {
+                    Some(at) => (at + 1, true),
+                    None => (buffer.len(), buffer.is_empty()),
+                }
+            };
+            self.source.consume(used);
+            if done {
+                return Ok(());
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(bytes: &[u8]) -> Vec<(u32, Read)> {
+        let mut input = Input::new(bytes);
+        let mut found = Vec::new();
+        loop {
+            let number = input.next_number();
+            match input.read().expect("bytes do not fail") {
+                Read::End => return found,
+                read => found.push((number, read)),
+            }
+        }
+    }
+
+    fn line(number: u32, text: &str) -> (u32, Read) {
+        (number, Read::Line(text.to_owned()))
+    }
+
+    #[test]
+    fn lines_are_numbered_joined_and_cleaned() {
+        let found = all("\u{feff}one\r\ntwo \\\nthree\n\nlast".as_bytes());
+        assert_eq!(found, [line(1, "one"), line(2, "two \nthree"), line(4, ""), line(5, "last")]);
+        assert_eq!(all(b"end\\"), [line(1, "end")]);
+        assert_eq!(all(b""), []);
+    }
+
+    #[test]
+    fn unreadable_lines_do_not_hide_the_next() {
+        let mut bytes = vec![b'x'; LONGEST + 5];
+        bytes.extend(b"\nok\n\xff\xfe\nok\n");
+        let found = all(&bytes);
+        assert!(matches!(&found[0].1, Read::Unreadable(problem) if problem.contains("1 MiB")));
+        assert_eq!(found[1], line(2, "ok"));
+        assert!(matches!(&found[2].1, Read::Unreadable(problem) if problem.contains("UTF-8")));
+        assert_eq!(found[3], line(4, "ok"));
+    }
+}

@@ -1,0 +1,174 @@
+//! The same game line by line: for pipes, scripts and screen readers (chapter 70 §8).
+//!
+//! One command per line, an answer for each before the next is read, no colour, no cursor movement. Every
+//! answer goes to standard output, refusals too, and ends with an empty line.
+
+mod answers;
+mod commands;
+mod grammar;
+mod input;
+mod next;
+mod signals;
+
+use std::io::{self, IsTerminal, Write};
+
+use serde_json::{Value, json};
+
+pub use answers::{cell_text, table};
+
+use crate::session::Session;
+use answers::Answer;
+use commands::Desk;
+use input::{Input, Read};
+use signals::{Phase, Watch};
+
+/// How answers look and when the dialogue ends.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Style {
+    /// One JSON object per line.
+    pub json: bool,
+    /// Print each input line before its answer.
+    pub echo: bool,
+    /// End at the first refused or unreadable line.
+    pub strict: bool,
+}
+
+/// How a dialogue ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    Quit,
+    EndOfInput,
+    Strict,
+    Signal(i32),
+}
+
+impl End {
+    fn id(self) -> &'static str {
+        match self {
+            End::Quit => "quit",
+            End::EndOfInput => "end_of_input",
+            End::Strict => "strict",
+            End::Signal(_) => "signal",
+        }
+    }
+
+    fn code(self) -> u8 {
+        match self {
+            End::Quit | End::EndOfInput => 0,
+            End::Strict => 1,
+            End::Signal(number) => 128u8.saturating_add(number as u8),
+        }
+    }
+}
+
+/// Plays on standard input and output; returns the exit code.
+///
+/// # Errors
+/// Standard input or output fails.
+pub fn play(session: Session, style: Style) -> io::Result<u8> {
+    let prompts = io::stdin().is_terminal();
+    let watch = Watch::start();
+    let mut desk = Desk::new(session, watch.clone(), prompts);
+    let mut out = io::stdout();
+    greet(&mut out, &desk.session, style)?;
+    let mut input = Input::new(io::stdin().lock());
+    let end = loop {
+        if prompts {
+            prompt(&format!("day {}> ", desk.session.day()))?;
+        }
+        let number = input.next_number();
+        watch.enter(Phase::Prompt, farewell(&desk.session, style, End::Signal(0)));
+        let read = input.read()?;
+        watch.enter(Phase::Working, String::new());
+        let (line, day) = match read {
+            Read::End => break End::EndOfInput,
+            Read::Line(line) => (line, desk.session.day()),
+            Read::Unreadable(problem) => {
+                answer(&mut out, style, number, None, &Answer::usage(problem, 1), desk.session.day())?;
+                if style.strict {
+                    break End::Strict;
+                }
+                continue;
+            }
+        };
+        let Some(reply) = desk.answer(&line, &mut input)? else { continue };
+        if reply.is_quit() {
+            break End::Quit;
+        }
+        answer(&mut out, style, number, style.echo.then_some(line.as_str()), &reply, day)?;
+        if let Some(signal) = watch.caught() {
+            break End::Signal(signal);
+        }
+        if style.strict && !reply.is_ok() {
+            break End::Strict;
+        }
+    };
+    // Everything answered `ok` is on the disk already; what is left are rows that can be made again.
+    let _ = desk.session.save();
+    writeln!(out, "{}", farewell(&desk.session, style, end))?;
+    out.flush()?;
+    Ok(end.code())
+}
+
+/// Shows a prompt where a person sees it.
+pub(self) fn prompt(text: &str) -> io::Result<()> {
+    let write = |out: &mut dyn Write| out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    if io::stdout().is_terminal() { write(&mut io::stdout()) } else { write(&mut io::stderr()) }
+}
+
+fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()> {
+    let seen = session.observe();
+    if style.json {
+        let event = json!({
+            "event": "start",
+            "run": seen.run,
+            "seed": seen.seed,
+            "day": seen.day,
+            "days": seen.last_day,
+            "mode": seen.mode,
+            "remarks": session.remarks(),
+            "dashboard": seen.dashboard,
+        });
+        writeln!(out, "{event}")?;
+    } else {
+        let (run, seed, day, days) = (seen.run, seen.seed, seen.day, seen.last_day);
+        writeln!(out, "run {run} · seed {seed} · day {day} of {days} · {}", seen.mode)?;
+        for remark in session.remarks() {
+            writeln!(out, "note: {remark}")?;
+        }
+        writeln!(out, "{}", seen.dashboard)?;
+    }
+    out.flush()
+}
+
+fn farewell(session: &Session, style: Style, end: End) -> String {
+    let (run, day) = (&session.manifest().id, session.day());
+    if style.json {
+        json!({ "event": "end", "run": run, "day": day, "reason": end.id() }).to_string()
+    } else {
+        format!("saved run {run} · day {day}")
+    }
+}
+
+fn answer(
+    out: &mut io::Stdout,
+    style: Style,
+    line: u32,
+    echo: Option<&str>,
+    reply: &Answer,
+    day: u32,
+) -> io::Result<()> {
+    if style.json {
+        let mut object = reply.as_json(line, day);
+        if let (Some(text), Value::Object(fields)) = (echo, &mut object) {
+            fields.insert("input".to_owned(), text.into());
+        }
+        writeln!(out, "{object}")?;
+    } else {
+        if let Some(text) = echo {
+            writeln!(out, "> {text}")?;
+        }
+        writeln!(out, "{}\n", reply.as_text().trim_end_matches('\n'))?;
+    }
+    out.flush()
+}

@@ -1,0 +1,105 @@
+//! Branches: a new run that shares the past of another up to a decision day (chapter 80 §2).
+
+use std::path::PathBuf;
+
+use serde_json::{Map, Value, json};
+
+use super::create::{new_id, start_fields};
+use super::error::RunError;
+use super::manifest::{Manifest, Parent, sync_folder};
+use super::mode::Mode;
+use super::open::Access;
+use super::trajectory::{Durability, Line, Trajectory, TrajectoryWriter, now};
+use super::{Ended, Session};
+use crate::tools::Refusal;
+
+impl Session {
+    /// Starts a branch at the beginning of a week, counted from 1, and opens it.
+    ///
+    /// # Errors
+    /// `not_in_this_mode` for an unfinished baseline run or a baseline branch, `week_unknown`, `not_saved`.
+    pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Refusal> {
+        if self.manifest.mode == Mode::Baseline && self.ended.is_none() {
+            let message = "an unfinished baseline run cannot be branched; end it first";
+            return Err(Refusal::new("not_in_this_mode", message));
+        }
+        if mode == Mode::Baseline {
+            return Err(Refusal::new("not_in_this_mode", "a branch can have any mode but baseline"));
+        }
+        let Some(folder) = &self.folder else {
+            return Err(Refusal::new("not_saved", "a run in memory cannot be branched"));
+        };
+        let day = week.saturating_sub(1) * self.params.run.days_per_week;
+        if week == 0 || day > self.world.day {
+            let last = self.world.day / self.params.run.days_per_week + 1;
+            return Err(Refusal::at("week", "week_unknown", format!("weeks 1 to {last} have begun, not {week}")));
+        }
+        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved)?;
+        let shared = shared_lines(&trajectory, day);
+        let parent = Parent { run: self.manifest.id.clone(), seq: shared.last().map_or(0, |line| line.seq) };
+        let manifest = Manifest {
+            id: new_id(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            created: now(),
+            mode,
+            parent: Some(parent),
+            ..self.manifest.clone()
+        };
+        let own = folder.with_file_name(&manifest.id);
+        write_branch(&own, &manifest, &shared).map_err(not_saved)?;
+        Session::open(&own, Access::Write, true).map_err(not_saved)
+    }
+
+    /// Whether the run can be branched now.
+    pub fn can_branch(&self) -> bool {
+        self.folder.is_some() && (self.manifest.mode != Mode::Baseline || self.ended.is_some())
+    }
+
+    /// Whether the run was given up.
+    pub fn is_abandoned(&self) -> bool {
+        self.ended == Some(Ended::Abandoned)
+    }
+}
+
+fn not_saved(error: RunError) -> Refusal {
+    Refusal::new("not_saved", error.to_string())
+}
+
+/// The lines that make the company what it was at the beginning of a decision day: everything before the week
+/// that begins on it, without what was decided on that day itself.
+fn shared_lines(trajectory: &Trajectory, day: u32) -> Vec<&Line> {
+    let kinds = ["call", "advance", "week", "step", "override"];
+    let accepted = |line: &&Line| line.kind != "call" || line.fields.get("ok") == Some(&Value::Bool(true));
+    let closes = |line: &Line| ["week", "step"].contains(&line.kind.as_str());
+    trajectory
+        .lines
+        .iter()
+        .take_while(|line| line.day < day || (line.day == day && closes(line)) || line.seq == 0)
+        .filter(|line| kinds.contains(&line.kind.as_str()))
+        .filter(accepted)
+        .collect()
+}
+
+fn write_branch(folder: &PathBuf, manifest: &Manifest, shared: &[&Line]) -> Result<(), RunError> {
+    std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+    manifest.write(folder)?;
+    let mut writer = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
+    writer.append("start", 0, start_fields(manifest), Durability::Written)?;
+    for line in shared {
+        writer.append(&line.kind, line.day, own_fields(line), Durability::Written)?;
+    }
+    let parent = json!({ "run": manifest.parent.as_ref().map(|p| &p.run), "seq": manifest.parent.as_ref().map(|p| p.seq) });
+    let day = shared.last().map_or(0, |line| line.day);
+    writer.append("branch", day, parent.as_object().cloned().unwrap_or_default(), Durability::Synced)?;
+    sync_folder(folder)
+}
+
+/// The fields of a line that are not part of its frame.
+fn own_fields(line: &Line) -> Map<String, Value> {
+    let frame = ["seq", "kind", "day", "at", "prev"];
+    line.fields
+        .iter()
+        .filter(|(name, _)| !frame.contains(&name.as_str()))
+        .map(|(name, value)| (name.clone(), value.clone()))
+        .collect()
+}

@@ -1,0 +1,141 @@
+//! What was done and why: every confirmed action, week by week, and how the forecasts turned out.
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use super::error::RunError;
+use super::trajectory::Durability;
+use super::{Session, WeekFigures};
+use crate::tools::{Forecast, Refusal};
+
+/// A confirmed action or week.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum JournalEntry {
+    /// A tool was called.
+    Call {
+        /// Decision day.
+        day: u32,
+        /// Tool.
+        tool: String,
+        /// Arguments.
+        args: Value,
+        /// It took back the call with this number.
+        undoes: Option<u64>,
+    },
+    /// A week was let pass.
+    Advance {
+        /// Decision day.
+        day: u32,
+        /// Why.
+        rationale: String,
+        /// Forecasts of cash.
+        forecasts: Vec<Forecast>,
+        /// They were filled by the naive projection.
+        filled_naively: bool,
+    },
+    /// A week, or single days, ran.
+    Week {
+        /// Its figures.
+        figures: WeekFigures,
+    },
+}
+
+/// How well forecasts of one horizon did so far (chapter 60 §7).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ForecastScore {
+    /// Days ahead.
+    pub horizon_days: u32,
+    /// Forecasts whose day has come.
+    pub scored: u32,
+    /// Those whose interval held the outcome.
+    pub covered: u32,
+    /// Mean of |point - outcome| / |outcome|.
+    pub mean_error: f64,
+    /// Mean of (upper - lower) / |outcome|.
+    pub mean_sharpness: f64,
+}
+
+impl Session {
+    /// Everything that was done, in order.
+    pub fn journal(&self) -> &[JournalEntry] {
+        &self.journal
+    }
+
+    /// Scores of the forecasts so far, one per horizon.
+    pub fn forecast_scores(&self) -> Vec<ForecastScore> {
+        let filed: Vec<(u32, Forecast)> = self
+            .journal
+            .iter()
+            .filter_map(|entry| match entry {
+                JournalEntry::Advance { day, forecasts, .. } => Some((*day, forecasts)),
+                _ => None,
+            })
+            .flat_map(|(day, forecasts)| forecasts.iter().map(move |forecast| (day, *forecast)))
+            .collect();
+        let horizons = self.params.limits.prediction_horizons_days.iter();
+        horizons.map(|horizon| self.score_horizon(*horizon, &filed)).collect()
+    }
+
+    fn score_horizon(&self, horizon_days: u32, filed: &[(u32, Forecast)]) -> ForecastScore {
+        let mut score = ForecastScore { horizon_days, scored: 0, covered: 0, mean_error: 0.0, mean_sharpness: 0.0 };
+        for (day, forecast) in filed.iter().filter(|(_, forecast)| forecast.horizon_days == horizon_days) {
+            let Some(outcome) = self.cash_by_day.get((day + horizon_days) as usize) else { continue };
+            let size = if outcome.abs() <= 1.0 { 1.0 } else { outcome.abs() };
+            score.scored += 1;
+            score.covered += u32::from(forecast.lower <= *outcome && *outcome <= forecast.upper);
+            score.mean_error += (forecast.point - outcome).abs() / size;
+            score.mean_sharpness += (forecast.upper - forecast.lower) / size;
+        }
+        let count = f64::from(score.scored.max(1));
+        (score.mean_error, score.mean_sharpness) = (score.mean_error / count, score.mean_sharpness / count);
+        score
+    }
+
+    /// The notes kept with the run.
+    ///
+    /// # Errors
+    /// The file exists and cannot be read.
+    pub fn memo(&self) -> Result<String, RunError> {
+        let Some(folder) = &self.folder else { return Ok(self.memo_in_memory.clone()) };
+        let path = folder.join("memo.md");
+        match std::fs::read(&path) {
+            Ok(bytes) => Ok(String::from_utf8_lossy(&bytes).into_owned()),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
+            Err(error) => Err(RunError::Io { path, error }),
+        }
+    }
+
+    /// Keeps notes with the run, and records that they changed.
+    ///
+    /// # Errors
+    /// `not_saved`, `read_only`.
+    pub fn set_memo(&mut self, text: &str) -> Result<(), Refusal> {
+        if self.trajectory.is_none() {
+            return Err(Refusal::new("read_only", "this run is open to read only"));
+        }
+        match &self.folder {
+            None => self.memo_in_memory = text.to_owned(),
+            Some(folder) => super::manifest::write_whole(&folder.join("memo.md"), text.as_bytes())
+                .map_err(|error| Refusal::new("not_saved", error.to_string()))?,
+        }
+        let fields = json!({ "digest": blake3::hash(text.as_bytes()).to_hex().as_str(), "length": text.len() });
+        self.note("memo", fields.as_object().cloned().unwrap_or_default());
+        Ok(())
+    }
+
+    /// Records what the person looked at, and for how long.
+    pub fn note_view(&mut self, screen: &str, from: &str, for_ms: u64) {
+        let fields = json!({ "screen": screen, "from": from, "for_ms": for_ms });
+        self.note("view", fields.as_object().cloned().unwrap_or_default());
+    }
+
+    /// Records something that changes nothing; once the run is over nothing more is recorded.
+    pub(super) fn note(&mut self, kind: &'static str, fields: Map<String, Value>) {
+        if self.ended.is_none() {
+            let day = self.world.day;
+            // Nothing is lost with it, so a disk that refuses it is no reason to stop.
+            let _ = self.append(kind, day, fields, Durability::Written);
+        }
+    }
+}

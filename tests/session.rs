@@ -364,3 +364,63 @@ fn forecasts_are_filed_and_come_back() {
     let naive: Forecasts = session.naive_forecasts();
     assert!(naive.filled_naively && naive.all[0].lower <= naive.all[0].point);
 }
+
+#[test]
+fn a_branch_shares_the_past_and_then_goes_its_own_way() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut parent = create(new_run(runs(&folder)));
+    open_shop(&mut parent);
+    (0..3).for_each(|_| week(&mut parent));
+    let at_week_3 = parent.cash_by_day()[..=14].to_vec();
+    let mut branch = parent.branch(3, Mode::Debug).expect("a branch");
+    assert_eq!((branch.day(), branch.manifest().mode), (14, Mode::Debug));
+    assert_eq!(branch.cash_by_day(), at_week_3);
+    assert_eq!(
+        branch.manifest().parent.as_ref().map(|parent| parent.run.clone()),
+        Some(parent.manifest().id.clone())
+    );
+    week(&mut branch);
+    assert_eq!(branch.state_hash(), parent.state_hash(), "the same decisions lead to the same world");
+    call(&mut branch, "set_prices", json!({"A": 99}));
+    week(&mut branch);
+    week(&mut parent);
+    assert_ne!(branch.state_hash(), parent.state_hash());
+    branch.save().expect("saved");
+    assert_eq!(verify(branch.folder().expect("a folder")).expect("verified").day, branch.day());
+    for (week, code) in [(0, "week_unknown"), (6, "week_unknown")] {
+        assert_eq!(parent.branch(week, Mode::Sandbox).map(drop).expect_err("no such week").code, code);
+    }
+    assert_eq!(parent.branch(1, Mode::Baseline).map(drop).expect_err("baseline").code, "not_in_this_mode");
+    assert_eq!(parent.branch(1, Mode::Sandbox).expect("from the start").day(), 0);
+}
+
+#[test]
+fn nobody_looks_into_the_future_of_a_baseline_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut run = create(NewRun { mode: Mode::Baseline, ..new_run(runs(&folder)) });
+    week(&mut run);
+    assert_eq!(run.branch(1, Mode::Sandbox).map(drop).expect_err("unfinished").code, "not_in_this_mode");
+    run.end().expect("given up");
+    assert!(run.branch(2, Mode::Debug).is_ok());
+}
+
+#[test]
+fn the_journal_tells_the_run_and_scores_its_forecasts() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut run = create(new_run(runs(&folder)));
+    open_shop(&mut run);
+    (0..5).for_each(|_| week(&mut run));
+    run.set_memo("prices were a guess").expect("noted");
+    let scores = run.forecast_scores();
+    assert_eq!(
+        scores.iter().map(|score| (score.horizon_days, score.scored)).collect::<Vec<_>>(),
+        [(7, 5), (28, 2), (84, 0), (182, 0)]
+    );
+    let id = run.manifest().id.clone();
+    let journal = run.journal().to_vec();
+    drop(run);
+    let again = Session::open(&folder.path().join(id), Access::Write, true).expect("opens");
+    assert_eq!(again.journal(), journal);
+    assert_eq!(again.forecast_scores(), scores);
+    assert_eq!(again.memo().expect("readable"), "prices were a guess");
+}

@@ -170,7 +170,8 @@ fn confirm(
     let following = Seeds { first: seeds.last + 1, last: seeds.last + count };
     let again = compare(reference, &figures(policy, reference, &following, context, pool)?).suspects();
     let confirmed = suspects.into_iter().filter_map(|(figure, first)| {
-        let (_, second) = again.iter().find(|(other, second)| *other == figure && second.signum() == first.signum())?;
+        let (_, second) =
+            again.iter().find(|(other, second)| *other == figure && second.signum() == first.signum())?;
         Some((figure, first, *second))
     });
     Ok(confirmed.collect())
@@ -186,8 +187,7 @@ fn describe(verdict: &Verdict, all: bool) -> String {
         100.0 * comparison.share_below(3.0),
         if verdict.passes() { "passes" } else { "FAILS" },
     );
-    let listed: Vec<_> =
-        if all { comparison.cells.iter().collect() } else { comparison.worst(10) };
+    let listed: Vec<_> = if all { comparison.cells.iter().collect() } else { comparison.worst(10) };
     for cell in listed.into_iter().chain(&comparison.shown) {
         text += &format!("  {cell}\n");
     }
@@ -203,9 +203,9 @@ fn describe(verdict: &Verdict, all: bool) -> String {
 fn conclude(verdicts: &[Verdict], seeds: &Seeds) -> Result<(), Failure> {
     let cells: usize = verdicts.iter().map(|verdict| verdict.comparison.cells.len()).sum();
     let below = |bound: f64| {
-        let counts = verdicts.iter().map(|verdict| {
-            verdict.comparison.share_below(bound) * verdict.comparison.cells.len() as f64
-        });
+        let counts = verdicts
+            .iter()
+            .map(|verdict| verdict.comparison.share_below(bound) * verdict.comparison.cells.len() as f64);
         counts.sum::<f64>() / cells.max(1) as f64
     };
     print(&format!(

@@ -106,7 +106,8 @@ fn open(options: &Options, context: &Context) -> Result<Session, Failure> {
 
 fn play_plain(options: &Options, context: &Context) -> Result<(), Failure> {
     let style = crate::plain::Style { json: options.json, echo: options.echo, strict: options.strict };
-    let code = crate::plain::play(open(options, context)?, style).map_err(|error| Failure::failed(error.to_string()))?;
+    let code = crate::plain::play(open(options, context)?, style)
+        .map_err(|error| Failure::failed(error.to_string()))?;
     if code == 0 { Ok(()) } else { Err(Failure::code_only(code)) }
 }
 

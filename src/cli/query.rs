@@ -44,9 +44,11 @@ fn ask(folder: &std::path::Path, sql: &str) -> Result<Rows, Failure> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
     // Queries and views do not move the database on; only lines that change the company do.
     let moves = |kind: &str| ["start", "call", "week", "step", "end"].contains(&kind);
-    let last = trajectory.lines.iter().rev().find(|line| {
-        moves(&line.kind) && (line.kind != "call" || changes_rows(&line.fields))
-    });
+    let last = trajectory
+        .lines
+        .iter()
+        .rev()
+        .find(|line| moves(&line.kind) && (line.kind != "call" || changes_rows(&line.fields)));
     if let (Ok((desk, position)), Some(last)) = (desk_of_file(folder), last)
         && position.seq >= last.seq
         && trajectory.lines.get(position.seq as usize).is_some_and(|line| line.hash == position.line_hash)

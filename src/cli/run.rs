@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
-use std::sync::mpsc::channel;
+use std::sync::mpsc::{Receiver, channel};
 
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 
 use super::{Context, Failure, print};
-use crate::lab::{Collector, Figure, Outcome, Policy, RunEnd, RunSpec, play};
+use crate::lab::{Collector, Figure, Outcome, Policy, RunEnd, RunError, RunSpec, play};
 
 /// Options of `run`.
 #[derive(Debug, Args)]
@@ -113,63 +113,87 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         projection: save.is_some(),
         save,
     };
-    let mut metrics = options.metrics.as_ref().map(open_metrics).transpose()?;
-    let collector = || match &metrics {
-        Some(_) => Collector::new(options.metrics_days.clone()),
-        None => Collector::idle(),
-    };
+    let mut book =
+        Book { metrics: options.metrics.as_ref().map(open_metrics).transpose()?, options, bankrupt: false };
     let seeds: Vec<u64> = (options.seed.first..=options.seed.last).collect();
-    let pool = thread_pool(options.jobs)?;
     let progress = progress_bar(seeds.len() as u64, "runs");
-    let (done, results) = channel();
-    let mut failure: Option<Failure> = None;
-    let mut bankrupt = false;
-    std::thread::scope(|scope| {
-        let (policy, spec, context) = (&policy, &spec, &context);
-        let collectors: Vec<Collector> = seeds.iter().map(|_| collector()).collect();
-        scope.spawn(move || {
-            pool.install(|| {
-                let jobs: Vec<(u64, Collector)> = seeds.into_iter().zip(collectors).collect();
-                jobs.into_par_iter().with_max_len(1).for_each_with(done, |done, (seed, mut collector)| {
-                    let own = RunSpec { seed, ..spec.clone() };
-                    let outcome = play(policy, &own, &context.configuration, &mut collector);
-                    // Nobody listens any more once an earlier seed has failed.
-                    let _ = done.send((seed, outcome, collector));
-                });
-            });
-        });
-        let mut waiting = BTreeMap::new();
-        let mut next = options.seed.first;
-        for (seed, outcome, collector) in results {
-            progress.inc(1);
-            waiting.insert(seed, (outcome, collector));
-            while let Some((outcome, collector)) = waiting.remove(&next) {
-                next += 1;
-                let written = outcome.map_err(Failure::from).and_then(|outcome| {
-                    bankrupt |= outcome.ended == RunEnd::Bankruptcy;
-                    if let Some(file) = &mut metrics {
-                        let until = options.until.unwrap_or(outcome.days).min(outcome.days);
-                        write_figures(file, outcome.seed, &collector.finish(until))?;
-                    }
-                    progress.suspend(|| print(&summary(&outcome, options.json)))
-                });
-                if let Err(problem) = written {
-                    failure.get_or_insert(problem);
-                }
-            }
-            if failure.is_some() {
-                break;
-            }
-        }
-    });
+    let results = start(&policy, &spec, seeds, options, context)?;
+    let failure = in_order(results, options.seed.first, &progress, &mut book).err();
     progress.finish_and_clear();
-    if let Some(mut file) = metrics {
+    if let Some(mut file) = book.metrics {
         file.flush().map_err(|error| Failure::failed(format!("the figures cannot be written: {error}")))?;
     }
     match failure {
         Some(failure) => Err(failure),
-        None if bankrupt && options.fail_on_bankruptcy => Err(Failure::bankrupt()),
+        None if book.bankrupt && options.fail_on_bankruptcy => Err(Failure::bankrupt()),
         None => Ok(()),
+    }
+}
+
+/// A run that has ended, or could not be played.
+type Played = (u64, Result<Outcome, RunError>, Collector);
+
+/// Plays all seeds on a pool of threads; results arrive in any order.
+fn start(
+    policy: &Policy,
+    spec: &RunSpec,
+    seeds: Vec<u64>,
+    options: &Options,
+    context: &Context,
+) -> Result<Receiver<Played>, Failure> {
+    let pool = thread_pool(options.jobs)?;
+    let (done, results) = channel();
+    let (policy, spec, configuration) = (policy.clone(), spec.clone(), context.configuration.clone());
+    let (wanted, days) = (options.metrics.is_some(), options.metrics_days.clone());
+    std::thread::spawn(move || {
+        pool.install(|| {
+            seeds.into_par_iter().with_max_len(1).for_each_with(done, |done, seed| {
+                let own = RunSpec { seed, ..spec.clone() };
+                let mut collector = if wanted { Collector::new(days.clone()) } else { Collector::idle() };
+                let outcome = play(&policy, &own, &configuration, &mut collector);
+                // Nobody listens any more once an earlier seed has failed.
+                let _ = done.send((seed, outcome, collector));
+            });
+        });
+    });
+    Ok(results)
+}
+
+/// Writes results in the order of their seeds, each as soon as all before it are written.
+fn in_order(
+    results: Receiver<Played>,
+    first: u64,
+    progress: &indicatif::ProgressBar,
+    book: &mut Book<'_>,
+) -> Result<(), Failure> {
+    let mut waiting = BTreeMap::new();
+    let mut next = first;
+    for (seed, outcome, collector) in results {
+        progress.inc(1);
+        waiting.insert(seed, (outcome, collector));
+        while let Some((outcome, collector)) = waiting.remove(&next) {
+            next += 1;
+            progress.suspend(|| book.write(&outcome?, collector))?;
+        }
+    }
+    Ok(())
+}
+
+/// Where results go.
+struct Book<'a> {
+    metrics: Option<BufWriter<File>>,
+    options: &'a Options,
+    bankrupt: bool,
+}
+
+impl Book<'_> {
+    fn write(&mut self, outcome: &Outcome, collector: Collector) -> Result<(), Failure> {
+        self.bankrupt |= outcome.ended == RunEnd::Bankruptcy;
+        if let Some(file) = &mut self.metrics {
+            let until = self.options.until.unwrap_or(outcome.days).min(outcome.days);
+            write_figures(file, outcome.seed, &collector.finish(until))?;
+        }
+        print(&summary(outcome, self.options.json))
     }
 }
 
@@ -214,7 +238,8 @@ pub fn progress_bar(length: u64, what: &'static str) -> indicatif::ProgressBar {
         return indicatif::ProgressBar::hidden();
     }
     let style = "{bar:40} {pos} of {len} {msg}  {elapsed}, about {eta} left";
-    let style = indicatif::ProgressStyle::with_template(style).unwrap_or_else(|_| indicatif::ProgressStyle::default_bar());
+    let style = indicatif::ProgressStyle::with_template(style)
+        .unwrap_or_else(|_| indicatif::ProgressStyle::default_bar());
     indicatif::ProgressBar::new(length).with_style(style).with_message(what)
 }
 

@@ -53,7 +53,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
                 return print(&(serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"));
             }
             if list.is_empty() {
-                return print(&format!("There are no runs in {} yet; `novamind` starts one.\n", runs.display()));
+                return print(&format!(
+                    "There are no runs in {} yet; `novamind` starts one.\n",
+                    runs.display()
+                ));
             }
             print(&list.iter().map(line).collect::<String>())
         }

@@ -26,7 +26,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         (Some(name), json) => {
             let tool = find(name).ok_or_else(|| {
-                Failure::usage(format!("there is no tool {name}; near it: {}", catalogue::nearest(name).join(", ")))
+                Failure::usage(format!(
+                    "there is no tool {name}; near it: {}",
+                    catalogue::nearest(name).join(", ")
+                ))
             })?;
             if json { format!("{:#}\n", describe::as_json(tool)) } else { describe::manual(tool.spec()) }
         }

@@ -166,9 +166,8 @@ pub fn play(
 
 fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
     let mut overrides = spec.overrides.clone();
-    match spec.surges.or(policy.start.surges) {
-        Some(false) => overrides.push(("demand_surge.probability".to_owned(), "0.0".to_owned())),
-        Some(true) | None => {}
+    if spec.surges.or(policy.start.surges) == Some(false) {
+        overrides.push(("demand_surge.probability".to_owned(), "0.0".to_owned()));
     }
     let standard = NewRun::default();
     NewRun {

@@ -249,9 +249,10 @@ mod tests {
 
     fn call(line: &str) -> (String, Value) {
         match parse(line) {
-            Ok(Line::Call { word, arguments, .. }) => {
-                (word, as_object(&arguments, Some("tier")).unwrap_or_else(|problem| panic!("{line}: {problem:?}")))
-            }
+            Ok(Line::Call { word, arguments, .. }) => (
+                word,
+                as_object(&arguments, Some("tier")).unwrap_or_else(|problem| panic!("{line}: {problem:?}")),
+            ),
             other => panic!("{line}: {other:?}"),
         }
     }
@@ -271,8 +272,7 @@ mod tests {
         }
         assert_eq!(call("set_capacity_tier 3").1, json!({"tier": 3}));
         let mixed = "x a=1_000_000 b=null c=true d=word e=\"two words # no comment\" f=[1, 2]";
-        let expected =
-            json!({"a": 1_000_000, "b": null, "c": true, "d": "word", "e": "two words # no comment", "f": [1, 2]});
+        let expected = json!({"a": 1_000_000, "b": null, "c": true, "d": "word", "e": "two words # no comment", "f": [1, 2]});
         assert_eq!(call(mixed).1, expected);
         assert_eq!(call("get_cost_info").1, json!({}));
         assert_eq!(call("get_cost_info()").1, json!({}));
@@ -287,7 +287,10 @@ mod tests {
         };
         let sql = "SELECT '# no comment', \"x\" FROM ledger -- (";
         assert_eq!(text(&format!("sql {sql}")), ("sql".to_owned(), sql.to_owned()));
-        assert_eq!(text("memo  remember: prices = 12 "), ("memo".to_owned(), "remember: prices = 12".to_owned()));
+        assert_eq!(
+            text("memo  remember: prices = 12 "),
+            ("memo".to_owned(), "remember: prices = 12".to_owned())
+        );
         assert_eq!(text("sql"), ("sql".to_owned(), String::new()));
     }
 

@@ -37,7 +37,7 @@ pub struct Style {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
     Quit,
-    EndOfInput,
+    InputOver,
     Strict,
     Signal(i32),
 }
@@ -46,7 +46,7 @@ impl End {
     fn id(self) -> &'static str {
         match self {
             End::Quit => "quit",
-            End::EndOfInput => "end_of_input",
+            End::InputOver => "end_of_input",
             End::Strict => "strict",
             End::Signal(_) => "signal",
         }
@@ -54,7 +54,7 @@ impl End {
 
     fn code(self) -> u8 {
         match self {
-            End::Quit | End::EndOfInput => 0,
+            End::Quit | End::InputOver => 0,
             End::Strict => 1,
             End::Signal(number) => 128u8.saturating_add(number as u8),
         }
@@ -81,7 +81,7 @@ pub fn play(session: Session, style: Style) -> io::Result<u8> {
         let read = input.read()?;
         watch.enter(Phase::Working, String::new());
         let (line, day) = match read {
-            Read::End => break End::EndOfInput,
+            Read::End => break End::InputOver,
             Read::Line(line) => (line, desk.session.day()),
             Read::Unreadable(problem) => {
                 answer(&mut out, style, number, None, &Answer::usage(problem, 1), desk.session.day())?;
@@ -111,7 +111,7 @@ pub fn play(session: Session, style: Style) -> io::Result<u8> {
 }
 
 /// Shows a prompt where a person sees it.
-pub(self) fn prompt(text: &str) -> io::Result<()> {
+fn prompt(text: &str) -> io::Result<()> {
     let write = |out: &mut dyn Write| out.write_all(text.as_bytes()).and_then(|()| out.flush());
     if io::stdout().is_terminal() { write(&mut io::stdout()) } else { write(&mut io::stderr()) }
 }

@@ -40,6 +40,23 @@ pub struct Week {
     pub remark: Option<String>,
 }
 
+impl Week {
+    /// The week as programs get it (chapter 70 §5).
+    pub fn as_json(&self) -> Value {
+        let notices: Vec<Value> =
+            self.notices.iter().map(|(day, text)| json!({ "day": day, "text": text })).collect();
+        json!({
+            "day": self.figures.day,
+            "days_run": self.figures.days_run,
+            "cash": json_number(self.figures.cash),
+            "figures": self.figures.as_json(),
+            "dashboard": self.dashboard,
+            "notifications": notices,
+            "ended": self.ended,
+        })
+    }
+}
+
 impl Session {
     /// Files rationale and forecasts and simulates the days until the next decision day, or the last day, or
     /// bankruptcy.

@@ -32,7 +32,11 @@ impl Session {
         let day = week.saturating_sub(1) * self.params.run.days_per_week;
         if week == 0 || day > self.world.day {
             let last = self.world.day / self.params.run.days_per_week + 1;
-            return Err(Refusal::at("week", "week_unknown", format!("weeks 1 to {last} have begun, not {week}")));
+            return Err(Refusal::at(
+                "week",
+                "week_unknown",
+                format!("weeks 1 to {last} have begun, not {week}"),
+            ));
         }
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved)?;
         let shared = shared_lines(&trajectory, day);
@@ -46,8 +50,13 @@ impl Session {
             ..self.manifest.clone()
         };
         let own = folder.with_file_name(&manifest.id);
-        write_branch(&own, &manifest, &shared).map_err(not_saved)?;
-        Session::open(&own, Access::Write, true).map_err(not_saved)
+        write_branch(&own, &manifest, &shared)
+            .and_then(|()| Session::open(&own, Access::Write, true))
+            .map_err(|error| {
+                // A branch that cannot be opened is nobody's run.
+                let _ = std::fs::remove_dir_all(&own);
+                not_saved(error)
+            })
     }
 
     /// Whether the run can be branched now.
@@ -88,9 +97,10 @@ fn write_branch(folder: &PathBuf, manifest: &Manifest, shared: &[&Line]) -> Resu
     for line in shared {
         writer.append(&line.kind, line.day, own_fields(line), Durability::Written)?;
     }
-    let parent = json!({ "run": manifest.parent.as_ref().map(|p| &p.run), "seq": manifest.parent.as_ref().map(|p| p.seq) });
+    // In an object of its own, because `seq` is a field of the frame of every line.
+    let from = Map::from_iter([("from".to_owned(), json!(manifest.parent))]);
     let day = shared.last().map_or(0, |line| line.day);
-    writer.append("branch", day, parent.as_object().cloned().unwrap_or_default(), Durability::Synced)?;
+    writer.append("branch", day, from, Durability::Synced)?;
     sync_folder(folder)
 }
 

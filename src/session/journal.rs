@@ -78,7 +78,8 @@ impl Session {
     }
 
     fn score_horizon(&self, horizon_days: u32, filed: &[(u32, Forecast)]) -> ForecastScore {
-        let mut score = ForecastScore { horizon_days, scored: 0, covered: 0, mean_error: 0.0, mean_sharpness: 0.0 };
+        let mut score =
+            ForecastScore { horizon_days, scored: 0, covered: 0, mean_error: 0.0, mean_sharpness: 0.0 };
         for (day, forecast) in filed.iter().filter(|(_, forecast)| forecast.horizon_days == horizon_days) {
             let Some(outcome) = self.cash_by_day.get((day + horizon_days) as usize) else { continue };
             let size = if outcome.abs() <= 1.0 { 1.0 } else { outcome.abs() };
@@ -119,7 +120,8 @@ impl Session {
             Some(folder) => super::manifest::write_whole(&folder.join("memo.md"), text.as_bytes())
                 .map_err(|error| Refusal::new("not_saved", error.to_string()))?,
         }
-        let fields = json!({ "digest": blake3::hash(text.as_bytes()).to_hex().as_str(), "length": text.len() });
+        let fields =
+            json!({ "digest": blake3::hash(text.as_bytes()).to_hex().as_str(), "length": text.len() });
         self.note("memo", fields.as_object().cloned().unwrap_or_default());
         Ok(())
     }

@@ -167,6 +167,10 @@ impl TrajectoryWriter {
         line.insert("day".to_owned(), day.into());
         line.insert("at".to_owned(), at.clone().into());
         line.insert("prev".to_owned(), self.last_hash.clone().into());
+        debug_assert!(
+            fields.keys().all(|name| !line.contains_key(name)),
+            "a field hides a part of the frame: {kind}"
+        );
         line.extend(fields);
         let mut bytes = Value::Object(line).to_string().into_bytes();
         let hash = line_hash(&bytes);

@@ -1,0 +1,266 @@
+//! The commands of plain mode: what each line does, and what is answered (chapter 70 §8.1).
+
+mod readings;
+
+use std::io::{self, BufRead};
+
+use serde_json::{Value, json};
+
+pub use readings::change as change_line;
+
+use super::answers::{Answer, table};
+use super::grammar::{self, Argument, Line, Problem, as_object};
+use super::input::Input;
+use super::next;
+use super::signals::{Phase, Watch};
+use crate::notation::nearest;
+use crate::session::{Mode, Refusal, Session, Via, rows_as_json};
+use crate::tools::{self, Kind, Module, Tool};
+
+/// Commands that are no tools.
+const COMMANDS: [(&str, &str); 18] = [
+    ("sql", "sql SELECT …             ask the database (also: query)"),
+    ("next", "next \"WHY\" naive          file a rationale and forecasts, let a week pass (also: next-week)"),
+    ("dashboard", "dashboard                the dashboard of the last week"),
+    ("status", "status                   run, day, cash, runway, subscribers and what waits"),
+    ("inbox", "inbox                    threads that wait for an answer"),
+    ("changes", "changes                  settings changed since the last week"),
+    ("undo", "undo                     take the last setting of this week back"),
+    ("history", "history [N]              the last N confirmed actions and weeks (20)"),
+    ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
+    ("tools", "tools [NAME]             the tools, or one of them"),
+    ("tables", "tables [NAME]            the tables, or one of them"),
+    ("vars", "vars                     the current day, as get_vars tells it"),
+    ("branch", "branch WEEK              go on in a branch from the start of that week"),
+    ("step", "step [DAYS]              debug: let single days pass (1)"),
+    ("help", "help [NAME]              this list, or help on one command, tool or table"),
+    ("quit", "quit                     leave; everything confirmed is saved (also: exit)"),
+    ("query", ""),
+    ("next-week", ""),
+];
+
+/// The session and how the dialogue reaches it.
+pub struct Desk {
+    /// The run.
+    pub session: Session,
+    watch: Watch,
+    prompts: bool,
+}
+
+impl Desk {
+    /// A desk; `prompts` says that a person types and can be asked.
+    pub fn new(session: Session, watch: Watch, prompts: bool) -> Desk {
+        Desk { session, watch, prompts }
+    }
+
+    /// Does what a line says; none for empty lines and comments.
+    ///
+    /// # Errors
+    /// The input fails while a question waits for its answer.
+    pub fn answer(&mut self, line: &str, input: &mut Input<impl BufRead>) -> io::Result<Option<Answer>> {
+        let answer = match grammar::parse(line) {
+            Ok(Line::Empty) => return Ok(None),
+            Ok(Line::Text { word, rest }) => self.text(&word, &rest),
+            Ok(Line::Call { word, arguments, .. }) if ["next", "next-week"].contains(&word.as_str()) => {
+                self.next(&arguments, input)?
+            }
+            Ok(Line::Call { word, column, arguments }) => self.command(&word, column, &arguments),
+            Err(problem) => usage(problem),
+        };
+        Ok(Some(answer))
+    }
+
+    fn text(&mut self, word: &str, rest: &str) -> Answer {
+        match word {
+            "memo" if rest.is_empty() => self.show_memo(),
+            "memo" => self.add_to_memo(rest),
+            _ => self.query(rest),
+        }
+    }
+
+    fn query(&mut self, sql: &str) -> Answer {
+        let answer = self.session.interrupt().and_then(|interrupt| {
+            self.watch.enter_query(interrupt);
+            self.session.query(sql)
+        });
+        self.watch.enter(Phase::Working, String::new());
+        match answer {
+            Ok(rows) => Answer::done("sql", table(&rows), Value::Object(rows_as_json(&rows))),
+            Err(refusal) => Answer::refused("sql", refusal),
+        }
+    }
+
+    fn show_memo(&self) -> Answer {
+        match self.session.memo() {
+            Ok(memo) if memo.is_empty() => {
+                Answer::done("memo", "no notes yet".to_owned(), json!({ "memo": "" }))
+            }
+            Ok(memo) => Answer::done("memo", memo.clone(), json!({ "memo": memo })),
+            Err(error) => Answer::refused("memo", Refusal::new("not_readable", error.to_string())),
+        }
+    }
+
+    fn add_to_memo(&mut self, line: &str) -> Answer {
+        let memo = match self.session.memo() {
+            Ok(memo) => memo,
+            Err(error) => return Answer::refused("memo", Refusal::new("not_readable", error.to_string())),
+        };
+        let gap = if memo.is_empty() || memo.ends_with('\n') { "" } else { "\n" };
+        let memo = format!("{memo}{gap}{line}\n");
+        match self.session.set_memo(&memo) {
+            Ok(()) => Answer::done("memo", "noted".to_owned(), json!({ "memo": memo })),
+            Err(refusal) => Answer::refused("memo", refusal),
+        }
+    }
+
+    fn next(&mut self, arguments: &[Argument], input: &mut Input<impl BufRead>) -> io::Result<Answer> {
+        let filing = match next::read(arguments, &self.session, self.prompts) {
+            Ok(next::Filing::Ask) => match next::ask(&self.session, input)? {
+                Some(filing) => filing,
+                None => {
+                    let text = "cancelled; no day has passed".to_owned();
+                    return Ok(Answer::done("next", text, json!({ "cancelled": true })));
+                }
+            },
+            Ok(filing) => filing,
+            Err(problem) => return Ok(usage(problem)),
+        };
+        Ok(next::run(&mut self.session, filing))
+    }
+
+    fn command(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Answer {
+        let outcome = match word {
+            "quit" | "exit" => none(arguments).map(|()| Answer::Quit),
+            "dashboard" => none(arguments).map(|()| self.dashboard()),
+            "status" => none(arguments).map(|()| self.status()),
+            "inbox" => none(arguments).map(|()| self.inbox()),
+            "changes" => none(arguments).map(|()| self.changes()),
+            "undo" => none(arguments).map(|()| self.undo()),
+            "vars" => none(arguments).map(|()| self.call_named("get_vars", &json!({}))),
+            "help" => name(arguments).and_then(|name| readings::help(name, arguments)),
+            "tools" => name(arguments).and_then(|name| readings::tools(name, arguments)),
+            "tables" => name(arguments).and_then(|name| readings::tables(name, arguments)),
+            "history" => count(arguments).map(|count| self.history(count.unwrap_or(20))),
+            "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),
+            "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
+            _ => self.call(word, column, arguments),
+        };
+        outcome.unwrap_or_else(usage)
+    }
+
+    /// Calls a tool by its name, with or without its module.
+    fn call(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Result<Answer, Problem> {
+        let tool = tool_called(word).ok_or_else(|| unknown(word, column))?;
+        let arguments = as_object(arguments, only_required(tool))?;
+        Ok(self.call_named(tool.spec().name, &arguments))
+    }
+
+    fn call_named(&mut self, tool: &'static str, arguments: &Value) -> Answer {
+        match self.session.call(tool, arguments, Via::Plain) {
+            Ok(data) => Answer::call(tool, data),
+            Err(refusal) => Answer::refused(tool, refusal),
+        }
+    }
+
+    fn undo(&mut self) -> Answer {
+        match self.session.undo(Via::Plain) {
+            Ok(back) => {
+                let text: String =
+                    back.iter().map(|change| format!("{}\n", readings::change(change))).collect();
+                Answer::done("undo", format!("taken back\n{text}"), json!({ "taken_back": back }))
+            }
+            Err(refusal) => Answer::refused("undo", refusal),
+        }
+    }
+
+    fn branch(&mut self, week: Option<u32>, arguments: &[Argument]) -> Result<Answer, Problem> {
+        let week = week
+            .ok_or_else(|| problem(arguments, "branch needs the number of a week, for instance branch 4"))?;
+        let own = self.session.manifest().mode;
+        let mode = if own == Mode::Baseline { Mode::Sandbox } else { own };
+        Ok(match self.session.branch(week, mode) {
+            Ok(branch) => {
+                let _ = self.session.save();
+                self.session = branch;
+                let (run, day) = (self.session.manifest().id.clone(), self.session.day());
+                let text = format!("run {run} goes on from day {day} · {mode}");
+                Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode }))
+            }
+            Err(refusal) => Answer::refused("branch", refusal),
+        })
+    }
+
+    fn step(&mut self, days: u32) -> Answer {
+        match self.session.step(days, &mut |_| {}) {
+            Ok(week) => next::report("step", &self.session, &week),
+            Err(refusal) => Answer::refused("step", refusal),
+        }
+    }
+}
+
+/// The tool that a word names, with or without its module; next_week has a command of its own.
+fn tool_called(word: &str) -> Option<&'static dyn Tool> {
+    let (module, name) = match word.split_once('.') {
+        Some((module, name)) => (Some(module), name),
+        None => (None, word),
+    };
+    let fits = |module: &str, own: Module| own.id() == module;
+    tools::find(name)
+        .filter(|tool| tool.spec().kind != Kind::Time && tool.spec().name != "query")
+        .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))
+}
+
+/// The only required argument of a tool, which may be given without its name.
+fn only_required(tool: &'static dyn Tool) -> Option<&'static str> {
+    let mut required = tool.spec().arguments.iter().filter(|argument| argument.required);
+    required.next().filter(|_| required.next().is_none()).map(|argument| argument.name)
+}
+
+fn unknown(word: &str, column: usize) -> Problem {
+    let commands = COMMANDS.iter().map(|(name, _)| *name);
+    let tools = tools::CATALOGUE.iter().map(|tool| tool.spec().name);
+    let name = word.rsplit('.').next().unwrap_or(word);
+    let near = nearest(name, commands.chain(tools));
+    let help = if near.is_empty() {
+        "; help lists them all".to_owned()
+    } else {
+        format!("; near it: {}", near.join(", "))
+    };
+    Problem { text: format!("{word} is no command{help}"), column }
+}
+
+fn usage(problem: Problem) -> Answer {
+    Answer::usage(problem.text, problem.column)
+}
+
+fn problem(arguments: &[Argument], text: &str) -> Problem {
+    Problem { text: text.to_owned(), column: arguments.first().map_or(1, |argument| argument.column) }
+}
+
+fn none(arguments: &[Argument]) -> Result<(), Problem> {
+    match arguments {
+        [] => Ok(()),
+        _ => Err(problem(arguments, "this command takes no arguments")),
+    }
+}
+
+/// At most one name.
+fn name(arguments: &[Argument]) -> Result<Option<&str>, Problem> {
+    match arguments {
+        [] => Ok(None),
+        [Argument { key: None, value: Value::String(name), .. }] => Ok(Some(name)),
+        _ => Err(problem(arguments, "this command takes one name, or nothing")),
+    }
+}
+
+/// At most one whole number from 1.
+fn count(arguments: &[Argument]) -> Result<Option<u32>, Problem> {
+    let number = |value: &Value| {
+        value.as_u64().filter(|number| *number > 0).and_then(|number| u32::try_from(number).ok())
+    };
+    match arguments {
+        [] => Ok(None),
+        [Argument { key: None, value, .. }] if number(value).is_some() => Ok(number(value)),
+        _ => Err(problem(arguments, "this command takes one whole number from 1, or nothing")),
+    }
+}

@@ -1,0 +1,186 @@
+//! Readings: what the company looks like, and what there is to know about commands, tools and tables.
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::super::grammar::{Argument, Problem};
+use super::{COMMANDS, Desk, problem, tool_called};
+use crate::database;
+use crate::notation::{dollars, grouped, nearest, signed_dollars};
+use crate::session::{Change, JournalEntry};
+use crate::tools::{self, Kind, describe};
+
+impl Desk {
+    pub(super) fn dashboard(&self) -> Answer {
+        let dashboard = self.session.dashboard();
+        let data = json!({ "day": self.session.day(), "dashboard": dashboard });
+        Answer::done("dashboard", dashboard, data)
+    }
+
+    pub(super) fn status(&self) -> Answer {
+        let seen = self.session.observe();
+        let runway = seen.runway_weeks.map_or("endless".to_owned(), |weeks| format!("{weeks:.0} weeks"));
+        let ended = seen.ended.map_or(String::new(), |ended| format!("ended: {}\n", ended.id()));
+        let text = format!(
+            "run {} · seed {} · {}\nday {} of {} · week {}\n{ended}cash {} ({} over the last week) · runway {runway}\n\
+             subscribers {} · seats {}\nwaiting threads {} · running research {} · changes this week {}",
+            seen.run,
+            seen.seed,
+            seen.mode,
+            seen.day,
+            seen.last_day,
+            seen.week,
+            dollars(seen.cash),
+            signed_dollars(seen.cash_change),
+            grouped(f64::from(seen.subscribers), 0),
+            grouped(f64::from(seen.seats), 0),
+            seen.waiting.len(),
+            seen.running_research,
+            seen.changes.len() + seen.purchases.len(),
+        );
+        let data = json!({
+            "run": seen.run,
+            "mode": seen.mode,
+            "day": seen.day,
+            "days": seen.last_day,
+            "week": seen.week,
+            "ended": seen.ended,
+            "score": seen.score,
+            "cash": seen.cash,
+            "cash_change": seen.cash_change,
+            "runway_weeks": seen.runway_weeks,
+            "individual_subscribers": seen.subscribers,
+            "enterprise_seats": seen.seats,
+            "waiting_threads": seen.waiting.len(),
+            "running_research": seen.running_research,
+            "changes": seen.changes.len() + seen.purchases.len(),
+        });
+        Answer::done("status", text, data)
+    }
+
+    pub(super) fn inbox(&self) -> Answer {
+        let waiting = self.session.observe().waiting;
+        let data = json!({ "threads": waiting });
+        if waiting.is_empty() {
+            return Answer::done("inbox", "no thread waits for an answer".to_owned(), data);
+        }
+        let call = Answer::call("inbox", data.clone());
+        Answer::done("inbox", call.as_text().trim_start_matches("ok inbox\n").to_owned(), data)
+    }
+
+    pub(super) fn changes(&self) -> Answer {
+        let seen = self.session.observe();
+        let data = json!({ "changes": seen.changes, "purchases": seen.purchases });
+        let mut lines: Vec<String> = seen.changes.iter().map(change).collect();
+        lines.extend(seen.purchases);
+        if lines.is_empty() {
+            lines.push("nothing changed since the last week".to_owned());
+        }
+        Answer::done("changes", lines.join("\n"), data)
+    }
+
+    pub(super) fn history(&self, count: u32) -> Answer {
+        let journal = self.session.journal();
+        let last = &journal[journal.len().saturating_sub(count as usize)..];
+        let mut text: String = last.iter().map(|entry| entry_line(entry) + "\n").collect();
+        if text.is_empty() {
+            text = "nothing was done yet".to_owned();
+        }
+        Answer::done("history", text, json!({ "entries": last }))
+    }
+}
+
+/// A change as one line.
+pub fn change(change: &Change) -> String {
+    let number = |value: f64| grouped(value, if value.fract() == 0.0 { 0 } else { 2 });
+    format!("{}: {} → {} {}", change.setting, number(change.old), number(change.new), change.unit)
+}
+
+fn entry_line(entry: &JournalEntry) -> String {
+    match entry {
+        JournalEntry::Call { day, tool, args, undoes } => {
+            let undo = if undoes.is_some() { " (undo)" } else { "" };
+            format!("day {day:>3}  {tool}{undo} {args}")
+        }
+        JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
+            let naive = if *filled_naively { ", naive" } else { "" };
+            let next = forecasts.first().map_or(String::new(), |first| dollars(first.point));
+            format!("day {day:>3}  next week: {rationale} (expects {next} in a week{naive})")
+        }
+        JournalEntry::Week { figures } => {
+            format!(
+                "day {:>3}  cash {} ({})",
+                figures.day,
+                dollars(figures.cash),
+                signed_dollars(figures.cash_change)
+            )
+        }
+    }
+}
+
+/// `help [NAME]`.
+pub(super) fn help(name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
+    let Some(name) = name else {
+        let lines: Vec<&str> =
+            COMMANDS.iter().map(|(_, line)| *line).filter(|line| !line.is_empty()).collect();
+        let tools: Vec<&str> = callable().collect();
+        let text = format!(
+            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=12 B=25 C=55\nhelp NAME explains one of them.",
+            lines.join("\n"),
+            tools.join(", ")
+        );
+        return Ok(Answer::done("help", text, json!({ "commands": lines, "tools": tools })));
+    };
+    if let Some((_, line)) = COMMANDS.iter().find(|(command, line)| *command == name && !line.is_empty()) {
+        return Ok(Answer::done("help", (*line).to_owned(), json!({ "command": line })));
+    }
+    if tools::find(name).is_some() || tool_called(name).is_some() {
+        return self::tools(Some(name), arguments);
+    }
+    if database::table(name).is_some() {
+        return tables(Some(name), arguments);
+    }
+    let names = COMMANDS.iter().map(|(name, _)| *name).chain(callable());
+    let names = names.chain(database::tables().iter().map(|table| table.name.as_str()));
+    Err(problem(arguments, &not_there("nothing", name, nearest(name, names))))
+}
+
+/// `tools [NAME]`.
+pub(super) fn tools(name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
+    let Some(name) = name else {
+        let all: Value = tools::CATALOGUE.iter().map(|tool| describe::as_json(*tool)).collect();
+        return Ok(Answer::done("tools", describe::overview(), json!({ "tools": all })));
+    };
+    let tool = tools::find(name)
+        .or_else(|| tool_called(name))
+        .ok_or_else(|| problem(arguments, &not_there("no tool", name, tools::catalogue::nearest(name))))?;
+    Ok(Answer::done("tools", describe::manual(tool.spec()), describe::as_json(tool)))
+}
+
+/// `tables [NAME]`.
+pub(super) fn tables(name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
+    let Some(name) = name else {
+        let width = database::tables().iter().map(|table| table.name.len()).max().unwrap_or(0);
+        let line = |table: &database::Table| format!("{:<width$}  {}\n", table.name, table.description);
+        let text: String = database::tables().iter().map(line).collect();
+        return Ok(Answer::done("tables", text, json!({ "tables": database::tables() })));
+    };
+    let table = database::table(name).ok_or_else(|| {
+        let names = database::tables().iter().map(|table| table.name.as_str());
+        problem(arguments, &not_there("no table", name, nearest(name, names)))
+    })?;
+    Ok(Answer::done("tables", table.describe(), json!(table)))
+}
+
+fn callable() -> impl Iterator<Item = &'static str> {
+    tools::CATALOGUE
+        .iter()
+        .map(|tool| tool.spec())
+        .filter(|spec| spec.kind != Kind::Time)
+        .map(|spec| spec.name)
+}
+
+fn not_there(what: &str, name: &str, near: Vec<&str>) -> String {
+    let near = if near.is_empty() { String::new() } else { format!("; near it: {}", near.join(", ")) };
+    format!("there is {what} called {name}{near}")
+}

@@ -1,0 +1,229 @@
+//! `next`: rationale, forecasts, a week (chapter 70 §8.2).
+
+use std::io::{self, BufRead};
+
+use serde_json::{Value, json};
+
+use super::answers::Answer;
+use super::grammar::{Argument, Problem};
+use super::input::{Input, Read};
+use super::prompt;
+use crate::notation::{dollars, grouped, signed_dollars};
+use crate::session::{Forecasts, Mode, Session, Via, Week};
+use crate::tools::{FORECAST_KEYS, Forecast};
+
+/// What is filed before a week.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Filing {
+    /// Rationale and predictions as tools take them.
+    Given {
+        /// Why.
+        rationale: Value,
+        /// Forecasts.
+        predictions: Value,
+        /// Filled by the naive projection.
+        naive: bool,
+    },
+    /// The person has to be asked.
+    Ask,
+}
+
+/// Reads the four forms of the command.
+pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<Filing, Problem> {
+    let naive = session.naive_forecasts();
+    let given = |rationale: Value, predictions: Value, naive| Filing::Given { rationale, predictions, naive };
+    let is_naive = |argument: &Argument| argument.key.is_none() && argument.value == "naive";
+    match arguments {
+        [] if prompts => Ok(Filing::Ask),
+        [] => Ok(given(Value::Null, Value::Null, false)),
+        [Argument { key: None, value: Value::Object(body), .. }] => {
+            let field = |name: &str| body.get(name).cloned().unwrap_or(Value::Null);
+            Ok(given(field("rationale"), field("predictions"), false))
+        }
+        [only] if is_naive(only) && session.manifest().mode == Mode::Baseline => {
+            Ok(given(Value::Null, naive.as_predictions(), true))
+        }
+        [only] if is_naive(only) => Ok(given(json!("(none given)"), naive.as_predictions(), true)),
+        [why, only] if why.key.is_none() && is_naive(only) => {
+            Ok(given(why.value.clone(), naive.as_predictions(), true))
+        }
+        [why, numbers @ ..] => Ok(given(why.value.clone(), predictions(why, numbers)?, false)),
+    }
+}
+
+/// Twelve numbers: point, lower, upper of four horizons.
+fn predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, Problem> {
+    let wrong = |column, text: String| Problem { text, column };
+    if let Some(named) = std::iter::once(why).chain(numbers).find(|argument| argument.key.is_some()) {
+        return Err(wrong(
+            named.column,
+            "next takes no named arguments; write next \"WHY\" and twelve numbers".to_owned(),
+        ));
+    }
+    if numbers.len() != 12 {
+        let column = numbers.last().unwrap_or(why).column;
+        let text = format!(
+            "after the rationale come exactly twelve numbers, point lower upper in 1, 4, 12 and 26 weeks, or naive; \
+             there are {}",
+            numbers.len()
+        );
+        return Err(wrong(column, text));
+    }
+    let one = |(key, three): (&str, &[Argument])| {
+        let fields = json!({ "point": three[0].value, "lower": three[1].value, "upper": three[2].value });
+        (key.to_owned(), fields)
+    };
+    Ok(FORECAST_KEYS.into_iter().zip(numbers.chunks(3)).map(one).collect())
+}
+
+/// Files and lets the week pass.
+pub fn run(session: &mut Session, filing: Filing) -> Answer {
+    let Filing::Given { rationale, predictions, naive } = filing else {
+        return Answer::done("next", String::new(), Value::Null);
+    };
+    match session.advance_given(&rationale, &predictions, naive, Via::Plain, &mut |_| {}) {
+        Ok(week) => report("next", session, &week),
+        Err(refusal) => Answer::refused("next", refusal),
+    }
+}
+
+/// What a week, or days, brought.
+pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
+    let figures = &week.figures;
+    let done = if command == "next" {
+        format!("week {} done", figures.day.div_ceil(7))
+    } else {
+        "stepped".to_owned()
+    };
+    let mut text = week.dashboard.trim_end().to_owned();
+    text += &format!(
+        "\n{done} · day {} · cash {} ({})\n",
+        figures.day,
+        dollars(figures.cash),
+        signed_dollars(figures.cash_change)
+    );
+    if let Some(ended) = week.ended {
+        let score = session.score().unwrap_or(0.0);
+        text += &format!("run ended: {} · day {} · score {}\n", ended.id(), figures.day, dollars(score));
+    }
+    if let Some(remark) = &week.remark {
+        text += &format!("note: {remark}\n");
+    }
+    Answer::done(command, text, week.as_json())
+}
+
+/// Asks the person; none when they cancel.
+///
+/// # Errors
+/// The input or the prompt fails.
+pub fn ask(session: &Session, input: &mut Input<impl BufRead>) -> io::Result<Option<Filing>> {
+    let seen = session.observe();
+    let lines: Vec<String> =
+        seen.changes.iter().map(super::commands::change_line).chain(seen.purchases).collect();
+    let changed =
+        if lines.is_empty() { "nothing changed since the last week".to_owned() } else { lines.join("\n") };
+    prompt(&format!("{changed}\n"))?;
+    let rationale = loop {
+        match ask_line(input, "why (. cancels)> ")? {
+            None => return Ok(None),
+            Some(line) if line.trim().is_empty() => prompt("a rationale is required\n")?,
+            Some(line) => break line,
+        }
+    };
+    let mut forecasts = session.naive_forecasts();
+    let mut any_naive = false;
+    for (forecast, weeks) in forecasts.all.iter_mut().zip([1, 4, 12, 26]) {
+        match ask_forecast(input, weeks, *forecast)? {
+            None => return Ok(None),
+            Some((given, naive)) => {
+                *forecast = given;
+                any_naive |= naive;
+            }
+        }
+    }
+    let predictions = Forecasts { filled_naively: any_naive, ..forecasts }.as_predictions();
+    Ok(Some(Filing::Given { rationale: rationale.into(), predictions, naive: any_naive }))
+}
+
+/// One forecast and whether it is the naive one.
+fn ask_forecast(
+    input: &mut Input<impl BufRead>,
+    weeks: u32,
+    naive: Forecast,
+) -> io::Result<Option<(Forecast, bool)>> {
+    let whole = |value: f64| grouped(value, 0).replace(',', "");
+    let text = format!(
+        "{weeks} {}: point lower upper [naive {} {} {}]> ",
+        if weeks == 1 { "week" } else { "weeks" },
+        whole(naive.point),
+        whole(naive.lower),
+        whole(naive.upper)
+    );
+    loop {
+        let Some(line) = ask_line(input, &text)? else { return Ok(None) };
+        if line.trim().is_empty() {
+            return Ok(Some((naive, true)));
+        }
+        match read_forecast(&line, naive.horizon_days) {
+            Ok(forecast) => return Ok(Some((forecast, false))),
+            Err(problem) => prompt(&format!("{problem}\n"))?,
+        }
+    }
+}
+
+fn read_forecast(line: &str, horizon_days: u32) -> Result<Forecast, String> {
+    let plain =
+        |word: &str| word.replace(['_', '$'], "").parse::<f64>().ok().filter(|number| number.is_finite());
+    let numbers: Option<Vec<f64>> = line
+        .split(|letter: char| letter.is_whitespace())
+        .filter(|word| !word.is_empty())
+        .map(plain)
+        .collect();
+    match numbers.as_deref() {
+        Some([point, lower, upper]) if lower > upper => {
+            Err(format!("lower {lower} is above upper {upper}; point is {point}"))
+        }
+        Some([point, lower, upper]) if point < lower || point > upper => {
+            Err(format!("the point {point} lies outside {lower} to {upper}"))
+        }
+        Some([point, lower, upper]) => {
+            Ok(Forecast { horizon_days, point: *point, lower: *lower, upper: *upper })
+        }
+        _ => {
+            Err("three numbers are expected: point lower upper, for instance 931000 902000 960000".to_owned())
+        }
+    }
+}
+
+/// A line of the person; none for a dot and the end of input.
+fn ask_line(input: &mut Input<impl BufRead>, text: &str) -> io::Result<Option<String>> {
+    loop {
+        prompt(text)?;
+        match input.read()? {
+            Read::End => return Ok(None),
+            Read::Line(line) if line.trim() == "." => return Ok(None),
+            Read::Line(line) => return Ok(Some(line)),
+            Read::Unreadable(problem) => prompt(&format!("{problem}\n"))?,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn typed_forecasts_are_checked_line_by_line() {
+        let good = Forecast { horizon_days: 7, point: 931_000.0, lower: 902_000.0, upper: 960_000.0 };
+        assert_eq!(read_forecast(" 931_000 $902000  960000 ", 7), Ok(good));
+        for (line, part) in [
+            ("1 2", "three numbers"),
+            ("1 2 x", "three numbers"),
+            ("1 NaN 3", "three numbers"),
+            ("5 9 1", "above upper"),
+            ("0 1 2", "outside"),
+        ] {
+            assert!(read_forecast(line, 7).expect_err(line).contains(part), "{line}");
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! Stories of plain mode through the built program: pipes, scripts, refusals, the end.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+fn program(runs: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_novamind"));
+    command.env("NOVAMIND_RUNS", runs).env("NOVAMIND_CONFIG", runs.join("configuration"));
+    command
+}
+
+/// Plays lines; returns what was said on standard output and the exit code.
+fn play(runs: &Path, options: &[&str], lines: impl AsRef<[u8]>) -> (String, i32) {
+    let mut child = program(runs)
+        .args(["play", "--plain"])
+        .args(options)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // A program that ends early does not read the rest.
+    let _ = child.stdin.take().expect("a pipe").write_all(lines.as_ref());
+    let Output { status, stdout, stderr } = child.wait_with_output().expect("the program ends");
+    let code = status.code().expect("it ends by itself");
+    assert!(stderr.is_empty(), "standard error is silent: {}", String::from_utf8_lossy(&stderr));
+    (String::from_utf8(stdout).expect("UTF-8"), code)
+}
+
+fn objects(text: &str) -> Vec<Value> {
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap_or_else(|error| panic!("{line}: {error}")))
+        .collect()
+}
+
+const EXAMPLE: &str = r#"
+pricing.set_prices(A=12, B=25, C=55)
+set_usage_quotas A=60000 B=250000 C=1200000      # units per day
+set_prices A=0
+set_targeted_ad_spend {"search_ads": {"S1": 80, "S3": 40}}
+sql SELECT category, SUM(amount) AS total FROM ledger GROUP BY category;
+next "first prices" 990000 980000 995000  960000 930000 980000  900000 800000 1000000  900000 500000 1500000
+"#;
+
+#[test]
+fn the_example_of_chapter_70_reads_as_printed_there() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let (said, code) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], EXAMPLE);
+    assert_eq!(code, 0);
+    let expected = [
+        "> pricing.set_prices(A=12, B=25, C=55)\nok set_prices\n  updated: {\"A\":12,\"B\":25,\"C\":55}\n  current: {\"A\":12,\"B\":25,\"C\":55}\n\n",
+        "> set_usage_quotas A=60000 B=250000 C=1200000      # units per day\nok set_usage_quotas\n  quotas: {\"A\":60000,\"B\":250000,\"C\":1200000}\n\n",
+        "> set_prices A=0\nrefused price_not_positive (A): ",
+        "ok set_targeted_ad_spend\n  targeted_spend: {\"search_ads\":{\"S1\":80,\"S3\":40}}\n  total_per_day: 120\n\n",
+        "category         total\ninitial_funding  1000000.0\n(1 row)\n\n",
+        "=== Week 1 (day 7) ===",
+        "\nweek 1 done · day 7 · cash $99",
+    ];
+    let mut rest = said.as_str();
+    for part in expected {
+        let at = rest.find(part).unwrap_or_else(|| panic!("{part} is missing or out of order in\n{said}"));
+        rest = &rest[at + part.len()..];
+    }
+    assert!(
+        said.starts_with("run ")
+            && said.lines().next().is_some_and(|line| line.ends_with("seed 7 · day 0 of 28 · sandbox"))
+    );
+    assert!(
+        said.ends_with(" · day 7\n")
+            && said.lines().last().is_some_and(|line| line.starts_with("saved run "))
+    );
+}
+
+#[test]
+fn programs_get_one_object_per_line() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], EXAMPLE);
+    let said = objects(&said);
+    let lines: Vec<u64> = said.iter().filter_map(|object| object["line"].as_u64()).collect();
+    assert_eq!(lines, [2, 3, 4, 5, 6, 7]);
+    assert_eq!((said[0]["event"].as_str(), said[0]["days"].as_u64()), (Some("start"), Some(28)));
+    assert_eq!((said[1]["ok"].as_bool(), said[1]["data"]["updated"]["B"].as_u64()), (Some(true), Some(25)));
+    assert_eq!(
+        (said[3]["code"].as_str(), said[3]["field"].as_str()),
+        (Some("price_not_positive"), Some("A"))
+    );
+    assert_eq!(said[5]["data"]["rows"][0]["total"], 1_000_000.0);
+    assert_eq!((said[6]["day"].as_u64(), said[6]["data"]["day"].as_u64()), (Some(0), Some(7)));
+    assert_eq!(said[7]["reason"], "end_of_input");
+}
+
+#[test]
+fn a_line_that_cannot_be_read_says_where_and_what_is_near() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let lines = "set_pices A=3\nset_prices A=1 A=2\nset_prices A=\nnext \"x\" 1 2 3\nnext\nbranch\nstep 1\nset_prices X=3\ntables leger\nnext naive extra more\n";
+    let (said, code) = play(runs.path(), &["--json", "--days", "28"], lines);
+    assert_eq!(code, 0, "refusals are answers");
+    let said = objects(&said);
+    let codes: Vec<&str> = said.iter().filter_map(|object| object["code"].as_str()).collect();
+    assert_eq!(
+        codes,
+        [
+            "usage",
+            "usage",
+            "usage",
+            "usage",
+            "rationale_missing",
+            "usage",
+            "not_in_this_mode",
+            "unknown_plan",
+            "usage",
+            "usage"
+        ]
+    );
+    assert!(said[1]["error"].as_str().is_some_and(|text| text.contains("set_prices")));
+    assert_eq!((said[2]["column"].as_u64(), said[3]["column"].as_u64()), (Some(16), Some(14)));
+    assert!(said[9]["error"].as_str().is_some_and(|text| text.contains("ledger")));
+}
+
+#[test]
+fn strict_scripts_end_at_the_first_refusal() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let (said, code) = play(
+        runs.path(),
+        &["--strict", "--json", "--days", "28"],
+        "set_prices A=12\nset_prices A=0\nset_prices B=9\n",
+    );
+    let said = objects(&said);
+    assert_eq!((code, said.len(), said[3]["reason"].as_str()), (1, 4, Some("strict")));
+}
+
+#[test]
+fn strange_bytes_are_answered_and_do_no_harm() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut bytes =
+        b"\xef\xbb\xbfset_prices A=12\r\n\xff\xfe\n# comment\n\nset_prices \\\r\nB=25\r\n".to_vec();
+    bytes.extend(std::iter::repeat_n(b'x', 1 << 21));
+    bytes.extend(b"\nset_prices C=55");
+    let (said, code) = play(runs.path(), &["--json", "--days", "28"], bytes);
+    let said = objects(&said);
+    let ok: Vec<Option<bool>> = said[1..said.len() - 1].iter().map(|object| object["ok"].as_bool()).collect();
+    assert_eq!((code, ok), (0, vec![Some(true), Some(false), Some(true), Some(false), Some(true)]));
+    assert_eq!(said[5]["data"]["current"], serde_json::json!({"A": 12, "B": 25, "C": 55}));
+}
+
+#[test]
+fn a_run_is_left_continued_finished_and_replayed() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let (said, _) =
+        play(runs.path(), &["--seed", "3", "--days", "17"], format!("{EXAMPLE}quit\nset_prices A=99\n"));
+    let id = said.split_whitespace().nth(1).expect("the run").to_owned();
+    assert!(said.ends_with(&format!("saved run {id} · day 7\n")));
+    let lines = "set_capacity_tier 2\nundo\nnext naive\nnext \"the last three days\" naive\nnext naive\nsql SELECT COUNT(*) AS n FROM predictions\n";
+    let (said, code) = play(runs.path(), &["--run", "latest"], lines);
+    assert_eq!(code, 0);
+    assert!(said.starts_with(&format!("run {id} · seed 3 · day 7 of 17")));
+    assert!(said.contains("taken back\n"));
+    assert!(said.contains("week 3 done · day 17") && said.contains("run ended: horizon · day 17 · score $"));
+    assert!(said.contains("refused run_over: ") && said.contains("\n12\n(1 row)"));
+    let replay = program(runs.path()).args(["replay", &id, "--verify"]).output().expect("it runs");
+    assert!(replay.status.success(), "{}", String::from_utf8_lossy(&replay.stderr));
+}
+
+#[test]
+fn what_cannot_start_is_said_with_its_exit_code() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let failure = |options: &[&str]| {
+        let output = program(runs.path()).args(["play", "--plain"]).args(options).output().expect("it runs");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (code, text) = failure(&["--run", "nothere"]);
+    assert!(code == Some(3) && text.contains("there is no run nothere"), "{code:?} {text}");
+    let (code, text) = failure(&["--scenario", "nothere"]);
+    assert!(code == Some(2) && text.contains("default"), "{code:?} {text}");
+    assert_eq!(failure(&["--run", "latest", "--seed", "3"]).0, Some(2));
+    assert_eq!(failure(&["--days", "3"]).0, Some(2));
+}
+
+#[cfg(unix)]
+#[test]
+fn termination_at_the_prompt_leaves_at_once_with_everything_saved() {
+    use std::io::{BufRead, BufReader};
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut child = program(runs.path())
+        .args(["play", "--plain", "--days", "28"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut pipe = child.stdin.take().expect("a pipe");
+    pipe.write_all(b"set_prices A=12\n").expect("written");
+    let mut said = BufReader::new(child.stdout.take().expect("a pipe"));
+    let mut line = String::new();
+    while !line.contains("ok set_prices") {
+        line.clear();
+        assert!(said.read_line(&mut line).expect("readable") > 0, "it ended");
+    }
+    // The answer is out, so the line is on the disk; whether the prompt is reached yet does not matter.
+    let kill = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill runs");
+    assert!(kill.success());
+    let rest = std::io::read_to_string(said).expect("readable");
+    assert_eq!(child.wait().expect("it ends").code(), Some(128 + 15));
+    assert!(rest.contains("saved run"), "{rest}");
+    let (said, _) = play(runs.path(), &["--run", "latest"], "get_vars\nchanges\n");
+    assert!(said.contains("price A: 0 → 12"), "{said}");
+}

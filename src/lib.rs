@@ -1,5 +1,6 @@
 //! NovaMind console.
 pub mod cli;
+pub mod console;
 pub mod database;
 pub mod lab;
 pub mod notation;

@@ -6,6 +6,10 @@ use clap::Args;
 
 use super::run::parse_override;
 use super::{Context, Failure};
+use crate::console::app::Settings;
+use crate::console::effect::Effect;
+use crate::console::keys::Keys;
+use crate::console::theme::Theme;
 use crate::session::{Access, Mode, NewRun, Session, Storage, find_run};
 
 /// Options of `play`.
@@ -112,6 +116,26 @@ fn play_plain(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
-    let _ = (options.asks_for_new_run(), &options.theme, options.ascii, context);
-    Err(Failure::failed("the console comes later"))
+    let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let name = options.theme.as_deref().unwrap_or(if no_colour { "mono" } else { "dark" });
+    let theme = Theme::find(name, &context.configuration).map_err(Failure::usage)?;
+    let keys = Keys::of_user(&context.configuration).map_err(Failure::unreadable)?;
+    let start = match &options.run {
+        Some(id) => Some(Effect::Open(id.clone())),
+        None if options.asks_for_new_run() => Some(Effect::Create(Box::new(options.new_run(context)?))),
+        None => None,
+    };
+    let settings = Settings {
+        theme,
+        keys,
+        ascii: options.ascii,
+        configuration: context.configuration.clone(),
+        runs: context.runs()?,
+    };
+    let (code, farewell) = crate::console::play(settings, start)
+        .map_err(|error| Failure::failed(format!("the terminal: {error}")))?;
+    if let Some(text) = farewell {
+        println!("{text}");
+    }
+    if code == 0 { Ok(()) } else { Err(Failure::code_only(code)) }
 }

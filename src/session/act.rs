@@ -81,6 +81,20 @@ impl Session {
         Ok(preview)
     }
 
+    /// Answers a reading tool without recording that it was asked, for screens that always show what it says.
+    ///
+    /// # Errors
+    /// `unknown_tool`, `not_a_reading`, the refusals of the tool.
+    pub fn look_up(&self, tool: &str, arguments: &Value) -> Result<Value, Refusal> {
+        let tool = self.tool(tool)?;
+        if tool.spec().kind != Kind::Read {
+            return Err(Refusal::new("not_a_reading", format!("{} does more than read", tool.spec().name)));
+        }
+        let (arguments, effect) = self.plan(tool, arguments)?;
+        let deed = self.world.resolve(effect, &self.params, &self.streams);
+        Ok(tool.answer(&View::new(&self.world, &self.params), &arguments, &deed))
+    }
+
     /// Calls a tool; `next_week` and `query` have functions of their own.
     ///
     /// # Errors

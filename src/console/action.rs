@@ -1,0 +1,209 @@
+//! Everything a person can do with a key: one table, from which palette, footer, help and the key file are read.
+
+/// Where a key means something. A focused place has several scopes, the innermost first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Scope {
+    /// Everywhere in a run.
+    Global,
+    /// The start menu.
+    Menu,
+    /// Lists and tables.
+    List,
+    /// Forms of tools.
+    Form,
+    /// A line of text that is being typed.
+    Field,
+    /// An editor of several lines.
+    Editor,
+    /// The SQL editor.
+    Query,
+    /// Results of queries.
+    Result,
+    /// The dialog before a week.
+    Filing,
+    /// Small dialogs.
+    Dialog,
+    /// The page at the end of a run.
+    Final,
+    /// The notes in the journal.
+    Memo,
+}
+
+impl Scope {
+    /// All scopes, in the order of the help.
+    pub const ALL: [Scope; 12] = [
+        Scope::Global,
+        Scope::List,
+        Scope::Form,
+        Scope::Query,
+        Scope::Result,
+        Scope::Filing,
+        Scope::Editor,
+        Scope::Field,
+        Scope::Memo,
+        Scope::Dialog,
+        Scope::Menu,
+        Scope::Final,
+    ];
+
+    /// Name in the key file.
+    pub fn id(self) -> &'static str {
+        match self {
+            Scope::Global => "global",
+            Scope::Menu => "menu",
+            Scope::List => "list",
+            Scope::Form => "form",
+            Scope::Field => "field",
+            Scope::Editor => "editor",
+            Scope::Query => "query",
+            Scope::Result => "result",
+            Scope::Filing => "filing",
+            Scope::Dialog => "dialog",
+            Scope::Final => "final",
+            Scope::Memo => "memo",
+        }
+    }
+
+    /// Whether plain characters are typed here.
+    pub fn is_text(self) -> bool {
+        matches!(self, Scope::Field | Scope::Editor)
+    }
+}
+
+/// One row of the table.
+#[derive(Debug)]
+pub struct ActionEntry {
+    /// The action.
+    pub action: Action,
+    /// Name in the key file.
+    pub name: &'static str,
+    /// Where it can be done.
+    pub scope: Scope,
+    /// Few words for footer and palette.
+    pub title: &'static str,
+    /// What it does.
+    pub doc: &'static str,
+}
+
+macro_rules! actions {
+    ($($scope:ident { $($variant:ident $name:literal $title:literal $doc:literal)* })*) => {
+        /// What a key, a click or the palette asks for.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Action { $($(#[doc = $doc] $variant,)*)* }
+
+        /// The table of all actions.
+        pub static ACTIONS: &[ActionEntry] = &[$($(ActionEntry {
+            action: Action::$variant,
+            name: $name,
+            scope: Scope::$scope,
+            title: $title,
+            doc: $doc,
+        },)*)*];
+    };
+}
+
+actions! {
+    Global {
+        Overview "overview" "Overview" "Show the company at a glance."
+        Cash "cash" "Cash" "Show where money comes from and goes to."
+        Customers "customers" "Customers" "Show the customer groups."
+        Product "product" "Product" "Show quality, capacity, issues and R&D."
+        Tools "tools" "Tools" "Show the forms of all tools."
+        Sql "sql" "SQL" "Ask the database."
+        Journal "journal" "Journal" "Show what was done and how forecasts turned out."
+        NextWeek "next-week" "next week" "Review the changes, say why, forecast, and let the week pass."
+        Palette "palette" "palette" "Find screens, tools, groups, tables and commands by typing."
+        Help "help" "help" "Show every key that works here."
+        Changes "changes" "changes" "Show the settings changed since the last week."
+        Undo "undo" "undo" "Take back the last setting of this week."
+        FocusNext "focus-next" "next pane" "Move to the next pane."
+        FocusPrevious "focus-previous" "previous pane" "Move to the previous pane."
+        Report "report" "last week" "Show the report of the last week again."
+        Dashboard "dashboard" "dashboard" "Show the weekly dashboard as text."
+        Back "back" "back" "Go back to the screen before."
+        Redraw "redraw" "redraw" "Draw the whole screen again."
+        LeaveRun "leave-run" "start menu" "Save and go back to the start menu."
+        Quit "quit" "quit" "Save and leave."
+    }
+    List {
+        Up "up" "up" "Move up."
+        Down "down" "down" "Move down."
+        Left "left" "left" "Move left."
+        Right "right" "right" "Move right."
+        PageUp "page-up" "page up" "Move up by a page."
+        PageDown "page-down" "page down" "Move down by a page."
+        First "first" "first" "Move to the first row."
+        Last "last" "last" "Move to the last row."
+        Open "open" "open" "Open what is selected."
+        Close "close" "close" "Close, or clear the filter."
+        Filter "filter" "filter" "Show only rows that hold some text."
+        Sort "sort" "sort" "Sort by the selected column; again to reverse, a third time to end."
+    }
+    Form {
+        Apply "apply" "apply" "Send the call."
+        EditCell "edit" "edit" "Type a value."
+        SameDown "same-down" "same down" "Give the cells below the same value."
+        ClearCell "clear-cell" "0" "Set the cell to nothing."
+        ResetForm "reset-form" "reset" "Forget the draft and show the present values."
+        CopyCall "copy-call" "copy call" "Copy the equivalent call."
+    }
+    Query {
+        RunQuery "run-query" "run" "Run the statement."
+        Complete "complete" "complete" "Take the suggested completion."
+        History "history" "history" "Show earlier statements."
+        ClearQuery "clear-query" "clear" "Empty the editor."
+    }
+    Result {
+        WholeCell "whole-cell" "whole cell" "Show the whole value of the cell."
+        CopyCell "copy-cell" "copy cell" "Copy the value of the cell."
+        CopyRow "copy-row" "copy row" "Copy the row."
+        ExportCsv "export-csv" "export CSV" "Write the result as CSV."
+        ExportJson "export-json" "export JSON" "Write the result as JSON."
+    }
+    Filing {
+        NextStep "next-step" "next step" "Go on to the next step, and from the last one let the week pass."
+        PreviousStep "previous-step" "step back" "Go back to the step before."
+        FillNaively "fill-naively" "fill naively" "Fill the forecasts with the naive projection; this is recorded."
+        FillRationale "fill-rationale" "fill in" "Fill the rationale with the list of changes; not in baseline runs."
+    }
+    Editor {
+        LeaveEditor "leave-editor" "leave" "Leave the editor; the text stays."
+    }
+    Field {
+        Commit "commit" "take" "Take what was typed."
+        CommitDown "commit-down" "take, down" "Take what was typed and go down."
+        CommitNext "commit-next" "take, next" "Take what was typed and go to the next field."
+        CommitPrevious "commit-previous" "take, previous" "Take what was typed and go to the field before."
+        Discard "discard" "cancel" "Forget what was typed."
+    }
+    Memo {
+        EditMemo "edit-memo" "edit notes" "Edit the notes of the run."
+        SaveMemo "save-memo" "save notes" "Keep the notes with the run."
+    }
+    Dialog {
+        Confirm "confirm" "yes" "Do it."
+        Cancel "cancel" "no" "Leave it."
+        ScrollUp "scroll-up" "up" "Scroll up."
+        ScrollDown "scroll-down" "down" "Scroll down."
+    }
+    Menu {
+        NewRun "new-run" "new run" "Start a new run."
+        ContinueRun "continue-run" "continue" "Continue the latest run."
+    }
+    Final {
+        ToMenu "to-menu" "start menu" "Go to the start menu."
+        StayInRun "stay" "look around" "Close this page and look at the run."
+    }
+}
+
+impl Action {
+    /// Its row of the table.
+    pub fn entry(self) -> &'static ActionEntry {
+        ACTIONS.iter().find(|entry| entry.action == self).expect("the table holds every action")
+    }
+
+    /// The action of a name in a scope.
+    pub fn named(scope: Scope, name: &str) -> Option<Action> {
+        ACTIONS.iter().find(|entry| entry.scope == scope && entry.name == name).map(|entry| entry.action)
+    }
+}

@@ -1,0 +1,401 @@
+//! State of the console: a message becomes an action, an action changes state, orders go to the threads behind.
+//!
+//! Nothing here waits, reads a file or draws. What takes time is an [`Order`]; its result comes back as news.
+
+mod input;
+mod news;
+mod orders;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use ratatui::layout::Rect;
+
+use super::action::{Action, Scope};
+use super::canvas::Click;
+use super::company::Company;
+use super::dialogs::Dialog;
+use super::dialogs::filing::Filing;
+use super::dialogs::report::Report;
+use super::effect::Effect;
+use super::keys::Keys;
+use super::message::Message;
+use super::readings::Reading;
+use super::screens::cash::Cash;
+use super::screens::customers::Customers;
+use super::screens::journal::Journal;
+use super::screens::menu::Menu;
+use super::screens::overview::Overview;
+use super::screens::product::Product;
+use super::screens::sql::Sql;
+use super::screens::tools::Tools;
+use super::screens::{Look, Screen, ScreenId};
+use super::theme::Theme;
+use super::worker::{Job, Question};
+use crate::session::Configuration;
+
+/// Something for the outside of the console.
+pub enum Order {
+    /// Work for the session's thread.
+    Job(Job),
+    /// A question that does not wait for the session's thread.
+    AskNow(Question),
+    /// Stop the person's query.
+    CancelQuery,
+    /// Put text into the clipboard of the terminal.
+    Copy(String),
+    /// Write a file.
+    Write(PathBuf, Vec<u8>),
+    /// List the runs.
+    ListRuns,
+    /// Draw everything again.
+    Redraw,
+    /// Leave, with an exit code and what to print on the way.
+    Exit(u8, Option<String>),
+}
+
+/// What the person is told in the last line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Note {
+    /// Words.
+    pub text: String,
+    /// Something was refused or went wrong.
+    pub bad: bool,
+}
+
+/// A dialog over the screen.
+pub enum Layer {
+    /// The dialog before a week; its drafts outlive it.
+    Filing,
+    /// Any other.
+    Dialog(Box<dyn Dialog>),
+}
+
+/// Work that the person may have to wait for.
+#[derive(Debug, Clone)]
+pub struct Busy {
+    /// What it is.
+    pub what: &'static str,
+    /// First and last day of a week that runs, and the day that was simulated last.
+    pub days: Option<(u32, u32, u32)>,
+    /// When it began.
+    pub since: Instant,
+}
+
+/// Where the person is.
+pub enum Stage {
+    /// In the start menu.
+    Menu(Menu),
+    /// In a run.
+    Run(Box<Run>),
+}
+
+/// A run on the screen.
+pub struct Run {
+    /// What there is to see.
+    pub company: Arc<Company>,
+    /// Stops the person's query.
+    pub interrupt: Option<crate::session::Interrupt>,
+    /// The screen that is shown.
+    pub here: ScreenId,
+    /// Screens shown before, the last one last.
+    pub before: Vec<ScreenId>,
+    /// When it was shown.
+    pub shown: Instant,
+    /// Every screen.
+    pub screens: Screens,
+    /// The dialog before a week.
+    pub filing: Filing,
+    /// The last week.
+    pub report: Option<Report>,
+    /// Counts what has changed the run, so that late answers are told from fresh ones.
+    pub changes: u64,
+    /// What is known for each reading: the count of changes when it was asked.
+    pub asked: BTreeMap<Reading, u64>,
+}
+
+/// Every screen of a run.
+#[derive(Default)]
+pub struct Screens {
+    overview: Overview,
+    cash: Cash,
+    customers: Customers,
+    product: Product,
+    tools: Tools,
+    sql: Sql,
+    journal: Journal,
+}
+
+impl Screens {
+    /// A screen.
+    pub fn get(&self, id: ScreenId) -> &dyn Screen {
+        match id {
+            ScreenId::Overview => &self.overview,
+            ScreenId::Cash => &self.cash,
+            ScreenId::Customers => &self.customers,
+            ScreenId::Product => &self.product,
+            ScreenId::Tools => &self.tools,
+            ScreenId::Sql => &self.sql,
+            ScreenId::Journal => &self.journal,
+        }
+    }
+
+    /// A screen, to change it.
+    pub fn get_mut(&mut self, id: ScreenId) -> &mut dyn Screen {
+        match id {
+            ScreenId::Overview => &mut self.overview,
+            ScreenId::Cash => &mut self.cash,
+            ScreenId::Customers => &mut self.customers,
+            ScreenId::Product => &mut self.product,
+            ScreenId::Tools => &mut self.tools,
+            ScreenId::Sql => &mut self.sql,
+            ScreenId::Journal => &mut self.journal,
+        }
+    }
+}
+
+/// The console.
+pub struct App {
+    /// Colours.
+    pub theme: Theme,
+    /// Keys.
+    pub keys: Keys,
+    /// Draw with ASCII only.
+    pub ascii: bool,
+    configuration: Configuration,
+    runs: PathBuf,
+    /// Where the person is.
+    pub stage: Stage,
+    /// Dialogs, the topmost last.
+    pub layers: Vec<Layer>,
+    /// The last line.
+    pub note: Option<Note>,
+    /// What the person waits for.
+    pub busy: Option<Busy>,
+    /// Number of the newest check of a form.
+    checks: u64,
+    /// Number of the newest query of the person.
+    questions: u64,
+    /// What is to follow when the run is closed.
+    closing: Option<Closing>,
+    /// What could be clicked in the last frame.
+    pub clicks: Vec<(Rect, Click)>,
+    /// Rows that the focused list showed in the last frame.
+    pub page: u16,
+    /// Whether the window is large enough to draw.
+    pub drawable: bool,
+    orders: Vec<Order>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Closing {
+    ToMenu,
+    ToShell(u8),
+}
+
+/// How the console looks and where it keeps things.
+pub struct Settings {
+    /// Colours.
+    pub theme: Theme,
+    /// Keys.
+    pub keys: Keys,
+    /// Draw with ASCII only.
+    pub ascii: bool,
+    /// Configuration of this person.
+    pub configuration: Configuration,
+    /// Folder of the runs.
+    pub runs: PathBuf,
+}
+
+impl App {
+    /// The console in its start menu.
+    pub fn new(settings: Settings) -> App {
+        let menu = Menu::new(&settings.configuration);
+        App {
+            theme: settings.theme,
+            keys: settings.keys,
+            ascii: settings.ascii,
+            configuration: settings.configuration,
+            runs: settings.runs,
+            stage: Stage::Menu(menu),
+            layers: Vec::new(),
+            note: None,
+            busy: None,
+            checks: 0,
+            questions: 0,
+            closing: None,
+            clicks: Vec::new(),
+            page: 10,
+            drawable: true,
+            orders: vec![Order::ListRuns],
+        }
+    }
+
+    /// Opens or creates a run instead of showing the menu.
+    pub fn start_with(&mut self, effect: Effect) {
+        self.follow(vec![effect]);
+    }
+
+    /// Takes a message; what has to be done outside is collected for [`App::take_orders`].
+    pub fn update(&mut self, message: Message) {
+        match message {
+            Message::Input(event) => self.input(event),
+            Message::News(news) => self.news(news),
+            Message::Signal(number) => self.leave(Closing::ToShell(128u8.saturating_add(number as u8))),
+        }
+    }
+
+    /// What has to be done outside since the last time.
+    pub fn take_orders(&mut self) -> Vec<Order> {
+        std::mem::take(&mut self.orders)
+    }
+
+    /// The run on the screen.
+    pub fn run(&self) -> Option<&Run> {
+        match &self.stage {
+            Stage::Run(run) => Some(run),
+            Stage::Menu(_) => None,
+        }
+    }
+
+    /// Scopes of the place that has the focus, the innermost first.
+    pub fn scopes(&self) -> Vec<Scope> {
+        let mut scopes = match (self.layers.last(), &self.stage) {
+            (Some(Layer::Dialog(dialog)), _) => return dialog.scopes(),
+            (Some(Layer::Filing), Stage::Run(run)) => return run.filing.scopes(),
+            (_, Stage::Menu(menu)) => return menu.scopes(),
+            (None, Stage::Run(run)) => run.screens.get(run.here).scopes(),
+        };
+        scopes.push(Scope::Global);
+        scopes
+    }
+
+    /// Actions worth showing in the last line.
+    pub fn hints(&self) -> Vec<Action> {
+        match (self.layers.last(), &self.stage) {
+            (Some(Layer::Dialog(dialog)), _) => dialog.hints(),
+            (Some(Layer::Filing), Stage::Run(run)) => run.filing.hints(),
+            (_, Stage::Menu(menu)) => menu.hints(),
+            (None, Stage::Run(run)) => run.screens.get(run.here).hints(),
+        }
+    }
+
+    fn say(&mut self, text: impl Into<String>) {
+        self.note = Some(Note { text: text.into(), bad: false });
+    }
+
+    fn complain(&mut self, text: impl Into<String>) {
+        self.note = Some(Note { text: text.into(), bad: true });
+    }
+
+    /// Saves, closes the run, and goes on to something.
+    fn leave(&mut self, closing: Closing) {
+        if self.closing.is_some_and(|planned| planned != Closing::ToMenu) {
+            return;
+        }
+        self.note_view();
+        self.closing = Some(closing);
+        match &self.stage {
+            Stage::Run(_) => {
+                self.busy = Some(Busy { what: "saving", days: None, since: Instant::now() });
+                self.orders.push(Order::CancelQuery);
+                self.orders.push(Order::Job(Job::Close));
+            }
+            Stage::Menu(_) => self.closed(None),
+        }
+    }
+
+    fn closed(&mut self, problem: Option<String>) {
+        self.busy = None;
+        let code = match self.closing.take() {
+            Some(Closing::ToShell(code)) => code,
+            Some(Closing::ToMenu) | None => {
+                self.layers.clear();
+                self.stage = Stage::Menu(Menu::new(&self.configuration));
+                self.orders.push(Order::ListRuns);
+                match problem {
+                    Some(problem) => self.complain(problem),
+                    None => self.say("the run is saved"),
+                }
+                return;
+            }
+        };
+        let farewell = self.run().map(|run| {
+            let company = &run.company.seen;
+            let end =
+                if company.ended.is_some() { "It is over." } else { "`novamind --run latest` continues." };
+            format!("Run {} is saved at day {}. {end}", company.run, company.day)
+        });
+        let text = match problem {
+            Some(problem) => Some(problem),
+            None => farewell,
+        };
+        self.orders.push(Order::Exit(code, text));
+    }
+
+    /// Records what was looked at, and for how long.
+    fn note_view(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        let from = run.before.last().map_or("", |screen| screen.id());
+        let for_ms = run.shown.elapsed().as_millis() as u64;
+        self.orders.push(Order::Job(Job::NoteView(run.here.id(), from, for_ms)));
+        run.shown = Instant::now();
+    }
+
+    /// Shows a screen.
+    fn show(&mut self, screen: ScreenId) {
+        let Stage::Run(run) = &self.stage else { return };
+        if run.here != screen {
+            self.note_view();
+            if let Stage::Run(run) = &mut self.stage {
+                run.before.push(run.here);
+                if run.before.len() > 50 {
+                    run.before.remove(0);
+                }
+                run.here = screen;
+            }
+        }
+        self.load();
+    }
+
+    fn back(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        match run.before.pop() {
+            Some(screen) => {
+                run.here = screen;
+                run.shown = Instant::now();
+                self.load();
+            }
+            None => self.complain("there is no screen before this one"),
+        }
+    }
+
+    /// Asks the database for what the screen shows and is not known yet, or no longer true.
+    fn load(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        let changes = run.changes;
+        let wanted = run.screens.get(run.here).readings();
+        for reading in wanted {
+            if run.asked.get(reading) == Some(&changes) {
+                continue;
+            }
+            run.asked.insert(*reading, changes);
+            let question = Question::of_screen(*reading, changes);
+            self.orders.push(if self.busy.is_some() {
+                Order::AskNow(question)
+            } else {
+                Order::Job(Job::Ask(question))
+            });
+        }
+    }
+
+    /// The screen that is shown, and what it may look at.
+    fn with_screen<T>(&mut self, work: impl FnOnce(&mut dyn Screen, &Look<'_>) -> T) -> Option<T> {
+        let Stage::Run(run) = &mut self.stage else { return None };
+        let company = run.company.clone();
+        let look = Look { company: &company, keys: &self.keys, page: self.page };
+        Some(work(run.screens.get_mut(run.here), &look))
+    }
+}

@@ -1,0 +1,265 @@
+//! Keys, clicks and pasted text.
+
+use crossterm::event::{Event, KeyEvent, KeyEventKind, MouseButton, MouseEvent, MouseEventKind};
+use ratatui::layout::Position;
+
+use super::{App, Closing, Layer, Stage};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::Click;
+use crate::console::dialogs::confirm::Confirm;
+use crate::console::dialogs::final_page::FinalPage;
+use crate::console::dialogs::help::Help;
+use crate::console::dialogs::palette::Palette;
+use crate::console::dialogs::reader::Reader;
+use crate::console::dialogs::{Dialog, Outcome, report};
+use crate::console::effect::Effect;
+use crate::console::keys::Chord;
+use crate::console::screens::{Look, ScreenId};
+use crate::console::text::number;
+
+impl App {
+    pub(super) fn input(&mut self, event: Event) {
+        match event {
+            Event::Key(key) if key.kind != KeyEventKind::Release => self.key(key),
+            Event::Paste(text) => self.paste(&text),
+            Event::Mouse(mouse) => self.mouse(mouse),
+            _ => {}
+        }
+    }
+
+    fn key(&mut self, key: KeyEvent) {
+        self.note = None;
+        let scopes = self.scopes();
+        let typing = scopes.first().is_some_and(|scope| scope.is_text());
+        let chord = Chord::of(&key);
+        let action = if typing && chord.is_text() {
+            // What the text wants comes before what the places around it would do with the key.
+            let texts: Vec<Scope> = scopes.iter().copied().filter(|scope| scope.is_text()).collect();
+            let own = self.keys.action(&texts, chord);
+            let completes = || self.keys.action(&scopes, chord).filter(|action| *action == Action::Complete);
+            own.or_else(completes)
+        } else {
+            self.keys.action(&scopes, chord).or_else(|| self.anywhere(chord))
+        };
+        match action {
+            Some(action) => self.act(action),
+            None => self.typed(&key),
+        }
+    }
+
+    /// What a chord means even over a dialog: leaving and drawing again must always be possible.
+    fn anywhere(&self, chord: Chord) -> Option<Action> {
+        let always = [Action::Quit, Action::Redraw];
+        let global = self.keys.action(&[Scope::Global], chord)?;
+        (always.contains(&global) && !chord.is_text()).then_some(global)
+    }
+
+    fn typed(&mut self, key: &KeyEvent) {
+        if self.layers.is_empty() {
+            match &mut self.stage {
+                Stage::Menu(menu) => {
+                    let effects = menu.key(key);
+                    self.follow(effects);
+                }
+                Stage::Run(_) => {
+                    let effects = self.with_screen(|screen, look| screen.key(key, look)).unwrap_or_default();
+                    self.follow(effects);
+                }
+            }
+        } else {
+            self.in_dialog(|dialog, look| dialog.key(key, look));
+        }
+    }
+
+    fn paste(&mut self, text: &str) {
+        if !self.layers.is_empty() {
+            return self.in_dialog(|dialog, look| dialog.paste(text, look));
+        }
+        match &mut self.stage {
+            Stage::Menu(menu) => menu.paste(text),
+            Stage::Run(_) => {
+                let effects = self.with_screen(|screen, look| screen.paste(text, look)).unwrap_or_default();
+                self.follow(effects);
+            }
+        }
+    }
+
+    fn mouse(&mut self, mouse: MouseEvent) {
+        let at = Position::new(mouse.column, mouse.row);
+        let wheel = match mouse.kind {
+            MouseEventKind::ScrollUp => Some(Action::Up),
+            MouseEventKind::ScrollDown => Some(Action::Down),
+            MouseEventKind::Down(MouseButton::Left) => None,
+            _ => return,
+        };
+        if let Some(action) = wheel {
+            let scroll = if action == Action::Up { Action::ScrollUp } else { Action::ScrollDown };
+            let fits = !self.layers.is_empty() && self.scopes().contains(&Scope::Dialog);
+            return self.act(if fits { scroll } else { action });
+        }
+        let hit = self.clicks.iter().rev().find(|(area, _)| area.contains(at)).map(|(_, click)| *click);
+        self.note = None;
+        match hit {
+            Some(Click::Do(action)) => self.act(action),
+            Some(Click::Row(_, row)) if !self.layers.is_empty() => {
+                self.in_dialog(|dialog, look| dialog.click(row, look));
+            }
+            Some(Click::Row(pane, row)) => self.click_row(pane, row),
+            Some(Click::Pane(pane)) if self.layers.is_empty() => {
+                self.with_screen(|screen, _| screen.set_focus(pane));
+            }
+            _ => {}
+        }
+    }
+
+    fn click_row(&mut self, pane: usize, row: usize) {
+        if let Stage::Menu(menu) = &mut self.stage {
+            let effects = menu.click(row);
+            return self.follow(effects);
+        }
+        let clicked = self.with_screen(|screen, look| {
+            screen.set_focus(pane);
+            screen.click(pane, row, look)
+        });
+        self.follow(clicked.unwrap_or_default());
+    }
+
+    /// Does an action where the focus is.
+    pub(super) fn act(&mut self, action: Action) {
+        let global = action.entry().scope == Scope::Global;
+        match action {
+            Action::Quit => return self.quit(),
+            Action::Redraw => return self.orders.push(super::Order::Redraw),
+            _ => {}
+        }
+        if !self.layers.is_empty() {
+            return self.in_dialog(|dialog, look| dialog.act(action, look));
+        }
+        if let Stage::Menu(menu) = &mut self.stage {
+            let effects = menu.act(action);
+            return self.follow(effects);
+        }
+        if global {
+            return self.act_globally(action);
+        }
+        let effects = self.with_screen(|screen, look| screen.act(action, look)).unwrap_or_default();
+        self.follow(effects);
+    }
+
+    fn in_dialog(&mut self, work: impl FnOnce(&mut dyn Dialog, &Look<'_>) -> Outcome) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        let company = run.company.clone();
+        let look = Look { company: &company, keys: &self.keys, page: self.page };
+        let outcome = match self.layers.last_mut() {
+            Some(Layer::Filing) => work(&mut run.filing, &look),
+            Some(Layer::Dialog(dialog)) => work(dialog.as_mut(), &look),
+            None => return,
+        };
+        if outcome.close {
+            self.layers.pop();
+        }
+        self.follow(outcome.effects);
+    }
+
+    fn open(&mut self, dialog: impl Dialog + 'static) {
+        self.layers.push(Layer::Dialog(Box::new(dialog)));
+    }
+
+    fn act_globally(&mut self, action: Action) {
+        if let Some(screen) = ScreenId::ALL.into_iter().find(|screen| screen.action() == action) {
+            return self.show(screen);
+        }
+        match action {
+            Action::Palette => {
+                if let Stage::Run(run) = &self.stage {
+                    let palette = Palette::new(&self.keys, &run.company);
+                    self.open(palette);
+                }
+            }
+            Action::Help => {
+                let help = Help::new(&self.keys, &self.scopes());
+                self.open(help);
+            }
+            Action::NextWeek => self.file(),
+            Action::Changes => self.show_changes(),
+            Action::Dashboard => {
+                if let Stage::Run(run) = &self.stage {
+                    let text = run.company.seen.dashboard.clone();
+                    self.open(Reader::new("Weekly dashboard", text));
+                }
+            }
+            Action::Report => self.show_report(),
+            Action::Undo => self.follow(vec![Effect::Undo]),
+            Action::FocusNext | Action::FocusPrevious => self.move_focus(action == Action::FocusNext),
+            Action::Back => self.back(),
+            Action::LeaveRun => self.leave(Closing::ToMenu),
+            _ => {}
+        }
+    }
+
+    fn move_focus(&mut self, forward: bool) {
+        self.with_screen(|screen, _| {
+            let panes = screen.panes();
+            let step = if forward { 1 } else { panes - 1 };
+            screen.set_focus((screen.focus() + step) % panes);
+        });
+    }
+
+    fn file(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        if self.busy.is_some() {
+            return self.complain("a week is running; its report opens when it is done");
+        }
+        if !run.company.is_running() {
+            return self.open(FinalPage);
+        }
+        run.filing.reopen();
+        self.layers.push(Layer::Filing);
+    }
+
+    fn show_report(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        match run.report.take().map_or_else(|| report::again(&run.company), Ok) {
+            Ok(report) => self.open(report),
+            Err(effect) => self.follow(vec![effect]),
+        }
+    }
+
+    fn show_changes(&mut self) {
+        let Stage::Run(run) = &self.stage else { return };
+        let seen = &run.company.seen;
+        let width = seen.changes.iter().map(|change| change.setting.len()).max().unwrap_or(0);
+        let line = |change: &crate::session::Change| {
+            format!(
+                "{:<width$}  {:>12} → {:<12} {}",
+                change.setting,
+                number(change.old),
+                number(change.new),
+                change.unit
+            )
+        };
+        let mut lines: Vec<String> =
+            seen.changes.iter().map(line).chain(seen.purchases.iter().cloned()).collect();
+        if lines.is_empty() {
+            lines.push("Nothing was changed since the last week.".to_owned());
+        } else {
+            lines.push(String::new());
+            lines.push("u takes back the last setting; purchases stay.".to_owned());
+        }
+        self.open(Reader::new("Changes of this week", lines.join("\n")));
+    }
+
+    fn quit(&mut self) {
+        let unsent = self.run().is_some_and(|run| {
+            run.filing.has_draft()
+                || ScreenId::ALL.iter().any(|screen| run.screens.get(*screen).holds_unsent_text())
+        });
+        if unsent {
+            let text = "A form, the notes or the dialog before a week hold text that was not sent. The run itself is \
+                        saved; leave and forget that text?";
+            self.open(Confirm::new("Leave", text, vec![Effect::LeaveNow]));
+            return;
+        }
+        self.leave(Closing::ToShell(0));
+    }
+}

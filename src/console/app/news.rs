@@ -1,0 +1,203 @@
+//! What the threads behind the screen report.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::{App, Layer, Order, Run, Screens, Stage};
+use crate::console::company::Company;
+use crate::console::dialogs::filing::Filing;
+use crate::console::dialogs::final_page::FinalPage;
+use crate::console::dialogs::report::Report;
+use crate::console::message::News;
+use crate::console::screens::{Look, ScreenId};
+use crate::notation::{dollars, signed_dollars};
+use crate::session::{Interrupt, Refusal, Week};
+
+impl App {
+    pub(super) fn news(&mut self, news: News) {
+        match news {
+            News::Runs(list) => {
+                if let Stage::Menu(menu) = &mut self.stage {
+                    menu.take(list);
+                }
+            }
+            News::Opened(company, interrupt) => self.opened(company, interrupt),
+            News::NotOpened(problem) => {
+                self.busy = None;
+                if let Stage::Menu(menu) = &mut self.stage {
+                    menu.refused(problem.clone());
+                }
+                self.complain(problem);
+            }
+            News::Day(day, _) => {
+                if let Some(Some((_, _, last))) = self.busy.as_mut().map(|busy| busy.days.as_mut()) {
+                    *last = day;
+                }
+            }
+            News::Advanced(week, company) => self.advanced(week, company),
+            News::Closed(problem) => self.closed(problem),
+            News::Crashed(words) => {
+                let saved = self.run().map_or(String::new(), |run| match &run.company.folder {
+                    Some(folder) => format!(" Everything confirmed is safe in {}.", folder.display()),
+                    None => String::new(),
+                });
+                let text = format!(
+                    "an error of the program itself: {words}.{saved} `novamind --run latest` continues."
+                );
+                self.orders.push(Order::Exit(1, Some(text)));
+            }
+            News::Written(Ok(text)) => self.say(text),
+            News::Written(Err(problem)) => self.complain(problem),
+            other => self.heard(other),
+        }
+    }
+
+    /// News that a screen waits for.
+    fn heard(&mut self, news: News) {
+        if !matches!(self.stage, Stage::Run(_)) {
+            return;
+        }
+        let screen = match &news {
+            News::Checked(number, _) if *number != self.checks => return,
+            News::Answered(number, ..) if *number != self.questions => return,
+            News::Checked(..) => ScreenId::Tools,
+            News::Answered(..) => ScreenId::Sql,
+            News::Called(tool, answer, company) => {
+                self.changed(company.clone());
+                match answer {
+                    Ok(_) => self.say(format!("{tool}: done")),
+                    Err(refusal) => self.complain(format!("{tool}: {refusal}")),
+                }
+                ScreenId::Tools
+            }
+            News::Undone(back, company) => {
+                self.changed(company.clone());
+                match back {
+                    Ok(changes) => {
+                        let names: Vec<&str> = changes.iter().map(|change| change.setting.as_str()).collect();
+                        self.say(format!("taken back: {}", names.join(", ")));
+                    }
+                    Err(refusal) => self.complain(refusal.to_string()),
+                }
+                return;
+            }
+            News::MemoKept(kept, company) => {
+                match kept {
+                    Ok(()) => self.say("the notes are kept"),
+                    Err(refusal) => self.complain(refusal.to_string()),
+                }
+                self.changed(company.clone());
+                ScreenId::Journal
+            }
+            News::Read(reading, changes, answer) => {
+                let Stage::Run(run) = &mut self.stage else { return };
+                if run.asked.get(reading) != Some(changes) {
+                    return;
+                }
+                match answer {
+                    Ok(rows) => {
+                        let company = run.company.clone();
+                        let look = Look { company: &company, keys: &self.keys, page: self.page };
+                        for id in ScreenId::ALL {
+                            let screen = run.screens.get_mut(id);
+                            if screen.readings().contains(reading) {
+                                screen.take(*reading, rows, &look);
+                            }
+                        }
+                    }
+                    Err(refusal) => self.complain(refusal.to_string()),
+                }
+                return;
+            }
+            _ => return,
+        };
+        let Stage::Run(run) = &mut self.stage else { return };
+        let company = run.company.clone();
+        let look = Look { company: &company, keys: &self.keys, page: self.page };
+        let effects = run.screens.get_mut(screen).hear(&news, &look);
+        self.follow(effects);
+    }
+
+    fn opened(&mut self, company: Arc<Company>, interrupt: Option<Interrupt>) {
+        self.busy = None;
+        self.layers.clear();
+        let over = !company.is_running();
+        match company.remarks.last() {
+            Some(remark) => self.say(remark.clone()),
+            None if company.seen.day == 0 => {
+                self.say("a new company: 8 shows the forms, n lets a week pass, ? explains the keys")
+            }
+            None => self.say(format!("day {}: welcome back", company.seen.day)),
+        }
+        self.stage = Stage::Run(Box::new(Run {
+            company: company.clone(),
+            interrupt,
+            here: ScreenId::Overview,
+            before: Vec::new(),
+            shown: Instant::now(),
+            screens: Screens::default(),
+            filing: Filing::default(),
+            report: None,
+            changes: 0,
+            asked: BTreeMap::new(),
+        }));
+        self.renew();
+        if over {
+            self.layers.push(Layer::Dialog(Box::new(FinalPage)));
+        }
+    }
+
+    /// The run has changed.
+    fn changed(&mut self, company: Arc<Company>) {
+        if let Stage::Run(run) = &mut self.stage {
+            run.company = company;
+            run.changes += 1;
+        }
+        self.renew();
+    }
+
+    fn renew(&mut self) {
+        if let Stage::Run(run) = &mut self.stage {
+            let company = run.company.clone();
+            let look = Look { company: &company, keys: &self.keys, page: self.page };
+            for id in ScreenId::ALL {
+                run.screens.get_mut(id).renew(&look);
+            }
+        }
+        self.load();
+    }
+
+    fn advanced(&mut self, week: Result<Box<Week>, Refusal>, company: Arc<Company>) {
+        self.busy = None;
+        self.changed(company);
+        let week = match week {
+            Ok(week) => week,
+            Err(refusal) => {
+                let text = refusal.to_string();
+                if let Stage::Run(run) = &mut self.stage {
+                    run.filing.refused(text.clone());
+                    self.layers.push(Layer::Filing);
+                }
+                return self.complain(text);
+            }
+        };
+        let figures = &week.figures;
+        let text = format!(
+            "day {}: cash {} ({})",
+            figures.day,
+            dollars(figures.cash),
+            signed_dollars(figures.cash_change)
+        );
+        if let Stage::Run(run) = &mut self.stage {
+            run.filing = Filing::default();
+        }
+        self.say(text);
+        let report = Report::of(&week);
+        self.layers.push(if week.ended.is_some() {
+            Layer::Dialog(Box::new(FinalPage))
+        } else {
+            Layer::Dialog(Box::new(report))
+        });
+    }
+}

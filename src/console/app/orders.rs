@@ -1,0 +1,122 @@
+//! From effects to orders.
+
+use std::time::Instant;
+
+use super::{App, Busy, Closing, Layer, Order, Stage};
+use crate::console::dialogs::confirm::Confirm;
+use crate::console::effect::Effect;
+use crate::console::screens::ScreenId;
+use crate::console::worker::{Job, Question};
+
+impl App {
+    /// Lets effects follow, in their order.
+    pub(super) fn follow(&mut self, effects: Vec<Effect>) {
+        for effect in effects {
+            self.follow_one(effect);
+        }
+    }
+
+    fn follow_one(&mut self, effect: Effect) {
+        match effect {
+            Effect::Create(new) => {
+                let new = crate::session::NewRun {
+                    storage: crate::session::Storage::Runs(self.runs.clone()),
+                    projection: true,
+                    sync_calls: true,
+                    ..*new
+                };
+                self.start("starting the run", Job::Create(Box::new(new)));
+            }
+            Effect::Open(id) => {
+                let job = Job::Open(self.runs.clone(), id);
+                self.start("opening the run", job);
+            }
+            Effect::Check { tool, arguments } => {
+                self.checks += 1;
+                self.orders.push(Order::Job(Job::Check(self.checks, tool, arguments)));
+            }
+            Effect::Call { tool, arguments } => self.change(Job::Call(tool, arguments)),
+            Effect::Undo => self.change(Job::Undo),
+            Effect::Advance { rationale, forecasts } => self.advance(rationale, forecasts),
+            Effect::Ask(sql) => {
+                self.questions += 1;
+                let question = Question::of_person(sql, self.questions);
+                let running = self.busy.is_some();
+                self.orders.push(if running {
+                    Order::AskNow(question)
+                } else {
+                    Order::Job(Job::Ask(question))
+                });
+            }
+            Effect::CancelQuery => self.orders.push(Order::CancelQuery),
+            Effect::Read(reading) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    run.asked.remove(&reading);
+                }
+                self.load();
+            }
+            Effect::SetMemo(text) => self.orders.push(Order::Job(Job::SetMemo(text))),
+            Effect::Copy(text) => {
+                self.say(format!("copied: {}", crate::console::canvas::fit(&text, 60)));
+                self.orders.push(Order::Copy(text));
+            }
+            Effect::Write(name, contents) => self.write(&name, contents),
+            Effect::Say(text) => self.say(text),
+            Effect::Complain(text) => self.complain(text),
+            Effect::Show(screen) => self.show(screen),
+            Effect::ShowTool(tool) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    let company = run.company.clone();
+                    run.screens.tools.show(tool, &company);
+                }
+                self.show(ScreenId::Tools);
+            }
+            Effect::EditSql(sql) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    run.screens.sql.edit(&sql);
+                }
+                self.show(ScreenId::Sql);
+            }
+            Effect::ConfirmCall { tool, arguments, text } => {
+                let confirm = Confirm::new(tool, text, vec![Effect::Call { tool, arguments }]);
+                self.layers.push(Layer::Dialog(Box::new(confirm)));
+            }
+            Effect::LeaveNow => self.leave(Closing::ToShell(0)),
+            Effect::Do(action) => self.act(action),
+        }
+    }
+
+    fn start(&mut self, what: &'static str, job: Job) {
+        if self.busy.is_none() {
+            self.busy = Some(Busy { what, days: None, since: Instant::now() });
+            self.orders.push(Order::Job(job));
+        }
+    }
+
+    /// Hands over a job that changes the run, unless a week is running.
+    fn change(&mut self, job: Job) {
+        match self.busy {
+            Some(_) => self.complain("a week is running; nothing was sent: try again when it is done"),
+            None => self.orders.push(Order::Job(job)),
+        }
+    }
+
+    fn advance(&mut self, rationale: String, forecasts: crate::session::Forecasts) {
+        let Stage::Run(run) = &self.stage else { return };
+        if self.busy.is_some() {
+            return self.complain("a week is running already");
+        }
+        let from = run.company.seen.day;
+        let days = Some((from, run.company.next_decision_day, from));
+        self.busy = Some(Busy { what: "the week runs", days, since: Instant::now() });
+        self.orders.push(Order::Job(Job::Advance(rationale, forecasts)));
+    }
+
+    fn write(&mut self, name: &str, contents: Vec<u8>) {
+        let folder = self.run().and_then(|run| run.company.folder.clone());
+        match folder {
+            Some(folder) => self.orders.push(Order::Write(folder.join(name), contents)),
+            None => self.complain("this run is kept in memory and has no folder for files"),
+        }
+    }
+}

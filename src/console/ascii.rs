@@ -1,0 +1,45 @@
+//! Drawing without box, block and braille characters: one pass over the finished frame.
+
+use ratatui::buffer::Buffer;
+
+/// Replaces every character outside ASCII by one that stands in for it.
+pub fn plain(buffer: &mut Buffer) {
+    for cell in &mut buffer.content {
+        if !cell.symbol().is_ascii() {
+            let stand_in = cell.symbol().chars().next().map_or(' ', stand_in);
+            cell.set_char(stand_in);
+        }
+    }
+}
+
+fn stand_in(letter: char) -> char {
+    match letter {
+        '─' | '━' | '–' | '—' | '⠤' | '⎯' => '-',
+        '│' | '┃' | '▏' | '▌' | '▎' => '|',
+        '┌' | '┐' | '└' | '┘' | '├' | '┤' | '┬' | '┴' | '┼' | '╭' | '╮' | '╰' | '╯' => {
+            '+'
+        }
+        '▁' => '_',
+        '▂' => '.',
+        '▃' | '▄' => '-',
+        '▅' | '▆' => '=',
+        '▇' => '%',
+        '█' | '▓' => '#',
+        '▒' | '░' => ':',
+        '▲' | '↑' => '^',
+        '▼' | '↓' | '▾' => 'v',
+        '▸' | '►' | '→' | '›' => '>',
+        '←' | '‹' => '<',
+        '●' | '•' | '·' | '◆' => '*',
+        '✓' => 'x',
+        '…' => '~',
+        '×' => 'x',
+        '∞' => '8',
+        '≡' => '=',
+        '’' | '‘' => '\'',
+        '“' | '”' => '"',
+        '\u{2800}' => ' ',
+        '\u{2801}'..='\u{28ff}' => '*',
+        _ => '?',
+    }
+}

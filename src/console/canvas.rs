@@ -1,0 +1,196 @@
+//! What views draw on: the cells of a frame, what can be clicked, and where the cursor stands.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::style::Style;
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Block, BorderType, Widget};
+use unicode_segmentation::UnicodeSegmentation;
+use unicode_width::UnicodeWidthStr;
+
+use super::action::Action;
+use super::theme::{Role, Theme};
+
+/// What a click on a part of the screen asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Click {
+    /// An action.
+    Do(Action),
+    /// A pane, by its number on the screen: it takes the focus.
+    Pane(usize),
+    /// A row of a pane.
+    Row(usize, usize),
+}
+
+/// A frame that is being drawn.
+pub struct Canvas<'a> {
+    /// Cells.
+    pub buffer: &'a mut Buffer,
+    /// Colours.
+    pub theme: &'a Theme,
+    /// What can be clicked; later entries lie on top.
+    pub clicks: Vec<(Rect, Click)>,
+    /// Where the cursor stands, if it is shown.
+    pub cursor: Option<Position>,
+    /// Rows that the focused list shows, for paging.
+    pub page: u16,
+}
+
+/// Side of a cell to which text is pushed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// Left.
+    Left,
+    /// Right.
+    Right,
+}
+
+impl<'a> Canvas<'a> {
+    /// A canvas over cells.
+    pub fn new(buffer: &'a mut Buffer, theme: &'a Theme) -> Canvas<'a> {
+        Canvas { buffer, theme, clicks: Vec::new(), cursor: None, page: 10 }
+    }
+
+    /// The whole area.
+    pub fn area(&self) -> Rect {
+        self.buffer.area
+    }
+
+    /// Style of a meaning.
+    pub fn style(&self, role: Role) -> Style {
+        self.theme.style(role)
+    }
+
+    /// A piece of text in a meaning.
+    pub fn span<'t>(&self, text: impl Into<std::borrow::Cow<'t, str>>, role: Role) -> Span<'t> {
+        Span::styled(text, self.style(role))
+    }
+
+    /// Fills an area with a meaning's background and blanks.
+    pub fn clear(&mut self, area: Rect, role: Role) {
+        let area = area.intersection(self.buffer.area);
+        ratatui::widgets::Clear.render(area, self.buffer);
+        self.buffer.set_style(area, self.style(role));
+    }
+
+    /// Writes text into one row, cut with an ellipsis to the width of the area.
+    pub fn text(&mut self, area: Rect, text: &str, role: Role) {
+        self.aligned(area, text, role, Align::Left);
+    }
+
+    /// Writes text into one row, pushed to a side.
+    pub fn aligned(&mut self, area: Rect, text: &str, role: Role, align: Align) {
+        if area.is_empty() {
+            return;
+        }
+        let shown = fit(text, area.width as usize);
+        let room = area.width as usize - shown.width();
+        let x = area.x + if align == Align::Right { room as u16 } else { 0 };
+        let style = self.style(role);
+        if self.buffer.area.contains(Position::new(x, area.y)) {
+            self.buffer.set_stringn(x, area.y, shown, area.width as usize, style);
+        }
+    }
+
+    /// Writes pieces of text into one row; what does not fit is cut.
+    pub fn line(&mut self, area: Rect, line: &Line<'_>) {
+        if !area.is_empty() && self.buffer.area.contains(area.as_position()) {
+            self.buffer.set_line(area.x, area.y, line, area.width);
+        }
+    }
+
+    /// Writes lines below each other; what does not fit is left out.
+    pub fn lines(&mut self, area: Rect, lines: &[Line<'_>]) {
+        for (row, line) in rows_of(area).zip(lines) {
+            self.line(row, line);
+        }
+    }
+
+    /// Draws the border of a pane and returns its inside. The title carries what the pane is, the right end of the
+    /// upper border what is worth knowing about it.
+    pub fn pane(&mut self, area: Rect, title: &str, note: &str, focused: bool) -> Rect {
+        let border = self.style(if focused { Role::Focus } else { Role::Border });
+        let mut block = Block::bordered().border_type(BorderType::Plain).border_style(border);
+        let room = (area.width as usize).saturating_sub(4);
+        if !title.is_empty() && room > 0 {
+            let text = format!(" {} ", fit(title, room.saturating_sub(2)));
+            block = block.title(Line::from(self.span(text, Role::Title)));
+        }
+        let left = title.width() + 3;
+        if !note.is_empty() && room > left + 4 {
+            let text = format!(" {} ", fit(note, room - left - 2));
+            block = block.title(Line::from(self.span(text, Role::Dim)).right_aligned());
+        }
+        let inside = block.inner(area);
+        block.render(area.intersection(self.buffer.area), self.buffer);
+        inside
+    }
+
+    /// Writes keys that work here into the lower border of a pane.
+    pub fn pane_keys(&mut self, area: Rect, text: &str) {
+        if area.height < 2 || area.width < 6 {
+            return;
+        }
+        let row = Rect { x: area.x + 2, y: area.bottom() - 1, width: area.width - 4, height: 1 };
+        let shown = format!(" {} ", fit(text, row.width.saturating_sub(2) as usize));
+        let width = shown.width() as u16;
+        self.text(Rect { width: width.min(row.width), ..row }, &shown, Role::Dim);
+    }
+
+    /// Makes an area clickable.
+    pub fn click(&mut self, area: Rect, click: Click) {
+        self.clicks.push((area, click));
+    }
+}
+
+/// The rows of an area, each one cell high.
+pub fn rows_of(area: Rect) -> impl Iterator<Item = Rect> {
+    (area.top()..area.bottom()).map(move |y| Rect { y, height: 1, ..area })
+}
+
+/// Text of at most a width, with an ellipsis where it was cut. Widths are those of whole graphemes.
+pub fn fit(text: &str, width: usize) -> String {
+    if text.width() <= width && !text.contains(|letter: char| letter.is_control()) {
+        return text.to_owned();
+    }
+    let mut fitted = String::new();
+    let mut used = 0;
+    let clean =
+        |piece: &str| if piece.chars().any(char::is_control) { " ".to_owned() } else { piece.to_owned() };
+    let pieces: Vec<String> = text.graphemes(true).map(clean).collect();
+    let whole: usize = pieces.iter().map(|piece| piece.width()).sum();
+    let room = if whole <= width { width } else { width.saturating_sub(1) };
+    for piece in &pieces {
+        if used + piece.width() > room {
+            break;
+        }
+        used += piece.width();
+        fitted.push_str(piece);
+    }
+    if whole > width && width > 0 {
+        fitted.push('…');
+    }
+    fitted
+}
+
+/// A rectangle of a size in the middle of an area, cut to it.
+pub fn centered(area: Rect, width: u16, height: u16) -> Rect {
+    let (width, height) = (width.min(area.width), height.min(area.height));
+    Rect { x: area.x + (area.width - width) / 2, y: area.y + (area.height - height) / 2, width, height }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_cut_between_graphemes() {
+        assert_eq!(fit("abcdef", 6), "abcdef");
+        assert_eq!(fit("abcdef", 4), "abc…");
+        assert_eq!(fit("日本語", 4), "日…");
+        assert_eq!(fit("日本語", 5), "日本…");
+        assert_eq!(fit("a\nb\tc", 9), "a b c");
+        assert_eq!(fit("abc", 0), "");
+        assert_eq!(fit("abc", 1), "…");
+    }
+}

@@ -1,0 +1,107 @@
+//! What the screens show of the run: made by the session's thread after everything that changes it.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde_json::{Map, Value};
+
+use crate::session::{
+    DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Observation, Session, WeekFigures,
+};
+use crate::tools::CATALOGUE;
+
+/// The company as a player may know it.
+#[derive(Debug, Clone)]
+pub struct Company {
+    /// At a glance.
+    pub seen: Observation,
+    /// Folder of the run.
+    pub folder: Option<PathBuf>,
+    /// First day after the next week, or the last day.
+    pub next_decision_day: u32,
+    /// Cash at the end of each day, day 0 first.
+    pub cash_by_day: Vec<f64>,
+    /// Figures of every week.
+    pub weeks: Vec<WeekFigures>,
+    /// Delivered quality of every known group.
+    pub quality: Vec<DeliveredQuality>,
+    /// Quality before any improvement, and what development has added for everybody.
+    pub quality_base: (f64, f64),
+    /// The naive projection of cash.
+    pub naive: Forecasts,
+    /// How forecasts did so far.
+    pub scores: Vec<ForecastScore>,
+    /// Everything that was done.
+    pub journal: Vec<JournalEntry>,
+    /// Notes of the run.
+    pub memo: String,
+    /// Present arguments of every tool.
+    pub settings: BTreeMap<&'static str, Map<String, Value>>,
+    /// Answer of get_cost_info.
+    pub costs: Value,
+    /// Answer of list_research_projects.
+    pub projects: Value,
+    /// What the person should know about the opening of the run.
+    pub remarks: Vec<String>,
+}
+
+impl Company {
+    /// What a session shows now.
+    pub fn of(session: &Session) -> Company {
+        let settings =
+            CATALOGUE.iter().map(|tool| tool.spec().name).map(|name| (name, session.current(name)));
+        let read = |tool: &str| session.look_up(tool, &Value::Object(Map::new())).unwrap_or(Value::Null);
+        Company {
+            seen: session.observe(),
+            folder: session.folder().map(PathBuf::from),
+            next_decision_day: session.next_decision_day(),
+            cash_by_day: session.cash_by_day().to_vec(),
+            weeks: session.weeks().to_vec(),
+            quality: session.delivered_quality(),
+            quality_base: session.quality_base(),
+            naive: session.naive_forecasts(),
+            scores: session.forecast_scores(),
+            journal: session.journal().to_vec(),
+            memo: session.memo().unwrap_or_default(),
+            settings: settings.collect(),
+            costs: read("get_cost_info"),
+            projects: read("list_research_projects"),
+            remarks: session.remarks().to_vec(),
+        }
+    }
+
+    /// Whether time can still pass.
+    pub fn is_running(&self) -> bool {
+        self.seen.ended.is_none()
+    }
+
+    /// Whether the run is a baseline.
+    pub fn is_baseline(&self) -> bool {
+        self.seen.mode == Mode::Baseline
+    }
+
+    /// A present argument of a tool as a number, 0 if it has none.
+    pub fn setting(&self, tool: &str, argument: &str) -> f64 {
+        self.settings.get(tool).and_then(|all| all.get(argument)).and_then(Value::as_f64).unwrap_or(0.0)
+    }
+
+    /// The forecasts that were filed last: decision day and forecasts.
+    pub fn last_forecasts(&self) -> Option<(u32, &[crate::tools::Forecast])> {
+        self.journal.iter().rev().find_map(|entry| match entry {
+            JournalEntry::Advance { day, forecasts, .. } => Some((*day, forecasts.as_slice())),
+            _ => None,
+        })
+    }
+
+    /// One figure of the last weeks, oldest first.
+    pub fn trend(&self, count: usize, figure: impl Fn(&WeekFigures) -> f64) -> Vec<f64> {
+        let from = self.weeks.len().saturating_sub(count);
+        self.weeks[from..].iter().map(figure).collect()
+    }
+
+    /// Mean of a figure over the last four weeks; none before the first.
+    pub fn mean_of_four(&self, figure: impl Fn(&WeekFigures) -> f64) -> Option<f64> {
+        let last = self.trend(4, figure);
+        (!last.is_empty()).then(|| last.iter().sum::<f64>() / last.len() as f64)
+    }
+}

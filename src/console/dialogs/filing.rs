@@ -1,0 +1,465 @@
+//! What is filed before a week runs: review, rationale, forecasts. Three steps that can be walked back; what was
+//! typed stays until the week has run.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+use ratatui::text::Line as TextLine;
+
+use super::{Dialog, Outcome};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Align, Canvas, Click, centered, rows_of};
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::{Look, overview};
+use crate::console::text::{number, short_dollars, wrapped};
+use crate::console::theme::Role;
+use crate::console::widgets::field::parse_number;
+use crate::console::widgets::{Axis, Editor, Field, Line, chart};
+use crate::notation::{dollars, grouped, percent};
+use crate::session::Forecasts;
+use crate::tools::Forecast;
+
+/// Steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Step {
+    Review,
+    Rationale,
+    Forecasts,
+}
+
+/// The dialog, with its drafts.
+pub struct Filing {
+    step: Step,
+    rationale: Editor,
+    /// Low, point, high of every horizon.
+    cells: [[Field; 3]; 4],
+    at: (usize, usize),
+    /// The cell is being typed into.
+    typing: bool,
+    /// What was in the cell before it was typed into.
+    before: Field,
+    /// Cells hold the naive projection untouched.
+    naive: bool,
+    problem: Option<String>,
+}
+
+/// Weeks of the horizons, in words.
+const HORIZONS: [&str; 4] = ["1 week", "4 weeks", "12 weeks", "26 weeks"];
+
+impl Default for Filing {
+    fn default() -> Self {
+        Filing {
+            step: Step::Review,
+            rationale: Editor::default(),
+            cells: Default::default(),
+            at: (0, 0),
+            typing: false,
+            before: Field::default(),
+            naive: false,
+            problem: None,
+        }
+    }
+}
+
+impl Filing {
+    /// Goes back to the first step; drafts stay.
+    pub fn reopen(&mut self) {
+        self.step = Step::Review;
+        self.problem = None;
+        self.typing = false;
+    }
+
+    /// Whether a draft would be lost.
+    pub fn has_draft(&self) -> bool {
+        !self.rationale.is_blank()
+            || (!self.naive && self.cells.iter().flatten().any(|cell| !cell.is_empty()))
+    }
+
+    /// Shows why a week was refused.
+    pub fn refused(&mut self, problem: String) {
+        self.problem = Some(problem);
+    }
+
+    fn next(&mut self, look: &Look<'_>) -> Outcome {
+        self.problem = None;
+        match self.step {
+            Step::Review => self.step = Step::Rationale,
+            Step::Rationale if self.rationale.is_blank() => {
+                self.problem =
+                    Some("a rationale is required: one sentence on what you expect and why".to_owned());
+            }
+            Step::Rationale => self.step = Step::Forecasts,
+            Step::Forecasts => match self.forecasts(look.company) {
+                Ok(forecasts) => {
+                    let rationale = self.rationale.text().trim().to_owned();
+                    return Outcome::close_with(vec![Effect::Advance { rationale, forecasts }]);
+                }
+                Err((at, problem)) => {
+                    self.at = at;
+                    self.problem = Some(problem);
+                }
+            },
+        }
+        Outcome::stay()
+    }
+
+    fn back(&mut self) {
+        self.problem = None;
+        self.step = match self.step {
+            Step::Review | Step::Rationale => Step::Review,
+            Step::Forecasts => Step::Rationale,
+        };
+    }
+
+    fn fill_naively(&mut self, company: &Company) {
+        for (row, forecast) in self.cells.iter_mut().zip(&company.naive.all) {
+            *row = [forecast.lower, forecast.point, forecast.upper].map(|value| Field::of(grouped(value, 0)));
+        }
+        (self.naive, self.problem) = (true, None);
+    }
+
+    /// The forecasts as typed, or the first cell that is wrong.
+    fn forecasts(&self, company: &Company) -> Result<Forecasts, ((usize, usize), String)> {
+        let mut all = company.naive;
+        all.filled_naively = self.naive;
+        if self.naive {
+            return Ok(all);
+        }
+        for (row, cells) in self.cells.iter().enumerate() {
+            let mut values = [0.0; 3];
+            for (column, cell) in cells.iter().enumerate() {
+                values[column] = parse_number(cell.text())
+                    .ok_or_else(|| ((row, column), format!("{}: a number is missing here", HORIZONS[row])))?;
+            }
+            let [lower, point, upper] = values;
+            if lower > upper {
+                return Err(((row, 0), format!("{}: low is above high", HORIZONS[row])));
+            }
+            if point < lower || point > upper {
+                return Err(((row, 1), format!("{}: the point lies outside low to high", HORIZONS[row])));
+            }
+            all.all[row] = Forecast { horizon_days: all.all[row].horizon_days, point, lower, upper };
+        }
+        Ok(all)
+    }
+
+    fn fill_rationale(&mut self, company: &Company) {
+        if !company.is_baseline() && self.rationale.is_blank() {
+            let changes: Vec<String> = company
+                .seen
+                .changes
+                .iter()
+                .map(|change| format!("{} {} → {}", change.setting, number(change.old), number(change.new)))
+                .chain(company.seen.purchases.iter().cloned())
+                .collect();
+            let text = if changes.is_empty() { "nothing changed".to_owned() } else { changes.join("; ") };
+            self.rationale.insert(&text);
+        }
+    }
+
+    fn walk(&mut self, action: Action) {
+        let (row, column) = self.at;
+        self.at = match action {
+            Action::Up | Action::CommitPrevious => (row.saturating_sub(1), column),
+            Action::Down | Action::CommitDown => ((row + 1).min(3), column),
+            Action::Left => (row, column.saturating_sub(1)),
+            Action::Right => (row, (column + 1).min(2)),
+            Action::FocusNext | Action::CommitNext | Action::Commit => match column {
+                2 => ((row + 1).min(3), if row == 3 { 2 } else { 0 }),
+                _ => (row, column + 1),
+            },
+            _ => self.at,
+        };
+    }
+
+    fn cell(&mut self) -> &mut Field {
+        &mut self.cells[self.at.0][self.at.1]
+    }
+}
+
+impl Dialog for Filing {
+    fn scopes(&self) -> Vec<Scope> {
+        match self.step {
+            Step::Review => vec![Scope::Filing, Scope::List],
+            Step::Rationale => vec![Scope::Editor, Scope::Filing],
+            Step::Forecasts if self.typing => vec![Scope::Field, Scope::Filing],
+            Step::Forecasts => vec![Scope::Filing, Scope::List],
+        }
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        match self.step {
+            Step::Review => vec![Action::NextStep, Action::Close],
+            Step::Rationale => {
+                vec![Action::NextStep, Action::PreviousStep, Action::FillRationale, Action::LeaveEditor]
+            }
+            Step::Forecasts if self.typing => vec![Action::CommitNext, Action::CommitDown, Action::Discard],
+            Step::Forecasts => {
+                vec![Action::NextStep, Action::FillNaively, Action::PreviousStep, Action::Close]
+            }
+        }
+    }
+
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
+        match action {
+            Action::NextStep if !self.typing => return self.next(look),
+            Action::NextStep => {
+                self.typing = false;
+                return self.next(look);
+            }
+            Action::PreviousStep => {
+                self.typing = false;
+                self.back();
+            }
+            Action::Close | Action::LeaveEditor => return Outcome::close(),
+            Action::FillRationale if self.step == Step::Rationale => self.fill_rationale(look.company),
+            Action::FillNaively if self.step == Step::Forecasts => self.fill_naively(look.company),
+            Action::Discard => {
+                self.typing = false;
+                let before = self.before.clone();
+                *self.cell() = before;
+            }
+            Action::Commit | Action::CommitNext | Action::CommitDown | Action::CommitPrevious => {
+                self.typing = false;
+                self.walk(action);
+            }
+            other if self.step == Step::Forecasts => self.walk(other),
+            _ => {}
+        }
+        Outcome::stay()
+    }
+
+    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Outcome {
+        match self.step {
+            Step::Rationale => {
+                self.rationale.key(key);
+                self.problem = None;
+            }
+            Step::Forecasts if self.typing => {
+                self.cell().key(key);
+                self.naive = false;
+            }
+            Step::Forecasts => {
+                let starts = matches!(key.code, crossterm::event::KeyCode::Char(letter) if letter.is_ascii_digit() || matches!(letter, '-' | '$' | '.'));
+                if starts {
+                    self.before = self.cell().clone();
+                    *self.cell() = Field::default();
+                    self.cell().key(key);
+                    (self.typing, self.naive, self.problem) = (true, false, None);
+                }
+            }
+            Step::Review => {}
+        }
+        Outcome::stay()
+    }
+
+    fn paste(&mut self, text: &str, _: &Look<'_>) -> Outcome {
+        match self.step {
+            Step::Rationale => self.rationale.insert(text),
+            Step::Forecasts if self.typing => self.cell().insert(text),
+            _ => {}
+        }
+        Outcome::stay()
+    }
+
+    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+        if self.step == Step::Forecasts && !self.typing {
+            self.at = (row / 3, row % 3);
+        }
+        Outcome::stay()
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let own = centered(area, 106.min(area.width), 26.min(area.height));
+        canvas.clear(own, Role::Text);
+        let mark = |step: Step, name: &str| match (self.step as u8).cmp(&(step as u8)) {
+            std::cmp::Ordering::Greater => format!("{name} ✓"),
+            std::cmp::Ordering::Equal => format!("[{name}]"),
+            std::cmp::Ordering::Less => name.to_owned(),
+        };
+        let days = look.company.next_decision_day - look.company.seen.day;
+        let title = format!(
+            "Next week · {} · {} · {}",
+            mark(Step::Review, "1 review"),
+            mark(Step::Rationale, "2 rationale"),
+            mark(Step::Forecasts, "3 forecasts")
+        );
+        let note = format!("{days} days, to day {}", look.company.next_decision_day);
+        let inside = canvas.pane(own, &title, &note, true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let body = Rect { height: inside.height.saturating_sub(1), ..inside };
+        match self.step {
+            Step::Review => draw_review(canvas, body, look.company),
+            Step::Rationale => self.draw_rationale(canvas, body, look.company),
+            Step::Forecasts => self.draw_forecasts(canvas, body, look.company),
+        }
+        if let Some(problem) = &self.problem {
+            let row = Rect { y: body.bottom(), height: 1, ..body };
+            canvas.text(row, &format!("! {problem}"), Role::Bad);
+        }
+        let mut actions = self.hints();
+        if look.company.is_baseline() {
+            actions.retain(|action| *action != Action::FillRationale);
+        }
+        canvas.pane_keys(own, &look.hints(&actions));
+    }
+}
+
+fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
+    let seen = &company.seen;
+    let mut lines: Vec<TextLine<'_>> = Vec::new();
+    let head = |text: &str, canvas: &Canvas<'_>| TextLine::from(canvas.span(text.to_owned(), Role::Header));
+    lines.push(head("Changes since the last week", canvas));
+    for change in &seen.changes {
+        lines.push(TextLine::from(vec![
+            canvas.span(format!("  {:<32} ", change.setting), Role::Text),
+            canvas.span(format!("{:>12} → ", number(change.old)), Role::Dim),
+            canvas.span(format!("{:<12} ", number(change.new)), Role::Changed),
+            canvas.span(change.unit.to_owned(), Role::Dim),
+        ]));
+    }
+    lines.extend(
+        seen.purchases.iter().map(|done| TextLine::from(canvas.span(format!("  {done}"), Role::Changed))),
+    );
+    if seen.changes.is_empty() && seen.purchases.is_empty() {
+        lines.push(TextLine::from(canvas.span("  none: everything stays as it is", Role::Dim)));
+    }
+    lines.push(TextLine::default());
+    lines.push(head("Before you go on", canvas));
+    let alerts = overview::alerts(company);
+    for alert in &alerts {
+        for (at, text) in wrapped(&alert.text, area.width.saturating_sub(4) as usize).into_iter().enumerate()
+        {
+            let mark = if at > 0 {
+                "    "
+            } else if alert.urgent {
+                "  ! "
+            } else {
+                "  · "
+            };
+            let role = if alert.urgent { Role::Warning } else { Role::Text };
+            lines.push(TextLine::from(canvas.span(format!("{mark}{text}"), role)));
+        }
+    }
+    if alerts.is_empty() {
+        lines.push(TextLine::from(canvas.span("  nothing needs you", Role::Dim)));
+    }
+    let room = area.height as usize;
+    if lines.len() > room && room > 0 {
+        let left = lines.len() - room + 1;
+        lines.truncate(room - 1);
+        lines.push(TextLine::from(
+            canvas.span(format!("  … and {left} lines more: c shows all changes"), Role::Dim),
+        ));
+    }
+    canvas.lines(area, &lines);
+}
+
+impl Filing {
+    fn draw_rationale(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
+        let why = if company.is_baseline() {
+            "It is required and kept with the run."
+        } else {
+            "It is kept with the run."
+        };
+        canvas.text(
+            area,
+            &format!("Why do you play the week like this, and what do you expect? {why}"),
+            Role::Text,
+        );
+        let editor = Rect { y: area.y + 2, height: area.height.saturating_sub(2), ..area };
+        self.rationale.draw(
+            canvas,
+            editor,
+            true,
+            "for instance: raised C to $60, for margins are thin; expect fewer upgrades",
+        );
+    }
+
+    fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
+        let mut rows = rows_of(area);
+        let question = format!(
+            "Cash now {}. What will it be? You should be right 95 times in 100 between low and high.",
+            dollars(company.seen.cash)
+        );
+        if let Some(row) = rows.next() {
+            canvas.text(row, &question, Role::Text);
+        }
+        if let Some(row) = rows.next() {
+            for (at, title) in ["low", "point", "high"].into_iter().enumerate() {
+                canvas.aligned(cell_area(row, at), title, Role::Header, Align::Right);
+            }
+            let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
+            canvas.text(record, "your record so far", Role::Header);
+        }
+        for (at, row) in rows.by_ref().take(4).enumerate() {
+            self.draw_horizon(canvas, row, at, company);
+        }
+        if self.naive
+            && let Some(row) = rows.next()
+        {
+            canvas.text(
+                row,
+                "naive: the mean daily change of the last four weeks goes on; recorded as such",
+                Role::Dim,
+            );
+        }
+        let used = 7;
+        let left = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
+        if let Ok(forecasts) = self.forecasts(company) {
+            draw_fan(canvas, left, company, company.seen.day, &forecasts.all);
+        }
+    }
+
+    fn draw_horizon(&self, canvas: &mut Canvas<'_>, row: Rect, at: usize, company: &Company) {
+        canvas.text(Rect { width: 9.min(row.width), ..row }, HORIZONS[at], Role::Text);
+        for (column, field) in self.cells[at].iter().enumerate() {
+            let place = cell_area(row, column).intersection(row);
+            let here = self.at == (at, column);
+            if here && self.typing {
+                field.draw(canvas, place);
+                continue;
+            }
+            let role = if here { Role::Selection } else { Role::Field };
+            canvas.clear(place, role);
+            let text = if field.is_empty() { "–" } else { field.text() };
+            canvas.aligned(place, text, role, Align::Right);
+            canvas.click(place, Click::Row(0, at * 3 + column));
+        }
+        let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
+        let text = match company.scores.get(at) {
+            Some(score) if score.scored > 0 => format!(
+                "inside {} of {} · typical miss {}",
+                score.covered,
+                score.scored,
+                percent(score.mean_error, 1)
+            ),
+            _ => "–".to_owned(),
+        };
+        canvas.text(record, &text, Role::Dim);
+    }
+}
+
+fn cell_area(row: Rect, column: usize) -> Rect {
+    Rect { x: row.x + 10 + column as u16 * 16, width: 14, ..row }
+}
+
+/// Cash so far and the fan of forecasts filed on a day.
+pub fn draw_fan(canvas: &mut Canvas<'_>, area: Rect, company: &Company, filed: u32, forecasts: &[Forecast]) {
+    let start = company.cash_by_day.get(filed as usize).copied().unwrap_or(company.seen.cash);
+    let through = |value: &dyn Fn(&Forecast) -> f64| {
+        let first = (f64::from(filed), start);
+        let later =
+            forecasts.iter().map(|forecast| (f64::from(filed + forecast.horizon_days), value(forecast)));
+        std::iter::once(first).chain(later).collect::<Vec<_>>()
+    };
+    let lines = [
+        Line::through("", through(&|forecast| forecast.lower), Role::Fan),
+        Line::through("95 % of your forecast", through(&|forecast| forecast.upper), Role::Fan),
+        Line::through("", through(&|forecast| forecast.point), Role::Series(1)),
+        Line::of("cash", &company.cash_by_day, Role::Series(0)),
+    ];
+    let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
+    let y = Axis { write: &short_dollars, holds: &[0.0] };
+    chart(canvas, area, &lines, &x, &y);
+}

@@ -1,0 +1,78 @@
+//! What lies over a screen for a while.
+
+pub mod confirm;
+pub mod filing;
+pub mod final_page;
+pub mod help;
+pub mod palette;
+pub mod reader;
+pub mod report;
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use super::action::{Action, Scope};
+use super::canvas::Canvas;
+use super::effect::Effect;
+use super::screens::Look;
+
+/// What follows from an action in a dialog.
+#[derive(Debug, Default)]
+pub struct Outcome {
+    /// Effects.
+    pub effects: Vec<Effect>,
+    /// The dialog is done with.
+    pub close: bool,
+}
+
+impl Outcome {
+    /// The dialog stays.
+    pub fn stay() -> Outcome {
+        Outcome::default()
+    }
+
+    /// The dialog closes.
+    pub fn close() -> Outcome {
+        Outcome { close: true, ..Outcome::default() }
+    }
+
+    /// The dialog closes and something follows.
+    pub fn close_with(effects: Vec<Effect>) -> Outcome {
+        Outcome { effects, close: true }
+    }
+
+    /// Something follows; the dialog stays.
+    pub fn with(effects: Vec<Effect>) -> Outcome {
+        Outcome { effects, close: false }
+    }
+}
+
+/// One dialog.
+pub trait Dialog {
+    /// Scopes, the innermost first.
+    fn scopes(&self) -> Vec<Scope>;
+
+    /// Actions worth showing in the footer.
+    fn hints(&self) -> Vec<Action>;
+
+    /// Does an action of its scopes.
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome;
+
+    /// Takes a typed key.
+    fn key(&mut self, _: &KeyEvent, _: &Look<'_>) -> Outcome {
+        Outcome::stay()
+    }
+
+    /// Takes pasted text.
+    fn paste(&mut self, _: &str, _: &Look<'_>) -> Outcome {
+        Outcome::stay()
+    }
+
+    /// A row was clicked.
+    fn click(&mut self, _: usize, _: &Look<'_>) -> Outcome {
+        Outcome::stay()
+    }
+
+    /// Draws itself over the screen.
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
+}

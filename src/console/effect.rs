@@ -1,0 +1,75 @@
+//! What an update asks for: work for the threads behind the screen, and changes of what is shown.
+
+use serde_json::Value;
+
+use super::action::Action;
+use super::readings::Reading;
+use super::screens::ScreenId;
+use crate::session::{Forecasts, NewRun};
+
+/// Something an update asks for.
+#[derive(Debug, Clone)]
+pub enum Effect {
+    /// Start a run.
+    Create(Box<NewRun>),
+    /// Open a run by its id.
+    Open(String),
+    /// What a call would do; only the newest answer counts.
+    Check {
+        /// Tool.
+        tool: &'static str,
+        /// Arguments.
+        arguments: Value,
+    },
+    /// Call a tool.
+    Call {
+        /// Tool.
+        tool: &'static str,
+        /// Arguments.
+        arguments: Value,
+    },
+    /// Take back the last setting.
+    Undo,
+    /// Let the week pass.
+    Advance {
+        /// Why.
+        rationale: String,
+        /// Forecasts of cash.
+        forecasts: Forecasts,
+    },
+    /// Ask the database for the person.
+    Ask(String),
+    /// Stop what the person asked.
+    CancelQuery,
+    /// Ask the database for a screen.
+    Read(Reading),
+    /// Keep the notes.
+    SetMemo(String),
+    /// Put text into the clipboard.
+    Copy(String),
+    /// Write a file into the folder of the run; its name and contents.
+    Write(String, Vec<u8>),
+    /// Say something in the last line.
+    Say(String),
+    /// Say that something was refused.
+    Complain(String),
+    /// Show a screen.
+    Show(ScreenId),
+    /// Show the form of a tool.
+    ShowTool(&'static str),
+    /// Put a statement into the SQL editor.
+    EditSql(String),
+    /// Ask once before a call that cannot be taken back.
+    ConfirmCall {
+        /// Tool.
+        tool: &'static str,
+        /// Arguments.
+        arguments: Value,
+        /// What it means.
+        text: String,
+    },
+    /// Save and leave, whatever is half typed.
+    LeaveNow,
+    /// Do what a key would do.
+    Do(Action),
+}

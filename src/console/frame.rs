@@ -1,0 +1,200 @@
+//! The frame around the screens: what counts on top, the screens below it, keys and the last message at the end.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
+
+use super::action::Action;
+use super::app::{App, Busy, Layer, Run, Stage};
+use super::ascii;
+use super::canvas::{Align, Canvas, Click};
+use super::company::Company;
+use super::screens::{Look, ScreenId};
+use super::text::short_dollars;
+use super::theme::Role;
+use super::widgets::spark::bar;
+use crate::notation::{dollars, grouped};
+use crate::session::Ended;
+
+/// Smallest window that is drawn.
+pub const LEAST: (u16, u16) = (60, 16);
+
+/// What a drawn frame leaves behind.
+pub struct Drawn {
+    /// What can be clicked.
+    pub clicks: Vec<(Rect, Click)>,
+    /// Where the cursor stands.
+    pub cursor: Option<Position>,
+    /// Rows that the focused list showed.
+    pub page: u16,
+}
+
+/// Draws everything.
+pub fn draw(app: &App, buffer: &mut Buffer) -> Drawn {
+    let area = buffer.area;
+    let mut canvas = Canvas::new(buffer, &app.theme);
+    canvas.clear(area, Role::Text);
+    if area.width < LEAST.0 || area.height < LEAST.1 {
+        let text =
+            format!("NovaMind needs {}×{} or more; this is {}×{}", LEAST.0, LEAST.1, area.width, area.height);
+        canvas.text(Rect { height: 1.min(area.height), ..area }, &text, Role::Warning);
+    } else {
+        draw_all(app, &mut canvas, area);
+    }
+    let drawn =
+        Drawn { clicks: std::mem::take(&mut canvas.clicks), cursor: canvas.cursor, page: canvas.page };
+    if app.ascii {
+        ascii::plain(buffer);
+    }
+    drawn
+}
+
+fn draw_all(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
+    let last = Rect { y: area.bottom() - 1, height: 1, ..area };
+    match &app.stage {
+        Stage::Menu(menu) => menu.draw(canvas, Rect { height: area.height - 1, ..area }),
+        Stage::Run(run) => draw_run(app, run, canvas, area),
+    }
+    draw_last_line(app, canvas, last);
+}
+
+fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
+    draw_top(canvas, Rect { height: 1, ..area }, &run.company);
+    draw_tabs(app, run, canvas, Rect { y: area.y + 1, height: 1, ..area });
+    let body = Rect { y: area.y + 2, height: area.height - 3, ..area };
+    let look = Look { company: &run.company, keys: &app.keys, page: app.page };
+    run.screens.get(run.here).draw(canvas, body, &look);
+    for layer in &app.layers {
+        // What lies below a dialog can be seen but not clicked.
+        canvas.clicks.clear();
+        canvas.cursor = None;
+        match layer {
+            Layer::Filing => super::dialogs::Dialog::draw(&run.filing, canvas, body, &look),
+            Layer::Dialog(dialog) => dialog.draw(canvas, body, &look),
+        }
+    }
+}
+
+fn draw_top(canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
+    let seen = &company.seen;
+    let change = seen.cash_change;
+    let runway = match seen.runway_weeks {
+        None => "∞".to_owned(),
+        Some(weeks) => format!("{weeks:.0} wk"),
+    };
+    let poor = seen.runway_weeks.is_some_and(|weeks| weeks < 8.0);
+    let wide = row.width >= 110;
+    let money = |value: f64| if wide { dollars(value) } else { short_dollars(value) };
+    let moved = format!("{} {}", if change < 0.0 { "▼" } else { "▲" }, money(change.abs()));
+    let mut pieces: Vec<Span<'_>> = vec![
+        canvas.span(" NovaMind  ", Role::Title),
+        canvas.span(
+            format!("day {}/{} · wk {}/{}   ", seen.day, seen.last_day, seen.week, seen.last_day.div_ceil(7)),
+            Role::Text,
+        ),
+        canvas.span(format!("cash {}", money(seen.cash)), if poor { Role::Warning } else { Role::Strong }),
+        canvas.span(format!(" {moved}"), if change < 0.0 { Role::Bad } else { Role::Good }),
+        canvas.span(format!("   runway {runway}"), if poor { Role::Warning } else { Role::Text }),
+        canvas.span(format!("   subs {}", grouped(f64::from(seen.subscribers), 0)), Role::Text),
+    ];
+    if row.width >= 90 {
+        pieces.push(canvas.span(format!("   seats {}", grouped(f64::from(seen.seats), 0)), Role::Text));
+    }
+    canvas.line(row, &Line::from(pieces));
+    let state = match seen.ended {
+        None => seen.mode.id().to_uppercase(),
+        Some(Ended::Horizon) => "FINISHED".to_owned(),
+        Some(Ended::Bankruptcy) => "BANKRUPT".to_owned(),
+        Some(Ended::Abandoned) => "GIVEN UP".to_owned(),
+    };
+    let place = Rect { x: row.right().saturating_sub(10), width: 10, ..row };
+    canvas.aligned(place, &format!("{state} "), Role::Title, Align::Right);
+}
+
+fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
+    let mut x = row.x;
+    for screen in ScreenId::ALL {
+        let action = screen.action();
+        let key = app.keys.label(action).unwrap_or_default();
+        let badge = badge(run, screen);
+        let text = format!(" {key} {}{badge} ", action.entry().title);
+        let width = text.width() as u16;
+        if x + width > row.right() {
+            break;
+        }
+        let place = Rect { x, width, ..row };
+        canvas.text(place, &text, if screen == run.here { Role::TabHere } else { Role::Tab });
+        canvas.click(place, Click::Do(action));
+        x += width;
+    }
+}
+
+/// What waits on a screen.
+fn badge(run: &Run, screen: ScreenId) -> String {
+    let count = match screen {
+        ScreenId::Product => run.company.seen.running_research as usize,
+        ScreenId::Tools => run.company.seen.changes.len(),
+        _ => 0,
+    };
+    if count > 0 { format!(" ●{count}") } else { String::new() }
+}
+
+fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
+    let right = match (&app.busy, &app.note) {
+        (Some(busy), _) => Some((waiting(busy), Role::Warning)),
+        (None, Some(note)) if note.bad => Some((format!("! {}", note.text), Role::Bad)),
+        (None, Some(note)) => Some((note.text.clone(), Role::Good)),
+        (None, None) => None,
+    };
+    let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 2).min(row.width);
+    let mut x = row.x + 1;
+    for action in actions_shown(app) {
+        let Some(key) = app.keys.label(action) else { continue };
+        let title = action.entry().title;
+        let width = (key.width() + 1 + title.width()) as u16;
+        if x + width + taken > row.right() {
+            break;
+        }
+        canvas.text(Rect { x, width: key.width() as u16, ..row }, &key, Role::Key);
+        let after = Rect { x: x + key.width() as u16 + 1, width: title.width() as u16, ..row };
+        canvas.text(after, title, Role::Dim);
+        canvas.click(Rect { x, width, ..row }, Click::Do(action));
+        x += width + 3;
+    }
+    if let Some((text, role)) = right {
+        let place = Rect { x: row.right() - taken, width: taken, ..row };
+        canvas.text(place, &text, role);
+    }
+}
+
+/// Keys in the last line: those of the place first, then those that always help.
+fn actions_shown(app: &App) -> Vec<Action> {
+    let mut actions = app.hints();
+    if app.layers.is_empty() && matches!(app.stage, Stage::Run(_)) {
+        let typing = app.scopes().first().is_some_and(|scope| scope.is_text());
+        let always = [
+            Action::NextWeek,
+            Action::Palette,
+            Action::Help,
+            Action::FocusNext,
+            Action::Changes,
+            Action::Quit,
+        ];
+        if !typing {
+            actions.extend(always);
+        }
+    }
+    actions
+}
+
+fn waiting(busy: &Busy) -> String {
+    let seconds = busy.since.elapsed().as_secs_f64();
+    match busy.days {
+        Some((from, to, now)) => {
+            let share = f64::from(now - from) / f64::from((to - from).max(1));
+            format!("{} day {now}/{to} {} {seconds:.1} s", busy.what, bar(share, 10))
+        }
+        None => format!("{} …", busy.what),
+    }
+}

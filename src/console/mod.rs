@@ -1,0 +1,139 @@
+//! The terminal application (chapters 80 and 81).
+//!
+//! Input becomes an action, an action changes state, a pure view draws it. The session and the database work on
+//! threads of their own and report through the channel that also carries the input; the screen never waits.
+//! Everything shown comes from tool results, the weekly dashboard or guarded queries.
+
+pub mod action;
+pub mod app;
+mod ascii;
+pub mod canvas;
+pub mod company;
+pub mod dialogs;
+pub mod effect;
+pub mod frame;
+pub mod keys;
+pub mod message;
+pub mod readings;
+pub mod screens;
+mod terminal;
+mod text;
+pub mod theme;
+pub mod widgets;
+pub mod worker;
+
+use std::io;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use app::{App, Order, Settings, Stage};
+use effect::Effect;
+use message::{Message, News};
+use terminal::Screen;
+use worker::{Job, Workers};
+
+/// Runs the console; returns the exit code and what to print on the way out.
+///
+/// # Errors
+/// The terminal fails.
+pub fn play(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option<String>)> {
+    let (sender, messages) = channel();
+    let workers = Workers::start(sender.clone(), settings.configuration.clone());
+    let runs = settings.runs.clone();
+    let mut app = App::new(settings);
+    if let Some(effect) = start {
+        app.start_with(effect);
+    }
+    let screen = Screen::take()?;
+    listen(sender.clone());
+    let mut console = Console { app, workers, screen, messages, sender, runs };
+    let end = console.run();
+    let Console { screen, workers, .. } = console;
+    drop(screen);
+    workers.finish();
+    end
+}
+
+struct Console {
+    app: App,
+    workers: Workers,
+    screen: Screen,
+    messages: Receiver<Message>,
+    sender: Sender<Message>,
+    runs: std::path::PathBuf,
+}
+
+impl Console {
+    fn run(&mut self) -> io::Result<(u8, Option<String>)> {
+        loop {
+            if let Some(end) = self.carry_out()? {
+                return Ok(end);
+            }
+            self.screen.draw(&mut self.app)?;
+            let Ok(message) = self.messages.recv() else { return Ok((1, None)) };
+            self.app.update(message);
+            // Everything that has arrived meanwhile is drawn once.
+            while let Ok(message) = self.messages.try_recv() {
+                self.app.update(message);
+            }
+        }
+    }
+
+    fn carry_out(&mut self) -> io::Result<Option<(u8, Option<String>)>> {
+        for order in self.app.take_orders() {
+            match order {
+                Order::Job(job) => self.workers.send(job),
+                Order::AskNow(question) => self.workers.ask_now(question),
+                Order::CancelQuery => {
+                    if let Some(interrupt) = self.app.run().and_then(|run| run.interrupt.as_ref()) {
+                        interrupt.stop();
+                    }
+                }
+                Order::Copy(text) => self.screen.copy(&text),
+                Order::Write(path, contents) => write_behind(path, contents, self.sender.clone()),
+                Order::ListRuns => self.workers.send(Job::List(self.runs.clone())),
+                Order::Redraw => self.screen.clear()?,
+                Order::Exit(code, text) => return Ok(Some((code, text))),
+            }
+        }
+        let folder = match &self.app.stage {
+            Stage::Run(run) => run.company.folder.as_ref().map(|folder| folder.display().to_string()),
+            Stage::Menu(_) => None,
+        };
+        terminal::remember_run(folder);
+        Ok(None)
+    }
+}
+
+fn write_behind(path: std::path::PathBuf, contents: Vec<u8>, news: Sender<Message>) {
+    std::thread::spawn(move || {
+        let written = match std::fs::write(&path, contents) {
+            Ok(()) => Ok(format!("written: {}", path.display())),
+            Err(error) => Err(format!("{}: {error}", path.display())),
+        };
+        let _ = news.send(Message::News(News::Written(written)));
+    });
+}
+
+/// Listens to keys and signals, each on a thread of its own; they end with the program.
+fn listen(sender: Sender<Message>) {
+    let keys = sender.clone();
+    std::thread::spawn(move || {
+        while let Ok(event) = crossterm::event::read() {
+            if keys.send(Message::Input(event)).is_err() {
+                return;
+            }
+        }
+        // The terminal has gone away.
+        let _ = keys.send(Message::Signal(1));
+    });
+    #[cfg(unix)]
+    std::thread::spawn(move || {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]) else { return };
+        for signal in signals.forever() {
+            if sender.send(Message::Signal(signal)).is_err() {
+                return;
+            }
+        }
+    });
+}

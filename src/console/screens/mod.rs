@@ -1,0 +1,166 @@
+//! The screens. Each keeps where the person is in it, turns actions into effects, and draws itself from what
+//! holds; drawing changes and computes nothing that matters.
+
+pub mod cash;
+pub mod customers;
+pub mod journal;
+pub mod menu;
+pub mod overview;
+pub mod product;
+pub mod sql;
+pub mod tools;
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use super::action::{Action, Scope};
+use super::canvas::Canvas;
+use super::company::Company;
+use super::effect::Effect;
+use super::keys::Keys;
+use super::message::News;
+use super::readings::Reading;
+use crate::session::Rows;
+
+/// Which screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ScreenId {
+    /// The company at a glance.
+    Overview,
+    /// Where money comes from and goes to.
+    Cash,
+    /// The customer groups.
+    Customers,
+    /// Quality, capacity, issues, R&D.
+    Product,
+    /// Forms of all tools.
+    Tools,
+    /// The database.
+    Sql,
+    /// What was done.
+    Journal,
+}
+
+impl ScreenId {
+    /// All screens in the order of their keys.
+    pub const ALL: [ScreenId; 7] = [
+        ScreenId::Overview,
+        ScreenId::Cash,
+        ScreenId::Customers,
+        ScreenId::Product,
+        ScreenId::Tools,
+        ScreenId::Sql,
+        ScreenId::Journal,
+    ];
+
+    /// The action that shows it.
+    pub fn action(self) -> Action {
+        match self {
+            ScreenId::Overview => Action::Overview,
+            ScreenId::Cash => Action::Cash,
+            ScreenId::Customers => Action::Customers,
+            ScreenId::Product => Action::Product,
+            ScreenId::Tools => Action::Tools,
+            ScreenId::Sql => Action::Sql,
+            ScreenId::Journal => Action::Journal,
+        }
+    }
+
+    /// Name for the trajectory.
+    pub fn id(self) -> &'static str {
+        self.action().entry().name
+    }
+}
+
+/// What a screen may look at.
+#[derive(Clone, Copy)]
+pub struct Look<'a> {
+    /// The company.
+    pub company: &'a Company,
+    /// Keys, for hints.
+    pub keys: &'a Keys,
+    /// Rows that the focused list showed last, for paging.
+    pub page: u16,
+}
+
+impl Look<'_> {
+    /// A key with what it does, for borders: `ctrl-s apply`.
+    pub fn hint(&self, action: Action) -> String {
+        match self.keys.label(action) {
+            Some(key) => format!("{key} {}", action.entry().title),
+            None => action.entry().title.to_owned(),
+        }
+    }
+
+    /// Several of them.
+    pub fn hints(&self, actions: &[Action]) -> String {
+        actions.iter().map(|action| self.hint(*action)).collect::<Vec<_>>().join(" · ")
+    }
+}
+
+/// One screen.
+pub trait Screen {
+    /// Scopes of the focused place, the innermost first; the global one is added by the caller. A text scope first
+    /// means that characters are typed.
+    fn scopes(&self) -> Vec<Scope>;
+
+    /// Actions worth showing in the footer.
+    fn hints(&self) -> Vec<Action> {
+        Vec::new()
+    }
+
+    /// Number of panes that can have the focus.
+    fn panes(&self) -> usize {
+        1
+    }
+
+    /// The pane that has the focus.
+    fn focus(&self) -> usize {
+        0
+    }
+
+    /// Moves the focus to a pane.
+    fn set_focus(&mut self, _: usize) {}
+
+    /// What it asks the database for.
+    fn readings(&self) -> &'static [Reading] {
+        &[]
+    }
+
+    /// Takes what the database answered.
+    fn take(&mut self, _: Reading, _: &Rows, _: &Look<'_>) {}
+
+    /// The company has changed.
+    fn renew(&mut self, _: &Look<'_>) {}
+
+    /// Takes news that concern it; effects follow.
+    fn hear(&mut self, _: &News, _: &Look<'_>) -> Vec<Effect> {
+        Vec::new()
+    }
+
+    /// Does an action of its scopes.
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect>;
+
+    /// Takes a key that is typed into a text.
+    fn key(&mut self, _: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
+        Vec::new()
+    }
+
+    /// Takes pasted text.
+    fn paste(&mut self, _: &str, _: &Look<'_>) -> Vec<Effect> {
+        Vec::new()
+    }
+
+    /// A row of a pane was clicked; again if it was selected before.
+    fn click(&mut self, _pane: usize, _row: usize, _: &Look<'_>) -> Vec<Effect> {
+        Vec::new()
+    }
+
+    /// Draws itself.
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
+
+    /// Whether text would be lost with the program.
+    fn holds_unsent_text(&self) -> bool {
+        false
+    }
+}

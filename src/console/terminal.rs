@@ -1,0 +1,118 @@
+//! The terminal: prepared once, restored whatever happens.
+
+use std::io::{self, Stdout, Write};
+use std::sync::Mutex;
+
+use crossterm::clipboard::CopyToClipboard;
+use crossterm::event::{
+    DisableBracketedPaste, DisableMouseCapture, EnableBracketedPaste, EnableMouseCapture,
+};
+use crossterm::execute;
+use crossterm::terminal::{
+    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
+    disable_raw_mode, enable_raw_mode,
+};
+use ratatui::Terminal;
+use ratatui::backend::CrosstermBackend;
+
+use super::app::App;
+use super::frame;
+
+/// The terminal while the console has it; given back when this is dropped.
+pub struct Screen {
+    terminal: Terminal<CrosstermBackend<Stdout>>,
+}
+
+/// What a panic prints besides its own words: where the run is safe.
+static SAVED_AT: Mutex<Option<String>> = Mutex::new(None);
+
+/// Says where the run is kept, for the words of a panic.
+pub fn remember_run(folder: Option<String>) {
+    *SAVED_AT.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = folder;
+}
+
+impl Screen {
+    /// Takes the terminal.
+    ///
+    /// # Errors
+    /// It does not let itself be taken.
+    pub fn take() -> io::Result<Screen> {
+        enable_raw_mode()?;
+        let mut out = io::stdout();
+        let taken = execute!(out, EnterAlternateScreen, EnableBracketedPaste, EnableMouseCapture)
+            .and_then(|()| Terminal::new(CrosstermBackend::new(out)));
+        let terminal = taken.inspect_err(|_| restore())?;
+        let usual = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            // Threads behind the screen report their panics as news; the console leaves in good order.
+            if std::thread::current().name() == Some("main") {
+                restore();
+                usual(panic);
+                let saved = SAVED_AT.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                if let Some(folder) = &*saved {
+                    eprintln!(
+                        "novamind: everything confirmed is safe in {folder}; `novamind --run latest` continues"
+                    );
+                }
+            }
+        }));
+        Ok(Screen { terminal })
+    }
+
+    /// Draws a frame.
+    ///
+    /// # Errors
+    /// The terminal does not take it.
+    pub fn draw(&mut self, app: &mut App) -> io::Result<()> {
+        execute!(self.terminal.backend_mut(), BeginSynchronizedUpdate)?;
+        let mut drawn = None;
+        self.terminal.draw(|whole| {
+            let result = frame::draw(app, whole.buffer_mut());
+            if let Some(cursor) = result.cursor {
+                whole.set_cursor_position(cursor);
+            }
+            drawn = Some(result);
+        })?;
+        execute!(self.terminal.backend_mut(), EndSynchronizedUpdate)?;
+        if let Some(drawn) = drawn {
+            app.clicks = drawn.clicks;
+            app.page = drawn.page;
+        }
+        Ok(())
+    }
+
+    /// Forgets what is on the screen, so that the next frame is drawn whole.
+    ///
+    /// # Errors
+    /// The terminal does not take it.
+    pub fn clear(&mut self) -> io::Result<()> {
+        self.terminal.clear()
+    }
+
+    /// Puts text into the clipboard, where the terminal lets programs do that.
+    pub fn copy(&mut self, text: &str) {
+        // A terminal without a clipboard ignores it; the text is on the screen anyway.
+        let _ = execute!(self.terminal.backend_mut(), CopyToClipboard::to_clipboard_from(text));
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        restore();
+    }
+}
+
+/// Gives the terminal back. May be called more than once.
+fn restore() {
+    let mut out = io::stdout();
+    // Nothing better can be done for a terminal that has gone away.
+    let _ = execute!(
+        out,
+        DisableMouseCapture,
+        DisableBracketedPaste,
+        LeaveAlternateScreen,
+        crossterm::cursor::Show
+    );
+    let _ = disable_raw_mode();
+    let _ = out.flush();
+}

@@ -1,0 +1,73 @@
+//! Breaking text into lines, and small words for figures.
+
+use unicode_width::UnicodeWidthStr;
+
+use crate::notation::{compact, grouped};
+
+/// Text in lines of at most a width, broken between words where that is possible.
+pub fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let width = width.max(1);
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let indent: String = paragraph.chars().take_while(|letter| *letter == ' ').collect();
+        let mut line = indent.clone();
+        for word in paragraph.split_whitespace() {
+            let starts = line.trim().is_empty();
+            if !starts && line.width() + 1 + word.width() > width {
+                lines.push(std::mem::replace(&mut line, indent.clone()));
+            } else if !starts {
+                line.push(' ');
+            }
+            let mut rest = word;
+            while line.width() + rest.width() > width && !rest.is_empty() {
+                let room = width.saturating_sub(line.width()).max(1);
+                let cut = rest.char_indices().map(|(at, letter)| at + letter.len_utf8());
+                let cut = cut.take_while(|at| rest[..*at].width() <= room).last().unwrap_or(rest.len());
+                line.push_str(&rest[..cut]);
+                rest = &rest[cut..];
+                if !rest.is_empty() {
+                    lines.push(std::mem::take(&mut line));
+                }
+            }
+            line.push_str(rest);
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+/// A change with its direction in sign and glyph: `▲ 120`, `▼ 3`, `=`.
+pub fn arrow(change: f64, shown: &str) -> String {
+    match change {
+        change if change > 0.0 => format!("▲ {shown}"),
+        change if change < 0.0 => format!("▼ {shown}"),
+        _ => "=".to_owned(),
+    }
+}
+
+/// A number with as many decimals as it needs, at most two.
+pub fn number(value: f64) -> String {
+    let decimals = if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 };
+    grouped(value, decimals)
+}
+
+/// Dollars in at most seven characters: `$1.23M`, `-$45.2k`, `$87`.
+pub fn short_dollars(value: f64) -> String {
+    let sign = if value < 0.0 { "-" } else { "" };
+    format!("{sign}${}", compact(value.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_break_between_words_and_long_words_in_themselves() {
+        assert_eq!(wrapped("one two three", 8), ["one two", "three"]);
+        assert_eq!(wrapped("abcdefghij", 4), ["abcd", "efgh", "ij"]);
+        assert_eq!(wrapped("  a b c", 4), ["  a", "  b", "  c"]);
+        assert_eq!(wrapped("a\n\nb", 9), ["a", "", "b"]);
+        assert_eq!(wrapped("日本語", 4), ["日本", "語"]);
+        assert_eq!(wrapped("x", 0), ["x"]);
+    }
+}

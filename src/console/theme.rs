@@ -1,0 +1,208 @@
+//! Colours by meaning, read from `configs/themes/*.toml`.
+
+use ratatui::style::{Color, Modifier, Style};
+use serde::Deserialize;
+
+use crate::session::Configuration;
+
+/// What a piece of the screen means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Role {
+    /// Ordinary text.
+    Text,
+    /// Less important.
+    Dim,
+    /// More important.
+    Strong,
+    /// Titles of panes.
+    Title,
+    /// Borders.
+    Border,
+    /// Border of the focused pane.
+    Focus,
+    /// Selected row of the focused list.
+    Selection,
+    /// Selected row of another list.
+    SelectionIdle,
+    /// Names of the screens.
+    Tab,
+    /// The screen that is shown.
+    TabHere,
+    /// Keys.
+    Key,
+    /// Better than before.
+    Good,
+    /// Worse than before, refused.
+    Bad,
+    /// Needs the person.
+    Warning,
+    /// Heads of columns.
+    Header,
+    /// Where text is typed.
+    Field,
+    /// Differs from what holds.
+    Changed,
+    /// Lines of charts, by number.
+    Series(usize),
+    /// Intervals of forecasts.
+    Fan,
+    /// SQL keywords.
+    Keyword,
+    /// SQL texts.
+    SqlText,
+    /// SQL numbers.
+    Number,
+    /// SQL comments.
+    Comment,
+}
+
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Look {
+    fg: Option<Color>,
+    bg: Option<Color>,
+    bold: bool,
+    dim: bool,
+    reverse: bool,
+    underline: bool,
+}
+
+impl Look {
+    fn style(self) -> Style {
+        let modifiers = [
+            (self.bold, Modifier::BOLD),
+            (self.dim, Modifier::DIM),
+            (self.reverse, Modifier::REVERSED),
+            (self.underline, Modifier::UNDERLINED),
+        ];
+        let held = modifiers.into_iter().filter(|(on, _)| *on).map(|(_, modifier)| modifier);
+        Style { fg: self.fg, bg: self.bg, ..Style::new() }
+            .add_modifier(held.fold(Modifier::empty(), |all, one| all | one))
+    }
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    text: Look,
+    dim: Look,
+    strong: Look,
+    title: Look,
+    border: Look,
+    focus: Look,
+    selection: Look,
+    selection_idle: Look,
+    tab: Look,
+    tab_here: Look,
+    key: Look,
+    good: Look,
+    bad: Look,
+    warning: Look,
+    header: Look,
+    field: Look,
+    changed: Look,
+    series: Vec<Look>,
+    fan: Look,
+    keyword: Look,
+    string: Look,
+    number: Look,
+    comment: Look,
+}
+
+/// A set of colours.
+#[derive(Debug, Clone)]
+pub struct Theme {
+    /// Name.
+    pub name: String,
+    looks: File,
+}
+
+/// The shipped themes.
+pub const THEMES: [(&str, &str); 4] = [
+    ("dark", include_str!("../../configs/themes/dark.toml")),
+    ("light", include_str!("../../configs/themes/light.toml")),
+    ("high-contrast", include_str!("../../configs/themes/high-contrast.toml")),
+    ("mono", include_str!("../../configs/themes/mono.toml")),
+];
+
+impl Theme {
+    /// A theme by name; a person's file goes before the shipped one.
+    ///
+    /// # Errors
+    /// There is none of this name, or its file is wrong.
+    pub fn find(name: &str, configuration: &Configuration) -> Result<Theme, String> {
+        let own = configuration.file(format!("themes/{name}.toml")).map_err(|error| error.to_string())?;
+        if let Some(source) = own {
+            return Theme::parse(name, &source.text).map_err(|problem| format!("{}: {problem}", source.name));
+        }
+        match THEMES.iter().find(|(shipped, _)| *shipped == name) {
+            Some((_, text)) => Theme::parse(name, text),
+            None => {
+                let own = configuration.names("themes");
+                let known: Vec<&str> = THEMES
+                    .iter()
+                    .map(|(shipped, _)| *shipped)
+                    .chain(own.iter().map(String::as_str))
+                    .collect();
+                Err(format!("there is no theme {name}; there are {}", known.join(", ")))
+            }
+        }
+    }
+
+    fn parse(name: &str, text: &str) -> Result<Theme, String> {
+        let looks: File = toml::from_str(text).map_err(|error| error.to_string())?;
+        if looks.series.is_empty() {
+            return Err("series needs at least one entry".to_owned());
+        }
+        Ok(Theme { name: name.to_owned(), looks })
+    }
+
+    /// The style of a meaning.
+    pub fn style(&self, role: Role) -> Style {
+        let looks = &self.looks;
+        let look = match role {
+            Role::Text => looks.text,
+            Role::Dim => looks.dim,
+            Role::Strong => looks.strong,
+            Role::Title => looks.title,
+            Role::Border => looks.border,
+            Role::Focus => looks.focus,
+            Role::Selection => looks.selection,
+            Role::SelectionIdle => looks.selection_idle,
+            Role::Tab => looks.tab,
+            Role::TabHere => looks.tab_here,
+            Role::Key => looks.key,
+            Role::Good => looks.good,
+            Role::Bad => looks.bad,
+            Role::Warning => looks.warning,
+            Role::Header => looks.header,
+            Role::Field => looks.field,
+            Role::Changed => looks.changed,
+            Role::Series(number) => looks.series[number % looks.series.len()],
+            Role::Fan => looks.fan,
+            Role::Keyword => looks.keyword,
+            Role::SqlText => looks.string,
+            Role::Number => looks.number,
+            Role::Comment => looks.comment,
+        };
+        look.style()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shipped_themes_are_read_and_mono_has_no_colour() {
+        for (name, _) in THEMES {
+            Theme::find(name, &Configuration::shipped()).expect(name);
+        }
+        let mono = Theme::find("mono", &Configuration::shipped()).expect("mono");
+        for role in [Role::Bad, Role::Selection, Role::Series(3), Role::TabHere] {
+            assert_eq!((mono.style(role).fg, mono.style(role).bg), (None, None));
+        }
+        let problem = Theme::find("pink", &Configuration::shipped()).expect_err("no theme");
+        assert!(problem.contains("dark, light, high-contrast, mono"), "{problem}");
+    }
+}

@@ -1,0 +1,116 @@
+//! An editor of several lines, on top of the text area of a library.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::{Position, Rect};
+use ratatui::style::Style;
+use ratatui::widgets::Widget;
+use tui_textarea::{CursorMove, TextArea, WrapMode};
+
+use crate::console::canvas::Canvas;
+use crate::console::theme::Role;
+
+/// An editor of several lines.
+#[derive(Debug, Clone)]
+pub struct Editor {
+    area: TextArea<'static>,
+}
+
+/// Longest text, in bytes.
+const LONGEST: usize = 256 << 10;
+
+impl Default for Editor {
+    fn default() -> Self {
+        Editor::of("")
+    }
+}
+
+impl Editor {
+    /// An editor that holds text, the cursor at its end.
+    pub fn of(text: &str) -> Editor {
+        let lines = text.lines().map(|line| line.replace('\t', "    ")).collect();
+        let mut area = TextArea::new(lines);
+        area.set_wrap_mode(WrapMode::WordOrGlyph);
+        area.set_tab_length(4);
+        // The terminal's own cursor stands where text is typed.
+        area.set_cursor_line_style(Style::new());
+        area.set_cursor_style(Style::new());
+        area.move_cursor(CursorMove::Bottom);
+        area.move_cursor(CursorMove::End);
+        Editor { area }
+    }
+
+    /// The same without wrapping: for text whose lines mean something.
+    pub fn unwrapped(mut self) -> Editor {
+        self.area.set_wrap_mode(WrapMode::None);
+        self
+    }
+
+    /// What it holds.
+    pub fn text(&self) -> String {
+        self.area.lines().join("\n")
+    }
+
+    /// Lines.
+    pub fn lines(&self) -> &[String] {
+        self.area.lines()
+    }
+
+    /// Whether it holds nothing but blanks.
+    pub fn is_blank(&self) -> bool {
+        self.area.lines().iter().all(|line| line.trim().is_empty())
+    }
+
+    /// Row and column of the cursor, in characters.
+    pub fn cursor(&self) -> (usize, usize) {
+        let cursor = self.area.cursor();
+        (cursor.0, cursor.1)
+    }
+
+    /// First row and column on screen.
+    pub fn scroll(&self) -> (u16, u16) {
+        self.area.scroll_offset()
+    }
+
+    /// Takes a key.
+    pub fn key(&mut self, key: &KeyEvent) {
+        self.area.input(*key);
+    }
+
+    /// Puts text at the cursor, as far as there is room.
+    pub fn insert(&mut self, text: &str) {
+        if self.text().len() + text.len() <= LONGEST {
+            let clean: String = text.replace("\r\n", "\n").replace('\r', "\n").replace('\t', "    ");
+            let visible = |letter: &char| *letter == '\n' || !letter.is_control();
+            self.area.insert_str(clean.chars().filter(visible).collect::<String>());
+        }
+    }
+
+    /// Removes characters before the cursor.
+    pub fn remove_before(&mut self, count: usize) {
+        for _ in 0..count {
+            self.area.delete_char();
+        }
+    }
+
+    /// Draws the text, and the cursor while it is edited.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, editing: bool, hint: &str) {
+        if area.is_empty() {
+            return;
+        }
+        if self.is_blank() && !editing {
+            canvas.text(area, hint, Role::Dim);
+            return;
+        }
+        (&self.area).render(area, canvas.buffer);
+        if self.is_blank() {
+            canvas.text(area, hint, Role::Dim);
+        }
+        if editing {
+            let cursor = self.area.screen_cursor();
+            let (top, left) = self.area.scroll_offset();
+            let x = area.x + (cursor.col as u16).saturating_sub(left).min(area.width - 1);
+            let y = area.y + (cursor.row as u16).saturating_sub(top).min(area.height - 1);
+            canvas.cursor = Some(Position::new(x, y));
+        }
+    }
+}

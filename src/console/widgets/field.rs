@@ -1,0 +1,189 @@
+//! A line of text that is being typed.
+
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use ratatui::layout::{Position, Rect};
+use unicode_segmentation::UnicodeSegmentation;
+use unicode_width::UnicodeWidthStr;
+
+use crate::console::canvas::Canvas;
+use crate::console::theme::Role;
+
+/// A line of text with a cursor between its graphemes.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Field {
+    text: String,
+    /// Graphemes before the cursor.
+    cursor: usize,
+}
+
+/// Longest text, in bytes: more is a mistake of the clipboard.
+const LONGEST: usize = 4096;
+
+impl Field {
+    /// A field that holds text, the cursor behind it.
+    pub fn of(text: impl Into<String>) -> Field {
+        let text = text.into();
+        let cursor = text.graphemes(true).count();
+        Field { text, cursor }
+    }
+
+    /// What it holds.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether it holds nothing.
+    pub fn is_empty(&self) -> bool {
+        self.text.is_empty()
+    }
+
+    /// Takes a key; false if it means nothing here.
+    pub fn key(&mut self, key: &KeyEvent) -> bool {
+        let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
+        match key.code {
+            KeyCode::Char('u') if ctrl => *self = Field::default(),
+            KeyCode::Char('w') if ctrl => self.delete_word(),
+            KeyCode::Char(letter) if !ctrl && !key.modifiers.contains(KeyModifiers::ALT) => {
+                self.insert(&letter.to_string());
+            }
+            KeyCode::Backspace if self.cursor > 0 => {
+                self.cursor -= 1;
+                self.remove_at_cursor();
+            }
+            KeyCode::Delete => self.remove_at_cursor(),
+            KeyCode::Left => self.cursor = self.cursor.saturating_sub(1),
+            KeyCode::Right => self.cursor = (self.cursor + 1).min(self.text.graphemes(true).count()),
+            KeyCode::Home => self.cursor = 0,
+            KeyCode::End => self.cursor = self.text.graphemes(true).count(),
+            KeyCode::Backspace => {}
+            _ => return false,
+        }
+        true
+    }
+
+    /// Puts text at the cursor; line ends become blanks.
+    pub fn insert(&mut self, text: &str) {
+        let clean: String =
+            text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
+        if self.text.len() + clean.len() > LONGEST {
+            return;
+        }
+        let at = self.byte_of(self.cursor);
+        self.text.insert_str(at, &clean);
+        // A combining mark joins the grapheme before it, so the cursor follows bytes, not a count.
+        self.cursor = self.text[..at + clean.len()].graphemes(true).count();
+    }
+
+    fn byte_of(&self, grapheme: usize) -> usize {
+        self.text.grapheme_indices(true).nth(grapheme).map_or(self.text.len(), |(at, _)| at)
+    }
+
+    fn remove_at_cursor(&mut self) {
+        let (from, to) = (self.byte_of(self.cursor), self.byte_of(self.cursor + 1));
+        self.text.replace_range(from..to, "");
+    }
+
+    fn delete_word(&mut self) {
+        let before = &self.text[..self.byte_of(self.cursor)];
+        let kept = before.trim_end();
+        let kept = kept.rfind(' ').map_or(0, |at| at + 1);
+        let to = before.len();
+        self.text.replace_range(kept..to, "");
+        self.cursor = self.text[..kept].graphemes(true).count();
+    }
+
+    /// Draws the text with its cursor; what lies left of a narrow field is scrolled away.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        if area.is_empty() {
+            return;
+        }
+        let pieces: Vec<&str> = self.text.graphemes(true).collect();
+        let room = (area.width as usize).saturating_sub(1);
+        let mut from = 0;
+        while pieces[from..self.cursor].concat().width() > room {
+            from += 1;
+        }
+        canvas.clear(Rect { height: 1, ..area }, Role::Field);
+        canvas.text(area, "", Role::Field);
+        let mut x = area.x;
+        for piece in &pieces[from..] {
+            let width = piece.width() as u16;
+            if x + width > area.right() {
+                break;
+            }
+            canvas.text(Rect { x, width: width.max(1), ..area }, piece, Role::Field);
+            x += width;
+        }
+        let before = pieces[from..self.cursor].concat().width() as u16;
+        canvas.cursor = Some(Position::new((area.x + before).min(area.right() - 1), area.y));
+    }
+}
+
+/// Reads a number as people type it: `1,200`, `$3.5k`, `2M`, `1_000`.
+pub fn parse_number(text: &str) -> Option<f64> {
+    let cleaned: String =
+        text.trim().chars().filter(|letter| !matches!(letter, ',' | '_' | '$' | ' ')).collect();
+    let (digits, factor) = match cleaned.chars().last()? {
+        'k' | 'K' => (&cleaned[..cleaned.len() - 1], 1e3),
+        'm' | 'M' => (&cleaned[..cleaned.len() - 1], 1e6),
+        _ => (cleaned.as_str(), 1.0),
+    };
+    if digits.is_empty()
+        || !digits
+            .chars()
+            .all(|letter| letter.is_ascii_digit() || matches!(letter, '.' | '-' | '+' | 'e' | 'E'))
+    {
+        return None;
+    }
+    digits.parse::<f64>().ok().map(|number| number * factor).filter(|number| number.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn typed(keys: &[KeyCode]) -> Field {
+        let mut field = Field::of("añ日");
+        for key in keys {
+            field.key(&KeyEvent::new(*key, KeyModifiers::NONE));
+        }
+        field
+    }
+
+    #[test]
+    fn the_cursor_walks_over_graphemes() {
+        use KeyCode::{Backspace, Char, Delete, Home, Left, Right};
+        for (keys, text) in [
+            (&[Backspace][..], "añ"),
+            (&[Left, Backspace], "a日"),
+            (&[Home, Delete, Delete], "日"),
+            (&[Home, Backspace, Char('x')], "xañ日"),
+            (&[Right, Right, Char('!')], "añ日!"),
+            (&[Left, Left, Left, Left, Char('\u{301}')], "\u{301}añ日"),
+        ] {
+            assert_eq!(typed(keys).text(), text, "{keys:?}");
+        }
+        let mut words = Field::of("one two  ");
+        words.key(&KeyEvent::new(KeyCode::Char('w'), KeyModifiers::CONTROL));
+        assert_eq!(words.text(), "one ");
+    }
+
+    #[test]
+    fn numbers_are_read_as_people_type_them() {
+        for (text, number) in [
+            ("12", Some(12.0)),
+            ("1,200.5", Some(1200.5)),
+            ("$3.5k", Some(3500.0)),
+            ("2M", Some(2e6)),
+            ("-4", Some(-4.0)),
+            ("", None),
+            ("k", None),
+            ("inf", None),
+            ("nan", None),
+            ("1e999", None),
+            ("12 x", None),
+        ] {
+            assert_eq!(parse_number(text), number, "{text}");
+        }
+    }
+}

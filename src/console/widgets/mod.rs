@@ -1,0 +1,13 @@
+//! Parts that several screens are made of.
+
+pub mod chart;
+pub mod editor;
+pub mod field;
+pub mod spark;
+pub mod table;
+
+pub use chart::{Axis, Line, chart};
+pub use editor::Editor;
+pub use field::Field;
+pub use spark::spark;
+pub use table::{Cell, Column, Table};

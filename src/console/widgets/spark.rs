@@ -1,0 +1,38 @@
+//! Trends in one row of characters.
+
+const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+/// The last values as bars of one row; the lowest is the lowest bar, equal values are drawn in the middle.
+pub fn spark(values: &[f64], width: usize) -> String {
+    let shown = &values[values.len().saturating_sub(width)..];
+    let finite = || shown.iter().copied().filter(|value| value.is_finite());
+    let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let level = |value: &f64| match value.is_finite() {
+        false => ' ',
+        true if most <= least => LEVELS[3],
+        true => LEVELS[(((value - least) / (most - least)) * 7.0).round() as usize],
+    };
+    shown.iter().map(level).collect()
+}
+
+/// A bar of a share of a width.
+pub fn bar(share: f64, width: usize) -> String {
+    let filled = (share.clamp(0.0, 1.0) * width as f64).round() as usize;
+    "█".repeat(filled) + &"░".repeat(width - filled)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn trends_are_drawn_between_their_extremes() {
+        assert_eq!(spark(&[0.0, 7.0, 3.0], 8), "▁█▄");
+        assert_eq!(spark(&[5.0, 5.0], 8), "▄▄");
+        assert_eq!(spark(&[1.0, 2.0, 3.0], 2), "▁█");
+        assert_eq!(spark(&[f64::NAN, 1.0], 2), " ▄");
+        assert_eq!(spark(&[], 3), "");
+        assert_eq!(bar(0.5, 4), "██░░");
+        assert_eq!(bar(7.0, 2), "██");
+    }
+}

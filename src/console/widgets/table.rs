@@ -1,0 +1,398 @@
+//! A table that can be walked, sorted and filtered. Only the rows on screen are drawn.
+
+use std::cmp::Ordering;
+
+use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
+
+use super::field::Field;
+use crate::console::action::Action;
+use crate::console::canvas::{Align, Canvas, Click, fit};
+use crate::console::theme::Role;
+
+/// A column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Head.
+    pub title: String,
+    /// Side of its cells.
+    pub align: Align,
+    /// Widest it gets.
+    pub most: u16,
+}
+
+impl Column {
+    /// A column of words.
+    pub fn words(title: impl Into<String>) -> Column {
+        Column { title: title.into(), align: Align::Left, most: 40 }
+    }
+
+    /// A column of numbers.
+    pub fn numbers(title: impl Into<String>) -> Column {
+        Column { title: title.into(), align: Align::Right, most: 24 }
+    }
+
+    /// The same, at most this wide.
+    pub fn at_most(self, most: u16) -> Column {
+        Column { most, ..self }
+    }
+}
+
+/// A cell: what is shown, and what it is sorted by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    /// Text.
+    pub text: String,
+    /// Number behind it, if it is one.
+    pub number: Option<f64>,
+    /// Meaning.
+    pub role: Role,
+}
+
+impl Cell {
+    /// Words.
+    pub fn words(text: impl Into<String>) -> Cell {
+        Cell { text: text.into(), number: None, role: Role::Text }
+    }
+
+    /// A number as it is shown.
+    pub fn number(value: f64, shown: impl Into<String>) -> Cell {
+        Cell { text: shown.into(), number: Some(value), role: Role::Text }
+    }
+
+    /// The same in another meaning.
+    pub fn role(self, role: Role) -> Cell {
+        Cell { role, ..self }
+    }
+}
+
+/// A table and where the person is in it.
+#[derive(Debug, Clone, Default)]
+pub struct Table {
+    columns: Vec<Column>,
+    rows: Vec<Vec<Cell>>,
+    /// Rows as shown: filtered and sorted.
+    shown: Vec<usize>,
+    widths: Vec<u16>,
+    /// Place among the shown rows.
+    selected: usize,
+    column: usize,
+    sorted: Option<(usize, Ordering)>,
+    filter: String,
+    /// The filter while it is typed.
+    typing: Option<Field>,
+}
+
+impl Table {
+    /// A table of columns without rows.
+    pub fn new(columns: Vec<Column>) -> Table {
+        let mut table = Table { columns, ..Table::default() };
+        table.measure();
+        table
+    }
+
+    /// Replaces columns and rows, keeping place, order and filter where they still make sense.
+    pub fn set(&mut self, columns: Vec<Column>, rows: Vec<Vec<Cell>>) {
+        if columns.len() != self.columns.len() {
+            self.sorted = None;
+        }
+        self.columns = columns;
+        self.set_rows(rows);
+        self.column = self.column.min(self.columns.len().saturating_sub(1));
+    }
+
+    /// Replaces the rows.
+    pub fn set_rows(&mut self, rows: Vec<Vec<Cell>>) {
+        self.rows = rows;
+        self.measure();
+        self.arrange();
+    }
+
+    /// Every row, in the order it was given.
+    pub fn rows(&self) -> &[Vec<Cell>] {
+        &self.rows
+    }
+
+    /// Number of the selected row among all rows, in the order they were given.
+    pub fn selected(&self) -> Option<usize> {
+        self.shown.get(self.selected).copied()
+    }
+
+    /// Number of the selected column.
+    pub fn selected_column(&self) -> usize {
+        self.column
+    }
+
+    /// Selects a row by its number among all rows.
+    pub fn select(&mut self, row: usize) {
+        if let Some(place) = self.shown.iter().position(|shown| *shown == row) {
+            self.selected = place;
+        }
+    }
+
+    /// Selects by place among the shown rows, as a click does.
+    pub fn select_place(&mut self, place: usize) {
+        self.selected = place.min(self.shown.len().saturating_sub(1));
+    }
+
+    /// Whether a filter is being typed.
+    pub fn is_typing(&self) -> bool {
+        self.typing.is_some()
+    }
+
+    /// The field of the filter.
+    pub fn typing(&mut self) -> Option<&mut Field> {
+        self.typing.as_mut()
+    }
+
+    /// Applies the filter as far as it is typed.
+    pub fn typed(&mut self) {
+        if let Some(field) = &self.typing {
+            self.filter = field.text().to_owned();
+            self.arrange();
+        }
+    }
+
+    /// Number of rows as shown and of all, filter and order, for the title of a pane.
+    pub fn note(&self) -> String {
+        let mut parts = Vec::new();
+        if !self.filter.is_empty() {
+            parts.push(format!("{} of {} with \"{}\"", self.shown.len(), self.rows.len(), self.filter));
+        }
+        if let Some((column, order)) = self.sorted {
+            let arrow = if order == Ordering::Less { "▲" } else { "▼" };
+            let title = self.columns.get(column).map_or("", |column| column.title.as_str());
+            parts.push(format!("by {title} {arrow}"));
+        }
+        parts.join(" · ")
+    }
+
+    /// Does what a list can do; false if it can do nothing with the action.
+    pub fn act(&mut self, action: Action, page: u16) -> bool {
+        let last = self.shown.len().saturating_sub(1);
+        match action {
+            Action::Up => self.selected = self.selected.saturating_sub(1),
+            Action::Down => self.selected = (self.selected + 1).min(last),
+            Action::PageUp => self.selected = self.selected.saturating_sub(page.max(1) as usize),
+            Action::PageDown => self.selected = (self.selected + page.max(1) as usize).min(last),
+            Action::First => self.selected = 0,
+            Action::Last => self.selected = last,
+            Action::Left => self.column = self.column.saturating_sub(1),
+            Action::Right => self.column = (self.column + 1).min(self.columns.len().saturating_sub(1)),
+            Action::Sort => self.sort(),
+            Action::Filter => self.typing = Some(Field::of(self.filter.clone())),
+            Action::Commit if self.typing.is_some() => self.typing = None,
+            Action::CommitDown if self.typing.is_some() => self.typing = None,
+            Action::Discard if self.typing.is_some() => {
+                self.typing = None;
+                self.filter.clear();
+                self.arrange();
+            }
+            Action::Close if !self.filter.is_empty() => {
+                self.filter.clear();
+                self.arrange();
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    fn sort(&mut self) {
+        let numeric =
+            self.rows.iter().any(|row| row.get(self.column).is_some_and(|cell| cell.number.is_some()));
+        // Numbers are wanted with the largest first, words from a to z.
+        let first = if numeric { Ordering::Greater } else { Ordering::Less };
+        self.sorted = match self.sorted {
+            Some((column, order)) if column == self.column && order == first => {
+                Some((column, order.reverse()))
+            }
+            Some((column, _)) if column == self.column => None,
+            _ => Some((self.column, first)),
+        };
+        self.arrange();
+        self.selected = 0;
+    }
+
+    fn arrange(&mut self) {
+        let kept = self.selected();
+        let wanted = self.filter.to_lowercase();
+        let holds = |row: &Vec<Cell>| row.iter().any(|cell| cell.text.to_lowercase().contains(&wanted));
+        self.shown = (0..self.rows.len()).filter(|at| wanted.is_empty() || holds(&self.rows[*at])).collect();
+        if let Some((column, order)) = self.sorted {
+            let rows = &self.rows;
+            self.shown.sort_by(|left, right| {
+                let natural = compare(rows[*left].get(column), rows[*right].get(column));
+                if order == Ordering::Less { natural } else { natural.reverse() }
+            });
+        }
+        match kept.and_then(|kept| self.shown.iter().position(|shown| *shown == kept)) {
+            Some(place) => self.selected = place,
+            None => self.selected = self.selected.min(self.shown.len().saturating_sub(1)),
+        }
+    }
+
+    fn measure(&mut self) {
+        let width = |at: usize, column: &Column| {
+            let cells = self.rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.text.width());
+            cells.max().unwrap_or(0).max(column.title.width()).clamp(1, column.most as usize) as u16
+        };
+        self.widths = self.columns.iter().enumerate().map(|(at, column)| width(at, column)).collect();
+    }
+
+    /// Draws head and rows. `pane` is the number of the pane for clicks.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, pane: usize) {
+        if area.height < 2 || area.width < 2 {
+            return;
+        }
+        let filter_row = u16::from(self.typing.is_some());
+        let height = area.height - 1 - filter_row;
+        if focused {
+            canvas.page = height.max(1);
+        }
+        let columns = self.visible_columns(area.width);
+        let head = Rect { height: 1, ..area };
+        for (at, place) in &columns {
+            let column = &self.columns[*at];
+            let cell = Rect { x: head.x + place.0, width: place.1, ..head };
+            let role = if focused && *at == self.column { Role::Title } else { Role::Header };
+            canvas.aligned(cell, &column.title, role, column.align);
+        }
+        let from = first_row(self.selected, height as usize, self.shown.len());
+        for (line, row) in self.shown.iter().enumerate().skip(from).take(height as usize) {
+            let y = area.y + 1 + (line - from) as u16;
+            let whole = Rect { x: area.x, y, width: area.width, height: 1 };
+            self.draw_row(canvas, whole, *row, &columns, (line == self.selected).then_some(focused));
+            canvas.click(whole, Click::Row(pane, line));
+        }
+        if let Some(field) = &self.typing {
+            let row = Rect { y: area.bottom() - 1, height: 1, ..area };
+            canvas.text(row, "/", Role::Key);
+            field.draw(canvas, Rect { x: row.x + 1, width: row.width - 1, ..row });
+        }
+    }
+
+    fn draw_row(
+        &self,
+        canvas: &mut Canvas<'_>,
+        whole: Rect,
+        row: usize,
+        columns: &[(usize, (u16, u16))],
+        selected: Option<bool>,
+    ) {
+        let over = selected.map(|focused| if focused { Role::Selection } else { Role::SelectionIdle });
+        if let Some(role) = over {
+            let style = canvas.style(role);
+            canvas.buffer.set_style(whole.intersection(canvas.buffer.area), style);
+        }
+        for (at, (x, width)) in columns {
+            let Some(cell) = self.rows[row].get(*at) else { continue };
+            let place = Rect { x: whole.x + x, width: *width, ..whole };
+            let text = fit(&cell.text, *width as usize);
+            canvas.aligned(place, &text, over.unwrap_or(cell.role), self.columns[*at].align);
+        }
+    }
+
+    /// Columns that fit, with their place and width: the first one always, the others scrolled so that the
+    /// selected one is seen.
+    fn visible_columns(&self, width: u16) -> Vec<(usize, (u16, u16))> {
+        let mut from = 1;
+        loop {
+            let mut x = 0;
+            let mut columns = Vec::new();
+            let order = std::iter::once(0).chain(from..self.columns.len());
+            for at in order.filter(|at| *at < self.columns.len()) {
+                let own = self.widths[at];
+                if x >= width {
+                    break;
+                }
+                columns.push((at, (x, own.min(width - x))));
+                x += own + 2;
+            }
+            let whole =
+                |(at, (_, shown)): &(usize, (u16, u16))| *at == self.column && *shown == self.widths[*at];
+            if self.column < from
+                || columns.iter().any(whole)
+                || from >= self.columns.len()
+                || from >= self.column
+            {
+                return columns;
+            }
+            from += 1;
+        }
+    }
+}
+
+/// First row on screen so that the selected one is near the middle.
+pub fn first_row(selected: usize, height: usize, rows: usize) -> usize {
+    selected.saturating_sub(height / 2).min(rows.saturating_sub(height))
+}
+
+fn compare(left: Option<&Cell>, right: Option<&Cell>) -> Ordering {
+    let key = |cell: Option<&Cell>| cell.and_then(|cell| cell.number);
+    match (key(left), key(right)) {
+        (Some(left), Some(right)) => left.total_cmp(&right),
+        (Some(_), None) => Ordering::Greater,
+        (None, Some(_)) => Ordering::Less,
+        (None, None) => {
+            let text = |cell: Option<&Cell>| cell.map(|cell| cell.text.to_lowercase());
+            text(left).cmp(&text(right))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        let mut table = Table::new(vec![Column::words("name"), Column::numbers("size")]);
+        let row = |name: &str, size: f64| vec![Cell::words(name), Cell::number(size, size.to_string())];
+        table.set_rows(vec![row("Beta", 2.0), row("alpha", 10.0), row("gamma", 1.0)]);
+        table
+    }
+
+    fn names(table: &Table) -> Vec<&str> {
+        table.shown.iter().map(|row| table.rows[*row][0].text.as_str()).collect()
+    }
+
+    #[test]
+    fn sorting_turns_round_and_ends() {
+        let mut table = table();
+        table.act(Action::Sort, 5);
+        assert_eq!(names(&table), ["alpha", "Beta", "gamma"]);
+        table.act(Action::Right, 5);
+        table.act(Action::Sort, 5);
+        assert_eq!(names(&table), ["alpha", "Beta", "gamma"], "largest first");
+        table.act(Action::Sort, 5);
+        assert_eq!(names(&table), ["gamma", "Beta", "alpha"]);
+        table.act(Action::Sort, 5);
+        assert_eq!(names(&table), ["Beta", "alpha", "gamma"]);
+    }
+
+    #[test]
+    fn a_filter_keeps_the_selected_row_if_it_can() {
+        let mut table = table();
+        table.act(Action::Last, 5);
+        table.act(Action::Filter, 5);
+        table.typing().expect("typing").insert("A");
+        table.typed();
+        assert_eq!((names(&table), table.selected()), (vec!["Beta", "alpha", "gamma"], Some(2)));
+        table.typing().expect("typing").insert("m");
+        table.typed();
+        assert_eq!((names(&table), table.selected()), (vec!["gamma"], Some(2)));
+        table.act(Action::Discard, 5);
+        assert_eq!((table.shown.len(), table.selected()), (3, Some(2)));
+    }
+
+    #[test]
+    fn an_empty_table_has_nothing_selected() {
+        let mut table = Table::new(vec![Column::words("name")]);
+        for action in [Action::Down, Action::PageDown, Action::Last, Action::Sort, Action::Right] {
+            table.act(action, 3);
+        }
+        assert_eq!(table.selected(), None);
+        assert_eq!(first_row(5, 4, 20), 3);
+        assert_eq!(first_row(19, 4, 20), 16);
+        assert_eq!(first_row(0, 4, 2), 0);
+    }
+}

@@ -1,0 +1,312 @@
+//! The threads behind the screen: one that owns the session, two that ask the database.
+//!
+//! The screen sends jobs and never waits; what comes of them returns as news through the channel that also
+//! carries the input. A query waits for the session's thread, so that it sees everything that was confirmed,
+//! unless a week is running: then it sees the state before it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::company::Company;
+use super::message::{Message, News};
+use super::readings::Reading;
+use crate::database::query::Limits;
+use crate::session::{
+    Access, Configuration, Desk, Forecasts, Interrupt, NewRun, Refusal, Rows, Session, Via, find_run,
+    list_runs,
+};
+
+/// Work for the session's thread.
+pub enum Job {
+    /// List the runs of a folder.
+    List(PathBuf),
+    /// Start a run.
+    Create(Box<NewRun>),
+    /// Open a run of a folder by its id.
+    Open(PathBuf, String),
+    /// What a call would do.
+    Check(u64, &'static str, Value),
+    /// Call a tool.
+    Call(&'static str, Value),
+    /// Take back the last setting.
+    Undo,
+    /// Let the week pass.
+    Advance(String, Forecasts),
+    /// Pass a question on once everything confirmed is in the database.
+    Ask(Question),
+    /// Record what the person asked.
+    NoteQuery(String, Result<Rows, Refusal>, Duration),
+    /// Record what the person looked at: screen, screen before, milliseconds.
+    NoteView(&'static str, &'static str, u64),
+    /// Keep the notes.
+    SetMemo(String),
+    /// Save and close the run.
+    Close,
+}
+
+/// A question for the database.
+pub struct Question {
+    sql: String,
+    asker: Asker,
+}
+
+enum Asker {
+    Person(u64),
+    Screen(Reading, u64),
+}
+
+impl Question {
+    /// A question of the person, with its number.
+    pub fn of_person(sql: String, number: u64) -> Question {
+        Question { sql, asker: Asker::Person(number) }
+    }
+
+    /// A question of a screen, with the number of changes of the run before it.
+    pub fn of_screen(reading: Reading, changes: u64) -> Question {
+        Question { sql: reading.sql().to_owned(), asker: Asker::Screen(reading, changes) }
+    }
+}
+
+/// The desks' side of a channel: the person's questions and those of screens do not wait for each other.
+#[derive(Clone)]
+struct Desks {
+    person: Sender<DeskJob>,
+    screens: Sender<DeskJob>,
+}
+
+enum DeskJob {
+    Take(Box<Desk>, Limits),
+    Ask(Question),
+    Leave,
+}
+
+impl Desks {
+    fn ask(&self, question: Question) {
+        let desk = match question.asker {
+            Asker::Person(_) => &self.person,
+            Asker::Screen(..) => &self.screens,
+        };
+        // The threads end with the program.
+        let _ = desk.send(DeskJob::Ask(question));
+    }
+}
+
+/// The threads behind the screen.
+pub struct Workers {
+    jobs: Sender<Job>,
+    desks: Desks,
+    session: Option<JoinHandle<()>>,
+}
+
+impl Workers {
+    /// Starts the threads; what they report goes into the channel.
+    pub fn start(news: Sender<Message>, configuration: Configuration) -> Workers {
+        let (jobs, todo) = channel();
+        let desks = Desks {
+            person: start_desk(news.clone(), jobs.clone()),
+            screens: start_desk(news.clone(), jobs.clone()),
+        };
+        let for_session = desks.clone();
+        let session = std::thread::spawn(move || {
+            let thread = SessionThread { session: None, news, desks: for_session, configuration };
+            thread.run(&todo);
+        });
+        Workers { jobs, desks, session: Some(session) }
+    }
+
+    /// Hands over a job.
+    pub fn send(&self, job: Job) {
+        let _ = self.jobs.send(job);
+    }
+
+    /// Asks at once, without waiting for the session's thread.
+    pub fn ask_now(&self, question: Question) {
+        self.desks.ask(question);
+    }
+
+    /// Waits until everything handed over is done and the run is closed.
+    pub fn finish(mut self) {
+        self.send(Job::Close);
+        for desk in [&self.desks.person, &self.desks.screens] {
+            let _ = desk.send(DeskJob::Leave);
+        }
+        if let Some(session) = self.session.take() {
+            let _ = session.join();
+        }
+    }
+}
+
+struct SessionThread {
+    session: Option<Session>,
+    news: Sender<Message>,
+    desks: Desks,
+    configuration: Configuration,
+}
+
+/// Days are reported at most this often: the screen needs no more.
+const BETWEEN_DAYS: Duration = Duration::from_millis(40);
+
+impl SessionThread {
+    fn run(mut self, todo: &Receiver<Job>) {
+        while let Ok(job) = todo.recv() {
+            let closing = matches!(job, Job::Close);
+            let done = catch_unwind(AssertUnwindSafe(|| self.work(job)));
+            if let Err(panic) = done {
+                self.say(News::Crashed(words_of(&*panic)));
+                return;
+            }
+            if closing {
+                return;
+            }
+        }
+    }
+
+    fn say(&self, news: News) {
+        let _ = self.news.send(Message::News(news));
+    }
+
+    fn work(&mut self, job: Job) {
+        match job {
+            Job::List(runs) => {
+                let list = list_runs(&runs).map_err(|error| error.to_string());
+                self.say(News::Runs(list));
+            }
+            Job::Create(new) => {
+                let made = Session::create(*new, &self.configuration).map_err(|error| error.to_string());
+                self.take(made);
+            }
+            Job::Open(runs, id) => {
+                let found =
+                    find_run(&runs, &id).and_then(|folder| Session::open(&folder, Access::Write, true));
+                self.take(found.map_err(|error| error.to_string()));
+            }
+            Job::Close => {
+                let problem = self.session.as_mut().and_then(|session| session.save().err());
+                self.session = None;
+                self.say(News::Closed(problem.map(|error| error.to_string())));
+            }
+            other => {
+                if let Some(session) = &mut self.session {
+                    let news = Self::with_run(session, other, &self.news, &self.desks);
+                    if let Some(news) = news {
+                        self.say(news);
+                    }
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, opened: Result<Session, String>) {
+        let session = match opened {
+            Ok(session) => session,
+            Err(problem) => return self.say(News::NotOpened(problem)),
+        };
+        let mut interrupt: Option<Interrupt> = None;
+        for (desk, of_person) in [(&self.desks.person, true), (&self.desks.screens, false)] {
+            if let Ok(own) = session.open_desk() {
+                if of_person {
+                    interrupt = Some(own.interrupt());
+                }
+                let _ = desk.send(DeskJob::Take(Box::new(own), session.query_limits()));
+            }
+        }
+        let company = Arc::new(Company::of(&session));
+        self.session = Some(session);
+        self.say(News::Opened(company, interrupt));
+    }
+
+    fn with_run(session: &mut Session, job: Job, news: &Sender<Message>, desks: &Desks) -> Option<News> {
+        match job {
+            Job::Check(number, tool, arguments) => {
+                Some(News::Checked(number, session.check(tool, &arguments)))
+            }
+            Job::Call(tool, arguments) => {
+                let answer = session.call(tool, &arguments, Via::Form);
+                Some(News::Called(tool, answer, Arc::new(Company::of(session))))
+            }
+            Job::Undo => {
+                let back = session.undo(Via::Palette);
+                Some(News::Undone(back, Arc::new(Company::of(session))))
+            }
+            Job::Advance(rationale, forecasts) => {
+                let mut told = Instant::now();
+                let week = session.advance(&rationale, &forecasts, Via::Form, &mut |report| {
+                    if told.elapsed() >= BETWEEN_DAYS {
+                        told = Instant::now();
+                        let _ = news.send(Message::News(News::Day(report.figures.day, report.week_end)));
+                    }
+                });
+                Some(News::Advanced(week.map(Box::new), Arc::new(Company::of(session))))
+            }
+            Job::Ask(question) => {
+                // A database that cannot be written answers with what it has; the desk says so if it cannot.
+                let _ = session.wait_for_database();
+                desks.ask(question);
+                None
+            }
+            Job::NoteQuery(sql, answer, took) => {
+                session.note_query(&sql, answer.as_ref(), took);
+                None
+            }
+            Job::NoteView(screen, from, for_ms) => {
+                session.note_view(screen, from, for_ms);
+                None
+            }
+            Job::SetMemo(text) => {
+                let kept = session.set_memo(&text);
+                Some(News::MemoKept(kept, Arc::new(Company::of(session))))
+            }
+            Job::List(_) | Job::Create(_) | Job::Open(..) | Job::Close => None,
+        }
+    }
+}
+
+fn start_desk(news: Sender<Message>, jobs: Sender<Job>) -> Sender<DeskJob> {
+    let (asked, questions) = channel();
+    std::thread::spawn(move || {
+        let mut desk: Option<(Box<Desk>, Limits)> = None;
+        while let Ok(job) = questions.recv() {
+            match job {
+                DeskJob::Take(own, limits) => desk = Some((own, limits)),
+                DeskJob::Leave => desk = None,
+                DeskJob::Ask(question) => answer(question, desk.as_ref(), &news, &jobs),
+            }
+        }
+    });
+    asked
+}
+
+fn answer(
+    question: Question,
+    desk: Option<&(Box<Desk>, Limits)>,
+    news: &Sender<Message>,
+    jobs: &Sender<Job>,
+) {
+    let started = Instant::now();
+    let rows = match desk {
+        Some((desk, limits)) => desk.ask(&question.sql, *limits).map_err(Refusal::from),
+        None => Err(Refusal::new("sql_error", "no run is open")),
+    };
+    let took = started.elapsed();
+    let report = match question.asker {
+        Asker::Person(number) => {
+            let noted = rows.clone();
+            let _ = jobs.send(Job::NoteQuery(question.sql, noted, took));
+            News::Answered(number, rows, took)
+        }
+        Asker::Screen(reading, changes) => News::Read(reading, changes, rows),
+    };
+    let _ = news.send(Message::News(report));
+}
+
+/// What a panic said.
+pub fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("an unknown reason").to_owned()
+}

@@ -91,6 +91,19 @@ impl Chord {
         Ok(chord)
     }
 
+    /// The event a terminal would send.
+    pub fn event(&self) -> KeyEvent {
+        let mut modifiers = KeyModifiers::NONE;
+        for (held, modifier) in [
+            (self.ctrl, KeyModifiers::CONTROL),
+            (self.alt, KeyModifiers::ALT),
+            (self.shift, KeyModifiers::SHIFT),
+        ] {
+            modifiers.set(modifier, held);
+        }
+        KeyEvent::new(self.code, modifiers)
+    }
+
     /// Whether a text field wants it for itself.
     pub fn is_text(&self) -> bool {
         match self.code {

@@ -17,6 +17,8 @@ pub mod message;
 pub mod readings;
 pub mod screens;
 mod terminal;
+#[cfg(test)]
+pub mod testing;
 mod text;
 pub mod theme;
 pub mod widgets;

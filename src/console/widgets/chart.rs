@@ -98,7 +98,8 @@ fn dataset<'a>(canvas: &Canvas<'_>, line: &'a Line<'_>) -> Dataset<'a> {
 fn rounded([least, most]: [f64; 2]) -> [f64; 2] {
     let magnitude = libm::pow(10.0, libm::floor(libm::log10(most - least)));
     let step = magnitude / 2.0;
-    [(least / step).floor() * step, (most / step).ceil() * step]
+    // A hair of rounding must not add a whole step.
+    [(least / step + 1e-9).floor() * step, (most / step - 1e-9).ceil() * step]
 }
 
 #[cfg(test)]
@@ -109,6 +110,7 @@ mod tests {
     fn bounds_end_at_round_numbers() {
         assert_eq!(rounded([0.0, 980.0]), [0.0, 1000.0]);
         assert_eq!(rounded([-35.0, 1_040_000.0]), [-500_000.0, 1_500_000.0]);
-        assert_eq!(rounded([0.12, 0.14]), [0.12, 0.14]);
+        let [least, most] = rounded([0.12, 0.14]);
+        assert!((least - 0.12).abs() < 1e-12 && (most - 0.14).abs() < 1e-12);
     }
 }

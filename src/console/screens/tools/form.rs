@@ -1,0 +1,309 @@
+//! A form: where the person is in a sheet, what is typed, what the call would do, what came of it.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use serde_json::Value;
+
+use super::sheet::{Place, Sheet};
+use crate::console::action::Action;
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::widgets::Field;
+use crate::notation::dollars;
+use crate::session::{Preview, Refusal};
+use crate::tools::{Kind, Spec};
+
+/// A form of one tool.
+#[derive(Debug, Clone)]
+pub struct Form {
+    /// The tool.
+    pub spec: &'static Spec,
+    /// Values.
+    pub sheet: Sheet,
+    /// The cell that has the focus.
+    pub at: Place,
+    /// The cell is being typed into; what it held before.
+    pub typing: Option<Option<Field>>,
+    /// A customer number is being typed, to add a row to a block.
+    pub adding: Option<(usize, Field)>,
+    /// What the call would do, as far as is known.
+    pub preview: Option<Result<Preview, Refusal>>,
+    /// The last answer.
+    pub answer: Option<Result<Value, Refusal>>,
+}
+
+impl Form {
+    /// The form over what holds now.
+    pub fn of(spec: &'static Spec, company: &Company) -> Form {
+        Form {
+            spec,
+            sheet: Sheet::of(spec, company),
+            at: Place::default(),
+            typing: None,
+            adding: None,
+            preview: None,
+            answer: None,
+        }
+    }
+
+    /// Whether characters are typed.
+    pub fn is_typing(&self) -> bool {
+        self.typing.is_some() || self.adding.is_some()
+    }
+
+    /// Takes over what holds now; drafts stay.
+    pub fn renew(&mut self, company: &Company) {
+        self.sheet = self.sheet.renewed(company);
+        self.preview = None;
+        self.keep_inside();
+    }
+
+    /// Forgets the drafts.
+    pub fn reset(&mut self, company: &Company) {
+        self.sheet = Sheet::of(self.spec, company);
+        (self.typing, self.adding, self.preview) = (None, None, None);
+        self.keep_inside();
+    }
+
+    fn keep_inside(&mut self) {
+        if self.sheet.slot(self.at).is_none() {
+            self.at = self.sheet.places().next().unwrap_or_default();
+        }
+    }
+
+    /// The equivalent call, as a program would write it.
+    pub fn call(&self) -> String {
+        let arguments = self.sheet.arguments().map_or("…".to_owned(), |arguments| arguments.to_string());
+        format!("{}.{}({arguments})", self.spec.module.id(), self.spec.name)
+    }
+
+    /// Asks what the call would do.
+    pub fn check(&mut self) -> Vec<Effect> {
+        self.preview = None;
+        let quiet =
+            self.spec.kind == Kind::Read || (self.spec.kind == Kind::Setting && !self.sheet.is_changed());
+        match self.sheet.arguments() {
+            Ok(arguments) if !quiet => vec![Effect::Check { tool: self.spec.name, arguments }],
+            _ => Vec::new(),
+        }
+    }
+
+    /// Sends the call, or says why not.
+    pub fn apply(&mut self) -> Vec<Effect> {
+        self.typing = None;
+        let arguments = match self.sheet.arguments() {
+            Ok(arguments) => arguments,
+            Err(place) => {
+                self.at = place;
+                let path = self.sheet.blocks[place.block].path(place.row, place.column);
+                return vec![Effect::Complain(format!("{path}: a number is expected here"))];
+            }
+        };
+        let tool = self.spec.name;
+        match self.spec.kind {
+            Kind::Setting if !self.sheet.is_changed() => {
+                vec![Effect::Complain("nothing differs from what holds; type a value first".to_owned())]
+            }
+            Kind::Purchase => match &self.preview {
+                Some(Ok(preview)) => {
+                    let text = format!(
+                        "{tool} {arguments} costs {} at once and cannot be taken back.",
+                        dollars(preview.cost_now)
+                    );
+                    vec![Effect::ConfirmCall { tool, arguments, text }]
+                }
+                _ => vec![Effect::Call { tool, arguments }],
+            },
+            _ => vec![Effect::Call { tool, arguments }],
+        }
+    }
+
+    /// Does an action of the form or of a list.
+    pub fn act(&mut self, action: Action, company: &Company) -> Vec<Effect> {
+        match action {
+            Action::Apply => return self.apply(),
+            Action::EditCell if self.sheet.blocks.is_empty() => return self.apply(),
+            Action::EditCell => self.edit(),
+            Action::SameDown => return self.same_down(),
+            Action::ClearCell => return self.clear(),
+            Action::ResetForm => {
+                self.reset(company);
+                return vec![Effect::Say("the form shows what holds".to_owned())];
+            }
+            Action::CopyCall => return vec![Effect::Copy(self.call())],
+            Action::Discard => {
+                if let Some(before) = self.typing.take()
+                    && let Some(slot) = self.sheet.slot_mut(self.at)
+                {
+                    slot.draft = before;
+                }
+                self.adding = None;
+                return self.check();
+            }
+            Action::Commit | Action::CommitDown | Action::CommitNext | Action::CommitPrevious => {
+                return self.commit(action);
+            }
+            _ => self.walk(action),
+        }
+        Vec::new()
+    }
+
+    fn edit(&mut self) {
+        if let Some(block) = self.at_adding_row() {
+            self.adding = Some((block, Field::default()));
+        } else if let Some(slot) = self.sheet.slot_mut(self.at) {
+            self.typing = Some(slot.draft.clone());
+            slot.draft = Some(Field::of(slot.text()));
+        }
+    }
+
+    /// The block whose last line adds a row, if the focus is there.
+    pub fn at_adding_row(&self) -> Option<usize> {
+        let block = self.sheet.blocks.get(self.at.block)?;
+        (block.is_open() && self.at.row == block.rows.len()).then_some(self.at.block)
+    }
+
+    fn commit(&mut self, action: Action) -> Vec<Effect> {
+        if let Some((block, field)) = self.adding.take() {
+            if field.text().trim().is_empty() {
+                return Vec::new();
+            }
+            if !self.sheet.add_customer(block, field.text()) {
+                return vec![Effect::Complain("a customer number is expected, for instance 17".to_owned())];
+            }
+            self.at = Place { block, row: self.sheet.blocks[block].rows.len() - 1, column: 0 };
+            return Vec::new();
+        }
+        self.typing = None;
+        if let Some(slot) = self.sheet.slot_mut(self.at)
+            && !slot.is_changed()
+            && slot
+                .draft
+                .as_ref()
+                .is_some_and(|draft| crate::console::widgets::field::parse_number(draft.text()).is_some())
+        {
+            // What was typed is what holds: the cell counts as untouched.
+            slot.draft = None;
+        }
+        match action {
+            Action::CommitNext => self.walk(Action::Right),
+            Action::CommitPrevious => self.walk(Action::Up),
+            _ => self.walk(Action::Down),
+        }
+        self.check()
+    }
+
+    fn same_down(&mut self) -> Vec<Effect> {
+        let Some(text) = self.sheet.slot(self.at).map(super::sheet::Slot::text) else { return Vec::new() };
+        let below = self.sheet.blocks[self.at.block].rows.len();
+        // A block of one row stands for one argument; those below it are meant then.
+        let blocks = if self.sheet.blocks[self.at.block].is_scalar() {
+            (self.at.block..self.sheet.blocks.len()).filter(|at| self.sheet.blocks[*at].is_scalar()).collect()
+        } else {
+            vec![self.at.block]
+        };
+        for block in blocks {
+            let rows = if block == self.at.block { self.at.row..below } else { 0..1 };
+            for row in rows {
+                if let Some(slot) = self.sheet.slot_mut(Place { block, row, column: self.at.column }) {
+                    slot.draft = Some(Field::of(text.clone()));
+                }
+            }
+        }
+        self.check()
+    }
+
+    fn clear(&mut self) -> Vec<Effect> {
+        let scalar = self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_scalar);
+        if let Some(slot) = self.sheet.slot_mut(self.at) {
+            slot.draft = Some(Field::of(if scalar { "0" } else { "" }));
+        }
+        self.check()
+    }
+
+    /// Lines that can have the focus, in reading order: block, row, number of cells.
+    fn lines(&self) -> Vec<(usize, usize, usize)> {
+        let mut lines = Vec::new();
+        for (at, block) in self.sheet.blocks.iter().enumerate() {
+            lines.extend((0..block.rows.len()).map(|row| (at, row, block.columns.len())));
+            if block.is_open() {
+                lines.push((at, block.rows.len(), 1));
+            }
+        }
+        lines
+    }
+
+    fn walk(&mut self, action: Action) {
+        let lines = self.lines();
+        let Some(line) =
+            lines.iter().position(|(block, row, _)| (*block, *row) == (self.at.block, self.at.row))
+        else {
+            return self.keep_inside();
+        };
+        let last = lines.len() - 1;
+        let to = match action {
+            Action::Up => line.saturating_sub(1),
+            Action::Down => (line + 1).min(last),
+            Action::PageUp => line.saturating_sub(8),
+            Action::PageDown => (line + 8).min(last),
+            Action::First => 0,
+            Action::Last => last,
+            Action::Right if self.at.column + 1 < lines[line].2 => {
+                self.at.column += 1;
+                line
+            }
+            Action::Right if line < last => {
+                self.at.column = 0;
+                line + 1
+            }
+            Action::Left => {
+                self.at.column = self.at.column.saturating_sub(1);
+                line
+            }
+            _ => line,
+        };
+        let (block, row, cells) = lines[to];
+        self.at = Place { block, row, column: self.at.column.min(cells - 1) };
+    }
+
+    /// Takes a typed key; a digit begins to type.
+    pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
+        if let Some((_, field)) = &mut self.adding {
+            field.key(key);
+            return Vec::new();
+        }
+        let begins = matches!(key.code, KeyCode::Char(letter) if letter.is_ascii_digit() || matches!(letter, '$' | '.' | '-'));
+        if self.typing.is_none() && begins {
+            if self.at_adding_row().is_some() {
+                self.edit();
+                return self.key(key);
+            }
+            if let Some(slot) = self.sheet.slot_mut(self.at) {
+                self.typing = Some(slot.draft.replace(Field::default()));
+            }
+        }
+        if self.typing.is_some()
+            && let Some(slot) = self.sheet.slot_mut(self.at)
+            && let Some(field) = &mut slot.draft
+        {
+            field.key(key);
+            return self.check();
+        }
+        Vec::new()
+    }
+
+    /// Takes pasted text.
+    pub fn paste(&mut self, text: &str) -> Vec<Effect> {
+        if self.typing.is_none() && self.adding.is_none() {
+            self.edit();
+            if let Some(slot) = self.sheet.slot_mut(self.at).filter(|_| self.typing.is_some()) {
+                slot.draft = Some(Field::default());
+            }
+        }
+        if let Some((_, field)) = &mut self.adding {
+            field.insert(text.trim());
+        } else if let Some(field) = self.sheet.slot_mut(self.at).and_then(|slot| slot.draft.as_mut()) {
+            field.insert(text.trim());
+        }
+        self.check()
+    }
+}

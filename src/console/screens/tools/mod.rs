@@ -1,0 +1,315 @@
+//! Forms of all tools, made from the catalogue.
+
+mod draw;
+mod form;
+mod reference;
+mod sheet;
+
+use std::collections::BTreeMap;
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use super::{Look, Screen, ScreenId};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::Canvas;
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::message::News;
+use crate::console::widgets::Field;
+use crate::tools::{CATALOGUE, Kind, Spec};
+use form::Form;
+
+/// The screen.
+#[derive(Default)]
+pub struct Tools {
+    /// 0 the list, 1 the form.
+    focus: usize,
+    /// Place among the tools that are shown.
+    selected: usize,
+    filter: String,
+    typing: Option<Field>,
+    /// Forms that were opened, with their drafts.
+    forms: BTreeMap<&'static str, Form>,
+}
+
+impl Tools {
+    /// Tools that the filter leaves, in the order of the catalogue.
+    fn shown(&self) -> Vec<&'static Spec> {
+        let wanted = self.filter.to_lowercase();
+        let fits = |spec: &&'static Spec| {
+            spec.name.contains(&wanted) || spec.summary.to_lowercase().contains(&wanted)
+        };
+        CATALOGUE.iter().map(|tool| tool.spec()).filter(fits).collect()
+    }
+
+    /// The tool that is selected.
+    fn here(&self) -> Option<&'static Spec> {
+        self.shown().get(self.selected).copied()
+    }
+
+    fn form(&mut self, company: &Company) -> Option<&mut Form> {
+        let spec = self.here()?;
+        Some(self.forms.entry(spec.name).or_insert_with(|| Form::of(spec, company)))
+    }
+
+    fn seen_form(&self) -> Option<&Form> {
+        self.forms.get(self.here()?.name)
+    }
+
+    /// Shows the form of a tool.
+    pub fn show(&mut self, tool: &str, company: &Company) {
+        self.filter.clear();
+        self.typing = None;
+        if let Some(place) = self.shown().iter().position(|spec| spec.name == tool) {
+            self.selected = place;
+            self.focus = 1;
+            self.form(company);
+        }
+    }
+
+    /// Tools that have a screen or a dialog of their own lead there.
+    fn elsewhere(&self) -> Option<Effect> {
+        match self.here()?.name {
+            "next_week" => Some(Effect::Do(Action::NextWeek)),
+            "query" => Some(Effect::Show(ScreenId::Sql)),
+            _ => None,
+        }
+    }
+
+    fn act_in_list(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let last = self.shown().len().saturating_sub(1);
+        match action {
+            Action::Up => self.selected = self.selected.saturating_sub(1),
+            Action::Down => self.selected = (self.selected + 1).min(last),
+            Action::PageUp => self.selected = self.selected.saturating_sub(look.page as usize),
+            Action::PageDown => self.selected = (self.selected + look.page as usize).min(last),
+            Action::First => self.selected = 0,
+            Action::Last => self.selected = last,
+            Action::Filter => self.typing = Some(Field::of(self.filter.clone())),
+            Action::Close | Action::Discard => {
+                self.typing = None;
+                self.filter.clear();
+                self.selected = 0;
+            }
+            Action::Commit | Action::CommitDown | Action::CommitNext => self.typing = None,
+            Action::Open | Action::Right => {
+                if let Some(effect) = self.elsewhere() {
+                    return if action == Action::Open { vec![effect] } else { Vec::new() };
+                }
+                self.focus = 1;
+            }
+            _ => {}
+        }
+        self.form(look.company);
+        Vec::new()
+    }
+
+    fn is_typing(&self) -> bool {
+        self.focus == 1 && self.seen_form().is_some_and(Form::is_typing)
+    }
+}
+
+impl Screen for Tools {
+    fn scopes(&self) -> Vec<Scope> {
+        match self.focus {
+            0 if self.typing.is_some() => vec![Scope::Field],
+            0 => vec![Scope::List],
+            _ if self.is_typing() => vec![Scope::Field, Scope::Form],
+            _ => vec![Scope::Form, Scope::List],
+        }
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        match self.focus {
+            0 if self.typing.is_some() => vec![Action::Commit, Action::Discard],
+            0 => vec![Action::Open, Action::Filter],
+            _ if self.is_typing() => {
+                vec![Action::CommitDown, Action::CommitNext, Action::Apply, Action::Discard]
+            }
+            _ => vec![
+                Action::Apply,
+                Action::SameDown,
+                Action::ClearCell,
+                Action::ResetForm,
+                Action::CopyCall,
+                Action::Close,
+            ],
+        }
+    }
+
+    fn panes(&self) -> usize {
+        2
+    }
+
+    fn focus(&self) -> usize {
+        self.focus
+    }
+
+    fn set_focus(&mut self, pane: usize) {
+        self.focus = pane.min(1);
+    }
+
+    fn renew(&mut self, look: &Look<'_>) {
+        for form in self.forms.values_mut() {
+            form.renew(look.company);
+        }
+        self.form(look.company);
+    }
+
+    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
+        match news {
+            News::Checked(_, preview) => {
+                if let Some(form) = self.form(look.company) {
+                    form.preview = Some(preview.clone());
+                }
+            }
+            News::Called(tool, answer, _) => {
+                if let Some(form) = self.forms.get_mut(tool) {
+                    if answer.is_ok() {
+                        form.reset(look.company);
+                    } else if let Err(refusal) = answer
+                        && let Some(place) =
+                            refusal.field.as_ref().and_then(|field| form.sheet.place_of(field))
+                    {
+                        form.at = place;
+                    }
+                    form.answer = Some(answer.clone());
+                }
+            }
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        if self.focus == 0 {
+            return self.act_in_list(action, look);
+        }
+        if action == Action::Close || (action == Action::EditCell && self.elsewhere().is_some()) {
+            self.focus = 0;
+            return match action {
+                Action::EditCell => self.elsewhere().into_iter().collect(),
+                _ => Vec::new(),
+            };
+        }
+        match self.form(look.company) {
+            Some(form) => form.act(action, look.company),
+            None => Vec::new(),
+        }
+    }
+
+    fn key(&mut self, key: &KeyEvent, look: &Look<'_>) -> Vec<Effect> {
+        if self.focus == 0 {
+            if let Some(field) = &mut self.typing {
+                field.key(key);
+                self.filter = field.text().to_owned();
+                self.selected = 0;
+                self.form(look.company);
+            }
+            return Vec::new();
+        }
+        self.form(look.company).map_or(Vec::new(), |form| form.key(key))
+    }
+
+    fn paste(&mut self, text: &str, look: &Look<'_>) -> Vec<Effect> {
+        match self.focus {
+            0 => Vec::new(),
+            _ => self.form(look.company).map_or(Vec::new(), |form| form.paste(text)),
+        }
+    }
+
+    fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        if pane == 0 {
+            self.selected = row.min(self.shown().len().saturating_sub(1));
+            self.form(look.company);
+        } else if let Some(form) = self.form(look.company).filter(|form| !form.is_typing()) {
+            let place = form.sheet.places().nth(row);
+            if place == Some(form.at) {
+                return form.act(Action::EditCell, look.company);
+            }
+            form.at = place.unwrap_or(form.at);
+        }
+        Vec::new()
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        draw::draw(self, canvas, area, look);
+    }
+
+    fn holds_unsent_text(&self) -> bool {
+        self.forms.values().any(|form| form.spec.kind != Kind::Read && form.sheet.is_changed())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::console::keys::{Chord, Keys};
+    use crate::console::testing::company;
+
+    /// Types into the form of a tool; words are keys, the rest is typed letter by letter.
+    fn typed(tool: &str, keys: &[&str]) -> (Tools, Vec<Effect>) {
+        let (company, bindings) = (company(), Keys::shipped());
+        let look = Look { company: &company, keys: &bindings, page: 10 };
+        let mut tools = Tools::default();
+        tools.show(tool, &company);
+        let mut effects = Vec::new();
+        for key in keys {
+            let chord = Chord::parse(key).expect(key);
+            let event = chord.event();
+            let text = tools.scopes()[0].is_text() && chord.is_text();
+            let scopes: Vec<Scope> =
+                tools.scopes().into_iter().filter(|scope| !text || scope.is_text()).collect();
+            effects = match bindings.action(&scopes, chord) {
+                Some(action) => tools.act(action, &look),
+                None => tools.key(&event, &look),
+            };
+        }
+        (tools, effects)
+    }
+
+    #[test]
+    fn digits_begin_to_type_and_enter_goes_down() {
+        let (_, effects) = typed("set_prices", &["1", "2", "enter", "2", "5", "enter", "5", "5", "ctrl-s"]);
+        let Some(Effect::Call { tool, arguments }) = effects.first() else { panic!("{effects:?}") };
+        assert_eq!((*tool, arguments), ("set_prices", &json!({"A": 12, "B": 25, "C": 55})));
+    }
+
+    #[test]
+    fn escape_brings_back_what_was_there() {
+        let (tools, _) = typed("set_prices", &["1", "2", "enter", "up", "9", "9", "esc"]);
+        assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
+    }
+
+    #[test]
+    fn the_same_value_goes_down_a_column() {
+        let (tools, _) = typed("set_targeted_ad_spend", &["right", "4", "0", "enter", "up", "="]);
+        let arguments = tools.seen_form().expect("a form").sheet.arguments().expect("numbers");
+        let matrix = arguments["targeted_spend"].as_object().expect("a matrix");
+        assert_eq!(matrix.len(), 5);
+        assert!(matrix.values().all(|groups| groups == &json!({"S2": 40})), "{matrix:?}");
+    }
+
+    #[test]
+    fn a_form_without_changes_is_not_sent_and_a_wrong_cell_is_named() {
+        let (_, effects) = typed("set_prices", &["ctrl-s"]);
+        assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing differs")));
+        let (_, effects) = typed("set_prices", &["1", "-", "ctrl-s"]);
+        assert!(matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("A: a number")));
+    }
+
+    #[test]
+    fn drafts_stay_when_another_tool_is_looked_at() {
+        let (mut tools, _) = typed("set_prices", &["1", "2", "enter"]);
+        let (company, keys) = (company(), Keys::shipped());
+        let look = Look { company: &company, keys: &keys, page: 10 };
+        tools.show("set_daily_spend", &company);
+        tools.renew(&look);
+        tools.show("set_prices", &company);
+        assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
+        assert!(tools.holds_unsent_text());
+    }
+}

@@ -1,0 +1,92 @@
+//! What helps to fill a form: prices of tiers, projects on offer, budgets in force.
+
+use serde_json::Value;
+
+use crate::console::company::Company;
+use crate::console::text::number;
+use crate::notation::{dollars, grouped};
+
+/// Lines beside a form, the first one a head; empty where nothing helps.
+pub fn reference(tool: &str, company: &Company) -> Vec<String> {
+    match tool {
+        "set_model_tiers" | "set_usage_quotas" => models(company),
+        "set_capacity_tier" => capacities(company),
+        "start_research_project" => projects(company),
+        "set_prices" => prices(company),
+        _ => Vec::new(),
+    }
+}
+
+fn field(value: &Value, name: &str) -> f64 {
+    value.get(name).and_then(Value::as_f64).unwrap_or(0.0)
+}
+
+/// Entries of a map by their numbers.
+fn tiers<'a>(costs: &'a Value, name: &str) -> Vec<(u32, &'a Value)> {
+    let map = costs.get(name).and_then(Value::as_object);
+    let mut tiers: Vec<(u32, &Value)> =
+        map.into_iter().flatten().filter_map(|(tier, facts)| Some((tier.parse().ok()?, facts))).collect();
+    tiers.sort_by_key(|(tier, _)| *tier);
+    tiers
+}
+
+fn models(company: &Company) -> Vec<String> {
+    let mut lines = vec!["tier  quality ×   $ per 1,000 units".to_owned()];
+    lines.extend(tiers(&company.costs, "model_tiers").into_iter().map(|(tier, facts)| {
+        let cost = field(facts, "cost_per_usage_unit") * 1000.0;
+        format!("{tier:>4}  {:>9.2}   {cost:>17.4}", field(facts, "quality_multiplier"))
+    }));
+    lines
+}
+
+fn capacities(company: &Company) -> Vec<String> {
+    let now = company.setting("set_capacity_tier", "tier") as u32;
+    let mut lines = vec!["tier     units a day     $ a day".to_owned()];
+    lines.extend(tiers(&company.costs, "capacity_tiers").into_iter().map(|(tier, facts)| {
+        let mark = if tier == now { "  now" } else { "" };
+        let (units, cost) = (field(facts, "capacity_units"), field(facts, "cost_per_day"));
+        format!("{tier:>4}  {:>14}  {:>10}{mark}", grouped(units, 0), dollars(cost))
+    }));
+    if let Some(week) = company.seen.last_week.filter(|week| week.days_run > 0) {
+        let mean = week.usage as f64 / f64::from(week.days_run);
+        lines.push(format!("used  {:>14}  a day in the last week", grouped(mean, 0)));
+    }
+    lines
+}
+
+fn projects(company: &Company) -> Vec<String> {
+    let mut lines = vec!["tier  name                        cost   mean days   mean gain   now".to_owned()];
+    let list = company.projects.get("tiers").and_then(Value::as_array);
+    lines.extend(list.into_iter().flatten().map(|tier| {
+        let running = if field(tier, "in_progress") > 0.0 { "running" } else { "" };
+        let name = tier.get("name").and_then(Value::as_str).unwrap_or("");
+        format!(
+            "{:>4}  {name:<22} {:>10}   {:>9}   {:>9.4}   {running}",
+            number(field(tier, "tier")),
+            dollars(field(tier, "cost")),
+            number(field(tier, "mean_days")),
+            field(tier, "mean_quality_boost")
+        )
+    }));
+    lines
+}
+
+fn prices(company: &Company) -> Vec<String> {
+    let mut lines = vec!["plan   model tier   quota, units a day   full quota costs a month".to_owned()];
+    lines.extend(["A", "B", "C"].into_iter().map(|plan| {
+        let (tier, quota) =
+            (company.setting("set_model_tiers", plan), company.setting("set_usage_quotas", plan));
+        let unit = company
+            .costs
+            .get("model_tiers")
+            .and_then(|all| all.get(number(tier)))
+            .map_or(0.0, |facts| field(facts, "cost_per_usage_unit"));
+        format!(
+            "{plan:<4}   {:>10}   {:>18}   {:>24}",
+            number(tier),
+            grouped(quota, 0),
+            dollars(quota * unit * 30.0)
+        )
+    }));
+    lines
+}

@@ -1,0 +1,356 @@
+//! The values of a form: one block per argument, made from the catalogue, with drafts over what holds.
+
+use serde_json::{Map, Value};
+
+use crate::console::company::Company;
+use crate::console::text::number;
+use crate::console::widgets::Field;
+use crate::console::widgets::field::parse_number;
+use crate::notation::json_number;
+use crate::tools::{Argument, ArgumentKind, Key, Range, Spec};
+use crate::world::identifiers::{Channel, Plan};
+
+/// A value that can be typed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slot {
+    /// What holds; none where nothing is set.
+    pub current: Option<f64>,
+    /// What is typed over it; none while untouched.
+    pub draft: Option<Field>,
+}
+
+impl Slot {
+    fn of(value: Option<&Value>) -> Slot {
+        Slot { current: value.and_then(Value::as_f64), draft: None }
+    }
+
+    /// Text as shown.
+    pub fn text(&self) -> String {
+        match (&self.draft, self.current) {
+            (Some(field), _) => field.text().to_owned(),
+            (None, Some(value)) => plain(value),
+            (None, None) => String::new(),
+        }
+    }
+
+    /// The number that would be sent: none for nothing.
+    ///
+    /// # Errors
+    /// What is typed is no number.
+    pub fn value(&self) -> Result<Option<f64>, ()> {
+        match &self.draft {
+            None => Ok(self.current),
+            Some(field) if field.text().trim().is_empty() => Ok(None),
+            Some(field) => parse_number(field.text()).map(Some).ok_or(()),
+        }
+    }
+
+    /// Whether it differs from what holds.
+    pub fn is_changed(&self) -> bool {
+        self.value().map_or(true, |value| value.unwrap_or(0.0) != self.current.unwrap_or(0.0))
+    }
+}
+
+/// A number as people type it: no grouping, no needless decimals.
+fn plain(value: f64) -> String {
+    number(value).replace(',', "")
+}
+
+/// The cells of an argument.
+#[derive(Debug, Clone)]
+pub struct Block {
+    /// The argument.
+    pub argument: &'static Argument,
+    /// Names of the rows; for a single number the argument itself.
+    pub rows: Vec<String>,
+    /// Names of the columns; one without a name for a single number or a map.
+    pub columns: Vec<String>,
+    /// Cells by row and column.
+    pub slots: Vec<Vec<Slot>>,
+}
+
+impl Block {
+    fn of(argument: &'static Argument, current: Option<&Value>, company: &Company) -> Option<Block> {
+        let keys = |key: Key, given: Option<&Value>| -> Vec<String> {
+            match key {
+                Key::Group => company.seen.known_groups.iter().map(|group| group.id().to_owned()).collect(),
+                Key::Plan => Plan::ALL.iter().map(|plan| plan.id().to_owned()).collect(),
+                Key::Channel => Channel::ALL.iter().map(|channel| channel.id().to_owned()).collect(),
+                Key::Customer => {
+                    given.and_then(Value::as_object).map_or(Vec::new(), |map| map.keys().cloned().collect())
+                }
+            }
+        };
+        let (rows, columns) = match argument.kind {
+            ArgumentKind::Number(_) | ArgumentKind::Integer(_) => {
+                (vec![argument.name.to_owned()], vec![String::new()])
+            }
+            ArgumentKind::Map(key, _) => (keys(key, current), vec![String::new()]),
+            ArgumentKind::Matrix(outer, inner, _) => (keys(outer, current), keys(inner, None)),
+            ArgumentKind::Text | ArgumentKind::Structure(_) => return None,
+        };
+        let slot = |row: &String, column: &String| match argument.kind {
+            ArgumentKind::Map(..) => Slot::of(current.and_then(|map| map.get(row))),
+            ArgumentKind::Matrix(..) => {
+                Slot::of(current.and_then(|map| map.get(row)).and_then(|inner| inner.get(column)))
+            }
+            _ => Slot::of(current),
+        };
+        let slots = rows.iter().map(|row| columns.iter().map(|column| slot(row, column)).collect()).collect();
+        Some(Block { argument, rows, columns, slots })
+    }
+
+    /// Allowed numbers.
+    pub fn range(&self) -> Range {
+        match self.argument.kind {
+            ArgumentKind::Number(range)
+            | ArgumentKind::Integer(range)
+            | ArgumentKind::Map(_, range)
+            | ArgumentKind::Matrix(_, _, range) => range,
+            ArgumentKind::Text | ArgumentKind::Structure(_) => Range::AT_LEAST_ZERO,
+        }
+    }
+
+    /// Whether it is a single number.
+    pub fn is_scalar(&self) -> bool {
+        matches!(self.argument.kind, ArgumentKind::Number(_) | ArgumentKind::Integer(_))
+    }
+
+    /// Whether rows can be added: customers are too many to list.
+    pub fn is_open(&self) -> bool {
+        matches!(self.argument.kind, ArgumentKind::Map(Key::Customer, _))
+    }
+
+    /// Whether something differs from what holds.
+    pub fn is_changed(&self) -> bool {
+        self.slots.iter().flatten().any(Slot::is_changed)
+    }
+
+    /// Sum of what would hold, as far as it can be read.
+    pub fn total(&self) -> f64 {
+        self.slots.iter().flatten().filter_map(|slot| slot.value().ok().flatten()).sum()
+    }
+
+    /// Sum of what holds.
+    pub fn total_now(&self) -> f64 {
+        self.slots.iter().flatten().filter_map(|slot| slot.current).sum()
+    }
+
+    /// Path of a cell as refusals name it.
+    pub fn path(&self, row: usize, column: usize) -> String {
+        match self.argument.kind {
+            ArgumentKind::Map(..) => format!("{}.{}", self.argument.name, self.rows[row]),
+            ArgumentKind::Matrix(..) => {
+                format!("{}.{}.{}", self.argument.name, self.rows[row], self.columns[column])
+            }
+            _ => self.argument.name.to_owned(),
+        }
+    }
+
+    /// The value that would be sent.
+    fn value(&self) -> Result<Option<Value>, Place> {
+        let number = |row: usize, column: usize| {
+            self.slots[row][column].value().map_err(|()| Place { block: 0, row, column })
+        };
+        if self.is_scalar() {
+            return Ok(number(0, 0)?.map(json_number));
+        }
+        let mut whole = Map::new();
+        for (row, name) in self.rows.iter().enumerate() {
+            let mut inner = Map::new();
+            for (column, key) in self.columns.iter().enumerate() {
+                if let Some(value) = number(row, column)?.filter(|value| *value != 0.0) {
+                    inner.insert(key.clone(), json_number(value));
+                }
+            }
+            match self.argument.kind {
+                ArgumentKind::Map(..) => {
+                    if let Some(value) = inner.remove("") {
+                        whole.insert(name.clone(), value);
+                    }
+                }
+                _ if !inner.is_empty() => {
+                    whole.insert(name.clone(), Value::Object(inner));
+                }
+                _ => {}
+            }
+        }
+        Ok(Some(Value::Object(whole)))
+    }
+}
+
+/// A cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Place {
+    /// Block.
+    pub block: usize,
+    /// Row in the block.
+    pub row: usize,
+    /// Column in the block.
+    pub column: usize,
+}
+
+/// All blocks of a tool.
+#[derive(Debug, Clone)]
+pub struct Sheet {
+    /// The tool.
+    pub spec: &'static Spec,
+    /// One per argument that is a number or made of numbers.
+    pub blocks: Vec<Block>,
+}
+
+impl Sheet {
+    /// The sheet of a tool over what holds now.
+    pub fn of(spec: &'static Spec, company: &Company) -> Sheet {
+        let nothing = Map::new();
+        let current = company.settings.get(spec.name).unwrap_or(&nothing);
+        let block = |argument: &'static Argument| Block::of(argument, current.get(argument.name), company);
+        Sheet { spec, blocks: spec.arguments.iter().filter_map(block).collect() }
+    }
+
+    /// The same over what holds now, with the drafts that still differ.
+    pub fn renewed(&self, company: &Company) -> Sheet {
+        let mut sheet = Sheet::of(self.spec, company);
+        for (block, old) in sheet.blocks.iter_mut().zip(&self.blocks) {
+            for (row, name) in old.rows.iter().enumerate() {
+                if block.is_open() && !block.rows.contains(name) {
+                    block.rows.push(name.clone());
+                    block.slots.push(vec![Slot { current: None, draft: None }]);
+                }
+                for (column, key) in old.columns.iter().enumerate() {
+                    let place = block
+                        .rows
+                        .iter()
+                        .position(|own| own == name)
+                        .zip(block.columns.iter().position(|own| own == key));
+                    if let (Some((at, across)), Some(draft)) = (place, &old.slots[row][column].draft) {
+                        block.slots[at][across].draft = Some(draft.clone());
+                    }
+                }
+            }
+        }
+        sheet
+    }
+
+    /// Whether something differs from what holds.
+    pub fn is_changed(&self) -> bool {
+        self.blocks.iter().any(Block::is_changed)
+    }
+
+    /// Arguments of the call: what is required, and what differs.
+    ///
+    /// # Errors
+    /// The first cell that is no number.
+    pub fn arguments(&self) -> Result<Value, Place> {
+        let mut arguments = Map::new();
+        for (at, block) in self.blocks.iter().enumerate() {
+            if block.argument.required || block.is_changed() {
+                let value = block.value().map_err(|place| Place { block: at, ..place })?;
+                if let Some(value) = value {
+                    arguments.insert(block.argument.name.to_owned(), value);
+                }
+            }
+        }
+        Ok(Value::Object(arguments))
+    }
+
+    /// The cell that a refusal names.
+    pub fn place_of(&self, path: &str) -> Option<Place> {
+        self.places().find(|place| self.blocks[place.block].path(place.row, place.column) == path)
+    }
+
+    /// All cells in reading order.
+    pub fn places(&self) -> impl Iterator<Item = Place> + '_ {
+        self.blocks.iter().enumerate().flat_map(|(block, own)| {
+            (0..own.rows.len())
+                .flat_map(move |row| (0..own.columns.len()).map(move |column| Place { block, row, column }))
+        })
+    }
+
+    /// A cell.
+    pub fn slot(&self, place: Place) -> Option<&Slot> {
+        self.blocks.get(place.block)?.slots.get(place.row)?.get(place.column)
+    }
+
+    /// A cell, to change it.
+    pub fn slot_mut(&mut self, place: Place) -> Option<&mut Slot> {
+        self.blocks.get_mut(place.block)?.slots.get_mut(place.row)?.get_mut(place.column)
+    }
+
+    /// Adds a row for a customer; false if the text is no customer number.
+    pub fn add_customer(&mut self, block: usize, text: &str) -> bool {
+        let Some(number) =
+            text.trim().trim_start_matches('#').parse::<u32>().ok().filter(|number| *number > 0)
+        else {
+            return false;
+        };
+        let (block, name) = (&mut self.blocks[block], number.to_string());
+        if !block.rows.contains(&name) {
+            block.rows.push(name);
+            block.slots.push(vec![Slot { current: None, draft: None }]);
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::console::testing::company;
+    use crate::tools::find;
+
+    fn sheet(tool: &str) -> Sheet {
+        Sheet::of(find(tool).expect("a tool").spec(), &company())
+    }
+
+    fn fill(sheet: &mut Sheet, path: &str, text: &str) {
+        let place = sheet.place_of(path).unwrap_or_else(|| panic!("no cell {path}"));
+        sheet.slot_mut(place).expect("a slot").draft = Some(Field::of(text));
+    }
+
+    #[test]
+    fn only_what_differs_is_sent() {
+        let mut prices = sheet("set_prices");
+        assert_eq!(prices.arguments(), Ok(json!({})));
+        fill(&mut prices, "A", "12");
+        fill(&mut prices, "C", "$1,055.50");
+        assert_eq!(prices.arguments(), Ok(json!({"A": 12, "C": 1055.5})));
+        fill(&mut prices, "B", "many");
+        assert_eq!(prices.arguments(), Err(Place { block: 1, row: 0, column: 0 }));
+    }
+
+    #[test]
+    fn a_matrix_is_sent_whole_without_its_zeros() {
+        let mut ads = sheet("set_targeted_ad_spend");
+        assert_eq!(ads.arguments(), Ok(json!({"targeted_spend": {}})), "it is required");
+        fill(&mut ads, "targeted_spend.linkedin.E1", "200");
+        fill(&mut ads, "targeted_spend.search_ads.S3", "0");
+        assert_eq!(ads.arguments(), Ok(json!({"targeted_spend": {"linkedin": {"E1": 200}}})));
+        assert_eq!((ads.blocks[0].total(), ads.blocks[0].total_now()), (200.0, 0.0));
+    }
+
+    #[test]
+    fn customers_are_added_by_number() {
+        let mut ads = sheet("set_ads_strength");
+        let block = ads.blocks.iter().position(Block::is_open).expect("customers");
+        assert!(!ads.add_customer(block, "x") && !ads.add_customer(block, "0"));
+        assert!(ads.add_customer(block, "#17") && ads.add_customer(block, "17"));
+        fill(&mut ads, "by_customer.17", "0.5");
+        assert_eq!(ads.arguments(), Ok(json!({"by_customer": {"17": 0.5}})));
+        let renewed = ads.renewed(&company());
+        assert_eq!(renewed.arguments(), ads.arguments());
+    }
+
+    #[test]
+    fn every_tool_has_a_sheet_whose_cells_are_found_by_their_paths() {
+        for tool in crate::tools::CATALOGUE {
+            let sheet = Sheet::of(tool.spec(), &company());
+            for place in sheet.places() {
+                let path = sheet.blocks[place.block].path(place.row, place.column);
+                assert_eq!(sheet.place_of(&path), Some(place), "{path}");
+            }
+        }
+    }
+}

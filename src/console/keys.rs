@@ -104,6 +104,18 @@ impl Chord {
         KeyEvent::new(self.code, modifiers)
     }
 
+    /// Whether it is a character that is typed.
+    pub fn is_printable(&self) -> bool {
+        matches!(self.code, KeyCode::Char(_)) && !self.ctrl && !self.alt
+    }
+
+    /// Whether it begins a number.
+    pub fn begins_number(&self) -> bool {
+        matches!(self.code, KeyCode::Char(letter) if letter.is_ascii_digit() || matches!(letter, '$' | '.' | '-'))
+            && !self.ctrl
+            && !self.alt
+    }
+
     /// Whether a text field wants it for itself.
     pub fn is_text(&self) -> bool {
         match self.code {
@@ -118,8 +130,8 @@ impl Chord {
             | KeyCode::End
             | KeyCode::PageUp
             | KeyCode::PageDown
-            | KeyCode::Enter
-            | KeyCode::Tab => true,
+            | KeyCode::Enter => true,
+            KeyCode::Tab => !self.shift,
             _ => false,
         }
     }

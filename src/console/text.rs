@@ -47,6 +47,8 @@ pub fn arrow(change: f64, shown: &str) -> String {
 
 /// A number with as many decimals as it needs, at most two.
 pub fn number(value: f64) -> String {
+    // A sum over nothing is minus zero.
+    let value = value + 0.0;
     let decimals = if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 };
     grouped(value, decimals)
 }

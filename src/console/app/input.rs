@@ -36,8 +36,11 @@ impl App {
             // What the text wants comes before what the places around it would do with the key.
             let texts: Vec<Scope> = scopes.iter().copied().filter(|scope| scope.is_text()).collect();
             let own = self.keys.action(&texts, chord);
-            let completes = || self.keys.action(&scopes, chord).filter(|action| *action == Action::Complete);
-            own.or_else(completes)
+            let goes_on = |action: &Action| matches!(action, Action::Complete | Action::NextStep);
+            let plain = chord.is_printable();
+            own.or_else(|| self.keys.action(&scopes, chord).filter(|action| goes_on(action) && !plain))
+        } else if chord.begins_number() && self.takes_digits() {
+            None
         } else {
             self.keys.action(&scopes, chord).or_else(|| self.anywhere(chord))
         };
@@ -45,6 +48,10 @@ impl App {
             Some(action) => self.act(action),
             None => self.typed(&key),
         }
+    }
+
+    fn takes_digits(&self) -> bool {
+        self.layers.is_empty() && self.run().is_some_and(|run| run.screens.get(run.here).takes_digits())
     }
 
     /// What a chord means even over a dialog: leaving and drawing again must always be possible.
@@ -213,7 +220,7 @@ impl App {
         if !run.company.is_running() {
             return self.open(FinalPage);
         }
-        run.filing.reopen();
+        run.filing.reopen(run.screens.tools.unsent());
         self.layers.push(Layer::Filing);
     }
 

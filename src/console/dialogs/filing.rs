@@ -41,6 +41,8 @@ pub struct Filing {
     /// Cells hold the naive projection untouched.
     naive: bool,
     problem: Option<String>,
+    /// Tools whose forms hold values that were not sent.
+    unsent: Vec<&'static str>,
 }
 
 /// Weeks of the horizons, in words.
@@ -57,13 +59,15 @@ impl Default for Filing {
             before: Field::default(),
             naive: false,
             problem: None,
+            unsent: Vec::new(),
         }
     }
 }
 
 impl Filing {
-    /// Goes back to the first step; drafts stay.
-    pub fn reopen(&mut self) {
+    /// Goes back to the first step; drafts stay. Warns of forms whose values were not sent.
+    pub fn reopen(&mut self, unsent: Vec<&'static str>) {
+        self.unsent = unsent;
         self.step = Step::Review;
         self.problem = None;
         self.typing = false;
@@ -229,8 +233,9 @@ impl Dialog for Filing {
         Outcome::stay()
     }
 
-    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Outcome {
+    fn key(&mut self, key: &KeyEvent, look: &Look<'_>) -> Outcome {
         match self.step {
+            Step::Rationale if key.code == crossterm::event::KeyCode::Tab => return self.next(look),
             Step::Rationale => {
                 self.rationale.key(key);
                 self.problem = None;
@@ -240,7 +245,7 @@ impl Dialog for Filing {
                 self.naive = false;
             }
             Step::Forecasts => {
-                let starts = matches!(key.code, crossterm::event::KeyCode::Char(letter) if letter.is_ascii_digit() || matches!(letter, '-' | '$' | '.'));
+                let starts = crate::console::keys::Chord::of(key).begins_number();
                 if starts {
                     self.before = self.cell().clone();
                     *self.cell() = Field::default();
@@ -289,7 +294,7 @@ impl Dialog for Filing {
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let body = Rect { height: inside.height.saturating_sub(1), ..inside };
         match self.step {
-            Step::Review => draw_review(canvas, body, look.company),
+            Step::Review => draw_review(canvas, body, look.company, &self.unsent),
             Step::Rationale => self.draw_rationale(canvas, body, look.company),
             Step::Forecasts => self.draw_forecasts(canvas, body, look.company),
         }
@@ -305,7 +310,7 @@ impl Dialog for Filing {
     }
 }
 
-fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
+fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &[&str]) {
     let seen = &company.seen;
     let mut lines: Vec<TextLine<'_>> = Vec::new();
     let head = |text: &str, canvas: &Canvas<'_>| TextLine::from(canvas.span(text.to_owned(), Role::Header));
@@ -326,6 +331,10 @@ fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
     }
     lines.push(TextLine::default());
     lines.push(head("Before you go on", canvas));
+    for tool in unsent {
+        let text = format!("  ! the form of {tool} holds values that were not applied");
+        lines.push(TextLine::from(canvas.span(text, Role::Warning)));
+    }
     let alerts = overview::alerts(company);
     for alert in &alerts {
         for (at, text) in wrapped(&alert.text, area.width.saturating_sub(4) as usize).into_iter().enumerate()
@@ -341,7 +350,7 @@ fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
             lines.push(TextLine::from(canvas.span(format!("{mark}{text}"), role)));
         }
     }
-    if alerts.is_empty() {
+    if alerts.is_empty() && unsent.is_empty() {
         lines.push(TextLine::from(canvas.span("  nothing needs you", Role::Dim)));
     }
     let room = area.height as usize;

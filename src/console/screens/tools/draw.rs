@@ -16,10 +16,13 @@ use crate::console::widgets::table::first_row;
 use crate::notation::{dollars, signed_dollars};
 use crate::tools::{Kind, Module, Spec};
 
-/// Width of a cell that can be typed into.
-const CELL: u16 = 11;
 /// Width of the names of rows.
-const NAME: u16 = 20;
+const NAME: u16 = 19;
+
+/// Width of a cell of a block: many columns have to share the window.
+fn cell_width(block: &Block) -> u16 {
+    if block.columns.len() > 1 { 9 } else { 12 }
+}
 
 pub(super) fn draw(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     let narrow = area.width < 100;
@@ -201,21 +204,23 @@ fn draw_sheet(form: &Form, lines: &[FormLine], canvas: &mut Canvas<'_>, area: Re
 /// Columns of a block that fit beside the names, so that the focused one is seen.
 fn columns_shown(form: &Form, at: usize, width: u16) -> std::ops::Range<usize> {
     let block = &form.sheet.blocks[at];
-    let totals = if block.columns.len() > 1 { CELL } else { 0 };
-    let room = (width.saturating_sub(NAME + totals) / CELL).max(1) as usize;
+    let cell = cell_width(block);
+    let totals = if block.columns.len() > 1 { cell } else { 0 };
+    let room = (width.saturating_sub(NAME + totals) / cell).max(1) as usize;
     let focus = if form.at.block == at { form.at.column } else { 0 };
     let from = first_row(focus, room, block.columns.len());
     from..(from + room).min(block.columns.len())
 }
 
-fn cell_area(row: Rect, place: usize) -> Rect {
-    Rect { x: row.x + NAME + place as u16 * CELL, width: CELL - 1, ..row }.intersection(row)
+fn cell_area(block: &Block, row: Rect, place: usize) -> Rect {
+    let cell = cell_width(block);
+    Rect { x: row.x + NAME + place as u16 * cell, width: cell - 1, ..row }.intersection(row)
 }
 
 fn draw_head(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
     let block = &form.sheet.blocks[at];
     if block.is_scalar() {
-        canvas.text(row, &format!("{:<20}{:>10} {:>10}", "", "new", "now"), Role::Header);
+        canvas.text(row, &format!("{:<19}{:>11} {:>11}", "", "new", "now"), Role::Header);
         return;
     }
     let name = format!("{} ({})", block.argument.name, block.argument.unit);
@@ -226,10 +231,10 @@ fn draw_head(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
     let shown = columns_shown(form, at, row.width);
     canvas.text(Rect { width: NAME.min(row.width), ..row }, &name, Role::Header);
     for (place, column) in shown.clone().enumerate() {
-        canvas.aligned(cell_area(row, place), &block.columns[column], Role::Header, Align::Right);
+        canvas.aligned(cell_area(block, row, place), &block.columns[column], Role::Header, Align::Right);
     }
     let mark = if shown.end < block.columns.len() { "more ›" } else { "total" };
-    canvas.aligned(cell_area(row, shown.len()), mark, Role::Header, Align::Right);
+    canvas.aligned(cell_area(block, row, shown.len()), mark, Role::Header, Align::Right);
 }
 
 fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: Rect, focused: bool) {
@@ -243,9 +248,9 @@ fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: 
     let shown = columns_shown(form, at, row.width);
     for (place, column) in shown.clone().enumerate() {
         let own = Place { block: at, row: index, column };
-        draw_cell(form, own, canvas, cell_area(row, place), here && column == form.at.column);
+        draw_cell(form, own, canvas, cell_area(block, row, place), here && column == form.at.column);
     }
-    let after = cell_area(row, shown.len());
+    let after = cell_area(block, row, shown.len());
     if block.columns.len() > 1 {
         let sum: f64 = block.slots[index].iter().filter_map(|slot| slot.value().ok().flatten()).sum();
         canvas.aligned(after, &number(sum), Role::Dim, Align::Right);
@@ -312,11 +317,12 @@ fn is_wrong(form: &Form, block: &Block, slot: &Slot, place: Place) -> bool {
 
 fn draw_add(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect, focused: bool) {
     let here = focused && form.at_adding_row() == Some(at);
-    if let Some((block, field)) = &form.adding
-        && *block == at
+    let block = &form.sheet.blocks[at];
+    if let Some((adding, field)) = &form.adding
+        && *adding == at
     {
         canvas.text(row, "customer number", Role::Text);
-        return field.draw(canvas, cell_area(row, 0));
+        return field.draw(canvas, cell_area(block, row, 0));
     }
     let role = if here { Role::Selection } else { Role::Dim };
     canvas.text(Rect { width: NAME.min(row.width), ..row }, "+ a customer", role);
@@ -330,13 +336,13 @@ fn draw_total(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
     if many {
         for (place, column) in shown.clone().enumerate() {
             let sum: f64 = block.slots.iter().filter_map(|line| line[column].value().ok().flatten()).sum();
-            canvas.aligned(cell_area(row, place), &number(sum), Role::Dim, Align::Right);
+            canvas.aligned(cell_area(block, row, place), &number(sum), Role::Dim, Align::Right);
         }
     }
     let (place, now) = if many { (shown.len(), None) } else { (0, Some(block.total_now())) };
-    canvas.aligned(cell_area(row, place), &number(block.total()), Role::Strong, Align::Right);
+    canvas.aligned(cell_area(block, row, place), &number(block.total()), Role::Strong, Align::Right);
     if let Some(now) = now {
-        canvas.aligned(cell_area(row, 1), &number(now), Role::Dim, Align::Right);
+        canvas.aligned(cell_area(block, row, 1), &number(now), Role::Dim, Align::Right);
     }
 }
 

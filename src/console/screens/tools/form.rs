@@ -1,12 +1,13 @@
 //! A form: where the person is in a sheet, what is typed, what the call would do, what came of it.
 
-use crossterm::event::{KeyCode, KeyEvent};
+use crossterm::event::KeyEvent;
 use serde_json::Value;
 
 use super::sheet::{Place, Sheet};
 use crate::console::action::Action;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
+use crate::console::keys::Chord;
 use crate::console::widgets::Field;
 use crate::notation::dollars;
 use crate::session::{Preview, Refusal};
@@ -271,7 +272,7 @@ impl Form {
             field.key(key);
             return Vec::new();
         }
-        let begins = matches!(key.code, KeyCode::Char(letter) if letter.is_ascii_digit() || matches!(letter, '$' | '.' | '-'));
+        let begins = Chord::of(key).begins_number();
         if self.typing.is_none() && begins {
             if self.at_adding_row().is_some() {
                 self.edit();

@@ -68,6 +68,13 @@ impl Tools {
         }
     }
 
+    /// Tools whose forms hold values that were not sent.
+    pub fn unsent(&self) -> Vec<&'static str> {
+        let unsent =
+            self.forms.values().filter(|form| form.spec.kind != Kind::Read && form.sheet.is_changed());
+        unsent.map(|form| form.spec.name).collect()
+    }
+
     /// Tools that have a screen or a dialog of their own lead there.
     fn elsewhere(&self) -> Option<Effect> {
         match self.here()?.name {
@@ -118,6 +125,10 @@ impl Screen for Tools {
             _ if self.is_typing() => vec![Scope::Field, Scope::Form],
             _ => vec![Scope::Form, Scope::List],
         }
+    }
+
+    fn takes_digits(&self) -> bool {
+        self.focus == 1 && self.seen_form().is_some_and(|form| !form.sheet.blocks.is_empty())
     }
 
     fn hints(&self) -> Vec<Action> {
@@ -238,7 +249,7 @@ impl Screen for Tools {
     }
 
     fn holds_unsent_text(&self) -> bool {
-        self.forms.values().any(|form| form.spec.kind != Kind::Read && form.sheet.is_changed())
+        !self.unsent().is_empty()
     }
 }
 

@@ -1,4 +1,46 @@
-//! NovaMind console.
+//! NovaMind console: a terminal in which a person runs a simulated AI subscription company for 500 days, with exactly
+//! the information and controls that software agents get in the CEO-Bench benchmark.
+//!
+//! # The house
+//!
+//! | floor | houses | what lives there |
+//! |---|---|---|
+//! | 5 | [`cli`] | one file per subcommand; maps failures to exit codes |
+//! | 4 | [`console`], [`plain`], [`lab`] | the terminal application; the same game line by line; policies, metrics, comparison with reference figures, speed |
+//! | 3 | [`session`] | one run: open, act, query, advance, record, resume, replay, branch. The only door to a world |
+//! | 2 | [`tools`], [`database`], [`voice`] | the catalogue of tools; the observable company in SQLite and its guarded queries; words for facts |
+//! | 1 | [`world`] | the simulator: pure, deterministic, no files, no clock, no SQL, no prose |
+//!
+//! [`notation`] writes and reads numbers for all of them. Arrows point down only; houses on one floor never import each
+//! other; the upper floors use nothing of `world` but plain identifiers. `tests/tidy.rs` holds this true.
+//!
+//! * A day is a list: [`world::day::step_day`] reads as the order of the day, one line per mechanism.
+//! * Mechanisms push facts ([`world::events`]); `database` turns them into rows, `voice` some into words.
+//! * A tool is data ([`tools::Spec`]) and a pure plan. A call is planned, its line is on the disk, then it is applied,
+//!   which cannot fail: memory is never ahead of the trajectory, the trajectory never ahead of what was confirmed.
+//! * What a player may see is decided in `database` and in tool answers; hidden state leaves `world` only through
+//!   [`session::Xray`], in debug runs.
+//! * Numbers live in `configs/`; a scenario overrides some of them.
+//! * Chance is keyed, not stateful ([`world::random`]): same version, seed and actions give the same bits on any number
+//!   of threads and any machine.
+//!
+//! # A week in ten lines
+//!
+//! ```
+//! use novamind::session::{Configuration, NewRun, Session, Via};
+//! use serde_json::json;
+//!
+//! let mut run = Session::create(NewRun { seed: Some(7), ..NewRun::default() }, &Configuration::shipped())?;
+//! run.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Script)?;
+//! run.call("set_usage_quotas", &json!({"A": 60_000, "B": 250_000, "C": 1_200_000}), Via::Script)?;
+//! run.call("set_targeted_ad_spend", &json!({"targeted_spend": {"content_marketing": {"S1": 750}}}), Via::Script)?;
+//! let forecasts = run.naive_forecasts();
+//! let week = run.advance("the shop opens", &forecasts, Via::Script, &mut |_day| {})?;
+//! let rows = run.query("SELECT count(*) FROM customers")?;
+//! println!("{}\n{:?}", week.dashboard, rows.rows);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
 pub mod cli;
 pub mod console;
 pub mod database;

@@ -182,7 +182,7 @@ actions! {
     }
     Dialog {
         Confirm "confirm" "yes" "Do it."
-        Cancel "cancel" "no" "Leave it."
+        Cancel "cancel" "close" "Leave it."
         ScrollUp "scroll-up" "up" "Scroll up."
         ScrollDown "scroll-down" "down" "Scroll down."
     }

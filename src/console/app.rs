@@ -233,6 +233,11 @@ impl App {
         }
     }
 
+    /// Folder of the runs.
+    pub fn runs_folder(&self) -> &std::path::Path {
+        &self.runs
+    }
+
     /// Opens or creates a run instead of showing the menu.
     pub fn start_with(&mut self, effect: Effect) {
         self.follow(vec![effect]);

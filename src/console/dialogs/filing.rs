@@ -13,6 +13,7 @@ use crate::console::effect::Effect;
 use crate::console::screens::{Look, overview};
 use crate::console::text::{number, short_dollars, wrapped};
 use crate::console::theme::Role;
+use crate::console::widgets::chart::zero_if_near;
 use crate::console::widgets::field::parse_number;
 use crate::console::widgets::{Axis, Editor, Field, Line, chart};
 use crate::notation::{dollars, grouped, percent};
@@ -463,12 +464,13 @@ pub fn draw_fan(canvas: &mut Canvas<'_>, area: Rect, company: &Company, filed: u
         std::iter::once(first).chain(later).collect::<Vec<_>>()
     };
     let lines = [
-        Line::through("", through(&|forecast| forecast.lower), Role::Fan),
-        Line::through("95 % of your forecast", through(&|forecast| forecast.upper), Role::Fan),
-        Line::through("", through(&|forecast| forecast.point), Role::Series(1)),
-        Line::of("cash", &company.cash_by_day, Role::Series(0)),
+        Line::through(through(&|forecast| forecast.lower), Role::Fan),
+        Line::through(through(&|forecast| forecast.upper), Role::Fan),
+        Line::through(through(&|forecast| forecast.point), Role::Series(1)),
+        Line::of(&company.cash_by_day, Role::Series(0)),
     ];
     let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
-    let y = Axis { write: &short_dollars, holds: &[0.0] };
+    let all = company.cash_by_day.iter().copied().chain(forecasts.iter().map(|forecast| forecast.lower));
+    let y = Axis { write: &short_dollars, holds: zero_if_near(all) };
     chart(canvas, area, &lines, &x, &y);
 }

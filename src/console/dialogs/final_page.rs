@@ -72,14 +72,14 @@ impl Dialog for FinalPage {
         lines.push(TextLine::default());
         lines.extend(facts(company).into_iter().map(|(name, value)| {
             TextLine::from(vec![
-                canvas.span(format!("{name:<34}"), Role::Dim),
+                canvas.span(format!("{name:<36}"), Role::Dim),
                 canvas.span(value, Role::Text),
             ])
         }));
         canvas.lines(inside, &lines);
         let used = lines.len() as u16 + 1;
         let left = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
-        let cash = [Line::of("cash", &company.cash_by_day, Role::Series(0))];
+        let cash = [Line::of(&company.cash_by_day, Role::Series(0))];
         let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
         chart(canvas, left, &cash, &x, &Axis { write: &short_dollars, holds: &[0.0] });
         canvas.pane_keys(own, &look.hints(&[Action::ToMenu, Action::StayInRun]));

@@ -11,7 +11,7 @@ use crate::console::effect::Effect;
 use crate::console::screens::{Look, overview};
 use crate::console::text::{arrow, wrapped};
 use crate::console::theme::Role;
-use crate::notation::{dollars, grouped, percent, signed_dollars};
+use crate::notation::{dollars, grouped, percent};
 use crate::session::{Week, WeekFigures};
 
 /// The report of a week.
@@ -109,7 +109,7 @@ impl Dialog for Report {
         lines.push(Line::from(vec![
             canvas.span(format!("Cash {}  ", dollars(week.cash)), Role::Strong),
             canvas.span(
-                format!("{} {}", if change >= 0.0 { "▲" } else { "▼" }, signed_dollars(change)),
+                arrow(change, &dollars(change.abs())),
                 if change >= 0.0 { Role::Good } else { Role::Bad },
             ),
             canvas.span(outcome_of_forecast(company), Role::Dim),

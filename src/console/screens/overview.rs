@@ -316,8 +316,11 @@ fn needs_height(company: &Company, area: Rect) -> u16 {
 }
 
 fn draw_cash(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
-    let now = dollars(company.seen.cash);
-    let inside = canvas.pane(area, "Cash", &now, false);
+    let note = match company.last_forecasts() {
+        Some((day, _)) => format!("{}, and the forecast of day {day}", dollars(company.seen.cash)),
+        None => dollars(company.seen.cash),
+    };
+    let inside = canvas.pane(area, "Cash", &note, false);
     canvas.click(area, Click::Do(Action::Cash));
     match company.last_forecasts() {
         Some((filed, forecasts)) => {
@@ -327,7 +330,7 @@ fn draw_cash(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
             draw_fan(canvas, inside, company, filed, &near);
         }
         None => {
-            let lines = [Line::of("", &company.cash_by_day, Role::Series(0))];
+            let lines = [Line::of(&company.cash_by_day, Role::Series(0))];
             let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
             chart(canvas, inside, &lines, &x, &Axis { write: &short_dollars, holds: &[] });
         }

@@ -3,16 +3,14 @@
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::symbols::Marker;
-use ratatui::text::{Line as TextLine, Span};
+use ratatui::text::Span;
 use ratatui::widgets::{Axis as ChartAxis, Chart, Dataset, GraphType, Widget};
 
 use crate::console::canvas::Canvas;
 use crate::console::theme::Role;
 
 /// A line of a chart.
-pub struct Line<'a> {
-    /// Name in the legend; empty for none.
-    pub name: &'a str,
+pub struct Line {
     /// Points; those that are no numbers are left out.
     pub points: Vec<(f64, f64)>,
     /// Meaning.
@@ -21,16 +19,16 @@ pub struct Line<'a> {
     pub scattered: bool,
 }
 
-impl<'a> Line<'a> {
+impl Line {
     /// A line of values at 0, 1, 2, …
-    pub fn of(name: &'a str, values: &[f64], role: Role) -> Line<'a> {
+    pub fn of(values: &[f64], role: Role) -> Line {
         let points = values.iter().enumerate().map(|(at, value)| (at as f64, *value)).collect();
-        Line { name, points, role, scattered: false }
+        Line { points, role, scattered: false }
     }
 
     /// A line through points.
-    pub fn through(name: &'a str, points: Vec<(f64, f64)>, role: Role) -> Line<'a> {
-        Line { name, points, role, scattered: false }
+    pub fn through(points: Vec<(f64, f64)>, role: Role) -> Line {
+        Line { points, role, scattered: false }
     }
 }
 
@@ -43,7 +41,7 @@ pub struct Axis<'a> {
 }
 
 /// Draws lines; says so when there is nothing to draw yet.
-pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line<'_>], x: &Axis<'_>, y: &Axis<'_>) {
+pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], x: &Axis<'_>, y: &Axis<'_>) {
     if area.width < 16 || area.height < 4 {
         return;
     }
@@ -76,22 +74,25 @@ pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line<'_>], x: &Axis<'
     let drawn = Chart::new(datasets)
         .x_axis(ChartAxis::default().bounds(x_bounds).labels(labels(x, x_bounds, columns)).style(dim))
         .y_axis(ChartAxis::default().bounds(y_bounds).labels(labels(y, y_bounds, rows)).style(dim))
-        .legend_position(Some(ratatui::widgets::LegendPosition::TopLeft))
-        .hidden_legend_constraints((
-            ratatui::layout::Constraint::Percentage(60),
-            ratatui::layout::Constraint::Percentage(60),
-        ))
+        // Names stand in the title of the pane: a legend would cover the curves.
+        .legend_position(None)
         .style(Style::new());
     drawn.render(area.intersection(canvas.buffer.area), canvas.buffer);
 }
 
-fn dataset<'a>(canvas: &Canvas<'_>, line: &'a Line<'_>) -> Dataset<'a> {
-    let data = Dataset::default()
+fn dataset<'a>(canvas: &Canvas<'_>, line: &'a Line) -> Dataset<'a> {
+    Dataset::default()
         .data(&line.points)
         .marker(if line.scattered { Marker::Dot } else { Marker::Braille })
         .graph_type(if line.scattered { GraphType::Scatter } else { GraphType::Line })
-        .style(canvas.style(line.role));
-    if line.name.is_empty() { data } else { data.name(TextLine::from(line.name)) }
+        .style(canvas.style(line.role))
+}
+
+/// Zero, where a curve comes near it: far above it, zero would only flatten the curve.
+pub fn zero_if_near(values: impl Iterator<Item = f64> + Clone) -> &'static [f64] {
+    let most = values.clone().fold(f64::NEG_INFINITY, f64::max);
+    let least = values.fold(f64::INFINITY, f64::min);
+    if least < 0.5 * most { &[0.0] } else { &[] }
 }
 
 /// Bounds widened to numbers that read well.

@@ -1,0 +1,6 @@
+//! The console as a person meets it: stories, sizes, random keys.
+
+mod harness;
+mod monkey;
+mod sizes;
+mod stories;

@@ -1,0 +1,147 @@
+//! Whole stories.
+
+use novamind::session::{list_runs, verify};
+
+use super::harness::Console;
+
+/// The forms that open a shop.
+fn open_shop(console: &mut Console) {
+    console.press("8 enter '12' enter '25' enter '55' enter ctrl-s esc");
+    console.press("down enter '1' enter '2' enter '4' enter ctrl-s esc");
+    console.press("down enter '60k' enter '250k' enter '1.2M' enter ctrl-s esc");
+    console.press("down down enter '200' enter '200' enter ctrl-s esc");
+    console.press("down enter down down down '750' enter ctrl-s esc");
+}
+
+#[test]
+fn a_newcomer_plays_two_weeks_leaves_and_comes_back() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::start(runs.path(), (120, 40));
+    console.shows("New run");
+    console.press("n enter");
+    console.shows("day 0/500");
+    console.shows("no plan has a price yet");
+    open_shop(&mut console);
+    console.shows("Tools ●11");
+    console.press("c");
+    for line in ["price A", "0 → 12", "quota C", "ads content_marketing S1", "0 → 750"] {
+        console.shows(line);
+    }
+    console.press("esc");
+    console.week();
+    console.shows("What changed most");
+    console.press("esc");
+    console.week();
+    console.press("esc 1");
+    console.shows("day 14/500");
+    console.press("0");
+    console.shows("test");
+    console.press("q");
+    assert_eq!(console.left, Some(0));
+    drop(console);
+    let mut console = Console::start(runs.path(), (120, 40));
+    console.shows("Continue");
+    console.shows("day 14 of 500");
+    console.press("c");
+    console.shows("day 14/500");
+    console.press("q");
+    drop(console);
+    let run = &list_runs(runs.path()).expect("a list")[0];
+    assert_eq!(verify(&runs.path().join(&run.id)).expect("an intact run").day, 14);
+}
+
+#[test]
+fn a_short_run_ends_on_the_final_page() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::start(runs.path(), (100, 30));
+    console.press("n up up up '17' down down down enter");
+    console.shows("day 0/17");
+    for _ in 0..3 {
+        console.week();
+        console.press("esc");
+    }
+    console.press("n");
+    console.shows("Day 17. You end with $998,555.");
+    console.shows("rank 5 of");
+    console.press("enter");
+    console.shows("finished");
+}
+
+#[test]
+fn a_week_is_not_filed_without_a_reason_and_four_forecasts() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (100, 30));
+    console.press("n enter enter");
+    console.shows("a rationale is required");
+    console.press("'why_not' enter enter");
+    console.shows("1 week: a number is missing here");
+    console.press("'5' tab '4' tab '9' enter ctrl-s");
+    console.shows("the point lies outside low to high");
+    console.press("esc q");
+    console.shows("that was not sent");
+    console.press("esc n enter");
+    console.shows("why_not");
+    console.press("enter f enter");
+    console.shows("What changed most");
+}
+
+#[test]
+fn what_is_set_can_be_taken_back_and_the_zero_of_the_start_cannot() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.press("8 down down down down enter '300' enter ctrl-s");
+    console.shows("set_daily_spend: done");
+    console.press("u");
+    console.shows("taken back: operations");
+    console.press("u");
+    console.shows("! ");
+    console.press("esc g enter '12' enter ctrl-s u");
+    console.shows("a price of 0 cannot be set");
+}
+
+#[test]
+fn a_purchase_asks_once_and_a_refusal_stands_at_its_cell() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.press(": 'start_res' enter '1' enter ctrl-s");
+    console.shows("cannot be taken back");
+    console.press("enter");
+    console.shows("$1,000,000");
+    console.press("ctrl-s y");
+    console.shows("start_research_project: done");
+    console.press("'1' enter");
+    console.shows("tier 1 is already running");
+    console.press("y");
+    assert_eq!(console.copied, [r#"research.start_research_project({"tier":1})"#]);
+}
+
+#[test]
+fn everything_is_found_in_the_palette() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.press(": 'ledger'");
+    console.shows("table");
+    console.press("enter");
+    console.shows("SELECT * FROM ledger LIMIT 100");
+    console.press("esc : 'prices' enter");
+    console.shows("set_prices · pricing");
+    console.press(": 'zzzz'");
+    console.shows("nothing is called like that");
+    console.press("esc ?");
+    console.shows("Keys that work here");
+}
+
+#[test]
+fn a_run_that_cannot_be_opened_is_explained_in_the_menu() {
+    let runs = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir(runs.path().join("broken")).expect("a folder");
+    std::fs::write(runs.path().join("broken/run.toml"), "seed = [").expect("written");
+    let mut console = Console::start(runs.path(), (100, 30));
+    console.shows("Runs");
+    console.press("down enter");
+    console.shows("broken cannot be read");
+    console.press("enter");
+    console.shows("run.toml");
+    console.press("esc n enter");
+    console.shows("day 0/500");
+}

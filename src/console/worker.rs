@@ -48,6 +48,8 @@ pub enum Job {
     SetMemo(String),
     /// Save and close the run.
     Close,
+    /// Save, close the run and end the thread.
+    End,
 }
 
 /// A question for the database.
@@ -132,7 +134,7 @@ impl Workers {
 
     /// Waits until everything handed over is done and the run is closed.
     pub fn finish(mut self) {
-        self.send(Job::Close);
+        self.send(Job::End);
         for desk in [&self.desks.person, &self.desks.screens] {
             let _ = desk.send(DeskJob::Leave);
         }
@@ -155,13 +157,13 @@ const BETWEEN_DAYS: Duration = Duration::from_millis(40);
 impl SessionThread {
     fn run(mut self, todo: &Receiver<Job>) {
         while let Ok(job) = todo.recv() {
-            let closing = matches!(job, Job::Close);
+            let ending = matches!(job, Job::End);
             let done = catch_unwind(AssertUnwindSafe(|| self.work(job)));
             if let Err(panic) = done {
                 self.say(News::Crashed(words_of(&*panic)));
                 return;
             }
-            if closing {
+            if ending {
                 return;
             }
         }
@@ -186,7 +188,7 @@ impl SessionThread {
                     find_run(&runs, &id).and_then(|folder| Session::open(&folder, Access::Write, true));
                 self.take(found.map_err(|error| error.to_string()));
             }
-            Job::Close => {
+            Job::Close | Job::End => {
                 let problem = self.session.as_mut().and_then(|session| session.save().err());
                 self.session = None;
                 self.say(News::Closed(problem.map(|error| error.to_string())));
@@ -262,7 +264,7 @@ impl SessionThread {
                 let kept = session.set_memo(&text);
                 Some(News::MemoKept(kept, Arc::new(Company::of(session))))
             }
-            Job::List(_) | Job::Create(_) | Job::Open(..) | Job::Close => None,
+            Job::List(_) | Job::Create(_) | Job::Open(..) | Job::Close | Job::End => None,
         }
     }
 }

@@ -80,7 +80,7 @@ fn a_week_is_not_filed_without_a_reason_and_four_forecasts() {
     console.press("esc q");
     console.shows("that was not sent");
     console.press("esc n enter");
-    console.shows("why_not");
+    console.shows("why not");
     console.press("enter f enter");
     console.shows("What changed most");
 }

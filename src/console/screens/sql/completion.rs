@@ -197,7 +197,7 @@ mod tests {
 
     #[test]
     fn tables_follow_from_and_join() {
-        assert_eq!(words("SELECT * FROM le|"), ["ledger"]);
+        assert_eq!(words("SELECT * FROM le|")[0], "ledger");
         assert!(words("SELECT * FROM customers JOIN su|").contains(&"subscriptions".to_owned()));
         assert_eq!(words("WITH weekly AS (SELECT 1) SELECT * FROM we|"), ["weekly"]);
     }

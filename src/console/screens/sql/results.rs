@@ -42,7 +42,8 @@ SELECT category, round(sum(amount)) AS dollars FROM ledger GROUP BY category ORD
 SELECT plan, count(*) AS subscribers, round(avg(effective_price), 2) AS price
 FROM subscriptions WHERE status = 'subscribed' GROUP BY plan
 
-SELECT channel, group_id, sum(leads) AS leads FROM ad_channel_leads GROUP BY 1, 2 ORDER BY 3 DESC
+SELECT channel_id, group_id, sum(leads_generated) AS leads, sum(spend) AS spend
+FROM ad_channel_leads GROUP BY 1, 2 ORDER BY leads DESC
 
 Only reading is possible. Days count from 0; money is in dollars.";
 

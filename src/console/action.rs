@@ -151,6 +151,7 @@ actions! {
         RunQuery "run-query" "run" "Run the statement."
         Complete "complete" "complete" "Take the suggested completion."
         History "history" "history" "Show earlier statements."
+        EditQuery "edit-query" "edit" "Go to the editor."
         ClearQuery "clear-query" "clear" "Empty the editor."
     }
     Result {

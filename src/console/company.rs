@@ -33,6 +33,8 @@ pub struct Company {
     pub scores: Vec<ForecastScore>,
     /// Everything that was done.
     pub journal: Vec<JournalEntry>,
+    /// Statements the database was asked, the newest last.
+    pub asked: Vec<String>,
     /// Notes of the run.
     pub memo: String,
     /// Present arguments of every tool.
@@ -62,6 +64,7 @@ impl Company {
             naive: session.naive_forecasts(),
             scores: session.forecast_scores(),
             journal: session.journal().to_vec(),
+            asked: session.asked().to_vec(),
             memo: session.memo().unwrap_or_default(),
             settings: settings.collect(),
             costs: read("get_cost_info"),

@@ -47,7 +47,9 @@ pub enum Effect {
     SetMemo(String),
     /// Put text into the clipboard.
     Copy(String),
-    /// Write a file into the folder of the run; its name and contents.
+    /// Show a text to read: its title and the text.
+    ShowText(String, String),
+    /// Write a file into the folder of the run; its name and contents. A name that is taken gets the next number.
     Write(String, Vec<u8>),
     /// Say something in the last line.
     Say(String),

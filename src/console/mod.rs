@@ -11,6 +11,7 @@ pub mod canvas;
 pub mod company;
 pub mod dialogs;
 pub mod effect;
+mod files;
 pub mod frame;
 pub mod keys;
 pub mod message;
@@ -18,7 +19,7 @@ pub mod readings;
 pub mod screens;
 mod terminal;
 #[cfg(test)]
-pub mod testing;
+mod test_kit;
 mod text;
 pub mod theme;
 pub mod widgets;
@@ -29,7 +30,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use app::{App, Order, Settings, Stage};
 use effect::Effect;
-use message::{Message, News};
+use message::Message;
 use terminal::Screen;
 use worker::{Job, Workers};
 
@@ -91,7 +92,7 @@ impl Console {
                     }
                 }
                 Order::Copy(text) => self.screen.copy(&text),
-                Order::Write(path, contents) => write_behind(path, contents, self.sender.clone()),
+                Order::Write(path, contents) => files::write_behind(path, contents, self.sender.clone()),
                 Order::ListRuns => self.workers.send(Job::List(self.runs.clone())),
                 Order::Redraw => self.screen.clear()?,
                 Order::Exit(code, text) => return Ok(Some((code, text))),
@@ -104,16 +105,6 @@ impl Console {
         terminal::remember_run(folder);
         Ok(None)
     }
-}
-
-fn write_behind(path: std::path::PathBuf, contents: Vec<u8>, news: Sender<Message>) {
-    std::thread::spawn(move || {
-        let written = match std::fs::write(&path, contents) {
-            Ok(()) => Ok(format!("written: {}", path.display())),
-            Err(error) => Err(format!("{}: {error}", path.display())),
-        };
-        let _ = news.send(Message::News(News::Written(written)));
-    });
 }
 
 /// Listens to keys and signals, each on a thread of its own; they end with the program.

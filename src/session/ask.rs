@@ -62,6 +62,7 @@ impl Session {
 
     /// Records a query that was asked elsewhere.
     pub fn note_query(&mut self, sql: &str, answer: Result<&Rows, &Refusal>, took: Duration) {
+        self.remember_query(sql);
         let rows = answer.ok();
         let fields = json!({
             "sql": sql,
@@ -71,6 +72,19 @@ impl Session {
             "took_ms": (took.as_secs_f64() * 1e6).round() / 1e3,
         });
         self.note("query", fields.as_object().cloned().unwrap_or_default());
+    }
+
+    /// The last statements the database was asked in this run, each once, the newest last.
+    pub fn asked(&self) -> &[String] {
+        &self.asked
+    }
+
+    pub(super) fn remember_query(&mut self, sql: &str) {
+        const KEPT: usize = 100;
+        self.asked.retain(|known| known != sql);
+        self.asked.push(sql.to_owned());
+        let surplus = self.asked.len().saturating_sub(KEPT);
+        self.asked.drain(..surplus);
     }
 
     fn desk(&mut self) -> Result<&Desk, Refusal> {

@@ -169,6 +169,7 @@ impl Session {
             notices: Vec::new(),
             this_week: ThisWeek { settings, undo: Vec::new(), done: Vec::new() },
             journal: Vec::new(),
+            asked: Vec::new(),
             memo_in_memory: String::new(),
             facts_hash: blake3::hash(b""),
             ended: None,

@@ -121,6 +121,8 @@ pub struct Session {
     this_week: ThisWeek,
     /// Everything that was done, in order.
     journal: Vec<JournalEntry>,
+    /// Statements the database was asked in this run, each once, the newest last.
+    asked: Vec<String>,
     /// Notes of a run without a folder.
     memo_in_memory: String,
     /// Chain of the hashes of this week's facts.

@@ -119,7 +119,12 @@ impl Session {
                 self.ended = Some(reason.ok_or("the line names no known reason")?);
                 self.commit_projection();
             }
-            // Refused calls, queries, views and memos change nothing.
+            "query" => {
+                if let Some(sql) = line.fields.get("sql").and_then(Value::as_str) {
+                    self.remember_query(sql);
+                }
+            }
+            // Refused calls, views and memos change nothing.
             _ => {}
         }
         Ok(())

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::{App, Busy, Closing, Layer, Order, Stage};
 use crate::console::dialogs::confirm::Confirm;
+use crate::console::dialogs::reader::Reader;
 use crate::console::effect::Effect;
 use crate::console::screens::ScreenId;
 use crate::console::worker::{Job, Question};
@@ -59,6 +60,9 @@ impl App {
             Effect::Copy(text) => {
                 self.say(format!("copied: {}", crate::console::canvas::fit(&text, 60)));
                 self.orders.push(Order::Copy(text));
+            }
+            Effect::ShowText(title, text) => {
+                self.layers.push(Layer::Dialog(Box::new(Reader::new(title, text))));
             }
             Effect::Write(name, contents) => self.write(&name, contents),
             Effect::Say(text) => self.say(text),

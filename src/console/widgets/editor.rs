@@ -85,6 +85,20 @@ impl Editor {
         }
     }
 
+    /// Replaces everything; the editor's own undo brings it back.
+    pub fn replace(&mut self, text: &str) {
+        self.area.select_all();
+        self.area.cut();
+        self.insert(text);
+    }
+
+    /// Moves the cursor to a row and a column, in characters.
+    pub fn move_to(&mut self, row: usize, column: usize) {
+        let number = |value: usize| u16::try_from(value).unwrap_or(u16::MAX);
+        self.area.cancel_selection();
+        self.area.move_cursor(CursorMove::Jump(number(row), number(column)));
+    }
+
     /// Removes characters before the cursor.
     pub fn remove_before(&mut self, count: usize) {
         for _ in 0..count {

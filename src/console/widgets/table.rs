@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
 use unicode_width::UnicodeWidthStr;
 
 use super::field::Field;
@@ -81,6 +82,8 @@ pub struct Table {
     filter: String,
     /// The filter while it is typed.
     typing: Option<Field>,
+    /// Single cells matter: the selected one is marked.
+    by_cell: bool,
 }
 
 impl Table {
@@ -89,6 +92,11 @@ impl Table {
         let mut table = Table { columns, ..Table::default() };
         table.measure();
         table
+    }
+
+    /// The same, with the selected cell marked in its row.
+    pub fn by_cell(self) -> Table {
+        Table { by_cell: true, ..self }
     }
 
     /// Replaces columns and rows, keeping place, order and filter where they still make sense.
@@ -289,6 +297,10 @@ impl Table {
             let place = Rect { x: whole.x + x, width: *width, ..whole };
             let text = fit(&cell.text, *width as usize);
             canvas.aligned(place, &text, over.unwrap_or(cell.role), self.columns[*at].align);
+            if self.by_cell && selected == Some(true) && *at == self.column {
+                let mark = Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED);
+                canvas.buffer.set_style(place.intersection(canvas.buffer.area), mark);
+            }
         }
     }
 

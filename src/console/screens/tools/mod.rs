@@ -259,7 +259,7 @@ mod tests {
 
     use super::*;
     use crate::console::keys::{Chord, Keys};
-    use crate::console::testing::company;
+    use crate::console::test_kit::company;
 
     /// Types into the form of a tool; words are keys, the rest is typed letter by letter.
     fn typed(tool: &str, keys: &[&str]) -> (Tools, Vec<Effect>) {

@@ -298,7 +298,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::console::testing::company;
+    use crate::console::test_kit::company;
     use crate::tools::find;
 
     fn sheet(tool: &str) -> Sheet {

@@ -1,0 +1,63 @@
+//! Files that the console writes: never over one that is there.
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::Sender;
+
+use super::message::{Message, News};
+
+/// Writes a file on a thread of its own and reports where it is.
+pub fn write_behind(path: PathBuf, contents: Vec<u8>, news: Sender<Message>) {
+    std::thread::spawn(move || {
+        let written = match write_beside(&path, &contents) {
+            Ok(path) => Ok(format!("written: {}", path.display())),
+            Err(error) => Err(format!("{}: {error}", path.display())),
+        };
+        let _ = news.send(Message::News(News::Written(written)));
+    });
+}
+
+/// Writes a new file; if the name is taken, its number is raised until it is free.
+///
+/// # Errors
+/// The file cannot be written.
+fn write_beside(path: &Path, contents: &[u8]) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    loop {
+        match File::options().write(true).create_new(true).open(&path) {
+            Ok(mut file) => return file.write_all(contents).map(|()| path),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => path = next_name(&path),
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// `query-0007.csv` after `query-0006.csv`, `note-0002.txt` after `note.txt`.
+fn next_name(path: &Path) -> PathBuf {
+    let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+    let numbered = stem.rsplit_once('-').and_then(|(name, number)| Some((name, number.parse::<u32>().ok()?)));
+    let (name, number) = numbered.unwrap_or((stem.as_str(), 1));
+    let next = format!("{name}-{:04}", number.saturating_add(1));
+    let extension = path.extension().map_or(String::new(), |own| format!(".{}", own.to_string_lossy()));
+    path.with_file_name(next + &extension)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_overwritten() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("query-0001.csv");
+        for (number, text) in [(1, "a"), (2, "b"), (3, "c")] {
+            let written = write_beside(&path, text.as_bytes()).expect("written");
+            assert_eq!(written, folder.path().join(format!("query-{number:04}.csv")));
+            assert_eq!(std::fs::read_to_string(written).expect("text"), text);
+        }
+        assert_eq!(next_name(Path::new("/x/note.txt")), Path::new("/x/note-0002.txt"));
+        assert_eq!(next_name(Path::new("/x/my-note")), Path::new("/x/my-note-0002"));
+        assert!(write_beside(Path::new("/nowhere/at/all.csv"), b"").is_err());
+    }
+}

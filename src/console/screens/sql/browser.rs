@@ -1,0 +1,246 @@
+//! The tables of the database with their columns, as a tree beside the editor.
+
+use std::collections::BTreeSet;
+
+use ratatui::layout::Rect;
+
+use crate::console::action::Action;
+use crate::console::canvas::{Align, Canvas, Click, rows_of};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::Field;
+use crate::console::widgets::table::first_row;
+use crate::database::{Column, Table, tables};
+
+/// The tree and where the person is in it.
+#[derive(Debug, Default)]
+pub struct Browser {
+    open: BTreeSet<usize>,
+    selected: usize,
+    filter: String,
+    typing: Option<Field>,
+}
+
+/// A row of the tree: a table, or one of its columns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Entry {
+    table: usize,
+    column: Option<usize>,
+}
+
+impl Entry {
+    /// The table.
+    pub fn table(self) -> &'static Table {
+        &tables()[self.table]
+    }
+
+    /// The column, if it is one.
+    pub fn column(self) -> Option<&'static Column> {
+        self.column.map(|at| &self.table().columns[at])
+    }
+
+    /// Name of what it is.
+    pub fn name(self) -> &'static str {
+        self.column().map_or(&self.table().name, |column| &column.name)
+    }
+}
+
+impl Browser {
+    /// Rows as shown.
+    fn entries(&self) -> Vec<Entry> {
+        let wanted = self.filter.to_lowercase();
+        let holds = |name: &str| wanted.is_empty() || name.to_lowercase().contains(&wanted);
+        let mut entries = Vec::new();
+        for (at, table) in tables().iter().enumerate() {
+            let found = |column: usize| !wanted.is_empty() && holds(&table.columns[column].name);
+            let columns = (0..table.columns.len()).filter(|own| self.open.contains(&at) || found(*own));
+            let columns: Vec<usize> = columns.collect();
+            if holds(&table.name) || !columns.is_empty() {
+                entries.push(Entry { table: at, column: None });
+                entries.extend(columns.into_iter().map(|own| Entry { table: at, column: Some(own) }));
+            }
+        }
+        entries
+    }
+
+    /// What is selected.
+    pub fn selected(&self) -> Option<Entry> {
+        self.entries().get(self.selected).copied()
+    }
+
+    /// Selects a row as shown; whether it was selected before.
+    pub fn select(&mut self, row: usize) -> bool {
+        let again = self.selected == row;
+        self.selected = row.min(self.entries().len().saturating_sub(1));
+        again
+    }
+
+    /// Whether a filter is being typed.
+    pub fn is_typing(&self) -> bool {
+        self.typing.is_some()
+    }
+
+    /// The field of the filter.
+    pub fn typing(&mut self) -> Option<&mut Field> {
+        self.typing.as_mut()
+    }
+
+    /// Applies the filter as far as it is typed.
+    pub fn typed(&mut self) {
+        if let Some(field) = &self.typing {
+            self.filter = field.text().to_owned();
+            self.stay_inside();
+        }
+    }
+
+    fn stay_inside(&mut self) {
+        self.selected = self.selected.min(self.entries().len().saturating_sub(1));
+    }
+
+    fn fold(&mut self, open: bool) {
+        let Some(entry) = self.selected() else { return };
+        if open {
+            self.open.insert(entry.table);
+        } else {
+            self.open.remove(&entry.table);
+            let head = Entry { table: entry.table, column: None };
+            self.selected = self.entries().iter().position(|own| *own == head).unwrap_or(0);
+        }
+    }
+
+    /// Walks, opens, closes and filters; false if it can do nothing with the action.
+    pub fn act(&mut self, action: Action, page: u16) -> bool {
+        let last = self.entries().len().saturating_sub(1);
+        match action {
+            Action::Up => self.selected = self.selected.saturating_sub(1),
+            Action::Down => self.selected = (self.selected + 1).min(last),
+            Action::PageUp => self.selected = self.selected.saturating_sub(page.max(1) as usize),
+            Action::PageDown => self.selected = (self.selected + page.max(1) as usize).min(last),
+            Action::First => self.selected = 0,
+            Action::Last => self.selected = last,
+            Action::Left => self.fold(false),
+            Action::Right => self.fold(true),
+            Action::Filter => self.typing = Some(Field::of(self.filter.clone())),
+            Action::Commit | Action::CommitDown | Action::CommitNext | Action::CommitPrevious => {
+                self.typing = None;
+            }
+            Action::Discard | Action::Close if self.typing.is_some() || !self.filter.is_empty() => {
+                self.typing = None;
+                self.filter.clear();
+                self.stay_inside();
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// Draws the tree, and below it what the selected row means.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, pane: usize) {
+        canvas.click(area, Click::Pane(pane));
+        let entries = self.entries();
+        let note = if self.filter.is_empty() { String::new() } else { format!("\"{}\"", self.filter) };
+        let inside = canvas.pane(area, "Tables", &note, focused);
+        if inside.is_empty() {
+            return;
+        }
+        let words = if focused { self.explanation(inside.width as usize) } else { Vec::new() };
+        let below = (words.len() as u16).min(inside.height / 3);
+        let filter_row = u16::from(self.typing.is_some());
+        let height = inside.height.saturating_sub(below + filter_row);
+        let tree = Rect { height, ..inside };
+        if focused {
+            canvas.page = height.max(1);
+        }
+        if entries.is_empty() {
+            canvas.text(tree, "no such name", Role::Dim);
+        }
+        let from = first_row(self.selected, height as usize, entries.len());
+        for (row, (at, entry)) in rows_of(tree).zip(entries.iter().enumerate().skip(from)) {
+            self.draw_entry(canvas, row, *entry, (at == self.selected).then_some(focused));
+            canvas.click(row, Click::Row(pane, at));
+        }
+        let under = Rect { y: tree.bottom(), height: below, ..inside };
+        for (row, line) in rows_of(under).zip(&words) {
+            canvas.text(row, line, Role::Dim);
+        }
+        if let Some(field) = &self.typing {
+            let row = Rect { y: inside.bottom() - 1, height: 1, ..inside };
+            canvas.text(row, "/", Role::Key);
+            field.draw(canvas, Rect { x: row.x + 1, width: row.width - 1, ..row });
+        }
+    }
+
+    fn draw_entry(&self, canvas: &mut Canvas<'_>, row: Rect, entry: Entry, selected: Option<bool>) {
+        let over = selected.map(|focused| if focused { Role::Selection } else { Role::SelectionIdle });
+        if let Some(role) = over {
+            canvas.clear(row, role);
+        }
+        match entry.column() {
+            None => {
+                let mark = if self.open.contains(&entry.table) { "▾" } else { "▸" };
+                canvas.text(row, &format!("{mark} {}", entry.name()), over.unwrap_or(Role::Strong));
+            }
+            Some(column) => {
+                let kind = column.kind.as_str();
+                let room = row.width.saturating_sub(kind.len() as u16 + 1);
+                canvas.text(
+                    Rect { width: room, ..row },
+                    &format!("    {}", column.name),
+                    over.unwrap_or(Role::Text),
+                );
+                if room > 12 {
+                    canvas.aligned(row, kind, over.unwrap_or(Role::Dim), Align::Right);
+                }
+            }
+        }
+    }
+
+    fn explanation(&self, width: usize) -> Vec<String> {
+        let Some(entry) = self.selected() else { return Vec::new() };
+        let mut text = match entry.column() {
+            Some(column) => column.description.clone(),
+            None => entry.table().description.clone(),
+        };
+        if let Some(column) = entry.column().filter(|column| !column.values.is_empty()) {
+            text += &format!(": {}", column.values.join(", "));
+        }
+        let mut lines = vec!["─".repeat(width)];
+        lines.extend(wrapped(&text, width));
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_unfold_and_fold() {
+        let mut browser = Browser::default();
+        assert_eq!(browser.entries().len(), 19);
+        browser.act(Action::Right, 5);
+        assert_eq!(browser.entries().len(), 19 + tables()[0].columns.len());
+        browser.act(Action::Down, 5);
+        assert_eq!(browser.selected().map(Entry::name), Some("customer_id"));
+        browser.act(Action::Left, 5);
+        assert_eq!((browser.entries().len(), browser.selected().map(Entry::name)), (19, Some("customers")));
+    }
+
+    #[test]
+    fn a_filter_finds_columns_in_folded_tables() {
+        let mut browser = Browser::default();
+        browser.act(Action::Last, 5);
+        browser.act(Action::Filter, 5);
+        browser.typing().expect("a field").insert("amount");
+        browser.typed();
+        let names: Vec<&str> = browser.entries().into_iter().map(Entry::name).collect();
+        assert!(names.contains(&"ledger") && names.contains(&"amount"), "{names:?}");
+        assert!(browser.selected().is_some());
+        browser.act(Action::Discard, 5);
+        assert_eq!(browser.entries().len(), 19);
+        browser.filter = "zzz".to_owned();
+        browser.stay_inside();
+        assert_eq!(browser.selected(), None);
+        assert!(browser.act(Action::Right, 5));
+    }
+}

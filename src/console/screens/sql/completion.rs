@@ -1,0 +1,221 @@
+//! What could be typed next: columns of the tables that a statement names, tables, keywords, functions.
+
+use super::lexer::{FUNCTIONS, KEYWORDS, Kind, Token, is_word, statement_at, tokens};
+use crate::database::catalogue::{Column, Table};
+use crate::database::{table, tables};
+
+/// A word that could be meant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Candidate {
+    /// What is put in.
+    pub word: String,
+    /// What it is.
+    pub what: String,
+}
+
+/// What could be meant at the cursor, and which of it is chosen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Completion {
+    /// Candidates, the likeliest first.
+    pub candidates: Vec<Candidate>,
+    /// The chosen one.
+    pub chosen: usize,
+    /// Letters of the word that are typed already.
+    pub typed: usize,
+}
+
+/// Candidates beyond these are not worth reading.
+const MOST: usize = 40;
+
+/// A table of a statement under the name it has there.
+struct Source {
+    name: String,
+    table: &'static Table,
+}
+
+/// What could be meant at a place of a text, given in bytes; nothing for a word of fewer letters than `least`, except
+/// right after a point.
+pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
+    let (range, ..) = statement_at(sql, place);
+    let start = range.start.min(place);
+    let statement = &sql[start..range.end.max(place)];
+    let place = place - start;
+    let pieces = tokens(statement);
+    let inside = |token: &&Token| token.place.start < place && place <= token.place.end;
+    let here = pieces.iter().find(inside);
+    let open_comment = |token: &Token| token.kind == Kind::Comment;
+    if here.is_some_and(|token| matches!(token.kind, Kind::Text | Kind::Number) || open_comment(token)) {
+        return None;
+    }
+    let before = &statement[..place];
+    let word_start = before
+        .char_indices()
+        .rev()
+        .take_while(|(_, letter)| is_word(*letter))
+        .last()
+        .map_or(place, |(at, _)| at);
+    let word = &before[word_start..];
+    let sources = sources(statement, &pieces);
+    let found = match before[..word_start].strip_suffix('.') {
+        Some(rest) => {
+            let from = rest.rfind(|letter| !is_word(letter)).map_or(0, |at| at + 1);
+            of_source(&rest[from..], &sources)?
+        }
+        None if word.chars().count() < least.max(1) => return None,
+        None => of_everything(statement, &pieces, word_start, &sources),
+    };
+    let candidates = matching(found, word);
+    let finished = candidates.first().is_some_and(|first| first.word.trim_end_matches('(') == word);
+    (!candidates.is_empty() && !finished).then(|| Completion {
+        candidates,
+        chosen: 0,
+        typed: word.chars().count(),
+    })
+}
+
+fn of_column(table: &Table, column: &Column) -> Candidate {
+    Candidate { word: column.name.clone(), what: format!("{} {}", table.name, column.kind) }
+}
+
+fn of_table(table: &Table) -> Candidate {
+    Candidate { word: table.name.clone(), what: "table".to_owned() }
+}
+
+/// Columns of the table that has a name in the statement, or in the database.
+fn of_source(name: &str, sources: &[Source]) -> Option<Vec<Candidate>> {
+    let own = sources.iter().find(|source| source.name.eq_ignore_ascii_case(name)).map(|source| source.table);
+    let meant = own.or_else(|| table(name))?;
+    Some(meant.columns.iter().map(|column| of_column(meant, column)).collect())
+}
+
+/// Everything that a word without a point before it can be.
+fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[Source]) -> Vec<Candidate> {
+    let said = |token: &&Token| token.kind != Kind::Comment && token.place.end <= word_start;
+    let last = pieces.iter().rev().find(said).map(|token| sql[token.place.clone()].to_uppercase());
+    let wants_table = last.is_some_and(|word| word == "FROM" || word == "JOIN");
+    let names = own_names(sql, pieces)
+        .into_iter()
+        .map(|word| Candidate { word, what: "of this statement".to_owned() });
+    let all_tables = tables().iter().map(of_table);
+    if wants_table {
+        return names.chain(all_tables).collect();
+    }
+    let columns_of = |table: &'static Table| table.columns.iter().map(move |column| of_column(table, column));
+    let near = sources.iter().flat_map(|source| columns_of(source.table));
+    let far = tables().iter().filter(|_| sources.is_empty()).flat_map(columns_of);
+    let small = writes_small(sql, pieces);
+    let keyword = |word: &&str| Candidate {
+        word: if small { word.to_lowercase() } else { (*word).to_owned() },
+        what: "keyword".to_owned(),
+    };
+    let function = |word: &&str| Candidate { word: format!("{word}("), what: "function".to_owned() };
+    near.chain(names)
+        .chain(KEYWORDS.iter().map(|word| keyword(&word)))
+        .chain(FUNCTIONS.iter().map(|word| function(&word)))
+        .chain(all_tables)
+        .chain(far)
+        .collect()
+}
+
+/// Whether the person writes keywords in small letters.
+fn writes_small(sql: &str, pieces: &[Token]) -> bool {
+    let mut keywords = pieces.iter().filter(|token| token.kind == Kind::Keyword);
+    keywords.any(|token| sql[token.place.clone()].chars().all(char::is_lowercase))
+}
+
+/// Those that begin with the word, then those of which a later part does (`source` finds `acquisition_source`).
+fn matching(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
+    let wanted = word.to_lowercase();
+    let begins = |candidate: &Candidate| candidate.word.to_lowercase().starts_with(&wanted);
+    let part = |candidate: &Candidate| {
+        wanted.len() > 1 && candidate.word.to_lowercase().contains(&format!("_{wanted}"))
+    };
+    let (first, rest): (Vec<_>, Vec<_>) = found.into_iter().partition(begins);
+    let mut kept: Vec<Candidate> = Vec::new();
+    for candidate in first.into_iter().chain(rest.into_iter().filter(part)) {
+        if kept.len() < MOST && !kept.iter().any(|other| other.word == candidate.word) {
+            kept.push(candidate);
+        }
+    }
+    kept
+}
+
+/// Tables that a statement names, each with its alias if it has one.
+fn sources(sql: &str, pieces: &[Token]) -> Vec<Source> {
+    let text = |at: usize| pieces.get(at).map_or("", |token| &sql[token.place.clone()]);
+    let is_name = |at: usize| pieces.get(at).is_some_and(|token| token.kind == Kind::Name);
+    let mut found = Vec::new();
+    for at in (0..pieces.len()).filter(|at| is_name(*at)) {
+        let Some(table) = table(text(at).trim_matches(['"', '`', '[', ']'])) else { continue };
+        let alias = match text(at + 1).eq_ignore_ascii_case("as") {
+            true => at + 2,
+            false => at + 1,
+        };
+        // Without AS a second table name cannot be told from a forgotten comma.
+        let name = if is_name(alias) { text(alias) } else { table.name.as_str() };
+        found.push(Source { name: name.to_owned(), table });
+    }
+    found
+}
+
+/// Names of common table expressions: a name before `AS (`.
+fn own_names(sql: &str, pieces: &[Token]) -> Vec<String> {
+    let text = |token: &Token| sql[token.place.clone()].to_owned();
+    let names = pieces.windows(3).filter(|three| {
+        three[0].kind == Kind::Name && text(&three[1]).eq_ignore_ascii_case("as") && text(&three[2]) == "("
+    });
+    names.map(|three| text(&three[0])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Words offered where `|` stands.
+    fn words(marked: &str) -> Vec<String> {
+        let place = marked.find('|').expect("a mark");
+        let sql = marked.replace('|', "");
+        let found = complete(&sql, place, 2);
+        found.map_or_else(Vec::new, |all| all.candidates.into_iter().map(|one| one.word).collect())
+    }
+
+    #[test]
+    fn columns_of_the_named_tables_come_first() {
+        assert_eq!(words("SELECT cust| FROM ledger JOIN customers")[..2], ["customer_id", "customer_type"]);
+        assert_eq!(words("SELECT am| FROM ledger")[0], "amount");
+        assert_eq!(words("SELECT sour| FROM customers")[0], "acquisition_source");
+    }
+
+    #[test]
+    fn an_alias_limits_the_columns_to_its_table() {
+        let all = words("SELECT s.| FROM subscriptions s JOIN customers AS c");
+        assert_eq!(all.len(), table("subscriptions").expect("a table").columns.len());
+        assert_eq!(words("SELECT c.em| FROM subscriptions s JOIN customers AS c"), ["email"]);
+        assert_eq!(words("SELECT customers.em|"), ["email"]);
+        assert!(words("SELECT x.| FROM customers c").is_empty());
+    }
+
+    #[test]
+    fn tables_follow_from_and_join() {
+        assert_eq!(words("SELECT * FROM le|")[0], "ledger");
+        assert!(words("SELECT * FROM customers JOIN su|").contains(&"subscriptions".to_owned()));
+        assert_eq!(words("WITH weekly AS (SELECT 1) SELECT * FROM we|"), ["weekly"]);
+    }
+
+    #[test]
+    fn keywords_follow_the_habit_of_the_person() {
+        assert_eq!(words("sel|"), ["SELECT"]);
+        assert!(words("select 1 ord|").contains(&"order".to_owned()));
+        assert!(words("SELECT 1 ord|").contains(&"ORDER".to_owned()));
+    }
+
+    #[test]
+    fn nothing_is_offered_inside_texts_and_comments_or_for_finished_words() {
+        for marked in
+            ["'sel|", "-- sel|", "/* sel|", "SELECT|", "SELECT 12|", "s|", "|", "SELECT * FROM ledger|"]
+        {
+            assert!(words(marked).is_empty(), "{marked}");
+        }
+        assert!(complete("s", 1, 1).is_some());
+    }
+}

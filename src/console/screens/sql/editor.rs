@@ -1,0 +1,329 @@
+//! The editor of statements: colours, completion while typing, the place of an error.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+use unicode_width::UnicodeWidthStr;
+
+use super::completion::{Completion, complete};
+use super::lexer::{is_word, statement_at, tokens};
+use crate::console::canvas::{Align, Canvas, rows_of};
+use crate::console::theme::Role;
+use crate::console::widgets::Editor;
+use crate::console::widgets::table::first_row;
+
+/// Letters after which words are offered while typing.
+const LEAST_TYPED: usize = 2;
+/// Candidates shown at once.
+const SHOWN: u16 = 8;
+
+/// A statement to ask, and where it begins in the text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Statement {
+    /// Text.
+    pub sql: String,
+    /// First byte in the editor.
+    pub from: usize,
+}
+
+/// The editor.
+pub struct QueryEditor {
+    text: Editor,
+    completion: Option<Completion>,
+    /// Where an error is, in bytes.
+    mark: Option<usize>,
+}
+
+impl Default for QueryEditor {
+    fn default() -> Self {
+        QueryEditor { text: Editor::default().unwrapped(), completion: None, mark: None }
+    }
+}
+
+impl QueryEditor {
+    /// What it holds.
+    pub fn text(&self) -> String {
+        self.text.text()
+    }
+
+    /// Whether it holds nothing but blanks.
+    pub fn is_blank(&self) -> bool {
+        self.text.is_blank()
+    }
+
+    /// Replaces what it holds.
+    pub fn replace(&mut self, sql: &str) {
+        self.text.replace(sql);
+        self.changed();
+    }
+
+    fn changed(&mut self) {
+        (self.completion, self.mark) = (None, None);
+    }
+
+    /// Bytes before the cursor.
+    fn place(&self) -> usize {
+        let (row, column) = self.text.cursor();
+        let lines = self.text.lines();
+        let above: usize = lines.iter().take(row).map(|line| line.len() + 1).sum();
+        let before = lines.get(row).map_or(0, |line| line.chars().take(column).map(char::len_utf8).sum());
+        above + before
+    }
+
+    /// The statement at the cursor, if it says anything.
+    pub fn statement(&self) -> Option<Statement> {
+        let text = self.text();
+        let (range, ..) = statement_at(&text, self.place());
+        let whole = &text[range.clone()];
+        let from = range.start + (whole.len() - whole.trim_start().len());
+        let sql = whole.trim().to_owned();
+        (!sql.is_empty()).then_some(Statement { sql, from })
+    }
+
+    /// Number of the statement at the cursor, and of all.
+    pub fn count(&self) -> (usize, usize) {
+        let (_, number, count) = statement_at(&self.text(), self.place());
+        (number, count)
+    }
+
+    /// Marks a place, given in bytes, and goes there.
+    pub fn mark(&mut self, place: usize) {
+        let text = self.text();
+        let place = (0..=place.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
+        let before = &text[..place];
+        let row = before.matches('\n').count();
+        let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count());
+        self.text.move_to(row, column);
+        self.completion = None;
+        self.mark = Some(place);
+    }
+
+    /// Takes a key.
+    pub fn key(&mut self, key: &KeyEvent) {
+        if let Some(completion) = &mut self.completion {
+            let last = completion.candidates.len() - 1;
+            match key.code {
+                KeyCode::Up => return completion.chosen = completion.chosen.checked_sub(1).unwrap_or(last),
+                KeyCode::Down => {
+                    return completion.chosen =
+                        if completion.chosen == last { 0 } else { completion.chosen + 1 };
+                }
+                _ => {}
+            }
+        }
+        let before = self.text.cursor();
+        let count = self.text.lines().len();
+        self.text.key(key);
+        let types = match key.code {
+            KeyCode::Char(letter) => is_word(letter) || letter == '.',
+            // Only within a word: going back over a line must not open anything.
+            KeyCode::Backspace => self.completion.is_some(),
+            _ => false,
+        };
+        let moved_only = matches!(
+            key.code,
+            KeyCode::Left | KeyCode::Right | KeyCode::Up | KeyCode::Down | KeyCode::Home | KeyCode::End
+        );
+        if !moved_only && (before != self.text.cursor() || count != self.text.lines().len()) {
+            self.mark = None;
+        }
+        self.completion = if types { complete(&self.text(), self.place(), LEAST_TYPED) } else { None };
+    }
+
+    /// Takes pasted text.
+    pub fn paste(&mut self, text: &str) {
+        self.text.insert(text);
+        self.changed();
+    }
+
+    /// Puts the chosen candidate in, or offers some, or indents.
+    pub fn complete(&mut self) {
+        match self.completion.take().or_else(|| complete(&self.text(), self.place(), 1)) {
+            Some(completion) => {
+                let chosen = &completion.candidates[completion.chosen];
+                self.text.remove_before(completion.typed);
+                self.text.insert(&chosen.word);
+            }
+            None => {
+                let column = self.text.cursor().1;
+                self.text.insert(&" ".repeat(4 - column % 4));
+            }
+        }
+        self.changed();
+    }
+
+    /// Hides what is offered; whether there was something.
+    pub fn hide_completion(&mut self) -> bool {
+        self.completion.take().is_some()
+    }
+
+    /// Puts a name at the cursor, apart from what stands before it.
+    pub fn insert_name(&mut self, name: &str, after_another: bool) {
+        let text = self.text();
+        let last = text[..self.place()].chars().next_back();
+        let apart = match last {
+            Some(letter) if is_word(letter) && after_another => ", ",
+            Some(letter) if is_word(letter) || matches!(letter, ',' | ')' | '*') => " ",
+            _ => "",
+        };
+        self.text.insert(&format!("{apart}{name}"));
+        self.changed();
+    }
+
+    /// Draws the text in colours.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, editing: bool, hint: &str) {
+        self.text.draw(canvas, area, editing, hint);
+        if self.is_blank() || area.is_empty() {
+            return;
+        }
+        let text = self.text();
+        for token in tokens(&text) {
+            self.restyle(canvas, area, &text, token.place, canvas.style(token.kind.role()));
+        }
+        if let Some(mark) = self.mark {
+            let token = tokens(&text).into_iter().map(|token| token.place).find(|place| place.end > mark);
+            let place = token.unwrap_or(text.len().saturating_sub(1)..text.len());
+            let style = canvas.style(Role::Bad).add_modifier(Modifier::UNDERLINED);
+            self.restyle(canvas, area, &text, place, style);
+        }
+    }
+
+    /// Gives the cells of a piece of text a style; the text area has drawn them before.
+    fn restyle(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        text: &str,
+        place: std::ops::Range<usize>,
+        style: Style,
+    ) {
+        let (top, left) = self.text.scroll();
+        let area = area.intersection(canvas.buffer.area);
+        let Some(piece) = text.get(place.clone()) else { return };
+        let first_row = text[..place.start].matches('\n').count();
+        for (at, line) in piece.split('\n').enumerate() {
+            let row = (first_row + at) as i64 - i64::from(top);
+            let before = match at {
+                0 => text[..place.start].rsplit('\n').next().map_or(0, |line| line.width()),
+                _ => 0,
+            };
+            let from = (before as i64 - i64::from(left)).clamp(0, i64::from(area.width));
+            let to = ((before + line.width()) as i64 - i64::from(left)).clamp(0, i64::from(area.width));
+            if (0..i64::from(area.height)).contains(&row) && to > from {
+                let cells = Rect {
+                    x: area.x + from as u16,
+                    y: area.y + row as u16,
+                    width: (to - from) as u16,
+                    height: 1,
+                };
+                canvas.buffer.set_style(cells, style);
+            }
+        }
+    }
+
+    /// Draws what is offered next to the cursor, inside an area.
+    pub fn draw_completion(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let (Some(completion), Some(cursor)) = (&self.completion, canvas.cursor) else { return };
+        let area = area.intersection(canvas.buffer.area);
+        let widest = |of: fn(&super::completion::Candidate) -> &str| {
+            completion.candidates.iter().map(|one| of(one).width()).max().unwrap_or(0)
+        };
+        let width = widest(|one| &one.word) + widest(|one| &one.what) + 5;
+        let width = (width.min(area.width as usize)) as u16;
+        let rows = (completion.candidates.len() as u16).min(SHOWN);
+        let (above, below) = (cursor.y.saturating_sub(area.y), area.bottom().saturating_sub(cursor.y + 1));
+        let (y, height) = match below >= rows + 2 || below >= above {
+            true => (cursor.y + 1, (rows + 2).min(below)),
+            false => (cursor.y - (rows + 2).min(above), (rows + 2).min(above)),
+        };
+        if height < 3 || width < 8 {
+            return;
+        }
+        let x = cursor.x.saturating_sub(completion.typed as u16 + 2).max(area.x).min(area.right() - width);
+        let own = Rect { x, y, width, height };
+        canvas.clear(own, Role::Field);
+        let inside = canvas.pane(own, "", "", true);
+        let from = first_row(completion.chosen, inside.height as usize, completion.candidates.len());
+        for (row, (at, one)) in rows_of(inside).zip(completion.candidates.iter().enumerate().skip(from)) {
+            let chosen = at == completion.chosen;
+            canvas.clear(row, if chosen { Role::Selection } else { Role::Field });
+            let what_width = (one.what.width() as u16).min(row.width / 2);
+            let word = Rect { x: row.x + 1, width: row.width.saturating_sub(what_width + 3), ..row };
+            canvas.text(word, &one.word, if chosen { Role::Selection } else { Role::Field });
+            let what = Rect { x: row.right() - what_width - 1, width: what_width, ..row };
+            canvas.aligned(what, &one.what, if chosen { Role::Selection } else { Role::Dim }, Align::Right);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crossterm::event::KeyModifiers;
+
+    fn typed(text: &str) -> QueryEditor {
+        let mut editor = QueryEditor::default();
+        for letter in text.chars() {
+            editor.key(&KeyEvent::new(KeyCode::Char(letter), KeyModifiers::NONE));
+        }
+        editor
+    }
+
+    #[test]
+    fn tab_accepts_what_is_offered() {
+        let mut editor = typed("sel");
+        assert!(editor.completion.is_some());
+        editor.complete();
+        assert_eq!(editor.text(), "SELECT");
+        let mut editor = typed("SELECT * FROM led");
+        editor.complete();
+        assert_eq!(editor.text(), "SELECT * FROM ledger");
+        editor.complete();
+        assert_eq!(editor.text(), "SELECT * FROM ledger    ", "nothing to complete: indented");
+    }
+
+    #[test]
+    fn enter_is_never_stolen_and_arrows_only_while_something_is_offered() {
+        let mut editor = typed("sel");
+        editor.key(&KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE));
+        assert_eq!(editor.text(), "sel\n");
+        let mut editor = typed("SELECT\nli");
+        let offered = editor.completion.as_ref().expect("LIMIT, LIKE").candidates.len();
+        assert!(offered > 1);
+        editor.key(&KeyEvent::new(KeyCode::Up, KeyModifiers::NONE));
+        assert_eq!(editor.completion.as_ref().map(|own| own.chosen), Some(offered - 1));
+        assert!(editor.hide_completion() && !editor.hide_completion());
+        editor.key(&KeyEvent::new(KeyCode::Up, KeyModifiers::NONE));
+        assert_eq!(editor.place(), 2, "now the cursor moves");
+    }
+
+    #[test]
+    fn places_are_counted_in_bytes_and_survive_wide_letters() {
+        let mut editor = QueryEditor::default();
+        editor.replace("SELECT 'é日',\n  wrong FROM ledger");
+        editor.mark("SELECT 'é日',\n  ".len());
+        assert_eq!(editor.text.cursor(), (1, 2));
+        editor.mark(9);
+        assert_eq!(editor.text.cursor(), (0, 8), "inside a letter: its beginning");
+        editor.mark(999);
+        assert_eq!(editor.place(), editor.text().len());
+    }
+
+    #[test]
+    fn only_the_statement_at_the_cursor_is_asked() {
+        let mut editor = QueryEditor::default();
+        editor.replace("SELECT 1;\n\nSELECT 2;");
+        assert_eq!(editor.statement(), Some(Statement { sql: "SELECT 2".to_owned(), from: 11 }));
+        assert_eq!(editor.count(), (2, 2));
+        editor.replace(" \n ");
+        assert_eq!(editor.statement(), None);
+    }
+
+    #[test]
+    fn names_are_put_in_apart() {
+        let mut editor = typed("SELECT");
+        editor.insert_name("day", false);
+        editor.insert_name("amount", true);
+        assert_eq!(editor.text(), "SELECT day, amount");
+    }
+}

@@ -1,0 +1,290 @@
+//! Pieces of SQL, for colours and completion. Half-typed statements are the usual case, so nothing is an error:
+//! what does not end simply goes on to the end of the text.
+
+use std::ops::Range;
+
+use crate::console::theme::Role;
+
+/// What a piece is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A word of the language.
+    Keyword,
+    /// A name, plain or quoted.
+    Name,
+    /// A text in single quotes.
+    Text,
+    /// A number.
+    Number,
+    /// A comment.
+    Comment,
+    /// Anything else that is no blank.
+    Sign,
+}
+
+impl Kind {
+    /// How it is drawn.
+    pub fn role(self) -> Role {
+        match self {
+            Kind::Keyword => Role::Keyword,
+            Kind::Name | Kind::Sign => Role::Text,
+            Kind::Text => Role::SqlText,
+            Kind::Number => Role::Number,
+            Kind::Comment => Role::Comment,
+        }
+    }
+}
+
+/// A piece and where it stands, in bytes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Token {
+    /// What it is.
+    pub kind: Kind,
+    /// Where it stands.
+    pub place: Range<usize>,
+}
+
+/// Words of the language that are worth completing.
+pub const KEYWORDS: [&str; 66] = [
+    "SELECT",
+    "FROM",
+    "WHERE",
+    "GROUP",
+    "ORDER",
+    "BY",
+    "LIMIT",
+    "HAVING",
+    "JOIN",
+    "LEFT",
+    "INNER",
+    "CROSS",
+    "FULL",
+    "OUTER",
+    "RIGHT",
+    "NATURAL",
+    "ON",
+    "USING",
+    "AS",
+    "AND",
+    "OR",
+    "NOT",
+    "IN",
+    "IS",
+    "NULL",
+    "LIKE",
+    "GLOB",
+    "BETWEEN",
+    "EXISTS",
+    "CASE",
+    "WHEN",
+    "THEN",
+    "ELSE",
+    "END",
+    "DISTINCT",
+    "ALL",
+    "ASC",
+    "DESC",
+    "NULLS",
+    "FIRST",
+    "LAST",
+    "OFFSET",
+    "WITH",
+    "RECURSIVE",
+    "MATERIALIZED",
+    "UNION",
+    "INTERSECT",
+    "EXCEPT",
+    "VALUES",
+    "CAST",
+    "COLLATE",
+    "NOCASE",
+    "ESCAPE",
+    "OVER",
+    "PARTITION",
+    "WINDOW",
+    "ROWS",
+    "RANGE",
+    "PRECEDING",
+    "FOLLOWING",
+    "UNBOUNDED",
+    "CURRENT",
+    "ROW",
+    "FILTER",
+    "TRUE",
+    "FALSE",
+];
+
+/// Functions that are worth completing; an opening bracket follows them.
+pub const FUNCTIONS: [&str; 32] = [
+    "count",
+    "sum",
+    "avg",
+    "min",
+    "max",
+    "total",
+    "round",
+    "abs",
+    "coalesce",
+    "ifnull",
+    "nullif",
+    "iif",
+    "length",
+    "lower",
+    "upper",
+    "substr",
+    "instr",
+    "replace",
+    "trim",
+    "printf",
+    "group_concat",
+    "row_number",
+    "rank",
+    "dense_rank",
+    "ntile",
+    "lag",
+    "lead",
+    "first_value",
+    "last_value",
+    "sqrt",
+    "floor",
+    "ceil",
+];
+
+/// Whether a character belongs to a word.
+pub fn is_word(letter: char) -> bool {
+    letter.is_alphanumeric() || letter == '_'
+}
+
+/// The pieces of a text, in order; blanks between them are left out.
+pub fn tokens(sql: &str) -> Vec<Token> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    while let Some(first) = sql[at..].chars().next() {
+        let rest = &sql[at..];
+        let (kind, length) = match first {
+            blank if blank.is_whitespace() => {
+                at += blank.len_utf8();
+                continue;
+            }
+            '-' if rest.starts_with("--") => (Kind::Comment, rest.find('\n').unwrap_or(rest.len())),
+            '/' if rest.starts_with("/*") => {
+                (Kind::Comment, rest[2..].find("*/").map_or(rest.len(), |end| end + 4))
+            }
+            '\'' => (Kind::Text, quoted(rest, '\'')),
+            '"' | '`' => (Kind::Name, quoted(rest, first)),
+            '[' => (Kind::Name, rest.find(']').map_or(rest.len(), |end| end + 1)),
+            digit if digit.is_ascii_digit() => (Kind::Number, number(rest)),
+            '.' if rest[1..].starts_with(|next: char| next.is_ascii_digit()) => (Kind::Number, number(rest)),
+            letter if is_word(letter) => {
+                let end = rest.find(|next| !is_word(next)).unwrap_or(rest.len());
+                let known = KEYWORDS.iter().any(|word| word.eq_ignore_ascii_case(&rest[..end]));
+                (if known { Kind::Keyword } else { Kind::Name }, end)
+            }
+            other => (Kind::Sign, other.len_utf8()),
+        };
+        found.push(Token { kind, place: at..at + length });
+        at += length;
+    }
+    found
+}
+
+/// Length of a quoted piece; a doubled quote does not end it.
+fn quoted(rest: &str, quote: char) -> usize {
+    let mut at = 1;
+    while let Some(end) = rest[at..].find(quote) {
+        at += end + 1;
+        if !rest[at..].starts_with(quote) {
+            return at;
+        }
+        at += 1;
+    }
+    rest.len()
+}
+
+/// Length of a number: digits, a point, an exponent.
+fn number(rest: &str) -> usize {
+    let mut before = ' ';
+    let part_of = |letter: char| {
+        let exponent = matches!(before, 'e' | 'E') && matches!(letter, '+' | '-');
+        before = letter;
+        letter.is_ascii_alphanumeric() || letter == '.' || exponent
+    };
+    let mut part_of = part_of;
+    rest.find(|letter| !part_of(letter)).unwrap_or(rest.len())
+}
+
+/// The statement in which a place lies, without the semicolon that ends it; with the number of the statement and of
+/// all of them. A place behind the last semicolon belongs to the statement before it if nothing follows.
+pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
+    let pieces = tokens(sql);
+    let ends = pieces.iter().filter(|token| token.kind == Kind::Sign && &sql[token.place.clone()] == ";");
+    let mut from = 0;
+    let mut all: Vec<Range<usize>> = Vec::new();
+    for end in ends.map(|token| token.place.start).chain([sql.len()]) {
+        let says = |token: &&Token| token.kind != Kind::Comment && (from..end).contains(&token.place.start);
+        if pieces.iter().filter(says).count() > 0 {
+            all.push(from..end);
+        }
+        from = (end + 1).min(sql.len());
+    }
+    let at = all.iter().position(|range| place <= range.end).unwrap_or(all.len().saturating_sub(1));
+    match all.get(at) {
+        Some(range) => (range.clone(), at + 1, all.len()),
+        None => (0..sql.len(), 1, 1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kinds(sql: &str) -> Vec<(Kind, &str)> {
+        tokens(sql).into_iter().map(|token| (token.kind, &sql[token.place])).collect()
+    }
+
+    #[test]
+    fn pieces_are_told_apart() {
+        use Kind::{Comment, Keyword, Name, Number, Sign, Text};
+        assert_eq!(
+            kinds("select s.plan, 'it''s' -- why\nFROM \"a b\" WHERE x>=1.5e-3"),
+            [
+                (Keyword, "select"),
+                (Name, "s"),
+                (Sign, "."),
+                (Name, "plan"),
+                (Sign, ","),
+                (Text, "'it''s'"),
+                (Comment, "-- why"),
+                (Keyword, "FROM"),
+                (Name, "\"a b\""),
+                (Keyword, "WHERE"),
+                (Name, "x"),
+                (Sign, ">"),
+                (Sign, "="),
+                (Number, "1.5e-3"),
+            ]
+        );
+        assert_eq!(kinds("/* a */ .5 [x y]"), [(Comment, "/* a */"), (Number, ".5"), (Name, "[x y]")]);
+    }
+
+    #[test]
+    fn half_typed_text_is_no_error() {
+        for sql in ["'abc", "\"", "/* x", "--", "[", "'a''", "1e", ".", "/*", "é'日", "/*/"] {
+            let pieces = tokens(sql);
+            assert_eq!(pieces.last().map(|token| token.place.end), Some(sql.len()), "{sql}");
+        }
+        assert!(tokens(" \n").is_empty());
+    }
+
+    #[test]
+    fn the_statement_at_the_cursor_is_found() {
+        let sql = "SELECT 1; SELECT ';' ;\n";
+        assert_eq!(statement_at(sql, 3), (0..8, 1, 2));
+        assert_eq!(statement_at(sql, 8), (0..8, 1, 2));
+        assert_eq!(statement_at(sql, 12), (9..21, 2, 2));
+        assert_eq!(statement_at(sql, sql.len()), (9..21, 2, 2));
+        assert_eq!(statement_at("SELECT 1 -- ;\n", 2), (0..14, 1, 1));
+        assert_eq!(statement_at("", 0), (0..0, 1, 1));
+        assert_eq!(statement_at(";;", 1), (0..2, 1, 1));
+    }
+}

@@ -1,0 +1,203 @@
+//! The whole screen: typing, answers, pictures.
+
+use std::time::Duration;
+
+use super::*;
+use crate::console::company::Company;
+use crate::console::keys::Keys;
+use crate::console::test_kit::{company, picture, session, sweep};
+use crate::session::{Cell, Refusal, Rows};
+
+fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
+    let keys = Keys::shipped();
+    work(&Look { company, keys: &keys, page: 5 })
+}
+
+fn act(screen: &mut Sql, company: &Company, action: Action) -> Vec<Effect> {
+    with_look(company, |look| screen.act(action, look))
+}
+
+fn key(screen: &mut Sql, company: &Company, code: KeyCode) {
+    with_look(company, |look| screen.key(&KeyEvent::new(code, KeyModifiers::NONE), look));
+}
+
+fn write(screen: &mut Sql, company: &Company, text: &str) {
+    for letter in text.chars() {
+        key(screen, company, if letter == '\n' { KeyCode::Enter } else { KeyCode::Char(letter) });
+    }
+}
+
+fn hear(screen: &mut Sql, company: &Company, answer: Result<Rows, Refusal>) {
+    let news = News::Answered(1, answer, Duration::from_micros(12_400));
+    with_look(company, |look| screen.hear(&news, look));
+}
+
+fn three_rows() -> Rows {
+    let row = |name: &str, count: i64, price: f64| {
+        vec![Cell::Text(name.to_owned()), Cell::Integer(count), Cell::Real(price)]
+    };
+    let mut last = row("search_ads", 9, 12.5);
+    last[2] = Cell::Null;
+    Rows {
+        columns: ["acquisition_source", "subs", "price"].map(str::to_owned).to_vec(),
+        rows: vec![row("network", 28_114, 12.0), row("content_marketing", 13_836, 12.25), last],
+        ..Rows::default()
+    }
+}
+
+fn holds(lines: &[String], part: &str) -> bool {
+    lines.iter().any(|line| line.contains(part))
+}
+
+#[test]
+fn a_statement_is_asked_once_and_its_rows_are_shown() {
+    let company = company();
+    let mut screen = Sql::default();
+    assert_eq!(screen.scopes()[0], Scope::Editor);
+    let empty = act(&mut screen, &company, Action::RunQuery);
+    assert!(matches!(&empty[..], [Effect::Complain(_)]));
+    write(&mut screen, &company, "SELECT 1; \nSELECT 2");
+    let asked = act(&mut screen, &company, Action::RunQuery);
+    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql == "SELECT 2"));
+    assert!(matches!(&act(&mut screen, &company, Action::RunQuery)[..], [Effect::Complain(_)]));
+    assert!(holds(&picture(&screen, &company, 120, 37), "running … esc cancels"));
+    assert!(matches!(&act(&mut screen, &company, Action::LeaveEditor)[..], [Effect::CancelQuery]));
+    hear(&mut screen, &company, Ok(three_rows()));
+    let lines = picture(&screen, &company, 120, 37);
+    assert!(holds(&lines, "Result · 3 rows · 12 ms"), "{lines:#?}");
+    assert!(holds(&lines, "network             28,114  12.00"), "{lines:#?}");
+    assert!(holds(&lines, "search_ads               9   NULL"), "{lines:#?}");
+    assert!(holds(&lines, "▸ customers") && holds(&lines, "statement 2 of 2"));
+    let small = picture(&screen, &company, 80, 21);
+    assert!(
+        holds(&small, "content_marketing   13,836  12.25") && !holds(&small, "▸ customers"),
+        "{small:#?}"
+    );
+}
+
+#[test]
+fn results_are_copied_and_exported_in_full() {
+    let company = company();
+    let mut screen = Sql::default();
+    write(&mut screen, &company, "SELECT 1");
+    act(&mut screen, &company, Action::RunQuery);
+    hear(&mut screen, &company, Ok(three_rows()));
+    act(&mut screen, &company, Action::LeaveEditor);
+    assert_eq!(screen.scopes()[0], Scope::Result);
+    for action in [Action::Right, Action::Sort, Action::Last] {
+        act(&mut screen, &company, action);
+    }
+    let one = |effects: Vec<Effect>| effects.into_iter().next();
+    let copied = one(act(&mut screen, &company, Action::CopyRow));
+    assert!(matches!(copied, Some(Effect::Copy(text)) if text == "search_ads\t9\t"));
+    act(&mut screen, &company, Action::First);
+    let copied = one(act(&mut screen, &company, Action::CopyCell));
+    assert!(matches!(copied, Some(Effect::Copy(text)) if text == "28114"));
+    let whole = one(act(&mut screen, &company, Action::WholeCell));
+    assert!(matches!(whole, Some(Effect::ShowText(title, text)) if title == "subs" && text == "28114"));
+    let csv = one(act(&mut screen, &company, Action::ExportCsv));
+    assert!(matches!(csv, Some(Effect::Write(name, bytes)) if name == "query-0001.csv" && bytes.len() > 60));
+    let json = one(act(&mut screen, &company, Action::ExportJson));
+    assert!(
+        matches!(json, Some(Effect::Write(name, bytes)) if name == "query-0001.json" && bytes[0] == b'[')
+    );
+}
+
+#[test]
+fn errors_are_shown_and_their_place_is_marked() {
+    let company = company();
+    let mut screen = Sql::default();
+    write(&mut screen, &company, "SELECT 1;\nSELECT wrong FROM ledger");
+    act(&mut screen, &company, Action::RunQuery);
+    let refusal = Refusal::new("sql_error", "there is no column wrong; ledger has more (at character 8)");
+    hear(&mut screen, &company, Err(refusal));
+    let lines = picture(&screen, &company, 80, 21);
+    assert!(holds(&lines, "sql_error") && holds(&lines, "there is no column wrong"), "{lines:#?}");
+    write(&mut screen, &company, "X");
+    assert_eq!(screen.editor.text(), "SELECT 1;\nSELECT Xwrong FROM ledger", "the cursor is at the error");
+}
+
+#[test]
+fn a_real_error_names_the_place_that_is_marked() {
+    let mut session = session();
+    let refusal = session.query("SELECT wrong FROM ledger").expect_err("no such column");
+    assert_eq!(results::place_of(&refusal), Some(7), "{refusal}");
+    assert_eq!(results::place_of(&Refusal::new("x", "y (at character 0)")), None);
+}
+
+#[test]
+fn the_lesson_of_an_empty_result_works() {
+    let mut session = session();
+    for sql in results::examples() {
+        session.query(&sql).expect(&sql);
+    }
+}
+
+#[test]
+fn earlier_statements_are_chosen_from_a_list() {
+    let mut company = company();
+    company.asked = vec!["SELECT 'of yesterday'".to_owned()];
+    let mut screen = Sql::default();
+    write(&mut screen, &company, "SELECT 1");
+    act(&mut screen, &company, Action::RunQuery);
+    act(&mut screen, &company, Action::History);
+    assert_eq!(screen.scopes(), [Scope::List]);
+    assert!(holds(&picture(&screen, &company, 80, 21), "SELECT 'of yesterday'"));
+    act(&mut screen, &company, Action::Down);
+    act(&mut screen, &company, Action::Open);
+    assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT 'of yesterday'", EDITOR));
+}
+
+#[test]
+fn names_come_from_the_browser() {
+    let company = company();
+    let mut screen = Sql::default();
+    screen.set_focus(BROWSER);
+    act(&mut screen, &company, Action::Open);
+    assert_eq!(screen.editor.text(), "SELECT * FROM customers LIMIT 100");
+    screen.edit("SELECT");
+    screen.set_focus(BROWSER);
+    for action in [Action::Right, Action::Down, Action::Open] {
+        act(&mut screen, &company, action);
+    }
+    assert_eq!(screen.editor.text(), "SELECT customer_id");
+    assert!(holds(&picture(&screen, &company, 80, 21), "customer_type"), "shown while it is used");
+}
+
+#[test]
+fn keywords_are_coloured_where_the_text_is_scrolled_to() {
+    use crate::console::theme::{Role, Theme};
+    use crate::session::Configuration;
+    use ratatui::buffer::Buffer;
+    let (company, mut screen) = (company(), Sql::default());
+    screen.edit(&format!("{}SELECT 'x' -- done", "\n".repeat(40)));
+    let theme = Theme::find("dark", &Configuration::shipped()).expect("a theme");
+    let area = Rect::new(0, 0, 80, 21);
+    let mut buffer = Buffer::empty(area);
+    let mut canvas = Canvas::new(&mut buffer, &theme);
+    with_look(&company, |look| screen.draw(&mut canvas, area, look));
+    let row = (0..21).find(|y| buffer[(1, *y)].symbol() == "S").expect("the line is shown");
+    for (x, role) in [(1, Role::Keyword), (6, Role::Keyword), (8, Role::SqlText), (12, Role::Comment)] {
+        assert_eq!(buffer[(x, row)].style().fg, theme.style(role).fg, "{x}");
+    }
+}
+
+#[test]
+fn no_size_is_too_small() {
+    let company = company();
+    let mut screen = Sql::default();
+    sweep(&screen, &company);
+    write(&mut screen, &company, "SELECT * FROM ledger WHERE am");
+    sweep(&screen, &company);
+    act(&mut screen, &company, Action::RunQuery);
+    hear(&mut screen, &company, Ok(three_rows()));
+    for focus in [RESULTS, BROWSER] {
+        screen.set_focus(focus);
+        act(&mut screen, &company, Action::Right);
+        act(&mut screen, &company, Action::Filter);
+        sweep(&screen, &company);
+        act(&mut screen, &company, Action::Discard);
+    }
+    act(&mut screen, &company, Action::History);
+    sweep(&screen, &company);
+}

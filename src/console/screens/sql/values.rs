@@ -1,0 +1,203 @@
+//! How values of results are written: on the screen in sensible digits, elsewhere in full.
+
+use serde_json::Value;
+
+use crate::console::theme::Role;
+use crate::console::widgets::{Cell as Shown, Column};
+use crate::notation::grouped;
+use crate::session::{Cell, Rows, rows_as_json};
+
+/// Widest column on the screen; longer values can be opened.
+const WIDEST: u16 = 48;
+
+/// Columns of a result as the screen shows them.
+pub fn columns(rows: &Rows) -> Vec<Column> {
+    let numeric = |at: usize| {
+        let mut said = rows.rows.iter().filter_map(|row| row.get(at)).filter(|cell| **cell != Cell::Null);
+        let first = said.next();
+        let is_number = |cell: &Cell| matches!(cell, Cell::Integer(_) | Cell::Real(_));
+        first.is_some_and(is_number) && said.all(is_number)
+    };
+    let column = |(at, name): (usize, &String)| {
+        if numeric(at) { Column::numbers(name.as_str()) } else { Column::words(name.as_str()) }
+    };
+    rows.columns.iter().enumerate().map(column).map(|column| column.at_most(WIDEST)).collect()
+}
+
+/// Rows of a result as the screen shows them.
+pub fn cells(rows: &Rows) -> Vec<Vec<Shown>> {
+    let styles: Vec<Style> = (0..rows.columns.len()).map(|at| Style::of(rows, at)).collect();
+    let row = |row: &Vec<Cell>| row.iter().zip(&styles).map(|(cell, style)| style.cell(cell)).collect();
+    rows.rows.iter().map(row).collect()
+}
+
+/// How the numbers of a column are written: all in the same way, so that they can be compared.
+struct Style {
+    decimals: usize,
+    groups: bool,
+}
+
+impl Style {
+    fn of(rows: &Rows, at: usize) -> Style {
+        let reals = || {
+            let cells = rows.rows.iter().filter_map(|row| row.get(at));
+            cells.filter_map(|cell| match cell {
+                Cell::Real(number) if number.is_finite() => Some(*number),
+                _ => None,
+            })
+        };
+        let largest = reals().fold(0.0, |most: f64, number| most.max(number.abs()));
+        let needed = reals().map(decimals_of).max().unwrap_or(0);
+        let sensible = match largest {
+            _ if largest >= 1000.0 => 2,
+            _ if largest >= 1.0 => 4,
+            _ => 6,
+        };
+        // Numbers of rows and days name something; they are not counted in thousands.
+        let name = rows.columns.get(at).map_or(String::new(), |name| name.to_lowercase());
+        let names = ["id", "day", "week", "year", "seed"];
+        let groups = !names
+            .iter()
+            .any(|part| name.split(|letter: char| !letter.is_alphanumeric()).any(|word| word == *part));
+        Style { decimals: needed.min(sensible), groups }
+    }
+
+    fn cell(&self, cell: &Cell) -> Shown {
+        match cell {
+            Cell::Null => Shown::words("NULL").role(Role::Dim),
+            Cell::Text(text) => Shown::words(flat(text)),
+            Cell::Integer(number) if self.groups => Shown::number(*number as f64, grouped_integer(*number)),
+            Cell::Integer(number) => Shown::number(*number as f64, number.to_string()),
+            Cell::Real(number) => Shown::number(*number, self.real(*number)),
+        }
+    }
+
+    fn real(&self, number: f64) -> String {
+        let text = format!("{number:.*}", self.decimals);
+        let vanishes = number != 0.0 && text.parse() == Ok(0.0);
+        match number {
+            _ if !number.is_finite() => number.to_string(),
+            _ if vanishes || number.abs() >= 1e15 => format!("{number:.3e}"),
+            _ if self.groups => grouped(number, self.decimals),
+            _ => text,
+        }
+    }
+}
+
+/// Decimals of the shortest exact form of a number.
+fn decimals_of(number: f64) -> usize {
+    number.to_string().split_once('.').map_or(0, |(_, decimals)| decimals.len())
+}
+
+/// A whole number with separators; large ones would lose digits as a float.
+fn grouped_integer(number: i64) -> String {
+    let digits = number.unsigned_abs().to_string();
+    let mut text = String::from(if number < 0 { "-" } else { "" });
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// The beginning of a text in one line: a row of the screen shows no more.
+fn flat(text: &str) -> String {
+    text.chars().take(400).map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
+}
+
+/// A value in full, as it is copied and exported; NULL is nothing.
+pub fn whole(cell: &Cell) -> String {
+    match cell {
+        Cell::Null => String::new(),
+        Cell::Integer(number) => number.to_string(),
+        Cell::Real(number) => format!("{number:?}"),
+        Cell::Text(text) => text.clone(),
+    }
+}
+
+/// A row with tabs between its values, as spreadsheets take it.
+pub fn tabbed(row: &[Cell]) -> String {
+    let clean = |cell: &Cell| whole(cell).replace(['\t', '\n', '\r'], " ");
+    row.iter().map(clean).collect::<Vec<_>>().join("\t")
+}
+
+/// A result as CSV with a head.
+///
+/// # Errors
+/// Never for a buffer in memory; the writer's type asks for it.
+pub fn csv(rows: &Rows) -> Result<Vec<u8>, String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&rows.columns).map_err(|error| error.to_string())?;
+    for row in &rows.rows {
+        writer.write_record(row.iter().map(whole)).map_err(|error| error.to_string())?;
+    }
+    writer.into_inner().map_err(|error| error.to_string())
+}
+
+/// A result as a JSON list with an object for each row.
+pub fn json(rows: &Rows) -> Vec<u8> {
+    let list = rows_as_json(rows).remove("rows").unwrap_or(Value::Array(Vec::new()));
+    let mut text = serde_json::to_vec_pretty(&list).unwrap_or_default();
+    text.push(b'\n');
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn result(columns: &[&str], rows: Vec<Vec<Cell>>) -> Rows {
+        Rows { columns: columns.iter().map(|name| (*name).to_owned()).collect(), rows, ..Rows::default() }
+    }
+
+    fn column(name: &str, cells: &[Cell]) -> Vec<String> {
+        let rows = result(&[name], cells.iter().map(|cell| vec![cell.clone()]).collect());
+        self::cells(&rows).into_iter().map(|row| row[0].text.clone()).collect()
+    }
+
+    #[test]
+    fn numbers_of_a_column_have_the_same_decimals() {
+        use Cell::{Integer, Null, Real, Text};
+        assert_eq!(column("price", &[Real(12.0), Real(1.25), Null]), ["12.00", "1.25", "NULL"]);
+        assert_eq!(column("cash", &[Real(1_234_567.891_23), Real(0.5)]), ["1,234,567.89", "0.50"]);
+        assert_eq!(column("share", &[Real(1.0 / 3.0), Real(1e-9)]), ["0.333333", "1.000e-9"]);
+        assert_eq!(column("x", &[Real(3.0), Real(f64::INFINITY), Real(1e300)]), ["3", "inf", "1.000e300"]);
+        assert_eq!(column("subs", &[Integer(28_114), Integer(-5)]), ["28,114", "-5"]);
+        assert_eq!(column("customer_id", &[Integer(28_114)]), ["28114"]);
+        assert_eq!(column("n", &[Integer(i64::MIN)]), ["-9,223,372,036,854,775,808"]);
+        assert_eq!(column("text", &[Text("a\nb".to_owned())]), ["a b"]);
+    }
+
+    #[test]
+    fn a_column_of_numbers_stands_right() {
+        use crate::console::canvas::Align;
+        let rows = result(
+            &["a", "b", "c"],
+            vec![
+                vec![Cell::Null, Cell::Null, Cell::Integer(1)],
+                vec![Cell::Real(1.0), Cell::Null, Cell::Text("x".to_owned())],
+            ],
+        );
+        let sides: Vec<Align> = columns(&rows).into_iter().map(|column| column.align).collect();
+        assert_eq!(sides, [Align::Right, Align::Left, Align::Left]);
+    }
+
+    #[test]
+    fn exports_keep_every_digit() {
+        let rows = result(
+            &["a", "b", "a"],
+            vec![
+                vec![Cell::Real(0.1 + 0.2), Cell::Text("say \"no\", twice\n".to_owned()), Cell::Integer(7)],
+                vec![Cell::Null, Cell::Null, Cell::Real(2.0)],
+            ],
+        );
+        let text = String::from_utf8(csv(&rows).expect("CSV")).expect("text");
+        assert_eq!(text, "a,b,a\n0.30000000000000004,\"say \"\"no\"\", twice\n\",7\n,,2.0\n");
+        let value: Value = serde_json::from_slice(&json(&rows)).expect("JSON");
+        assert_eq!(value[0]["a"], 0.1 + 0.2);
+        assert_eq!(value[1]["b"], Value::Null);
+        assert_eq!(tabbed(&rows.rows[0]), "0.30000000000000004\tsay \"no\", twice \t7");
+    }
+}

@@ -1,0 +1,8 @@
+-- Units of the last day by group and plan, of customers who are still there.
+SELECT c.group_id, s.plan, count(*) AS users, sum(s.seat_count) AS seats, sum(u.usage_units) AS units
+FROM daily_usage u
+CROSS JOIN subscriptions s
+CROSS JOIN customers c
+WHERE u.day = (SELECT max(day) FROM service_day) AND s.customer_id = u.customer_id
+    AND s.status = 'subscribed' AND c.customer_id = u.customer_id
+GROUP BY 1, 2

@@ -1,0 +1,55 @@
+//! The way from last week's cash to this week's, as bars.
+
+use ratatui::layout::Rect;
+
+use super::model::{Step, money};
+use crate::console::canvas::{Align, Canvas, rows_of};
+use crate::console::text::short_dollars;
+use crate::console::theme::Role;
+
+/// Draws steps, one in a row. The bars begin at the lowest level on the way, or changes would be too small to see.
+pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step]) {
+    if steps.is_empty() {
+        canvas.text(area, "nothing has moved yet: let a week pass (n)", Role::Dim);
+        return;
+    }
+    let names = 12.min(area.width);
+    let figures = 13.min(area.width - names);
+    let bars = area.width - names - figures;
+    let (least, most) = steps
+        .iter()
+        .flat_map(|step| [step.from, step.to])
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), level| (least.min(level), most.max(level)));
+    let floor = if least > 0.0 && least < (most - least) * 0.5 { 0.0 } else { least };
+    let span = (most - floor).max(1e-9);
+    let room = f64::from(bars.saturating_sub(2));
+    // A sliver is left for the lowest level, so that it is seen as one.
+    let place = |level: f64| 1 + ((level - floor) / span * (room - 1.0).max(0.0)).round() as u16;
+    for (row, step) in rows_of(area).zip(steps) {
+        let (value, sign, role) = match (step.is_level, step.to - step.from) {
+            (true, _) => (step.to, "", Role::Strong),
+            (false, change) if change < 0.0 => (change, "", Role::Bad),
+            (false, change) => (change, "+", Role::Good),
+        };
+        canvas.text(Rect { width: names, ..row }, &step.name, Role::Text);
+        let figure = Rect { x: row.x + names, width: figures, ..row };
+        canvas.aligned(figure, &format!("{sign}{}", money(value)), role, Align::Right);
+        if bars < 4 {
+            continue;
+        }
+        let x = figure.right() + 1;
+        let (from, to, glyph, role) = match step.is_level {
+            true => (0, place(step.to), "█", Role::Series(0)),
+            false if step.to < step.from => (place(step.to), place(step.from), "▒", Role::Bad),
+            false => (place(step.from), place(step.to), "▓", Role::Good),
+        };
+        let width = (to - from).max(1);
+        let bar = Rect { x: x + from, width, height: 1, ..row }.intersection(area);
+        canvas.text(bar, &glyph.repeat(bar.width as usize), role);
+    }
+    let below = area.y + steps.len() as u16;
+    if floor != 0.0 && below < area.bottom() && bars >= 24 {
+        let row = Rect { x: area.x + names + figures + 1, y: below, width: bars - 1, height: 1 };
+        canvas.text(row, &format!("bars begin at {}", short_dollars(floor)), Role::Dim);
+    }
+}

@@ -1,0 +1,162 @@
+//! Forecasts against what happened: a curve with the 95 % band, and every forecast with its outcome.
+
+use ratatui::layout::{Constraint, Layout, Rect};
+
+use super::model::{Filed, filed};
+use crate::console::action::Action;
+use crate::console::canvas::{Canvas, Click};
+use crate::console::company::Company;
+use crate::console::screens::Look;
+use crate::console::text::short_dollars;
+use crate::console::theme::Role;
+use crate::console::widgets::{Axis, Cell, Column, Line, Table, chart};
+use crate::notation::percent;
+
+/// Forecasts of one horizon.
+#[derive(Default)]
+pub struct Outlook {
+    all: Vec<Filed>,
+    horizons: Vec<u32>,
+    /// Place of the horizon that is shown.
+    horizon: usize,
+    table: Table,
+}
+
+impl Outlook {
+    /// Takes what was filed.
+    pub fn renew(&mut self, company: &Company) {
+        self.all = filed(company);
+        self.horizons = company.scores.iter().map(|score| score.horizon_days).collect();
+        self.refresh();
+    }
+
+    fn horizon(&self) -> u32 {
+        self.horizons.get(self.horizon).copied().unwrap_or(7)
+    }
+
+    /// Forecasts of the horizon that is shown, in the order of filing.
+    fn shown(&self) -> impl DoubleEndedIterator<Item = &Filed> {
+        let horizon = self.horizon();
+        self.all.iter().filter(move |filed| filed.horizon == horizon)
+    }
+
+    fn refresh(&mut self) {
+        let columns = vec![
+            Column::numbers("for day"),
+            Column::numbers("low"),
+            Column::numbers("expected"),
+            Column::numbers("high"),
+            Column::numbers("it was"),
+            Column::numbers("miss"),
+            Column::words("95 %"),
+        ];
+        // What is known comes first, the newest at the top; what is still open follows.
+        let (known, open): (Vec<&Filed>, Vec<&Filed>) = self.shown().partition(|one| one.outcome.is_some());
+        let rows = known.into_iter().rev().chain(open).map(row_of).collect();
+        self.table.set(columns, rows);
+    }
+
+    /// Does an action.
+    pub fn act(&mut self, action: Action, page: u16) {
+        let last = self.horizons.len().saturating_sub(1);
+        match action {
+            Action::Left => self.horizon = self.horizon.saturating_sub(1),
+            Action::Right => self.horizon = (self.horizon + 1).min(last),
+            Action::Sort | Action::Filter => return,
+            action => {
+                self.table.act(action, page);
+                return;
+            }
+        }
+        self.refresh();
+        self.table.act(Action::First, page);
+    }
+
+    /// Selects a row.
+    pub fn select_place(&mut self, row: usize) {
+        self.table.select_place(row);
+    }
+
+    /// Draws the pane.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>, focused: bool, pane: usize) {
+        let company = look.company;
+        canvas.click(area, Click::Pane(pane));
+        let weeks = self.horizon() / 7;
+        let title = format!("Forecasts {weeks} week{} ahead", if weeks == 1 { "" } else { "s" });
+        let inside = canvas.pane(area, &title, &self.score(company), focused);
+        if focused {
+            let label = |action| look.keys.label(action).unwrap_or_default();
+            let keys = format!("{} {} other horizons", label(Action::Left), label(Action::Right));
+            canvas.pane_keys(area, &format!("{keys} · {} journal", label(Action::Open)));
+        }
+        if self.all.is_empty() {
+            canvas.text(inside, "no forecast was filed yet", Role::Dim);
+            return;
+        }
+        let list = if inside.height >= 13 { (inside.height / 3).max(5) } else { inside.height };
+        let [above, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(list)]).areas(inside);
+        self.draw_curve(canvas, above, company);
+        self.table.draw(canvas, below, focused, pane);
+    }
+
+    fn score(&self, company: &Company) -> String {
+        match company.scores.get(self.horizon).filter(|score| score.scored > 0) {
+            Some(score) => format!(
+                "{} of {} inside · typical miss {}",
+                score.covered,
+                score.scored,
+                percent(score.mean_error, 1)
+            ),
+            None => "none has come due".to_owned(),
+        }
+    }
+
+    fn draw_curve(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
+        // Open forecasts of far horizons would flatten what has happened.
+        let until = f64::from(company.seen.day) * 1.15 + 14.0;
+        let through = |value: fn(&Filed) -> f64| -> Vec<(f64, f64)> {
+            let points = self.shown().map(|filed| (f64::from(filed.due()), value(filed)));
+            points.filter(|point| point.0 <= until).collect()
+        };
+        let cash: Vec<(f64, f64)> =
+            company.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();
+        let lines = [
+            Line::through("95 %", through(|filed| filed.lower), Role::Fan),
+            Line::through("", through(|filed| filed.upper), Role::Fan),
+            Line {
+                scattered: true,
+                ..Line::through("expected", through(|filed| filed.point), Role::Series(1))
+            },
+            Line::through("cash", cash, Role::Series(0)),
+        ];
+        let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
+        chart(canvas, area, &lines, &x, &Axis { write: &short_dollars, holds: &[] });
+    }
+}
+
+fn row_of(filed: &Filed) -> Vec<Cell> {
+    let amount = |value: f64| Cell::number(value, short_dollars(value));
+    let (outcome, miss) = match filed.outcome {
+        Some(outcome) => {
+            let miss = (filed.point - outcome) / outcome.abs().max(1.0);
+            let shown = format!("{}{}", if miss >= 0.0 { "+" } else { "" }, percent(miss, 1));
+            (amount(outcome).role(Role::Strong), Cell::number(miss, shown))
+        }
+        None => (Cell::words("–").role(Role::Dim), Cell::words("–").role(Role::Dim)),
+    };
+    let verdict = match filed.verdict() {
+        Some(0) => Cell::words("inside").role(Role::Good),
+        Some(1) => Cell::words("▲ above").role(Role::Bad),
+        Some(_) => Cell::words("▼ below").role(Role::Bad),
+        None => Cell::words("open").role(Role::Dim),
+    };
+    vec![
+        Cell::number(f64::from(filed.due()), filed.due().to_string()),
+        amount(filed.lower).role(Role::Dim),
+        amount(filed.point),
+        amount(filed.upper).role(Role::Dim),
+        outcome,
+        miss,
+        verdict,
+    ]
+}

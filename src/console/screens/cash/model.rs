@@ -1,0 +1,287 @@
+//! The books: dollars by week and category, steps from one week's cash to the next, forecasts with their outcome.
+
+use std::collections::BTreeMap;
+
+use crate::console::company::Company;
+use crate::console::readings::{number_at, text_at};
+use crate::notation::grouped;
+use crate::session::{JournalEntry, Rows, week_of};
+
+/// A category of the ledger.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Category {
+    /// Name in the ledger.
+    pub id: &'static str,
+    /// Name on screen.
+    pub name: &'static str,
+    /// What its part of a bar is made of; different without colours, and without blocks.
+    pub glyph: char,
+    /// Money that comes in.
+    pub income: bool,
+}
+
+const fn category(id: &'static str, name: &'static str, glyph: char, income: bool) -> Category {
+    Category { id, name, glyph, income }
+}
+
+/// Number of categories.
+pub const COUNT: usize = 12;
+const PAYMENTS: usize = 0;
+const FUNDING: usize = 2;
+const LEADS: usize = 6;
+
+/// All categories: income, then costs.
+pub static CATEGORIES: [Category; COUNT] = [
+    category("subscription_payment", "payments", '█', true),
+    category("ad_revenue", "ad revenue", '░', true),
+    category("initial_funding", "funding", '$', true),
+    category("compute", "compute", '▓', false),
+    category("capacity", "capacity", '▒', false),
+    category("advertising", "advertising", '≡', false),
+    category("lead_acquisition_cost", "lead costs", '×', false),
+    category("operations", "operations", '+', false),
+    category("development", "development", '─', false),
+    category("research_project", "R&D", '▲', false),
+    category("market_research", "discovery", '?', false),
+    category("group_research", "insights", '▼', false),
+];
+
+/// Dollars by category; costs are negative.
+pub type Amounts = [f64; COUNT];
+
+/// Dollars by week and category.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Books {
+    weeks: BTreeMap<u32, Amounts>,
+}
+
+impl Books {
+    /// The books from what the ledger says of everything but customers, from the payments of each week, and from
+    /// the cash that is left: what neither of the two explains was paid for leads.
+    pub fn of(rows: &Rows, company: &Company) -> Books {
+        let mut weeks: BTreeMap<u32, Amounts> = BTreeMap::new();
+        for week in 0..=week_of(company.seen.day) {
+            weeks.insert(week, [0.0; COUNT]);
+        }
+        for row in &rows.rows {
+            let Some(at) = CATEGORIES.iter().position(|category| category.id == text_at(row, 1)) else {
+                continue;
+            };
+            weeks.entry(number_at(row, 0) as u32).or_insert([0.0; COUNT])[at] += number_at(row, 2);
+        }
+        for figures in &company.weeks {
+            weeks.entry(week_of(figures.day)).or_insert([0.0; COUNT])[PAYMENTS] += figures.payments;
+        }
+        for (week, amounts) in weeks.iter_mut().filter(|(week, _)| **week > 0) {
+            if let Some((before, after)) = cash_around(company, *week) {
+                let unexplained = after - before - amounts.iter().sum::<f64>();
+                // Cents are rounding; a lead never brings money.
+                amounts[LEADS] = if unexplained < -0.01 { unexplained } else { 0.0 };
+            }
+        }
+        Books { weeks }
+    }
+
+    /// The last week.
+    pub fn last(&self) -> u32 {
+        self.weeks.keys().next_back().copied().unwrap_or(0)
+    }
+
+    /// The amounts of a week.
+    pub fn week(&self, week: u32) -> Amounts {
+        self.weeks.get(&week).copied().unwrap_or([0.0; COUNT])
+    }
+
+    /// Mean of the four weeks that end with a week, or of as many as there are.
+    pub fn mean_of_four(&self, week: u32) -> Amounts {
+        let from = week.saturating_sub(3).max(1);
+        let count = f64::from((week + 1).saturating_sub(from).max(1));
+        let mut mean = [0.0; COUNT];
+        for amounts in self.weeks.range(from..=week.max(from)).map(|(_, amounts)| amounts) {
+            mean.iter_mut().zip(amounts).for_each(|(sum, amount)| *sum += amount / count);
+        }
+        mean
+    }
+
+    /// The whole run.
+    pub fn total(&self) -> Amounts {
+        let mut total = [0.0; COUNT];
+        for amounts in self.weeks.values() {
+            total.iter_mut().zip(amounts).for_each(|(sum, amount)| *sum += amount);
+        }
+        total
+    }
+
+    /// Whether a category was ever booked.
+    pub fn is_used(&self, category: usize) -> bool {
+        self.weeks.values().any(|amounts| amounts[category] != 0.0)
+    }
+
+    /// The last weeks without the funding, which would flatten everything else.
+    pub fn last_weeks(&self, count: usize) -> Vec<(u32, Amounts)> {
+        let mut last: Vec<(u32, Amounts)> = self
+            .weeks
+            .iter()
+            .rev()
+            .filter(|(week, _)| **week > 0)
+            .take(count)
+            .map(|(week, amounts)| (*week, without_funding(*amounts)))
+            .collect();
+        last.reverse();
+        last
+    }
+}
+
+fn without_funding(mut amounts: Amounts) -> Amounts {
+    amounts[FUNDING] = 0.0;
+    amounts
+}
+
+/// Sum of the income, or of the costs.
+pub fn side(amounts: &Amounts, income: bool) -> f64 {
+    let own = amounts.iter().zip(&CATEGORIES).filter(|(_, category)| category.income == income);
+    own.map(|(amount, _)| amount).sum()
+}
+
+/// First and last day of a week; the week 0 is the day before the first.
+pub fn days_of(week: u32) -> (u32, u32) {
+    match week {
+        0 => (0, 0),
+        week => (7 * (week - 1) + 1, 7 * week),
+    }
+}
+
+/// Cash at the end of the week before and at the end of a week, or now.
+pub fn cash_around(company: &Company, week: u32) -> Option<(f64, f64)> {
+    let start = 7 * (week.checked_sub(1)?) as usize;
+    let before = company.cash_by_day.get(start)?;
+    let after = company.cash_by_day.get(start + 7).or(company.cash_by_day.last())?;
+    Some((*before, *after))
+}
+
+/// A step of the way from one week's cash to the next.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// What moved the cash.
+    pub name: String,
+    /// Cash before and after it; a level is a step from itself to itself.
+    pub from: f64,
+    /// Cash after it.
+    pub to: f64,
+    /// The cash at the start or at the end.
+    pub is_level: bool,
+}
+
+/// The way from last week's cash to that of a week in at most so many rows: income first, then the costs from the
+/// largest; what finds no room of its own is taken together.
+pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Vec<Step> {
+    let Some((before, after)) = cash_around(company, week) else { return Vec::new() };
+    let amounts = books.week(week);
+    let mut moved: Vec<usize> = (0..COUNT).filter(|at| amounts[*at] != 0.0).collect();
+    moved.sort_by(|left, right| {
+        let order = |at: &usize| (!CATEGORIES[*at].income, -amounts[*at].abs());
+        let (left, right) = (order(left), order(right));
+        left.0.cmp(&right.0).then(left.1.total_cmp(&right.1))
+    });
+    let level = |name: String, cash: f64| Step { name, from: cash, to: cash, is_level: true };
+    let mut steps = vec![level(format!("day {}", 7 * (week - 1)), before)];
+    let mut cash = before;
+    let room = most.saturating_sub(2).max(1);
+    let own = if moved.len() > room { room - 1 } else { moved.len() };
+    for at in &moved[..own] {
+        let to = cash + amounts[*at];
+        steps.push(Step { name: CATEGORIES[*at].name.to_owned(), from: cash, to, is_level: false });
+        cash = to;
+    }
+    if own < moved.len() {
+        let rest: f64 = moved[own..].iter().map(|at| amounts[*at]).sum();
+        let name = if own == 0 { "all".to_owned() } else { format!("{} others", moved.len() - own) };
+        steps.push(Step { name, from: cash, to: cash + rest, is_level: false });
+    }
+    steps.push(level(format!("day {}", (7 * week).min(company.seen.day)), after));
+    steps
+}
+
+/// A forecast and what became of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Filed {
+    /// Day it was filed.
+    pub day: u32,
+    /// Days ahead.
+    pub horizon: u32,
+    /// What was expected.
+    pub point: f64,
+    /// Lower end of the interval.
+    pub lower: f64,
+    /// Upper end of the interval.
+    pub upper: f64,
+    /// What it was, once its day has come.
+    pub outcome: Option<f64>,
+}
+
+impl Filed {
+    /// Day it speaks of.
+    pub fn due(&self) -> u32 {
+        self.day + self.horizon
+    }
+
+    /// -1 below the interval, 0 inside, 1 above; none before its day.
+    pub fn verdict(&self) -> Option<i32> {
+        let outcome = self.outcome?;
+        Some(i32::from(outcome > self.upper) - i32::from(outcome < self.lower))
+    }
+}
+
+/// Every forecast that was filed, in the order of filing.
+pub fn filed(company: &Company) -> Vec<Filed> {
+    let mut all = Vec::new();
+    for entry in &company.journal {
+        let JournalEntry::Advance { day, forecasts, .. } = entry else { continue };
+        for forecast in forecasts {
+            let due = (*day + forecast.horizon_days) as usize;
+            all.push(Filed {
+                day: *day,
+                horizon: forecast.horizon_days,
+                point: forecast.point,
+                lower: forecast.lower,
+                upper: forecast.upper,
+                outcome: company.cash_by_day.get(due).copied(),
+            });
+        }
+    }
+    all
+}
+
+/// Dollars with the sign in front.
+pub fn money(value: f64) -> String {
+    let sign = if value <= -0.5 { "-" } else { "" };
+    format!("{sign}${}", grouped(value.abs(), 0))
+}
+
+/// The statement behind a category, or a side of the books, and a week.
+pub fn statement(what: &Subject, week: u32) -> String {
+    let (from, to) = days_of(week);
+    let condition = match what {
+        Subject::Category(at) => format!("\n    AND category = '{}'", CATEGORIES[*at].id),
+        Subject::Income => "\n    AND amount > 0".to_owned(),
+        Subject::Costs => "\n    AND amount < 0".to_owned(),
+        Subject::Net => String::new(),
+    };
+    format!(
+        "-- week {week}\nSELECT day, category, amount, note\nFROM ledger\nWHERE day BETWEEN {from} AND {to}{condition}\n\
+         ORDER BY id"
+    )
+}
+
+/// What a row of the table is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// A category.
+    Category(usize),
+    /// All income.
+    Income,
+    /// All costs.
+    Costs,
+    /// What is left.
+    Net,
+}

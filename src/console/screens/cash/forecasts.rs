@@ -121,13 +121,10 @@ impl Outlook {
         let cash: Vec<(f64, f64)> =
             company.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();
         let lines = [
-            Line::through("95 %", through(|filed| filed.lower), Role::Fan),
-            Line::through("", through(|filed| filed.upper), Role::Fan),
-            Line {
-                scattered: true,
-                ..Line::through("expected", through(|filed| filed.point), Role::Series(1))
-            },
-            Line::through("cash", cash, Role::Series(0)),
+            Line::through(through(|filed| filed.lower), Role::Fan),
+            Line::through(through(|filed| filed.upper), Role::Fan),
+            Line { scattered: true, ..Line::through(through(|filed| filed.point), Role::Series(1)) },
+            Line::through(cash, Role::Series(0)),
         ];
         let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
         chart(canvas, area, &lines, &x, &Axis { write: &short_dollars, holds: &[] });

@@ -148,7 +148,11 @@ impl Results {
         }
         canvas.click(area, Click::Pane(RESULTS));
         let (title, note) = match &self.answer {
+            _ if running => ("Result".to_owned(), String::new()),
             Answer::None => ("Result".to_owned(), String::new()),
+            Answer::Refused(refusal) if refusal.code == "sql_timeout" => {
+                ("Result · stopped".to_owned(), String::new())
+            }
             Answer::Refused(_) => ("Result · refused".to_owned(), String::new()),
             Answer::Rows(rows, took) => (title(rows, *took), self.table.note()),
         };

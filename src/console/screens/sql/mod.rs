@@ -165,7 +165,7 @@ impl Screen for Sql {
         match self.focus {
             EDITOR => vec![Action::RunQuery, Action::Complete, Action::History, Action::LeaveEditor],
             RESULTS => vec![Action::WholeCell, Action::CopyCell, Action::ExportCsv, Action::EditQuery],
-            _ => vec![Action::Open, Action::Right, Action::Filter, Action::EditQuery],
+            _ => vec![Action::Open, Action::Filter, Action::RunQuery, Action::EditQuery],
         }
     }
 

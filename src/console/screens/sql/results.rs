@@ -203,7 +203,10 @@ impl Results {
                 text(canvas, below, "", &remark, role);
                 0
             }
-            Some(remark) => text(canvas, Rect { height: 1.min(area.height), ..area }, "", &remark, role),
+            Some(remark) => {
+                canvas.text(area, &remark, role);
+                1.min(area.height)
+            }
             None => 0,
         };
         let below = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };

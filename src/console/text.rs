@@ -9,6 +9,11 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     let width = width.max(1);
     let mut lines = Vec::new();
     for paragraph in text.lines() {
+        // What fits stays as it is: blanks may line up columns.
+        if paragraph.width() <= width {
+            lines.push(paragraph.to_owned());
+            continue;
+        }
         let indent: String = paragraph.chars().take_while(|letter| *letter == ' ').collect();
         let mut line = indent.clone();
         for word in paragraph.split_whitespace() {
@@ -71,5 +76,6 @@ mod tests {
         assert_eq!(wrapped("a\n\nb", 9), ["a", "", "b"]);
         assert_eq!(wrapped("日本語", 4), ["日本", "語"]);
         assert_eq!(wrapped("x", 0), ["x"]);
+        assert_eq!(wrapped("a    b\nc  d", 6), ["a    b", "c  d"]);
     }
 }

@@ -214,9 +214,10 @@ pub fn in_words(value: &Value) -> String {
     }
 }
 
-/// A number with the digits that were sent.
+/// A number with the digits that matter; the whole entry has them all.
 fn plain(value: f64) -> String {
-    if value.fract() == 0.0 { number(value) } else { value.to_string() }
+    let short = if value.abs() >= 0.01 { (value * 1e4).round() / 1e4 } else { value };
+    if short.fract() == 0.0 { number(short) } else { short.to_string() }
 }
 
 #[cfg(test)]
@@ -231,7 +232,7 @@ mod tests {
             (json!({"targeted_spend": {"search_ads": {"S3": 40}}}), "targeted_spend(search_ads(S3 40))"),
             (json!({"text": "two\nlines", "to": [1, 2], "x": null}), "text two lines to [1 2] x –"),
             (json!({}), ""),
-            (json!({"rate": 0.0125}), "rate 0.0125"),
+            (json!({"rate": 0.0125, "spend": 172.35000000000002}), "rate 0.0125 spend 172.35"),
         ] {
             assert_eq!(in_words(&args), words);
         }

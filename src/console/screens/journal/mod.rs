@@ -225,7 +225,7 @@ fn draw_scores(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
     if let Some(row) = rows.next() {
         canvas.text(row, &head, Role::Header);
     }
-    for (row, score) in rows.by_ref().zip(&company.scores) {
+    for (score, row) in company.scores.iter().zip(rows.by_ref()) {
         canvas.text(row, &score_line(score), score_role(score));
     }
     if let Some(row) = rows.next() {

@@ -6,6 +6,7 @@ use ratatui::layout::Rect;
 
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
+use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
@@ -135,13 +136,18 @@ impl Browser {
     }
 
     /// Draws the tree, and below it what the selected row means.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, pane: usize) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, pane: usize, look: &Look<'_>) {
         canvas.click(area, Click::Pane(pane));
         let entries = self.entries();
         let note = if self.filter.is_empty() { String::new() } else { format!("\"{}\"", self.filter) };
         let inside = canvas.pane(area, "Tables", &note, focused);
         if inside.is_empty() {
             return;
+        }
+        if focused {
+            let label = |action| look.keys.label(action).unwrap_or_default();
+            let keys = (label(Action::Open), label(Action::Right), label(Action::Left));
+            canvas.pane_keys(area, &format!("{} insert · {} columns · {} fold", keys.0, keys.1, keys.2));
         }
         let words = if focused { self.explanation(inside.width as usize) } else { Vec::new() };
         let below = (words.len() as u16).min(inside.height / 3);

@@ -110,8 +110,8 @@ fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[Sour
     };
     let function = |word: &&str| Candidate { word: format!("{word}("), what: "function".to_owned() };
     near.chain(names)
-        .chain(KEYWORDS.iter().map(|word| keyword(&word)))
-        .chain(FUNCTIONS.iter().map(|word| function(&word)))
+        .chain(KEYWORDS.iter().map(keyword))
+        .chain(FUNCTIONS.iter().map(function))
         .chain(all_tables)
         .chain(far)
         .collect()

@@ -228,8 +228,8 @@ impl QueryEditor {
         let widest = |of: fn(&super::completion::Candidate) -> &str| {
             completion.candidates.iter().map(|one| of(one).width()).max().unwrap_or(0)
         };
-        let width = widest(|one| &one.word) + widest(|one| &one.what) + 5;
-        let width = (width.min(area.width as usize)) as u16;
+        let words = widest(|one| &one.word) as u16;
+        let width = (words + widest(|one| &one.what) as u16 + 6).min(area.width);
         let rows = (completion.candidates.len() as u16).min(SHOWN);
         let (above, below) = (cursor.y.saturating_sub(area.y), area.bottom().saturating_sub(cursor.y + 1));
         let (y, height) = match below >= rows + 2 || below >= above {
@@ -247,8 +247,8 @@ impl QueryEditor {
         for (row, (at, one)) in rows_of(inside).zip(completion.candidates.iter().enumerate().skip(from)) {
             let chosen = at == completion.chosen;
             canvas.clear(row, if chosen { Role::Selection } else { Role::Field });
-            let what_width = (one.what.width() as u16).min(row.width / 2);
-            let word = Rect { x: row.x + 1, width: row.width.saturating_sub(what_width + 3), ..row };
+            let word = Rect { x: row.x + 1, width: words.min(row.width.saturating_sub(2)), ..row };
+            let what_width = row.width.saturating_sub(words + 4);
             canvas.text(word, &one.word, if chosen { Role::Selection } else { Role::Field });
             let what = Rect { x: row.right() - what_width - 1, width: what_width, ..row };
             canvas.aligned(what, &one.what, if chosen { Role::Selection } else { Role::Dim }, Align::Right);

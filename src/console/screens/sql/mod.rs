@@ -165,7 +165,7 @@ impl Screen for Sql {
         match self.focus {
             EDITOR => vec![Action::RunQuery, Action::Complete, Action::History, Action::LeaveEditor],
             RESULTS => vec![Action::WholeCell, Action::CopyCell, Action::ExportCsv, Action::EditQuery],
-            _ => vec![Action::Open, Action::Right, Action::Filter, Action::EditQuery],
+            _ => vec![Action::Open, Action::Filter, Action::RunQuery, Action::EditQuery],
         }
     }
 
@@ -279,7 +279,7 @@ impl Screen for Sql {
         };
         let [tables, rest] = Layout::horizontal([Constraint::Length(width), Constraint::Min(0)]).areas(area);
         if width > 0 {
-            self.browser.draw(canvas, tables, self.focus == BROWSER, BROWSER);
+            self.browser.draw(canvas, tables, self.focus == BROWSER, BROWSER, look);
         }
         let upper = match (area.height, self.focus) {
             (0..10, RESULTS) => 0,

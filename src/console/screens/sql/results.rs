@@ -148,7 +148,11 @@ impl Results {
         }
         canvas.click(area, Click::Pane(RESULTS));
         let (title, note) = match &self.answer {
+            _ if running => ("Result".to_owned(), String::new()),
             Answer::None => ("Result".to_owned(), String::new()),
+            Answer::Refused(refusal) if refusal.code == "sql_timeout" => {
+                ("Result · stopped".to_owned(), String::new())
+            }
             Answer::Refused(_) => ("Result · refused".to_owned(), String::new()),
             Answer::Rows(rows, took) => (title(rows, *took), self.table.note()),
         };
@@ -199,7 +203,10 @@ impl Results {
                 text(canvas, below, "", &remark, role);
                 0
             }
-            Some(remark) => text(canvas, Rect { height: 1.min(area.height), ..area }, "", &remark, role),
+            Some(remark) => {
+                canvas.text(area, &remark, role);
+                1.min(area.height)
+            }
             None => 0,
         };
         let below = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };

@@ -49,3 +49,28 @@ pub fn text_at(row: &[Cell], at: usize) -> &str {
         _ => "",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::screens::trial::played;
+
+    #[test]
+    fn every_statement_is_answered_before_the_first_week_and_after_the_second() {
+        for weeks in [0, 2] {
+            let mut session = played(weeks);
+            for reading in Reading::ALL {
+                let rows =
+                    session.query(reading.sql()).unwrap_or_else(|problem| panic!("{reading:?}: {problem}"));
+                assert!(!rows.truncated, "{reading:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn cells_that_are_missing_or_of_another_kind_count_as_nothing() {
+        let row = [Cell::Null, Cell::Integer(2), Cell::Text("x".to_owned())];
+        assert_eq!([0, 1, 2, 3].map(|at| number_at(&row, at)), [0.0, 2.0, 0.0, 0.0]);
+        assert_eq!([0, 2, 3].map(|at| text_at(&row, at)), ["", "x", ""]);
+    }
+}

@@ -1,0 +1,136 @@
+//! Leads of a thousand dollars by channel and group: a number and a shade.
+
+use ratatui::layout::Rect;
+
+use super::model::{Market, ad_budget};
+use crate::console::action::Action;
+use crate::console::canvas::{Align, Canvas, Click};
+use crate::console::company::Company;
+use crate::console::theme::Role;
+use crate::console::widgets::table::first_row;
+use crate::notation::{dollars, grouped};
+use crate::world::identifiers::Channel;
+
+/// Place on the map.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Place {
+    /// Number of the channel.
+    pub channel: usize,
+    /// Number of the group among the known ones.
+    pub group: usize,
+}
+
+impl Place {
+    /// Moves on a map of so many groups; false if the action is none of the map.
+    pub fn act(&mut self, action: Action, groups: usize) -> bool {
+        let (last_channel, last_group) = (Channel::ALL.len() - 1, groups.saturating_sub(1));
+        match action {
+            Action::Up => self.channel = self.channel.saturating_sub(1),
+            Action::Down => self.channel = (self.channel + 1).min(last_channel),
+            Action::Left => self.group = self.group.saturating_sub(1),
+            Action::Right => self.group = (self.group + 1).min(last_group),
+            Action::First => self.group = 0,
+            Action::Last => self.group = last_group,
+            _ => return false,
+        }
+        true
+    }
+}
+
+/// Rows that the map wants inside its pane.
+pub const HEIGHT: u16 = Channel::ALL.len() as u16 + 2;
+const NAMES: u16 = 18;
+const CELL: u16 = 9;
+
+/// Draws the map. The shade compares channels within a group: groups differ too much among each other.
+pub fn draw(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    company: &Company,
+    market: &Market,
+    place: Place,
+    focused: bool,
+    pane: usize,
+) {
+    if area.width < NAMES + CELL || area.height < 2 {
+        return;
+    }
+    let groups = &company.seen.known_groups;
+    let room = ((area.width - NAMES) / CELL) as usize;
+    let from = first_row(place.group, room, groups.len());
+    let head = Rect { height: 1, ..area };
+    canvas.text(Rect { width: NAMES, ..head }, "channel", Role::Header);
+    for (at, group) in groups.iter().enumerate().skip(from).take(room) {
+        let cell = cell_at(head, at - from);
+        canvas.aligned(Rect { width: CELL - 2, ..cell }, group.id(), Role::Header, Align::Right);
+        let best = Channel::ALL
+            .iter()
+            .filter_map(|channel| market.measured(*channel, *group).per_thousand())
+            .fold(0.0, f64::max);
+        for (line, channel) in Channel::ALL.iter().enumerate() {
+            let y = area.y + 1 + line as u16;
+            if y >= area.bottom() {
+                break;
+            }
+            let cell = Rect { y, ..cell };
+            let value = market.measured(*channel, *group).per_thousand();
+            let selected = focused && (Place { channel: line, group: at }) == place;
+            draw_cell(canvas, cell, value, best, selected);
+            canvas.click(cell, Click::Row(pane, line * groups.len() + at));
+        }
+    }
+    for (line, channel) in Channel::ALL.iter().enumerate() {
+        let y = area.y + 1 + line as u16;
+        if y < area.bottom() {
+            canvas.text(Rect { y, width: NAMES, height: 1, ..area }, channel.id(), Role::Text);
+        }
+    }
+    if area.height >= HEIGHT {
+        let below = Rect { y: area.y + HEIGHT - 1, height: 1, ..area };
+        canvas.text(below, &words(company, market, place), Role::Dim);
+    }
+}
+
+fn cell_at(row: Rect, at: usize) -> Rect {
+    Rect { x: row.x + NAMES + at as u16 * CELL, width: CELL, ..row }
+}
+
+fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, value: Option<f64>, best: f64, selected: bool) {
+    let Some(value) = value else {
+        let role = if selected { Role::Selection } else { Role::Dim };
+        canvas.aligned(Rect { width: CELL - 2, ..cell }, "–", role, Align::Right);
+        return;
+    };
+    let share = if best > 0.0 { value / best } else { 0.0 };
+    let (glyph, role) = match share {
+        share if share >= 0.999 => ("█", Role::Good),
+        share if share >= 0.5 => ("▓", Role::Text),
+        share if share >= 0.2 => ("▒", Role::Text),
+        share if share > 0.0 => ("░", Role::Dim),
+        _ => (" ", Role::Bad),
+    };
+    let decimals = if value == 0.0 || value >= 9.95 { 0 } else { 2 };
+    let shown = if selected { Role::Selection } else { role };
+    canvas.aligned(Rect { width: CELL - 2, ..cell }, &grouped(value, decimals), shown, Align::Right);
+    canvas.text(Rect { x: cell.x + CELL - 1, width: 1, ..cell }, glyph, role);
+}
+
+/// The selected pair in words.
+fn words(company: &Company, market: &Market, place: Place) -> String {
+    let (Some(channel), Some(group)) =
+        (Channel::ALL.get(place.channel), company.seen.known_groups.get(place.group))
+    else {
+        return String::new();
+    };
+    let (measured, now) = (market.measured(*channel, *group), ad_budget(company, *channel, *group));
+    let pair = format!("{} → {}", channel.id(), group.id());
+    if measured.spend <= 0.0 {
+        return format!("{pair}: nothing spent in 28 days; set now {}/day", dollars(now));
+    }
+    let each = match measured.leads {
+        leads if leads > 0.0 => format!(", ${} each", grouped(measured.spend / leads, 2)),
+        _ => String::new(),
+    };
+    let leads = grouped(measured.leads, 0);
+    format!("{pair}: {leads} leads for {}{each}; set now {}/day", dollars(measured.spend), dollars(now))
+}

@@ -1,0 +1,247 @@
+//! What is known of the customer groups, put together from the readings.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use crate::console::company::Company;
+use crate::console::readings::{Reading, number_at, text_at};
+use crate::session::Rows;
+use crate::world::identifiers::{Channel, Group, Plan};
+
+/// Weeks that the curves show.
+pub const WEEKS: u32 = 12;
+
+/// What a plan has of a group.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Held {
+    /// Subscriptions.
+    pub customers: f64,
+    /// Their seats.
+    pub seats: f64,
+    /// Dollars a month.
+    pub monthly: f64,
+    /// Units of the last day.
+    pub units: f64,
+    /// Seats that used them.
+    pub users: f64,
+    /// Subscriptions that were there 30 days ago.
+    pub since_30_days: f64,
+}
+
+/// A week of a group.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Flow {
+    /// Leads.
+    pub leads: f64,
+    /// Those who signed.
+    pub signed: f64,
+    /// Those who left.
+    pub cancelled: f64,
+}
+
+/// A group.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Facts {
+    /// By plan.
+    pub plans: [Held; 3],
+    /// By week.
+    pub weeks: BTreeMap<u32, Flow>,
+    /// Leads and signed customers of the last weeks by source.
+    pub sources: BTreeMap<String, (f64, f64)>,
+    /// Customers there 30 days ago who have left since.
+    pub lost_in_30_days: f64,
+}
+
+impl Facts {
+    /// A sum over the plans.
+    pub fn sum(&self, figure: impl Fn(&Held) -> f64) -> f64 {
+        self.plans.iter().map(figure).sum()
+    }
+
+    /// The flow of a week.
+    pub fn week(&self, week: u32) -> Flow {
+        self.weeks.get(&week).copied().unwrap_or_default()
+    }
+
+    /// A sum over the last weeks.
+    pub fn last(&self, week: u32, count: u32, figure: impl Fn(&Flow) -> f64) -> f64 {
+        let from = (week + 1).saturating_sub(count);
+        self.weeks.range(from..=week.max(from)).map(|(_, flow)| figure(flow)).sum()
+    }
+
+    /// A figure of the last weeks, oldest first; weeks before the first are left out.
+    pub fn trend(&self, week: u32, figure: impl Fn(&Flow) -> f64) -> Vec<(u32, f64)> {
+        let from = (week + 1).saturating_sub(WEEKS).max(1);
+        (from..=week).map(|week| (week, figure(&self.week(week)))).collect()
+    }
+
+    /// Subscriptions at the end of the last weeks, told backwards from those of now.
+    pub fn stock(&self, week: u32) -> Vec<(u32, f64)> {
+        let mut stock = self.sum(|held| held.customers);
+        let mut all = Vec::new();
+        for (week, _) in self.trend(week, |_| 0.0).into_iter().rev() {
+            all.push((week, stock));
+            let flow = self.week(week);
+            stock = (stock - flow.signed + flow.cancelled).max(0.0);
+        }
+        all.reverse();
+        all
+    }
+
+    /// Share of the customers of 30 days ago who have left since.
+    pub fn churn(&self) -> Option<f64> {
+        let before = self.sum(|held| held.since_30_days) + self.lost_in_30_days;
+        (before > 0.0).then(|| self.lost_in_30_days / before)
+    }
+
+    /// Dollars a month and seat.
+    pub fn revenue_per_seat(&self) -> Option<f64> {
+        let seats = self.sum(|held| held.seats);
+        (seats > 0.0).then(|| self.sum(|held| held.monthly) / seats)
+    }
+
+    /// Units of the last day and customer.
+    pub fn usage(&self) -> Option<f64> {
+        let users = self.sum(|held| held.users);
+        (users > 0.0).then(|| self.sum(|held| held.units) / users)
+    }
+}
+
+/// Leads and spend of a pair of channel and group.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Measured {
+    /// Leads.
+    pub leads: f64,
+    /// Dollars.
+    pub spend: f64,
+}
+
+impl Measured {
+    /// Leads of a thousand dollars; none where nothing was spent.
+    pub fn per_thousand(&self) -> Option<f64> {
+        (self.spend > 0.0).then(|| self.leads / self.spend * 1000.0)
+    }
+}
+
+/// Everything the readings say.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Market {
+    groups: BTreeMap<Group, Facts>,
+    channels: BTreeMap<(usize, Group), Measured>,
+}
+
+impl Market {
+    /// The facts of a group.
+    pub fn of(&self, group: Group) -> Facts {
+        self.groups.get(&group).cloned().unwrap_or_default()
+    }
+
+    /// What was measured of a channel in a group, over the last four weeks.
+    pub fn measured(&self, channel: Channel, group: Group) -> Measured {
+        self.channels.get(&(channel.index(), group)).copied().unwrap_or_default()
+    }
+
+    /// Dollars of the last four weeks for ads in a group.
+    pub fn ad_spend(&self, group: Group) -> f64 {
+        Channel::ALL.iter().map(|channel| self.measured(*channel, group).spend).sum()
+    }
+
+    /// Takes a reading in place of what it said before.
+    pub fn take(&mut self, reading: Reading, rows: &Rows) {
+        self.forget(reading);
+        for row in &rows.rows {
+            match reading {
+                Reading::Subscribers => self.take_held(row, |held, row| {
+                    held.customers = number_at(row, 2);
+                    held.seats = number_at(row, 3);
+                    held.monthly = number_at(row, 4);
+                    held.since_30_days = number_at(row, 5);
+                }),
+                Reading::Usage => self.take_held(row, |held, row| {
+                    held.users = number_at(row, 2);
+                    held.units = number_at(row, 4);
+                }),
+                Reading::Arrivals => self.take_arrivals(row),
+                Reading::Departures => {
+                    let Some(group) = Group::parse(text_at(row, 1)) else { continue };
+                    let facts = self.groups.entry(group).or_default();
+                    let flow = facts.weeks.entry(number_at(row, 0) as u32).or_default();
+                    flow.cancelled += number_at(row, 2);
+                    facts.lost_in_30_days += number_at(row, 3);
+                }
+                Reading::LeadsByChannel => {
+                    let (channel, group) = (Channel::parse(text_at(row, 0)), Group::parse(text_at(row, 1)));
+                    if let (Some(channel), Some(group)) = (channel, group) {
+                        let measured = Measured { leads: number_at(row, 2), spend: number_at(row, 3) };
+                        self.channels.insert((channel.index(), group), measured);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn forget(&mut self, reading: Reading) {
+        if reading == Reading::LeadsByChannel {
+            self.channels.clear();
+        }
+        for facts in self.groups.values_mut() {
+            match reading {
+                Reading::Subscribers => facts.plans.iter_mut().for_each(|held| {
+                    *held = Held { users: held.users, units: held.units, ..Held::default() };
+                }),
+                Reading::Usage => facts.plans.iter_mut().for_each(|held| {
+                    *held = Held { users: 0.0, units: 0.0, ..*held };
+                }),
+                Reading::Arrivals => {
+                    facts.sources.clear();
+                    let flows = facts.weeks.values_mut();
+                    flows.for_each(|flow| *flow = Flow { cancelled: flow.cancelled, ..Flow::default() });
+                }
+                Reading::Departures => {
+                    facts.lost_in_30_days = 0.0;
+                    facts.weeks.values_mut().for_each(|flow| flow.cancelled = 0.0);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn take_held(&mut self, row: &[crate::session::Cell], take: impl Fn(&mut Held, &[crate::session::Cell])) {
+        let (group, plan) = (Group::parse(text_at(row, 0)), Plan::parse(text_at(row, 1)));
+        if let (Some(group), Some(plan)) = (group, plan) {
+            let facts = self.groups.entry(group).or_default();
+            take(&mut facts.plans[Plan::ALL.iter().position(|own| *own == plan).unwrap_or(0)], row);
+        }
+    }
+
+    fn take_arrivals(&mut self, row: &[crate::session::Cell]) {
+        let Some(group) = Group::parse(text_at(row, 1)) else { return };
+        let (leads, signed) = (number_at(row, 3), number_at(row, 4));
+        let facts = self.groups.entry(group).or_default();
+        let flow = facts.weeks.entry(number_at(row, 0) as u32).or_default();
+        flow.leads += leads;
+        flow.signed += signed;
+        let source = facts.sources.entry(text_at(row, 2).to_owned()).or_default();
+        *source = (source.0 + leads, source.1 + signed);
+    }
+}
+
+/// Dollars a day for ads in a group through a channel, as set now.
+pub fn ad_budget(company: &Company, channel: Channel, group: Group) -> f64 {
+    let spend = company.settings.get("set_targeted_ad_spend").and_then(|all| all.get("targeted_spend"));
+    let own = spend.and_then(|all| all.get(channel.id())).and_then(|groups| groups.get(group.id()));
+    own.and_then(Value::as_f64).unwrap_or(0.0)
+}
+
+/// Dollars a day for ads in a group through all channels.
+pub fn ad_budgets(company: &Company, group: Group) -> f64 {
+    Channel::ALL.iter().map(|channel| ad_budget(company, *channel, group)).sum()
+}
+
+/// Dollars a day of development for a group.
+pub fn development_budget(company: &Company, group: Group) -> f64 {
+    let spend = company.settings.get("set_targeted_dev_spend").and_then(|all| all.get("targeted_spend"));
+    spend.and_then(|all| all.get(group.id())).and_then(Value::as_f64).unwrap_or(0.0)
+}

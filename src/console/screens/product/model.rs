@@ -1,0 +1,265 @@
+//! What is known of the product: plans, capacity, the service by day, issues, projects.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use crate::console::company::Company;
+use crate::console::readings::{number_at, text_at};
+use crate::session::Rows;
+use crate::world::identifiers::Plan;
+
+/// A plan and what it earns.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PlanFacts {
+    /// Model tier.
+    pub tier: u32,
+    /// Units a day and customer.
+    pub quota: f64,
+    /// List price, dollars a month and seat.
+    pub price: f64,
+    /// Dollars a unit.
+    pub unit_cost: f64,
+    /// Active subscriptions.
+    pub customers: f64,
+    /// Their seats.
+    pub seats: f64,
+    /// What they pay, dollars a month.
+    pub monthly: f64,
+    /// Units of the last day, and the seats behind them.
+    pub units: f64,
+    /// Seats that used the product.
+    pub users: f64,
+}
+
+impl PlanFacts {
+    /// Units a day and seat.
+    pub fn usage(&self) -> Option<f64> {
+        (self.users > 0.0).then(|| self.units / self.users)
+    }
+
+    /// Dollars a month and seat for compute.
+    pub fn compute(&self) -> Option<f64> {
+        self.usage().map(|usage| usage * 30.0 * self.unit_cost)
+    }
+
+    /// Dollars a month and seat that are paid.
+    pub fn revenue(&self) -> Option<f64> {
+        (self.seats > 0.0).then(|| self.monthly / self.seats)
+    }
+
+    /// Share of the revenue that compute leaves.
+    pub fn margin(&self) -> Option<f64> {
+        let (revenue, compute) = (self.revenue()?, self.compute()?);
+        (revenue > 0.0).then(|| 1.0 - compute / revenue)
+    }
+}
+
+/// What the customers of each plan pay and use.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Sales {
+    held: [(f64, f64, f64); 3],
+    used: [(f64, f64); 3],
+}
+
+impl Sales {
+    /// Takes who is there.
+    pub fn take_subscribers(&mut self, rows: &Rows) {
+        self.held = Default::default();
+        for (at, row) in by_plan(rows) {
+            let held = &mut self.held[at];
+            *held = (held.0 + number_at(row, 2), held.1 + number_at(row, 3), held.2 + number_at(row, 4));
+        }
+    }
+
+    /// Takes what they used.
+    pub fn take_usage(&mut self, rows: &Rows) {
+        self.used = Default::default();
+        for (at, row) in by_plan(rows) {
+            let used = &mut self.used[at];
+            *used = (used.0 + number_at(row, 3), used.1 + number_at(row, 4));
+        }
+    }
+
+    /// The plans with their settings.
+    pub fn plans(&self, company: &Company) -> [PlanFacts; 3] {
+        std::array::from_fn(|at| {
+            let plan = Plan::ALL[at].id();
+            let tier = company.setting("set_model_tiers", plan) as u32;
+            let ((customers, seats, monthly), (users, units)) = (self.held[at], self.used[at]);
+            PlanFacts {
+                tier,
+                quota: company.setting("set_usage_quotas", plan),
+                price: company.setting("set_prices", plan),
+                unit_cost: cost(company, "model_tiers", tier, "cost_per_usage_unit"),
+                customers,
+                seats,
+                monthly,
+                units,
+                users,
+            }
+        })
+    }
+}
+
+fn by_plan(rows: &Rows) -> impl Iterator<Item = (usize, &Vec<crate::session::Cell>)> {
+    rows.rows.iter().filter_map(|row| {
+        let plan = Plan::ALL.iter().position(|plan| plan.id() == text_at(row, 1))?;
+        Some((plan, row))
+    })
+}
+
+fn cost(company: &Company, table: &str, tier: u32, what: &str) -> f64 {
+    let entry = company.costs.get(table).and_then(|tiers| tiers.get(tier.to_string()));
+    entry.and_then(|entry| entry.get(what)).and_then(Value::as_f64).unwrap_or(0.0)
+}
+
+/// A step of the capacity ladder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rung {
+    /// Tier.
+    pub tier: u32,
+    /// Units a day.
+    pub units: f64,
+    /// Dollars a day.
+    pub cost: f64,
+}
+
+/// The capacity ladder, the smallest first.
+pub fn ladder(company: &Company) -> Vec<Rung> {
+    let tiers = company.costs.get("capacity_tiers").and_then(Value::as_object);
+    let mut numbers: Vec<u32> =
+        tiers.into_iter().flat_map(|tiers| tiers.keys()).filter_map(|key| key.parse().ok()).collect();
+    numbers.sort_unstable();
+    let value = |tier, what| cost(company, "capacity_tiers", tier, what);
+    let rung = |tier| Rung { tier, units: value(tier, "capacity_units"), cost: value(tier, "cost_per_day") };
+    numbers.into_iter().map(rung).collect()
+}
+
+/// A day of the service.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Day {
+    /// Day.
+    pub day: u32,
+    /// Units used.
+    pub usage: f64,
+    /// Units it can serve.
+    pub capacity: f64,
+    /// Tier in force.
+    pub tier: u32,
+    /// Latency, milliseconds.
+    pub latency: f64,
+    /// Share of failed requests.
+    pub errors: f64,
+    /// Minutes of outage.
+    pub downtime: f64,
+}
+
+impl Day {
+    /// Share of the capacity that was used.
+    pub fn utilisation(&self) -> f64 {
+        if self.capacity > 0.0 { self.usage / self.capacity } else { 0.0 }
+    }
+}
+
+/// The service, day by day.
+pub fn service(rows: &Rows) -> Vec<Day> {
+    let day = |row: &Vec<crate::session::Cell>| Day {
+        day: number_at(row, 0) as u32,
+        usage: number_at(row, 1),
+        capacity: number_at(row, 2),
+        tier: number_at(row, 3) as u32,
+        latency: number_at(row, 4),
+        errors: number_at(row, 5),
+        downtime: number_at(row, 6),
+    };
+    rows.rows.iter().map(day).collect()
+}
+
+/// Mean and peak usage of the last seven days; none before the first.
+pub fn last_week(days: &[Day]) -> Option<(f64, f64)> {
+    let last = &days[days.len().saturating_sub(7)..];
+    let peak = last.iter().map(|day| day.usage).fold(0.0, f64::max);
+    (!last.is_empty()).then(|| (last.iter().map(|day| day.usage).sum::<f64>() / last.len() as f64, peak))
+}
+
+/// Open issues of a group by age: 1 to 3 days and younger, 4 to 7, 8 to 14, older.
+pub type Ages = [f64; 4];
+
+/// Open issues by group.
+pub fn issues(rows: &Rows) -> BTreeMap<String, Ages> {
+    let ages = |row: &Vec<crate::session::Cell>| std::array::from_fn(|at| number_at(row, at + 1));
+    rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), ages(row))).collect()
+}
+
+/// An R&D project that was started.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Project {
+    /// Identifier.
+    pub id: String,
+    /// Tier.
+    pub tier: u32,
+    /// It has been completed.
+    pub done: bool,
+    /// Day it was paid.
+    pub started: u32,
+    /// Day on which it will be, or was expected to be, done.
+    pub expected: u32,
+    /// Quality it adds.
+    pub boost: f64,
+}
+
+/// The projects, the newest first.
+pub fn projects(rows: &Rows) -> Vec<Project> {
+    let project = |row: &Vec<crate::session::Cell>| Project {
+        id: text_at(row, 0).to_owned(),
+        tier: number_at(row, 1) as u32,
+        done: text_at(row, 2) == "completed",
+        started: number_at(row, 3) as u32,
+        expected: number_at(row, 4) as u32,
+        boost: number_at(row, 5),
+    };
+    rows.rows.iter().map(project).collect()
+}
+
+/// A kind of R&D project that can be started.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Offer {
+    /// Tier.
+    pub tier: u32,
+    /// Name.
+    pub name: String,
+    /// Dollars.
+    pub cost: f64,
+    /// Days it takes on average.
+    pub days: f64,
+    /// Quality it adds on average.
+    pub boost: f64,
+    /// How many run, and how many are done.
+    pub counts: (u64, u64),
+}
+
+/// The kinds of R&D projects.
+pub fn offers(company: &Company) -> Vec<Offer> {
+    let tiers = company.projects.get("tiers").and_then(Value::as_array);
+    let number = |tier: &Value, key: &str| tier.get(key).and_then(Value::as_f64).unwrap_or(0.0);
+    let offer = |tier: &Value| Offer {
+        tier: number(tier, "tier") as u32,
+        name: tier.get("name").and_then(Value::as_str).unwrap_or("").to_owned(),
+        cost: number(tier, "cost"),
+        days: number(tier, "mean_days"),
+        boost: number(tier, "mean_quality_boost"),
+        counts: (number(tier, "in_progress") as u64, number(tier, "completed") as u64),
+    };
+    tiers.into_iter().flatten().map(offer).collect()
+}
+
+/// Dollars of a category by week, from the first week on.
+pub fn spent(rows: &Rows, category: &str) -> Vec<f64> {
+    let mut weeks: BTreeMap<u32, f64> = BTreeMap::new();
+    for row in rows.rows.iter().filter(|row| text_at(row, 1) == category) {
+        *weeks.entry(number_at(row, 0) as u32).or_default() -= number_at(row, 2);
+    }
+    let last = weeks.keys().next_back().copied().unwrap_or(0);
+    (1..=last).map(|week| weeks.get(&week).copied().unwrap_or(0.0)).collect()
+}

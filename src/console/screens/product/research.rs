@@ -1,0 +1,166 @@
+//! R&D: a time line of the projects, what can be started, and what development and support have cost.
+
+use ratatui::layout::{Constraint, Layout, Rect};
+
+use super::model::{Offer, Project};
+use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::company::Company;
+use crate::console::theme::Role;
+use crate::console::widgets::spark;
+use crate::console::widgets::table::first_row;
+use crate::notation::{compact, dollars, grouped};
+
+/// Weekly spend on development and operations.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Spent {
+    /// Development by week.
+    pub development: Vec<f64>,
+    /// Operations by week.
+    pub operations: Vec<f64>,
+}
+
+/// One line on R&D.
+pub fn summary(projects: &[Project]) -> String {
+    let running = projects.iter().filter(|project| !project.done);
+    let next = running.clone().min_by_key(|project| project.expected);
+    let done = projects.iter().filter(|project| project.done).count();
+    match next {
+        Some(next) => {
+            format!("{} run, next {} on day {} · {done} done", running.count(), next.id, next.expected)
+        }
+        None => format!("none runs · {done} done"),
+    }
+}
+
+/// Draws the pane.
+#[allow(clippy::too_many_arguments)]
+pub fn draw(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    company: &Company,
+    projects: &[Project],
+    offers: &[Offer],
+    spent: &Spent,
+    selected: usize,
+    focused: bool,
+    pane: usize,
+) {
+    let line = (projects.len() as u16 + 1).clamp(2, (area.height / 3).max(2));
+    let [money, line, list] =
+        Layout::vertical([Constraint::Length(2), Constraint::Length(line), Constraint::Min(0)]).areas(area);
+    draw_spent(canvas, money, spent);
+    draw_line(canvas, line, company, projects);
+    draw_offers(canvas, list, company, offers, selected, focused, pane);
+}
+
+fn draw_spent(canvas: &mut Canvas<'_>, area: Rect, spent: &Spent) {
+    let rows = [("development", &spent.development), ("operations", &spent.operations)];
+    for (row, (name, weeks)) in rows_of(area).zip(rows) {
+        let last = weeks.last().map_or("–".to_owned(), |dollars| format!("${}/wk", compact(*dollars)));
+        let trend = spark(weeks, row.width.saturating_sub(28) as usize);
+        let name_and_figure = format!("{name:<12}{last:>12}");
+        canvas.text(row, &name_and_figure, Role::Text);
+        let place = Rect { x: row.x + 26.min(row.width), width: row.width.saturating_sub(26), ..row };
+        canvas.text(place, &trend, Role::Series(0));
+    }
+}
+
+/// The projects as bars over the days from the first start to the last end.
+fn draw_line(canvas: &mut Canvas<'_>, area: Rect, company: &Company, projects: &[Project]) {
+    let today = company.seen.day;
+    let shown = &projects[..projects.len().min(area.height.saturating_sub(1) as usize)];
+    if shown.is_empty() {
+        canvas.text(area, "no project was started yet", Role::Dim);
+        return;
+    }
+    let first = shown.iter().map(|project| project.started).min().unwrap_or(0).min(today);
+    let last = shown.iter().map(|project| project.expected).max().unwrap_or(0).max(today).max(first + 1);
+    let names = 30.min(area.width);
+    let width = area.width - names;
+    let place = |day: u32| {
+        let share = f64::from(day - first) / f64::from(last - first);
+        (share * f64::from(width.saturating_sub(1))).round() as u16
+    };
+    let head = format!("{:<7}{:>8}{:>5} {:>4}", "project", "boost", "from", "to");
+    canvas.text(area, &head, Role::Header);
+    if width >= 24 {
+        let x = area.x + names;
+        canvas.text(Rect { x, width, ..area }, &format!("day {first}"), Role::Dim);
+        let words = format!("day {last}");
+        canvas.aligned(Rect { x, width, ..area }, &words, Role::Dim, crate::console::canvas::Align::Right);
+    }
+    let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
+    for (row, project) in rows_of(below).zip(shown) {
+        let role = if project.done { Role::Dim } else { Role::Text };
+        let mark = if project.done { "✓" } else { "…" };
+        let text = format!(
+            "{:<7}{:>+8.4}{:>5} {:>4} {mark}",
+            project.id, project.boost, project.started, project.expected
+        );
+        canvas.text(Rect { width: names, ..row }, &text, role);
+        if width < 4 {
+            continue;
+        }
+        let (from, to) = (place(project.started), place(project.expected));
+        let (now, own) = (place(today), (to - from).max(1));
+        let done = if project.done { own } else { now.clamp(from, from + own) - from };
+        let bar = "█".repeat(done as usize) + &"░".repeat((own - done) as usize);
+        let x = row.x + names + from;
+        let role = if project.done { Role::Good } else { Role::Series(1) };
+        canvas.text(Rect { x, width: own.min(area.right().saturating_sub(x)), ..row }, &bar, role);
+        if now < from || now >= from + own {
+            canvas.text(Rect { x: row.x + names + now, width: 1, ..row }, "│", Role::Border);
+        }
+    }
+}
+
+fn draw_offers(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    company: &Company,
+    offers: &[Offer],
+    selected: usize,
+    focused: bool,
+    pane: usize,
+) {
+    let head =
+        format!("{:>4} {:<18}{:>9}{:>6}{:>8}{:>9}  ", "tier", "project", "cost", "days", "quality", "$/0.01");
+    canvas.text(area, &head, Role::Header);
+    let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
+    if focused {
+        canvas.page = below.height.max(1);
+    }
+    let from = first_row(selected, below.height as usize, offers.len());
+    for (row, (at, offer)) in rows_of(below).zip(offers.iter().enumerate().skip(from)) {
+        let affordable = offer.cost <= company.seen.cash;
+        let role = match (focused && at == selected, affordable) {
+            (true, _) => Role::Selection,
+            (false, true) => Role::Text,
+            (false, false) => Role::Dim,
+        };
+        let each =
+            if offer.boost > 0.0 { dollars(offer.cost / offer.boost * 0.01) } else { "–".to_owned() };
+        let mut remarks = Vec::new();
+        if offer.counts.0 > 0 {
+            remarks.push(format!("{} run", offer.counts.0));
+        }
+        if offer.counts.1 > 0 {
+            remarks.push(format!("{} done", offer.counts.1));
+        }
+        if !affordable {
+            remarks.push("! beyond cash".to_owned());
+        }
+        canvas.clear(row, role);
+        let text = format!(
+            "{:>4} {:<18}{:>9}{:>6}{:>+8.3}{each:>9}  {}",
+            offer.tier,
+            crate::console::canvas::fit(&offer.name, 18),
+            format!("${}", compact(offer.cost)),
+            grouped(offer.days, 0),
+            offer.boost,
+            remarks.join(", ")
+        );
+        canvas.text(row, &text, role);
+        canvas.click(row, Click::Row(pane, at));
+    }
+}

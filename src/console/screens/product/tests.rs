@@ -1,0 +1,84 @@
+use super::model::*;
+use super::*;
+use crate::console::screens::trial::{act, drawn, played, shown, sweep};
+
+#[test]
+fn plans_earn_what_is_paid_less_what_is_used() {
+    let plan = PlanFacts {
+        unit_cost: 0.002,
+        customers: 10.0,
+        seats: 20.0,
+        monthly: 240.0,
+        units: 1000.0,
+        users: 20.0,
+        ..PlanFacts::default()
+    };
+    assert_eq!((plan.usage(), plan.revenue(), plan.compute()), (Some(50.0), Some(12.0), Some(3.0)));
+    assert_eq!(plan.margin(), Some(0.75));
+    let nobody = PlanFacts::default();
+    assert_eq!((nobody.usage(), nobody.revenue(), nobody.margin()), (None, None, None));
+}
+
+#[test]
+fn the_readings_agree_with_the_company() {
+    let mut session = played(6);
+    let company = Company::of(&session);
+    let screen: Product = shown(&mut session, &company);
+    let week = company.seen.last_week.expect("a week");
+    assert_eq!(screen.days.len(), 42);
+    let usage: f64 = screen.days[35..].iter().map(|day| day.usage).sum();
+    assert_eq!(usage, week.usage as f64);
+    let customers: f64 = screen.plans.iter().map(|plan| plan.customers).sum();
+    assert_eq!(customers, f64::from(week.individual_subscribers + company.seen.companies));
+    assert!(screen.plans.iter().any(|plan| plan.margin().is_some_and(|margin| margin > 0.0 && margin < 1.0)));
+    assert_eq!((screen.rungs.len(), screen.places[CAPACITY]), (8, 2));
+    assert_eq!((screen.projects.len(), screen.projects[0].started), (1, 0));
+    assert_eq!(screen.offers.iter().map(|offer| offer.counts.0 + offer.counts.1).sum::<u64>(), 1);
+    assert_eq!(screen.spent.operations.last(), Some(&1400.0));
+    assert_eq!(last_week(&[]), None);
+}
+
+#[test]
+fn every_pane_leads_somewhere() {
+    let mut session = played(2);
+    let company = Company::of(&session);
+    let mut screen: Product = shown(&mut session, &company);
+    for pane in 0..PANES.len() {
+        screen.set_focus(pane);
+        for _ in 0..12 {
+            match act(&mut screen, Action::Open, &company).pop() {
+                Some(Effect::ShowTool(tool)) => {
+                    assert!(crate::tools::CATALOGUE.iter().any(|own| own.spec().name == tool), "{tool}");
+                }
+                Some(Effect::EditSql(sql)) => {
+                    session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+                }
+                other => panic!("{other:?}"),
+            }
+            act(&mut screen, Action::Down, &company);
+        }
+    }
+    act(&mut screen, Action::Right, &company);
+    assert_eq!(screen.focus(), 0);
+}
+
+#[test]
+fn it_is_drawn_in_every_window_with_and_without_data() {
+    for weeks in [0, 1, 5] {
+        let mut session = played(weeks);
+        let company = Company::of(&session);
+        sweep(&mut Product::default(), &company);
+        sweep(&mut shown::<Product>(&mut session, &company), &company);
+    }
+}
+
+#[test]
+fn the_small_window_has_a_line_on_everything() {
+    let mut session = played(3);
+    let company = Company::of(&session);
+    let screen: Product = shown(&mut session, &company);
+    let text = drawn(&screen, &company, 80, 21);
+    for words in PANES.iter().chain(&["tier 2", "margin", "units/day", "◆ now"]) {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+}

@@ -226,8 +226,8 @@ mod tests {
 
     #[test]
     fn amounts_have_about_three_digits() {
-        assert_eq!(amount(3.14159, Unit::Seconds), "3.14 s");
-        assert_eq!(amount(31.4159, Unit::Milliseconds), "31.4 ms");
+        assert_eq!(amount(2.345, Unit::Seconds), "2.35 s");
+        assert_eq!(amount(23.45, Unit::Milliseconds), "23.4 ms");
         assert_eq!(amount(1288.49, Unit::Megabytes), "1,288 MB");
     }
 

@@ -34,7 +34,7 @@ pub const CASES: &[Case] = &[
         figures: &[
             figure("a day at 1,000,000, database in the background", Unit::Milliseconds, 60.0, Some(25.0)),
             without_target("a day at 1,000,000, in memory", Unit::Milliseconds),
-            figure("peak memory at 1,000,000", Unit::Megabytes, 1.2 * 1073.741_824, None),
+            figure("peak memory at 1,000,000", Unit::Megabytes, 1.2 * 1_073.741_824, None),
         ],
         fresh: false,
         long: true,

@@ -208,7 +208,7 @@ impl Session {
         let day = self.world.day;
         let mut remark = self.append_done(kind, day, fields);
         self.commit_projection();
-        self.facts_hash = blake3::hash(b"");
+        self.facts_chain.close();
         remark = remark.or_else(|| self.close_if_over());
         remark.map(|problem| {
             format!("{problem}; the days are simulated again when the run is opened, with the same result")

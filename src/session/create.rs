@@ -9,7 +9,7 @@ use super::configuration::{Configuration, DEFAULT_SCENARIO};
 use super::error::RunError;
 use super::manifest::{FORMAT, Manifest, differences, sync_folder};
 use super::mode::Mode;
-use super::record::entry_of;
+use super::record::{FactsChain, entry_of};
 use super::runs::{earlier_runs, lock_run};
 use super::trajectory::{Durability, TrajectoryWriter, now};
 use super::week::WeekFigures;
@@ -170,7 +170,7 @@ impl Session {
             this_week: ThisWeek { settings, undo: Vec::new(), done: Vec::new() },
             journal: Vec::new(),
             memo_in_memory: String::new(),
-            facts_hash: blake3::hash(b""),
+            facts_chain: FactsChain::default(),
             ended: None,
             remarks: Vec::new(),
         }

@@ -253,6 +253,9 @@ fn damage_is_named_and_refused() {
         lines[at] = Value::Object(line).to_string();
     }
     std::fs::write(&path, lines.join("\n") + "\n").expect("a change");
+    let error = Session::open(&place, Access::Write, true).err().expect("the database knows").to_string();
+    assert!(error.contains("not the one the database was made from"), "{error}");
+    std::fs::remove_file(place.join("world.db")).expect("it is there");
     let error = Session::open(&place, Access::Write, true).err().expect("another state").to_string();
     assert!(error.contains("different: customers"), "{error}");
     std::fs::write(&path, "").expect("nothing left");

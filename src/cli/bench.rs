@@ -1,19 +1,240 @@
 //! `novamind bench`: the speed of this machine's simulator.
 
-use clap::Args;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::run::progress_bar;
 use super::{Context, Failure, print};
+use crate::lab::bench::{Bench, CASES, Case, Figure, Samples, Unit, Verdict, calibrate};
+use crate::lab::median;
+use crate::notation::grouped;
 
 /// Options of `bench`.
 #[derive(Debug, Args)]
 pub struct Options {
+    /// Repetitions; the middle one counts.
+    #[arg(long, default_value = "5", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
+    runs: u32,
+    /// Only this case; may be repeated.
+    #[arg(long, value_name = "NAME", value_parser = CASES.iter().map(|case| case.name).collect::<Vec<_>>())]
+    only: Vec<String>,
+    /// One repetition, and nothing that takes minutes.
+    #[arg(long, conflicts_with = "runs")]
+    quick: bool,
+    /// Folder for the runs that are measured [default: the system's folder for temporary files].
+    #[arg(long, value_name = "DIR")]
+    folder: Option<PathBuf>,
     /// As JSON.
     #[arg(long)]
     json: bool,
+    /// Measure one case in this process and print its samples.
+    #[arg(long, hide = true)]
+    measure: bool,
+}
+
+impl Options {
+    fn repetitions(&self) -> usize {
+        if self.quick { 1 } else { self.runs as usize }
+    }
+
+    fn cases(&self) -> Vec<&'static Case> {
+        let named = |case: &&Case| self.only.iter().any(|name| name == case.name);
+        let asked_for =
+            |case: &&Case| if self.only.is_empty() { !(self.quick && case.long) } else { named(case) };
+        CASES.iter().filter(asked_for).collect()
+    }
+}
+
+/// A measured row.
+struct Row {
+    case: &'static str,
+    figure: &'static Figure,
+    samples: Vec<f64>,
 }
 
 /// Runs the command.
-pub fn run(options: &Options, _: &Context) -> Result<(), Failure> {
-    let _ = options.json;
-    print("later\n")
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let scratch = Scratch::make(options.folder.as_deref())?;
+    let cases = options.cases();
+    if options.measure {
+        let bench = Bench {
+            repetitions: options.repetitions(),
+            scratch: scratch.0.clone(),
+            configuration: context.configuration.clone(),
+        };
+        return measure_here(&cases, &bench);
+    }
+    let loops: Vec<f64> = (0..options.repetitions()).map(|_| calibrate()).collect();
+    let calibration = median(&loops).unwrap_or(f64::NAN);
+    if !options.json {
+        print(&head(calibration, options.repetitions()))?;
+    }
+    let progress = progress_bar(cases.len() as u64, "cases");
+    let mut rows = Vec::new();
+    for case in cases {
+        progress.set_message(case.name);
+        let measured = measure(case, options.repetitions(), &scratch.0);
+        progress.inc(1);
+        for (figure, samples) in case.figures.iter().zip(measured?) {
+            let row = Row { case: case.name, figure, samples };
+            if !options.json {
+                progress.suspend(|| print(&line(&row, calibration)))?;
+            }
+            rows.push(row);
+        }
+    }
+    progress.finish_and_clear();
+    if options.json { print(&(as_json(&rows, calibration) + "\n")) } else { Ok(()) }
+}
+
+/// A folder that is removed in the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn make(parent: Option<&Path>) -> Result<Scratch, Failure> {
+        let parent = parent.map_or_else(std::env::temp_dir, Path::to_owned);
+        let folder = parent.join(format!("novamind-bench-{}", std::process::id()));
+        std::fs::create_dir_all(&folder)
+            .map_err(|error| Failure::failed(format!("{}: {error}", folder.display())))?;
+        Ok(Scratch(folder))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Measures in this process and prints the samples of each case for the process that asked.
+fn measure_here(cases: &[&Case], bench: &Bench) -> Result<(), Failure> {
+    for case in cases {
+        let samples = (case.measure)(bench).map_err(|error| Failure::failed(error.to_string()))?;
+        print(&format!("{}\n", json!(samples)))?;
+    }
+    Ok(())
+}
+
+/// Measures a case in processes of its own, for peak memory counts for a whole process.
+fn measure(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
+    let (processes, each) = if case.fresh { (repetitions, 1) } else { (1, repetitions) };
+    let mut all: Samples = vec![Vec::new(); case.figures.len()];
+    for _ in 0..processes {
+        for (samples, more) in all.iter_mut().zip(measure_apart(case, each, scratch)?) {
+            samples.extend(more);
+        }
+    }
+    Ok(all)
+}
+
+fn measure_apart(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
+    let failed = |problem: String| Failure::failed(format!("{}: {problem}", case.name));
+    let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
+    let output = Command::new(program)
+        .args(["bench", "--measure", "--only", case.name, "--runs", &repetitions.to_string(), "--folder"])
+        .arg(scratch)
+        .stdin(Stdio::null())
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(|error| failed(error.to_string()))?;
+    if !output.status.success() {
+        return Err(failed("it could not be measured".to_owned()));
+    }
+    serde_json::from_slice(&output.stdout).map_err(|error| failed(error.to_string()))
+}
+
+fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn head(calibration: f64, repetitions: usize) -> String {
+    let often =
+        if repetitions == 1 { "one repetition".to_owned() } else { format!("medians of {repetitions}") };
+    format!(
+        "novamind {} · {} threads · {often} · calibration loop {calibration:.3} s\n\n{:<54} {:>10} {:>9} {:>9}  {:<14} {:>9}\n",
+        env!("CARGO_PKG_VERSION"),
+        threads(),
+        "",
+        "measured",
+        "target",
+        "stretch",
+        "verdict",
+        "/ loop"
+    )
+}
+
+fn line(row: &Row, calibration: f64) -> String {
+    let Row { figure, .. } = row;
+    let value = median(&row.samples);
+    let written = |value: Option<f64>| value.map_or_else(String::new, |value| amount(value, figure.unit));
+    let ratio =
+        ratio(value, figure.unit, calibration).map_or_else(String::new, |ratio| format!("{ratio:.3e}"));
+    let text = format!(
+        "{:<54} {:>10} {:>9} {:>9}  {:<14} {ratio:>9}",
+        figure.name,
+        written(value),
+        written(figure.target),
+        written(figure.stretch),
+        figure.verdict(value),
+    );
+    text.trim_end().to_owned() + "\n"
+}
+
+/// A value with its sign, to about three digits.
+fn amount(value: f64, unit: Unit) -> String {
+    let decimals = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
+    format!("{} {}", grouped(value, decimals), unit.sign())
+}
+
+/// How often the calibration loop would fit into a time.
+fn ratio(value: Option<f64>, unit: Unit, calibration: f64) -> Option<f64> {
+    Some(value? * unit.seconds()? / calibration)
+}
+
+fn as_json(rows: &[Row], calibration: f64) -> String {
+    let row = |row: &Row| {
+        let value = median(&row.samples);
+        let verdict: Verdict = row.figure.verdict(value);
+        json!({
+            "case": row.case,
+            "name": row.figure.name,
+            "unit": row.figure.unit,
+            "measured": value,
+            "samples": row.samples,
+            "target": row.figure.target,
+            "stretch": row.figure.stretch,
+            "verdict": verdict,
+            "ratio": ratio(value, row.figure.unit, calibration),
+        })
+    };
+    let all: Vec<Value> = rows.iter().map(row).collect();
+    let report = json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "threads": threads(),
+        "calibration_seconds": calibration,
+        "figures": all,
+    });
+    serde_json::to_string_pretty(&report).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn amounts_have_about_three_digits() {
+        assert_eq!(amount(2.345, Unit::Seconds), "2.35 s");
+        assert_eq!(amount(23.45, Unit::Milliseconds), "23.4 ms");
+        assert_eq!(amount(1288.49, Unit::Megabytes), "1,288 MB");
+    }
+
+    #[test]
+    fn only_times_are_compared_with_the_loop() {
+        assert_eq!(ratio(Some(500.0), Unit::Milliseconds, 0.25), Some(2.0));
+        assert_eq!(ratio(Some(500.0), Unit::Megabytes, 0.25), None);
+        assert_eq!(ratio(None, Unit::Seconds, 0.25), None);
+    }
 }

@@ -27,12 +27,16 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let configuration = &context.configuration;
     match &options.command {
         Choice::List => {
-            let mut text = String::new();
+            let (mut text, mut unreadable) = (String::new(), Vec::new());
             for name in configuration.scenarios() {
-                let scenario = configuration.scenario(&name)?;
-                text += &format!("{name:<24}  {}\n", scenario.description);
+                match configuration.scenario(&name) {
+                    Ok(scenario) => text += &format!("{name:<24}  {}\n", scenario.description),
+                    // One wrong file does not hide the others.
+                    Err(error) => unreadable.push(error.to_string()),
+                }
             }
-            print(&text)
+            print(&text)?;
+            if unreadable.is_empty() { Ok(()) } else { Err(Failure::unreadable(unreadable.join("\n"))) }
         }
         Choice::Show { name } => {
             let scenario = configuration.scenario(name)?;

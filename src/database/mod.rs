@@ -20,6 +20,6 @@ mod tests;
 
 pub use catalogue::{Column, Table, table, tables};
 pub use location::Location;
-pub use projector::{Position, ProjectionError, Projector, desk_of};
+pub use projector::{Position, ProjectionError, Projector, desk_of, position_of};
 pub use query::{Cell, Desk, Interrupt, QueryError, Rows};
 pub use rows::{Entry, ForecastRow};

@@ -256,6 +256,12 @@ pub fn desk_of(location: &Location) -> Result<(Desk, Position), ProjectionError>
     Ok((desk, position))
 }
 
+/// How far the database at a location has come; none where there is none that can be read.
+pub fn position_of(location: &Location) -> Option<Position> {
+    location.path().filter(|path| path.exists())?;
+    stored_position(&location.open_reader().ok()?).ok()?
+}
+
 fn load_shelf(connection: &Connection) -> Option<Shelf> {
     Some(Shelf {
         usage: Arc::new(load(connection, "usage_blocks", UsageDay::unpack)?),

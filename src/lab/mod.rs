@@ -3,6 +3,7 @@
 //! A policy acts on what a player can see, except for the channel choice of the paper's baseline, which reads
 //! the starting yields from the parameters. Figures include hidden state, so policy runs are debug runs.
 
+pub mod bench;
 mod golden;
 mod metrics;
 mod policy;

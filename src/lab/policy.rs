@@ -75,7 +75,7 @@ impl Default for RuleBased {
 
 /// Prices, tiers and quotas of the three plans.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "price_book must be cheap, mid or a table of prices, tiers and quotas by plan")]
 pub enum PriceBook {
     /// A book of the paper.
     Named(BookName),
@@ -159,7 +159,7 @@ pub enum Target {
 
 /// Budgets of the target groups.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "spend must be light, medium, heavy or a table with the budgets of S1 and S3")]
 pub enum Spend {
     /// A package of the paper.
     Named(SpendName),
@@ -213,7 +213,7 @@ impl Spend {
 
 /// How much operations get.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "operations must be subscribers or an amount of dollars a day")]
 pub enum OperationsRule {
     /// max(100, 0.05 x active subscriptions).
     Named(OperationsName),
@@ -453,7 +453,7 @@ mod tests {
     fn wrong_policies_name_line_and_problem() {
         for (text, line, part) in [
             ("name = \"x\"\nwhat = 1\n", Some(2), "what"),
-            ("name = \"x\"\n[rule_based]\nprice_book = \"dear\"\n", Some(3), "PriceBook"),
+            ("name = \"x\"\n[rule_based]\nprice_book = \"dear\"\n", Some(3), "cheap, mid"),
             ("name = \"x\"\n[rule_based]\ntargets = \"none\"\n", Some(3), "targets"),
             ("name = \"x\"\n\n[[call]]\nday = 3\ntool = \"set_prices\"\n", Some(3), "decision day"),
             (

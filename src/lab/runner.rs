@@ -164,7 +164,8 @@ pub fn play(
     Ok(outcome(policy, spec.seed, &session, started.elapsed()))
 }
 
-fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
+/// The run a policy asks for.
+pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
     let mut overrides = spec.overrides.clone();
     if spec.surges.or(policy.start.surges) == Some(false) {
         overrides.push(("demand_surge.probability".to_owned(), "0.0".to_owned()));
@@ -184,7 +185,8 @@ fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
     }
 }
 
-fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Result<(), RunError> {
+/// The calls of a policy on the present decision day.
+pub(super) fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Result<(), RunError> {
     let day = session.day();
     if let Some(rules) = &policy.rule_based {
         for (tool, arguments) in routine::calls(rules, session) {

@@ -45,15 +45,19 @@ impl Week {
     pub fn as_json(&self) -> Value {
         let notices: Vec<Value> =
             self.notices.iter().map(|(day, text)| json!({ "day": day, "text": text })).collect();
-        json!({
-            "day": self.figures.day,
-            "days_run": self.figures.days_run,
-            "cash": json_number(self.figures.cash),
-            "figures": self.figures.as_json(),
-            "dashboard": self.dashboard,
-            "notifications": notices,
-            "ended": self.ended,
-        })
+        let mut data = Map::from_iter([
+            ("day".to_owned(), self.figures.day.into()),
+            ("days_run".to_owned(), self.figures.days_run.into()),
+            ("cash".to_owned(), json_number(self.figures.cash)),
+            ("figures".to_owned(), Value::Object(self.figures.as_json())),
+            ("dashboard".to_owned(), self.dashboard.clone().into()),
+            ("notifications".to_owned(), notices.into()),
+            ("ended".to_owned(), json!(self.ended)),
+        ]);
+        if let Some(remark) = &self.remark {
+            data.insert("remark".to_owned(), remark.clone().into());
+        }
+        Value::Object(data)
     }
 }
 
@@ -204,7 +208,7 @@ impl Session {
         let day = self.world.day;
         let mut remark = self.append_done(kind, day, fields);
         self.commit_projection();
-        self.facts_hash = blake3::hash(b"");
+        self.facts_chain.close();
         remark = remark.or_else(|| self.close_if_over());
         remark.map(|problem| {
             format!("{problem}; the days are simulated again when the run is opened, with the same result")

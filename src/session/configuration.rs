@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::Table;
 
+use super::create::{check_cash, check_days};
 use super::error::RunError;
-use crate::world::params::{ParameterError, Params, Source, shipped_sources};
+use crate::world::params::{ParameterError, Params, Source, line_of_key, shipped_sources};
 
 /// Folders of this person on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -164,24 +165,23 @@ impl Configuration {
         for (key, value) in overrides {
             sources.push(single_override(key, value)?);
         }
-        Ok(Params::load(&shipped_sources(), &sources)?)
+        Ok(Params::load(&shipped_sources(), &sources).map_err(|error| scenario.located(error))?)
     }
 }
 
 impl Scenario {
-    /// The overrides as a text of their own, whose lines are those of the scenario's file.
+    /// The overrides as a source of their own.
     fn as_overrides(&self) -> Source {
-        let mut inside = false;
-        let lines = self.source.text.lines().map(|line| {
-            inside |= line.starts_with("[world");
-            match line.strip_prefix("[world.").or_else(|| line.strip_prefix("world.")) {
-                Some(rest) if line.starts_with('[') => format!("[{rest}"),
-                Some(rest) => rest.to_owned(),
-                None if inside && line != "[world]" => line.to_owned(),
-                None => String::new(),
-            }
-        });
-        Source { name: self.source.name.clone(), text: lines.collect::<Vec<_>>().join("\n") }
+        let text = toml::to_string(&self.world).expect("a table that was read can be written");
+        Source { name: self.source.name.clone(), text }
+    }
+
+    /// An error in the overrides, at its line in the scenario's file.
+    fn located(&self, error: ParameterError) -> ParameterError {
+        if error.source != self.source.name {
+            return error;
+        }
+        ParameterError { line: line_of_key(&self.source.text, &format!("world.{}", error.key)), ..error }
     }
 }
 
@@ -192,6 +192,14 @@ fn read_scenario(name: &str, source: Source, shipped: bool) -> Result<Scenario, 
         key: String::new(),
         problem: error.message().to_owned(),
     })?;
+    let wrong = |key: &str, problem: String| ParameterError {
+        source: source.name.clone(),
+        line: line_of_key(&source.text, key),
+        key: key.to_owned(),
+        problem,
+    };
+    file.days.map_or(Ok(()), check_days).map_err(|problem| wrong("days", problem))?;
+    file.cash.map_or(Ok(()), check_cash).map_err(|problem| wrong("cash", problem))?;
     Ok(Scenario {
         name: name.to_owned(),
         title: file.title,
@@ -260,7 +268,7 @@ mod tests {
         for (key, value, part) in [
             ("quality", "1", "table.key=value"),
             ("quality.nothing", "1", "no such parameter"),
-            ("quality.base_product_quality", "good", "f64"),
+            ("quality.base_product_quality", "good", "expected a number"),
             ("competitor.competitor_feedback_u_max", "2", "between 0 and 1"),
             ("quality.]x", "1", "table.key=value"),
         ] {

@@ -9,7 +9,7 @@ use super::configuration::{Configuration, DEFAULT_SCENARIO};
 use super::error::RunError;
 use super::manifest::{FORMAT, Manifest, differences, sync_folder};
 use super::mode::Mode;
-use super::record::entry_of;
+use super::record::{FactsChain, entry_of};
 use super::runs::{earlier_runs, lock_run};
 use super::trajectory::{Durability, TrajectoryWriter, now};
 use super::week::WeekFigures;
@@ -171,7 +171,7 @@ impl Session {
             journal: Vec::new(),
             asked: Vec::new(),
             memo_in_memory: String::new(),
-            facts_hash: blake3::hash(b""),
+            facts_chain: FactsChain::default(),
             ended: None,
             remarks: Vec::new(),
         }
@@ -201,6 +201,22 @@ fn start_projector(
     Ok(Some(projector))
 }
 
+/// Whether a run can have this many days.
+pub(super) fn check_days(days: u32) -> Result<(), String> {
+    if (FEWEST_DAYS..=100_000).contains(&days) {
+        return Ok(());
+    }
+    Err(format!("a run has between {FEWEST_DAYS} and 100,000 days, not {days}"))
+}
+
+/// Whether a run can start with this much cash.
+pub(super) fn check_cash(cash: f64) -> Result<(), String> {
+    if cash.is_finite() && cash > 0.0 && cash <= 1e15 {
+        return Ok(());
+    }
+    Err(format!("starting cash must be above 0 and at most 1e15 dollars, not {cash}"))
+}
+
 fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Params), RunError> {
     let scenario = configuration.scenario(&new.scenario)?;
     if new.mode == Mode::Baseline && !scenario.shipped {
@@ -214,17 +230,9 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
     }
     let params = configuration.parameters(&scenario, &new.overrides, new.mode != Mode::Baseline)?;
     let days = new.days.or(scenario.days).unwrap_or(params.run.total_days);
-    if !(FEWEST_DAYS..=100_000).contains(&days) {
-        return Err(RunError::NotPossible(format!(
-            "a run has between {FEWEST_DAYS} and 100,000 days, not {days}"
-        )));
-    }
+    check_days(days).map_err(RunError::NotPossible)?;
     let cash = new.cash.or(scenario.cash).unwrap_or(params.initial.initial_cash);
-    if !(cash.is_finite() && cash > 0.0 && cash <= 1e15) {
-        return Err(RunError::NotPossible(format!(
-            "starting cash must be above 0 and at most 1e15 dollars, not {cash}"
-        )));
-    }
+    check_cash(cash).map_err(RunError::NotPossible)?;
     let seed = new.seed.unwrap_or(params.run.seed);
     if seed > i64::MAX as u64 {
         return Err(RunError::NotPossible(format!("a seed is at most {}, not {seed}", i64::MAX)));

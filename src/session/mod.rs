@@ -59,6 +59,7 @@ use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::settings::Settings;
 use crate::world::state::World;
+use record::FactsChain;
 use trajectory::TrajectoryWriter;
 
 /// How a run ended.
@@ -125,8 +126,8 @@ pub struct Session {
     asked: Vec<String>,
     /// Notes of a run without a folder.
     memo_in_memory: String,
-    /// Chain of the hashes of this week's facts.
-    facts_hash: blake3::Hash,
+    /// Hashes of this week's facts.
+    facts_chain: FactsChain,
     ended: Option<Ended>,
     /// What the person should know about the opening of the run.
     remarks: Vec<String>,
@@ -201,9 +202,10 @@ impl Session {
         }
     }
 
-    /// Hash of the whole state with one hash per part, by name.
+    /// Hash of the whole state with one hash per part, by name. Right after a week it is the one that the
+    /// trajectory recorded.
     pub fn state_hash(&self) -> (String, BTreeMap<&'static str, String>) {
-        record::state_hash(&self.world, self.facts_hash)
+        record::state_hash(&self.world, self.facts_chain.hash())
     }
 
     /// The hidden state; only in debug runs.

@@ -10,7 +10,7 @@ use super::manifest::Manifest;
 use super::runs::lock_run;
 use super::trajectory::{Line, Trajectory, TrajectoryWriter};
 use super::{Ended, Session};
-use crate::database::{Location, Position, Projector};
+use crate::database::{Location, Position, Projector, position_of};
 use crate::world::events::Facts;
 use crate::world::state::World;
 
@@ -53,6 +53,9 @@ impl Session {
         let path = folder.join("trajectory.jsonl");
         let trajectory = Trajectory::read(&path)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;
+        if access == Access::Write && projection {
+            check_end(&path, folder, &trajectory)?;
+        }
         let (projector, projected) = open_projector(folder, access, projection, &params, &trajectory)?;
         let mut facts = Facts::default();
         let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
@@ -134,9 +137,9 @@ impl Session {
     fn compare(&mut self, from: u32, line: &Line) -> Result<(), String> {
         let figures = self.settle_figures();
         let reached = self.closing_fields(from, &figures);
-        self.facts_hash = blake3::hash(b"");
+        self.facts_chain.close();
         if reached.get("state_hash") == line.fields.get("state_hash") {
-            return Ok(());
+            return same_figures(&reached, line);
         }
         let part = |fields: &serde_json::Map<String, Value>, name: &str| {
             fields.get("parts").and_then(|parts| parts.get(name)).cloned()
@@ -192,6 +195,46 @@ fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result
         && says("mode", manifest.mode.id().into())
         && says("parameters_digest", manifest.parameters_digest.clone().into());
     if same { Ok(()) } else { Err(damaged("the start of the trajectory contradicts run.toml")) }
+}
+
+/// The figures that stand beside a state are derived from it.
+fn same_figures(reached: &serde_json::Map<String, Value>, line: &Line) -> Result<(), String> {
+    let text = |fields: &serde_json::Map<String, Value>, name: &str| fields.get(name).map(Value::to_string);
+    let differs = |name: &&str| text(reached, name) != text(&line.fields, name);
+    match ["days_run", "figures", "cash"].into_iter().find(differs) {
+        None => Ok(()),
+        Some(name) => {
+            Err(format!("the recorded {name} does not belong to the recorded state: it was changed"))
+        }
+    }
+}
+
+/// Nothing follows the last line and vouches for it, but the database remembers it: a line that was changed or
+/// cut off at the end shows here.
+fn check_end(path: &Path, folder: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
+    let location = Location::File(folder.join("world.db"));
+    let (Some(last), Some(position)) = (trajectory.lines.last(), position_of(&location)) else {
+        return Ok(());
+    };
+    // A torn line is cut off with a notice, and a week that lacks its closing line is simulated again.
+    let heals = trajectory.unfinished > 0 || last.kind == "advance";
+    let (line, problem) = if position.seq > last.seq && !heals {
+        (last.seq + 2, "the line is missing, but the database was made from it")
+    } else if position.seq == last.seq && position.line_hash != last.hash {
+        (last.seq + 1, "the line is not the one the database was made from: it was changed")
+    } else {
+        return Ok(());
+    };
+    Err(RunError::Damaged {
+        path: path.to_owned(),
+        line: line as usize,
+        problem: problem.to_owned(),
+        safe: format!(
+            "Lines 1 to {} are good; nothing was changed. Restore the trajectory from a copy, or remove world.db to \
+             go on from what is there",
+            line - 1
+        ),
+    })
 }
 
 fn open_projector(

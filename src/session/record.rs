@@ -38,13 +38,45 @@ pub(super) fn state_hash(world: &World, facts: blake3::Hash) -> (String, BTreeMa
     (combined_hash(&parts).to_hex().to_string(), by_name)
 }
 
+/// The facts of a week, day by day and call by call, as one hash.
+pub(super) struct FactsChain {
+    hash: blake3::Hash,
+    /// The week is over: what comes next begins a new chain.
+    closed: bool,
+}
+
+impl Default for FactsChain {
+    fn default() -> Self {
+        FactsChain { hash: blake3::hash(b""), closed: false }
+    }
+}
+
+impl FactsChain {
+    fn add(&mut self, facts: &Facts) {
+        if self.closed {
+            *self = FactsChain::default();
+        }
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.hash.as_bytes());
+        hasher.update(hash_of(facts).as_bytes());
+        self.hash = hasher.finalize();
+    }
+
+    /// Ends the week.
+    pub(super) fn close(&mut self) {
+        self.closed = true;
+    }
+
+    /// Hash of the week so far, or of the one that just ended.
+    pub(super) fn hash(&self) -> blake3::Hash {
+        self.hash
+    }
+}
+
 impl Session {
     /// Adds the facts of a day or call to this week's chain.
     pub(super) fn chain_facts(&mut self) {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(self.facts_hash.as_bytes());
-        hasher.update(hash_of(&self.facts).as_bytes());
-        self.facts_hash = hasher.finalize();
+        self.facts_chain.add(&self.facts);
     }
 
     /// Hands the facts of a day or call to the database, if there is one; the session's own are then empty

@@ -60,7 +60,7 @@ pub fn list_runs(runs: &Path) -> Result<Vec<RunSummary>, RunError> {
     let mut list: Vec<RunSummary> = entries
         .flatten()
         .map(|entry| entry.path())
-        .filter(|folder| folder.join("run.toml").exists())
+        .filter(|folder| folder.join("run.toml").exists() || folder.join("trajectory.jsonl").exists())
         .map(|folder| summarise(&folder))
         .collect();
     list.sort_by(|left, right| right.played.cmp(&left.played).then_with(|| left.id.cmp(&right.id)));

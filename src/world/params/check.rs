@@ -105,6 +105,7 @@ const RANGES: &[Range] = &[
 
 /// Checks every number of the merged tables against its range.
 pub(super) fn ranges(tables: &Table) -> Result<(), Problem> {
+    tables.iter().try_for_each(|(name, value)| finite(value, name.clone()))?;
     RANGES.iter().try_for_each(|range| {
         let parts: Vec<&str> = range.0.split('.').collect();
         tables
@@ -112,6 +113,22 @@ pub(super) fn ranges(tables: &Table) -> Result<(), Problem> {
             .filter(|(name, _)| *name == parts[0])
             .try_for_each(|(name, value)| check_value(value, &parts[1..], range, name.clone()))
     })
+}
+
+/// No number of the world is without bounds.
+fn finite(value: &Value, path: String) -> Result<(), Problem> {
+    match value {
+        Value::Float(number) if !number.is_finite() => {
+            Err((path, format!("is {number}, but must be a finite number")))
+        }
+        Value::Table(table) => {
+            table.iter().try_for_each(|(key, inner)| finite(inner, format!("{path}.{key}")))
+        }
+        Value::Array(values) => {
+            values.iter().enumerate().try_for_each(|(at, inner)| finite(inner, format!("{path}.{at}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn check_value(value: &Value, rest: &[&str], range: &Range, path: String) -> Result<(), Problem> {

@@ -114,8 +114,22 @@ fn parse(source: &Source) -> Result<Table, ParameterError> {
 fn read(merged: Table, sources: &[&Source]) -> Result<Params, ParameterError> {
     serde_path_to_error::deserialize(Value::Table(merged)).map_err(|error| {
         let key = error.path().to_string().replace(['[', ']'], "");
-        locate(sources, &key, error.inner().message())
+        locate(sources, &key, &in_plain_words(error.inner().message()))
     })
+}
+
+/// A message of the reader without the names of types in this code.
+fn in_plain_words(message: &str) -> String {
+    let Some((found, expected)) = message.rsplit_once(", expected ") else { return message.to_owned() };
+    let words = match expected {
+        "f64" => "a number",
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number of at least 0",
+        "i64" => "a whole number",
+        "a boolean" => "true or false",
+        "a string" => "a text",
+        other => other,
+    };
+    format!("{found}, expected {words}")
 }
 
 /// Lays `above` over `below`: tables are merged key by key, everything else is replaced.
@@ -157,7 +171,7 @@ fn line_of(text: &str, offset: usize) -> usize {
 }
 
 /// Line of the deepest part of a dotted key that stands in the text; elements of lists are numbered from 0.
-fn line_of_key(text: &str, key: &str) -> Option<usize> {
+pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
     let document = toml::de::DeTable::parse(text).ok()?;
     let mut line = None;
     let mut here = Some(toml::de::DeValue::Table(document.into_inner()));

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 pub use customers::*;
 pub use discovery::*;
 pub use enterprise::*;
-pub use load::{ParameterError, Source, override_table, shipped_sources};
+pub use load::{ParameterError, Source, line_of_key, override_table, shipped_sources};
 pub use market::*;
 pub use product::*;
 pub use retention::*;

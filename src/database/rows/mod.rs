@@ -1,16 +1,20 @@
 //! From facts to rows: what the writer thread does with a day.
 
+mod create;
+mod direct;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use rusqlite::{Connection, Transaction, params};
+use rusqlite::{Transaction, params};
+
+pub(super) use create::create;
 
 use super::blocks::{AdsDay, SharedShelf, UsageDay};
-use crate::notation::plain_numbers;
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::events::{
-    Arrival, Category, Facts, LedgerNote, Notice, ResearchChange, SettingsChange, Source, SubscriptionEnded,
-    SubscriptionOpened, SubscriptionStatus, TermsChanged,
+    Arrival, Category, Facts, LedgerNote, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus,
+    TermsChanged,
 };
 use crate::world::identifiers::{Group, Plan};
 use crate::world::market::Knowledge;
@@ -109,8 +113,8 @@ impl RowWriter {
     pub fn write(&mut self, transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
         let facts = &entry.facts;
         self.usage(transaction, facts)?;
-        service(transaction, facts)?;
-        research(transaction, facts)?;
+        direct::service(transaction, facts)?;
+        direct::research(transaction, facts)?;
         for (reading, words) in facts.readings.iter().zip(&entry.readings) {
             transaction
                 .prepare_cached(
@@ -127,15 +131,15 @@ impl RowWriter {
         }
         self.issues(facts);
         self.departures(facts);
-        turns(transaction, facts)?;
-        channel_leads(transaction, facts)?;
+        direct::turns(transaction, facts)?;
+        direct::channel_leads(transaction, facts)?;
         self.arrivals(transaction, entry)?;
         self.ledger(transaction, facts)?;
         self.ads(transaction, facts)?;
-        notices(transaction, facts, &entry.notices)?;
-        settings(transaction, facts)?;
-        forecasts(transaction, &entry.forecasts)?;
-        knowledge(transaction, &entry.knowledge)
+        direct::notices(transaction, facts, &entry.notices)?;
+        direct::settings(transaction, facts)?;
+        direct::forecasts(transaction, &entry.forecasts)?;
+        direct::knowledge(transaction, &entry.knowledge)
     }
 
     fn usage(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
@@ -405,217 +409,3 @@ fn packed_persona(company: bool, picks: PersonaPicks) -> i64 {
     let axes = if company { [a, b, 0, e, c, d, f, g] } else { [a, b, c, d, e, 0, 0, 0] };
     i64::from_le_bytes(axes)
 }
-
-fn service(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-    let Some(service) = facts.service else { return Ok(()) };
-    transaction
-        .prepare_cached("INSERT OR REPLACE INTO service_day VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")?
-        .execute(params![
-            facts.day,
-            service.total_usage as i64,
-            service.p95_ms,
-            service.error_rate,
-            service.downtime_minutes,
-            service.capacity_tier,
-            service.capacity_units,
-        ])?;
-    Ok(())
-}
-
-fn research(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-    let mut write = transaction
-        .prepare_cached("INSERT OR REPLACE INTO research_projects VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")?;
-    for change in &facts.research {
-        let (project, status, applied) = match change {
-            ResearchChange::Started(project) => (project, "in_progress", 0.0),
-            ResearchChange::Completed(project) => (project, "completed", project.boost),
-        };
-        write.execute(params![
-            project.id(),
-            project.tier,
-            status,
-            project.started_day,
-            project.due_day,
-            project.boost,
-            applied,
-        ])?;
-    }
-    Ok(())
-}
-
-fn turns(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-    let mut insert = transaction.prepare_cached(
-        "INSERT INTO enterprise_turns (thread_id, customer_id, thread_type, turn_number, sender, day, seat_count) \
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
-    )?;
-    for turn in &facts.turns {
-        insert.execute(params![
-            turn.thread,
-            turn.customer,
-            turn.kind.id(),
-            turn.number,
-            turn.sender.id(),
-            facts.day,
-            turn.seats,
-        ])?;
-    }
-    Ok(())
-}
-
-fn channel_leads(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-    let mut insert = transaction.prepare_cached(
-        "INSERT INTO ad_channel_leads (day, channel_id, group_id, leads_generated, spend) VALUES (?1, ?2, ?3, ?4, ?5)",
-    )?;
-    for pair in &facts.channel_leads {
-        insert.execute(params![facts.day, pair.channel.id(), pair.group.id(), pair.leads, pair.spend])?;
-    }
-    Ok(())
-}
-
-fn notices(transaction: &Transaction<'_>, facts: &Facts, words: &[String]) -> rusqlite::Result<()> {
-    let mut insert =
-        transaction.prepare_cached("INSERT INTO notifications (day, type, message) VALUES (?1, ?2, ?3)")?;
-    for (notice, words) in facts.notices.iter().zip(words) {
-        insert.execute(params![facts.day, Notice::kind(notice), words])?;
-    }
-    Ok(())
-}
-
-fn settings(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-    for change in &facts.settings {
-        let (tool, kind) = match change {
-            SettingsChange::Core(core) => {
-                let quota = |plan| core.quotas[plan] as i64;
-                transaction
-                    .prepare_cached(
-                        "INSERT OR REPLACE INTO config_history (day, price_A, price_B, price_C, tier_A, tier_B, tier_C, \
-                         spend_operations, spend_development, capacity_tier, quota_A, quota_B, quota_C) \
-                         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
-                    )?
-                    .execute(params![
-                        facts.day,
-                        core.prices[Plan::A],
-                        core.prices[Plan::B],
-                        core.prices[Plan::C],
-                        core.tiers[Plan::A],
-                        core.tiers[Plan::B],
-                        core.tiers[Plan::C],
-                        core.operations,
-                        core.development,
-                        core.capacity_tier,
-                        quota(Plan::A),
-                        quota(Plan::B),
-                        quota(Plan::C),
-                    ])?;
-                continue;
-            }
-            SettingsChange::Promotion(_) => ("set_promotion", "promotion"),
-            SettingsChange::LeadPromotion(_) => ("set_lead_promotion", "lead_promotion"),
-            SettingsChange::AdsStrength(_) => ("set_ads_strength", "ads_strength"),
-            SettingsChange::TargetedAds(_) => ("set_targeted_ad_spend", "targeted_ad_spend"),
-            SettingsChange::TargetedOperations(_) => ("set_targeted_ops_spend", "targeted_ops_spend"),
-            SettingsChange::TargetedDevelopment(_) => ("set_targeted_dev_spend", "targeted_dev_spend"),
-        };
-        let json = plain_numbers(change.family().unwrap_or_default()).to_string();
-        transaction
-            .prepare_cached(
-                "INSERT INTO config_overrides (day, tool_name, setting_type, settings_json) VALUES (?1, ?2, ?3, ?4)",
-            )?
-            .execute(params![facts.day, tool, kind, json])?;
-    }
-    Ok(())
-}
-
-fn forecasts(transaction: &Transaction<'_>, rows: &[ForecastRow]) -> rusqlite::Result<()> {
-    let mut insert = transaction
-        .prepare_cached("INSERT OR REPLACE INTO predictions VALUES (?1, ?2, 'cash', ?3, ?4, ?5, ?6)")?;
-    for row in rows {
-        insert.execute(params![
-            row.submit_day,
-            row.horizon_days,
-            row.point,
-            row.lower,
-            row.upper,
-            row.submitted_at
-        ])?;
-    }
-    Ok(())
-}
-
-fn knowledge(transaction: &Transaction<'_>, rows: &[(Group, Knowledge)]) -> rusqlite::Result<()> {
-    let mut write =
-        transaction.prepare_cached("INSERT OR REPLACE INTO group_info_levels VALUES (?1, ?2, ?3, ?4, ?5)")?;
-    for (group, own) in rows {
-        let hidden = !group.initially_known();
-        write.execute(params![group.id(), own.level, hidden, own.discovered_day, own.last_research_day])?;
-    }
-    Ok(())
-}
-
-/// Creates the tables, the words, and row 1 of `customers`: the market observer.
-pub(super) fn create(connection: &mut Connection, params: &Params) -> rusqlite::Result<()> {
-    let transaction = connection.transaction()?;
-    transaction.execute_batch(include_str!("schema.sql"))?;
-    transaction.execute(
-        "INSERT INTO customer_rows (customer_id, group_id, created_day, email) \
-         VALUES (1, 'S1', 0, 'market_observer@external')",
-        [],
-    )?;
-    {
-        let mut insert = transaction.prepare("INSERT INTO words VALUES (?1, ?2, ?3, ?4)")?;
-        for group in Group::all() {
-            for (axis, words) in axes(group, params) {
-                for (n, word) in (0u32..).zip(&words) {
-                    insert.execute(params![axis, group.id(), n, word])?;
-                }
-            }
-            if group.is_enterprise() {
-                insert.execute(params![
-                    "plus",
-                    group.id(),
-                    params.personas.enterprise.size_plus_from_seats,
-                    "+"
-                ])?;
-            }
-        }
-    }
-    transaction.commit()
-}
-
-/// Word lists of a group by axis.
-fn axes(group: Group, params: &Params) -> Vec<(&'static str, Vec<String>)> {
-    let (own, personas) = (&params.personas.group[group.index()], &params.personas);
-    let floor = params.group(group).q_min_mean;
-    let quality = |edges: &[f64], labels: &[String]| {
-        vec![labels[edges.iter().position(|edge| floor < *edge).unwrap_or(edges.len())].clone()]
-    };
-    let mut axes = vec![("industry", own.industry.clone()), ("role", own.role.clone())];
-    if group.is_enterprise() {
-        let common = &personas.enterprise;
-        axes.extend([
-            ("experience", vec![common.experience.clone()]),
-            ("work_style", own.culture.clone()),
-            ("tech_savvy", common.tech_savvy.clone()),
-            ("size", own.company_size.clone()),
-            ("decision", own.decision_style.clone()),
-            ("concern", own.primary_concern.clone()),
-            ("quality", quality(&common.quality_thresholds, &common.quality_labels)),
-        ]);
-    } else {
-        let common = &personas.individual;
-        axes.extend([
-            ("experience", common.experience_levels.clone()),
-            ("work_style", own.work_style.clone()),
-            ("tech_savvy", common.tech_savvy.clone()),
-            ("usage", common.usage_labels.to_vec()),
-            ("budget", common.budget_labels.to_vec()),
-            ("quality", quality(&common.quality_thresholds, &common.quality_labels)),
-        ]);
-    }
-    axes
-}
-
-/// All sources fit the CASE of the view `customers`.
-const _: () = assert!(Source::Organic as u8 == 6);
-/// All categories fit the CASE of the view `ledger`.
-const _: () = assert!(Category::ResearchProject as u8 == 11);

@@ -1,0 +1,159 @@
+//! Rows that are written at once: nothing changes them before the commit.
+
+use rusqlite::{Transaction, params};
+
+use super::ForecastRow;
+use crate::notation::plain_numbers;
+use crate::world::events::{Facts, Notice, ResearchChange, SettingsChange};
+use crate::world::identifiers::{Group, Plan};
+use crate::world::market::Knowledge;
+
+pub(super) fn service(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    let Some(service) = facts.service else { return Ok(()) };
+    transaction
+        .prepare_cached("INSERT OR REPLACE INTO service_day VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")?
+        .execute(params![
+            facts.day,
+            service.total_usage as i64,
+            service.p95_ms,
+            service.error_rate,
+            service.downtime_minutes,
+            service.capacity_tier,
+            service.capacity_units,
+        ])?;
+    Ok(())
+}
+
+pub(super) fn research(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    let mut write = transaction
+        .prepare_cached("INSERT OR REPLACE INTO research_projects VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")?;
+    for change in &facts.research {
+        let (project, status, applied) = match change {
+            ResearchChange::Started(project) => (project, "in_progress", 0.0),
+            ResearchChange::Completed(project) => (project, "completed", project.boost),
+        };
+        write.execute(params![
+            project.id(),
+            project.tier,
+            status,
+            project.started_day,
+            project.due_day,
+            project.boost,
+            applied,
+        ])?;
+    }
+    Ok(())
+}
+
+pub(super) fn turns(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    let mut insert = transaction.prepare_cached(
+        "INSERT INTO enterprise_turns (thread_id, customer_id, thread_type, turn_number, sender, day, seat_count) \
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+    )?;
+    for turn in &facts.turns {
+        insert.execute(params![
+            turn.thread,
+            turn.customer,
+            turn.kind.id(),
+            turn.number,
+            turn.sender.id(),
+            facts.day,
+            turn.seats,
+        ])?;
+    }
+    Ok(())
+}
+
+pub(super) fn channel_leads(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    let mut insert = transaction.prepare_cached(
+        "INSERT INTO ad_channel_leads (day, channel_id, group_id, leads_generated, spend) VALUES (?1, ?2, ?3, ?4, ?5)",
+    )?;
+    for pair in &facts.channel_leads {
+        insert.execute(params![facts.day, pair.channel.id(), pair.group.id(), pair.leads, pair.spend])?;
+    }
+    Ok(())
+}
+
+pub(super) fn notices(
+    transaction: &Transaction<'_>,
+    facts: &Facts,
+    words: &[String],
+) -> rusqlite::Result<()> {
+    let mut insert =
+        transaction.prepare_cached("INSERT INTO notifications (day, type, message) VALUES (?1, ?2, ?3)")?;
+    for (notice, words) in facts.notices.iter().zip(words) {
+        insert.execute(params![facts.day, Notice::kind(notice), words])?;
+    }
+    Ok(())
+}
+
+pub(super) fn settings(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    for change in &facts.settings {
+        let (tool, kind) = match change {
+            SettingsChange::Core(core) => {
+                let quota = |plan| core.quotas[plan] as i64;
+                transaction
+                    .prepare_cached(
+                        "INSERT OR REPLACE INTO config_history (day, price_A, price_B, price_C, tier_A, tier_B, tier_C, \
+                         spend_operations, spend_development, capacity_tier, quota_A, quota_B, quota_C) \
+                         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
+                    )?
+                    .execute(params![
+                        facts.day,
+                        core.prices[Plan::A],
+                        core.prices[Plan::B],
+                        core.prices[Plan::C],
+                        core.tiers[Plan::A],
+                        core.tiers[Plan::B],
+                        core.tiers[Plan::C],
+                        core.operations,
+                        core.development,
+                        core.capacity_tier,
+                        quota(Plan::A),
+                        quota(Plan::B),
+                        quota(Plan::C),
+                    ])?;
+                continue;
+            }
+            SettingsChange::Promotion(_) => ("set_promotion", "promotion"),
+            SettingsChange::LeadPromotion(_) => ("set_lead_promotion", "lead_promotion"),
+            SettingsChange::AdsStrength(_) => ("set_ads_strength", "ads_strength"),
+            SettingsChange::TargetedAds(_) => ("set_targeted_ad_spend", "targeted_ad_spend"),
+            SettingsChange::TargetedOperations(_) => ("set_targeted_ops_spend", "targeted_ops_spend"),
+            SettingsChange::TargetedDevelopment(_) => ("set_targeted_dev_spend", "targeted_dev_spend"),
+        };
+        let json = plain_numbers(change.family().unwrap_or_default()).to_string();
+        transaction
+            .prepare_cached(
+                "INSERT INTO config_overrides (day, tool_name, setting_type, settings_json) VALUES (?1, ?2, ?3, ?4)",
+            )?
+            .execute(params![facts.day, tool, kind, json])?;
+    }
+    Ok(())
+}
+
+pub(super) fn forecasts(transaction: &Transaction<'_>, rows: &[ForecastRow]) -> rusqlite::Result<()> {
+    let mut insert = transaction
+        .prepare_cached("INSERT OR REPLACE INTO predictions VALUES (?1, ?2, 'cash', ?3, ?4, ?5, ?6)")?;
+    for row in rows {
+        insert.execute(params![
+            row.submit_day,
+            row.horizon_days,
+            row.point,
+            row.lower,
+            row.upper,
+            row.submitted_at
+        ])?;
+    }
+    Ok(())
+}
+
+pub(super) fn knowledge(transaction: &Transaction<'_>, rows: &[(Group, Knowledge)]) -> rusqlite::Result<()> {
+    let mut write =
+        transaction.prepare_cached("INSERT OR REPLACE INTO group_info_levels VALUES (?1, ?2, ?3, ?4, ?5)")?;
+    for (group, own) in rows {
+        let hidden = !group.initially_known();
+        write.execute(params![group.id(), own.level, hidden, own.discovered_day, own.last_research_day])?;
+    }
+    Ok(())
+}

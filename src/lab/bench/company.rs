@@ -1,0 +1,112 @@
+//! The company that is measured: the policy P1a, played up to a number of subscribers.
+
+use std::time::Instant;
+
+use super::{Bench, BenchError};
+use crate::lab::policy::Policy;
+use crate::lab::runner::{RunSpec, decide, new_run};
+use crate::session::{NewRun, Session, Storage, Via};
+
+/// Policy of all figures.
+pub const POLICY: &str = "P1a";
+/// Seed of all figures.
+pub const SEED: u64 = 42;
+/// A billing period and a few days: after these weeks everybody has been billed.
+const SETTLING_WEEKS: u32 = 5;
+
+/// How the run is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// In memory, without a database.
+    Memory,
+    /// On the disk with the database in the background, as a person plays.
+    Disk,
+}
+
+/// The market the company grows in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Market {
+    /// As it is.
+    Own,
+    /// One that a million subscribers fit into.
+    Large,
+}
+
+/// A company with a crowd of subscribers.
+pub struct Company {
+    policy: Policy,
+    /// Its run.
+    pub session: Session,
+}
+
+/// A week that was measured.
+#[derive(Debug, Clone, Copy)]
+pub struct Lap {
+    /// Seconds from the key to the dashboard.
+    pub seconds: f64,
+    /// Active subscribers in the middle of the week.
+    pub subscribers: f64,
+}
+
+impl Lap {
+    /// Seconds for one subscriber and day.
+    pub fn per_subscriber_day(&self) -> f64 {
+        self.seconds / 7.0 / self.subscribers
+    }
+}
+
+impl Company {
+    /// A company on day 0.
+    pub fn found(market: Market, keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
+        let policy = Policy::find(POLICY, &bench.configuration)?;
+        let mut spec = RunSpec::of_seed(SEED);
+        if market == Market::Large {
+            spec.cash = Some(1e9);
+            spec.overrides = vec![("leads.saturation_base".to_owned(), "14.5".to_owned())];
+        }
+        let on_disk = keep == Keep::Disk;
+        let new = NewRun {
+            storage: if on_disk { Storage::Runs(bench.scratch.clone()) } else { Storage::Memory },
+            projection: on_disk,
+            sync_calls: on_disk,
+            ..new_run(&policy, &spec)
+        };
+        Ok(Company { session: Session::create(new, &bench.configuration)?, policy })
+    }
+
+    /// Active subscribers now.
+    pub fn subscribers(&self) -> u32 {
+        self.session.weeks().last().map_or(0, |week| week.individual_subscribers)
+    }
+
+    /// Decides and lets a week pass; only the passing is measured.
+    pub fn week(&mut self) -> Result<Lap, BenchError> {
+        decide(&self.policy, SEED, &mut self.session)?;
+        self.session.wait_for_database()?;
+        let before = self.subscribers();
+        let forecasts = self.session.naive_forecasts();
+        let started = Instant::now();
+        self.session.advance("bench", &forecasts, Via::Policy, &mut |_| {})?;
+        let seconds = started.elapsed().as_secs_f64();
+        Ok(Lap { seconds, subscribers: f64::from(before + self.subscribers()) / 2.0 })
+    }
+
+    /// Plays until there are this many subscribers.
+    pub fn grow_to(&mut self, subscribers: u32) -> Result<(), BenchError> {
+        while self.subscribers() < subscribers {
+            if self.session.ended().is_some() {
+                return Err(BenchError(format!("the company never had {subscribers} subscribers")));
+            }
+            self.week()?;
+        }
+        Ok(())
+    }
+
+    /// Plays until everybody has been billed once.
+    pub fn settle(&mut self) -> Result<(), BenchError> {
+        for _ in 0..SETTLING_WEEKS {
+            self.week()?;
+        }
+        Ok(())
+    }
+}

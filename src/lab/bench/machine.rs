@@ -1,0 +1,67 @@
+//! What the machine tells: a fixed piece of work, memory, sizes of folders.
+
+use std::hint::black_box;
+use std::path::Path;
+use std::time::Instant;
+
+/// Steps of the calibration loop.
+const STEPS: u64 = 60_000_000;
+
+/// Seconds a fixed piece of whole-number and floating-point work takes on one processor, so that figures of
+/// different machines compare.
+pub fn calibrate() -> f64 {
+    let started = Instant::now();
+    black_box(fixed_work(black_box(STEPS)));
+    started.elapsed().as_secs_f64()
+}
+
+/// A chain of shifts, a multiplication, a division and a root a step: each waits for the one before, as the
+/// terms of a formula do.
+fn fixed_work(steps: u64) -> f64 {
+    let (mut word, mut value) = (0x9e37_79b9_7f4a_7c15_u64, 1.0_f64);
+    for _ in 0..steps {
+        word ^= word << 13;
+        word ^= word >> 7;
+        word ^= word << 17;
+        let fraction = (word >> 11) as f64 * (1.0 / (1u64 << 53) as f64);
+        value = (value * 0.75 + fraction).sqrt() + 0.5;
+    }
+    value
+}
+
+/// Most memory this process ever held, in millions of bytes; none where the system does not tell.
+pub fn peak_memory() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024.0 / 1e6)
+}
+
+/// Size of the files in a folder, in millions of bytes.
+pub fn folder_size(folder: &Path) -> std::io::Result<f64> {
+    let mut bytes = 0;
+    for entry in std::fs::read_dir(folder)? {
+        bytes += entry?.metadata()?.len();
+    }
+    Ok(bytes as f64 / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fixed_work_is_fixed() {
+        assert_eq!(fixed_work(1000).to_bits(), fixed_work(1000).to_bits());
+        assert!(fixed_work(1000).is_finite());
+    }
+
+    #[test]
+    fn folders_have_a_size() {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("a"), [0; 1500]).expect("a file");
+        std::fs::write(folder.path().join("b"), [0; 500]).expect("a file");
+        assert_eq!(folder_size(folder.path()).expect("a size"), 0.002);
+        assert!(folder_size(&folder.path().join("none")).is_err());
+    }
+}

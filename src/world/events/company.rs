@@ -1,0 +1,161 @@
+//! The company and its environment: settings, service, research, notifications.
+
+use crate::world::canonical::{Canonical, CanonicalHasher, canonical};
+use crate::world::market::economy::Reading;
+use crate::world::product::research::Project;
+use crate::world::settings::{
+    AdsStrength, CoreSettings, LeadPromotion, Promotion, TargetedAds, TargetedDevelopment, TargetedOperations,
+};
+
+canonical! {
+    ServiceDay { total_usage, overload, outage, downtime_minutes, p95_ms, error_rate, capacity_tier, capacity_units }
+}
+
+/// A family of settings after a call of its tool.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SettingsChange {
+    /// A row of `config_history`.
+    Core(CoreSettings),
+    /// Ongoing discounts.
+    Promotion(Promotion),
+    /// Lead discounts.
+    LeadPromotion(LeadPromotion),
+    /// In-app ads.
+    AdsStrength(AdsStrength),
+    /// Advertising budgets.
+    TargetedAds(TargetedAds),
+    /// Targeted operations.
+    TargetedOperations(TargetedOperations),
+    /// Targeted development.
+    TargetedDevelopment(TargetedDevelopment),
+}
+
+impl SettingsChange {
+    /// The family as JSON, with the field names of `config_overrides.settings_json`; none for the core settings,
+    /// which have a table of their own.
+    pub fn family(&self) -> Option<serde_json::Value> {
+        let value = match self {
+            SettingsChange::Core(_) => return None,
+            SettingsChange::Promotion(value) => serde_json::to_value(value),
+            SettingsChange::LeadPromotion(value) => serde_json::to_value(value),
+            SettingsChange::AdsStrength(value) => serde_json::to_value(value),
+            SettingsChange::TargetedAds(value) => serde_json::to_value(value),
+            SettingsChange::TargetedOperations(value) => serde_json::to_value(value),
+            SettingsChange::TargetedDevelopment(value) => serde_json::to_value(value),
+        };
+        Some(value.expect("settings have text keys and finite numbers"))
+    }
+}
+
+impl Canonical for SettingsChange {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        match self {
+            SettingsChange::Core(value) => (0u8, *value).feed(hasher),
+            SettingsChange::Promotion(value) => (1u8, value.clone()).feed(hasher),
+            SettingsChange::LeadPromotion(value) => (2u8, value.clone()).feed(hasher),
+            SettingsChange::AdsStrength(value) => (3u8, value.clone()).feed(hasher),
+            SettingsChange::TargetedAds(value) => (4u8, value.clone()).feed(hasher),
+            SettingsChange::TargetedOperations(value) => (5u8, value.clone()).feed(hasher),
+            SettingsChange::TargetedDevelopment(value) => (6u8, value.clone()).feed(hasher),
+        }
+    }
+}
+
+/// Service health of a day.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ServiceDay {
+    /// Units used by everybody.
+    pub total_usage: u64,
+    /// Usage above capacity, 0 when there was room.
+    pub overload: f64,
+    /// Whether there was an outage.
+    pub outage: bool,
+    /// Its length in minutes: 0, 10, 30 or 90.
+    pub downtime_minutes: u32,
+    /// Latency in milliseconds.
+    pub p95_ms: f64,
+    /// Share of failed requests, 0..=1.
+    pub error_rate: f64,
+    /// Capacity tier in force.
+    pub capacity_tier: u8,
+    /// Its units a day.
+    pub capacity_units: u32,
+}
+
+impl ServiceDay {
+    /// A day without load or trouble.
+    pub fn quiet() -> ServiceDay {
+        ServiceDay {
+            total_usage: 0,
+            overload: 0.0,
+            outage: false,
+            downtime_minutes: 0,
+            p95_ms: 0.0,
+            error_rate: 0.0,
+            capacity_tier: 0,
+            capacity_units: 0,
+        }
+    }
+}
+
+/// An R&D project that started or finished.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ResearchChange {
+    /// Paid and begun.
+    Started(Project),
+    /// Finished today.
+    Completed(Project),
+}
+
+impl Canonical for ResearchChange {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        match self {
+            ResearchChange::Started(project) => (0u8, *project).feed(hasher),
+            ResearchChange::Completed(project) => (1u8, *project).feed(hasher),
+        }
+    }
+}
+
+/// A notification for the inbox; `voice` words it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Notice {
+    /// A company asks for an offer.
+    EnterpriseLead,
+    /// A company got no answer for so many days.
+    LeadLostByTimeout {
+        /// Days since its last turn.
+        days: u32,
+    },
+    /// An R&D project is finished.
+    ResearchComplete {
+        /// Tier, 1..=20.
+        tier: u8,
+        /// Number of the start of the tier.
+        number: u32,
+    },
+    /// A reading of the economy was published.
+    EconomyUpdate(Reading),
+}
+
+impl Notice {
+    /// Type as the tables write it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Notice::EnterpriseLead => "large_customer_message",
+            Notice::LeadLostByTimeout { .. } => "lead_lost",
+            Notice::ResearchComplete { .. } => "research_complete",
+            Notice::EconomyUpdate(_) => "macro_economic_update",
+        }
+    }
+}
+
+impl Canonical for Notice {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        match *self {
+            Notice::EnterpriseLead => 0u8.feed(hasher),
+            Notice::LeadLostByTimeout { days } => (1u8, days).feed(hasher),
+            Notice::ResearchComplete { tier, number } => (2u8, (tier, number)).feed(hasher),
+            Notice::EconomyUpdate(reading) => (3u8, reading).feed(hasher),
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! Customers: how they come, what they agree on, what they use, how they leave.
+
+use crate::world::canonical::{canonical, canonical_codes};
+use crate::world::customers::persona::PersonaPicks;
+use crate::world::identifiers::{Channel, Group, Plan};
+
+canonical! {
+    ChannelLeads { channel, group, leads, spend }
+    Arrival { customer, group, n, source, persona, usage_demand, c_max, seats }
+    SubscriptionOpened { subscription, customer, plan, status, listed_price, promotion, effective_price, seats }
+    TermsChanged { subscription, customer, plan, listed_price, promotion, effective_price, seats, billed_once }
+    SubscriptionEnded { subscription, customer, group, seats, day, status, cause }
+    UsageRows { customers, units }
+    IssueOpened { issue, customer, group }
+    AdsRevenueRow { customer, group, strength, revenue }
+}
+canonical_codes!(Source, SubscriptionStatus, EndCause);
+
+/// How a customer came.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Source {
+    /// Paid feeds.
+    SocialMedia,
+    /// Paid search.
+    SearchAds,
+    /// The business network.
+    Linkedin,
+    /// Articles and guides.
+    ContentMarketing,
+    /// Rewarded recommendations.
+    ReferralProgram,
+    /// Word of mouth.
+    Network,
+    /// Of its own accord; foreseen, but it cannot occur.
+    Organic,
+}
+
+impl Source {
+    /// All sources: the channels in channel order, then the two without a price.
+    pub const ALL: [Source; 7] = [
+        Source::SocialMedia,
+        Source::SearchAds,
+        Source::Linkedin,
+        Source::ContentMarketing,
+        Source::ReferralProgram,
+        Source::Network,
+        Source::Organic,
+    ];
+
+    /// The source that is a channel.
+    pub fn of_channel(channel: Channel) -> Source {
+        Source::ALL[channel.index()]
+    }
+
+    /// The channel, if it is one.
+    pub fn channel(self) -> Option<Channel> {
+        Channel::at(self as usize)
+    }
+
+    /// Word as the tables write it.
+    pub fn id(self) -> &'static str {
+        match self.channel() {
+            Some(channel) => channel.id(),
+            None if self == Source::Network => "network",
+            None => "organic",
+        }
+    }
+}
+
+/// Leads of one paid pair of channel and group.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChannelLeads {
+    /// Channel.
+    pub channel: Channel,
+    /// Group.
+    pub group: Group,
+    /// Leads that came through it.
+    pub leads: u32,
+    /// Dollars spent.
+    pub spend: f64,
+}
+
+/// A new customer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrival {
+    /// Customer number.
+    pub customer: u32,
+    /// Group.
+    pub group: Group,
+    /// Running number within the group.
+    pub n: u32,
+    /// How it came.
+    pub source: Source,
+    /// Picks of its profile.
+    pub persona: PersonaPicks,
+    /// Mean demand, for the usage label of the profile.
+    pub usage_demand: f64,
+    /// Budget, for the budget label of the profile.
+    pub c_max: f64,
+    /// Whole seats.
+    pub seats: u32,
+}
+
+/// A new subscription record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SubscriptionOpened {
+    /// Subscription number.
+    pub subscription: u32,
+    /// Customer number.
+    pub customer: u32,
+    /// Plan; none while a company negotiates.
+    pub plan: Option<Plan>,
+    /// Subscribed, lost or lead.
+    pub status: SubscriptionStatus,
+    /// Dollars a month before discounts.
+    pub listed_price: f64,
+    /// Discount, dollars a month.
+    pub promotion: f64,
+    /// Dollars a month.
+    pub effective_price: f64,
+    /// Whole seats.
+    pub seats: u32,
+}
+
+/// Status of a subscription.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum SubscriptionStatus {
+    /// A company that negotiates.
+    Lead,
+    /// Active.
+    Subscribed,
+    /// Ended by the customer.
+    Cancelled,
+    /// Never became a customer.
+    Lost,
+}
+
+impl SubscriptionStatus {
+    /// Word as the tables write it.
+    pub fn id(self) -> &'static str {
+        ["lead", "subscribed", "cancelled", "lost"][self as usize]
+    }
+}
+
+/// Terms of a subscription after a bill, a switch of plan or a deal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TermsChanged {
+    /// Subscription number.
+    pub subscription: u32,
+    /// Customer number.
+    pub customer: u32,
+    /// Plan.
+    pub plan: Plan,
+    /// Dollars a month and seat before discounts.
+    pub listed_price: f64,
+    /// Discount, dollars a month and seat.
+    pub promotion: f64,
+    /// Dollars a month and seat.
+    pub effective_price: f64,
+    /// Whole seats.
+    pub seats: u32,
+    /// Whether the first bill was made.
+    pub billed_once: bool,
+}
+
+/// How a subscription came to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum EndCause {
+    /// The payment failed for good.
+    Involuntary,
+    /// No plan was acceptable, and satisfaction was negative.
+    Quality,
+    /// No plan was acceptable at its price.
+    Price,
+    /// A company's lead waited too long for an answer.
+    LeadTimeout,
+}
+
+/// A subscription ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SubscriptionEnded {
+    /// Subscription number.
+    pub subscription: u32,
+    /// Customer number.
+    pub customer: u32,
+    /// The customer's group.
+    pub group: Group,
+    /// Whole seats.
+    pub seats: u32,
+    /// End day that is recorded.
+    pub day: u32,
+    /// Cancelled or lost.
+    pub status: SubscriptionStatus,
+    /// Why, known to nobody but the simulator.
+    pub cause: EndCause,
+}
+
+/// Usage of a run of customers of one group, in ascending order of their numbers.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct UsageRows {
+    /// Customer numbers.
+    pub customers: Vec<u32>,
+    /// Units used by each.
+    pub units: Vec<u32>,
+}
+
+/// A new support issue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct IssueOpened {
+    /// Running number of the issue.
+    pub issue: u32,
+    /// Whose.
+    pub customer: u32,
+    /// The customer's group.
+    pub group: Group,
+}
+
+/// Ad revenue of one subscriber.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AdsRevenueRow {
+    /// Who saw the ads.
+    pub customer: u32,
+    /// The customer's group.
+    pub group: Group,
+    /// Effective strength, 0..=1.
+    pub strength: f64,
+    /// Dollars.
+    pub revenue: f64,
+}

@@ -1,0 +1,48 @@
+//! Figures of a day.
+
+/// Figures of a day (chapter 20 §5, day result).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DayFigures {
+    /// Day.
+    pub day: u32,
+    /// Units used.
+    pub total_usage: u64,
+    /// Usage above capacity.
+    pub overload: f64,
+    /// Whether there was an outage.
+    pub outage: bool,
+    /// Minutes of downtime.
+    pub downtime_minutes: u32,
+    /// Latency in milliseconds.
+    pub p95_ms: f64,
+    /// Share of failed requests.
+    pub error_rate: f64,
+    /// All leads, those that came to nothing included.
+    pub new_leads: u32,
+    /// Leads of individuals.
+    pub new_individual_leads: u32,
+    /// Leads of companies that opened a thread.
+    pub new_enterprise_leads: u32,
+    /// Individuals who signed up.
+    pub new_individual_subscribers: u32,
+    /// Seats of companies that signed today.
+    pub new_enterprise_seats: u32,
+    /// Cancellations of individuals, involuntary ones included.
+    pub cancellations: u32,
+    /// Switches to a dearer plan.
+    pub upgrades: u32,
+    /// Switches to a cheaper plan.
+    pub downgrades: u32,
+    /// Payments of subscribers, dollars.
+    pub payments_received: f64,
+    /// Running costs: capacity, compute, operations, development, advertising; dollars.
+    pub total_costs: f64,
+    /// Cash at the end of the day, dollars.
+    pub cash: f64,
+    /// Monthly recurring revenue at the end of the day, dollars.
+    pub mrr: f64,
+    /// Active subscriptions of individuals.
+    pub individual_subscribers: u32,
+    /// Seats of active companies.
+    pub enterprise_seats: u32,
+}

@@ -1,0 +1,119 @@
+//! Movements of cash.
+
+use crate::world::canonical::{Canonical, CanonicalHasher, canonical, canonical_codes};
+
+canonical! {
+    Payment { customer, amount }
+    LedgerEntry { category, amount, note }
+}
+canonical_codes!(Category);
+
+/// A payment of a subscriber.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Payment {
+    /// Who paid.
+    pub customer: u32,
+    /// Dollars.
+    pub amount: f64,
+}
+
+/// Category of a movement of cash (chapter 60 §5).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Category {
+    /// Seed money.
+    InitialFunding,
+    /// Cost of a lead.
+    LeadAcquisitionCost,
+    /// Payment of a subscriber.
+    SubscriptionPayment,
+    /// Capacity of the day.
+    Capacity,
+    /// Compute of the day.
+    Compute,
+    /// Operations of the day.
+    Operations,
+    /// Development of the day.
+    Development,
+    /// Advertising of the day.
+    Advertising,
+    /// In-app ads of the day.
+    AdRevenue,
+    /// An attempt to find a group.
+    MarketResearch,
+    /// A study of a group.
+    GroupResearch,
+    /// An R&D project.
+    ResearchProject,
+}
+
+impl Category {
+    /// All categories.
+    pub const ALL: [Category; 12] = [
+        Category::InitialFunding,
+        Category::LeadAcquisitionCost,
+        Category::SubscriptionPayment,
+        Category::Capacity,
+        Category::Compute,
+        Category::Operations,
+        Category::Development,
+        Category::Advertising,
+        Category::AdRevenue,
+        Category::MarketResearch,
+        Category::GroupResearch,
+        Category::ResearchProject,
+    ];
+
+    /// Word as the tables write it.
+    pub fn id(self) -> &'static str {
+        match self {
+            Category::InitialFunding => "initial_funding",
+            Category::LeadAcquisitionCost => "lead_acquisition_cost",
+            Category::SubscriptionPayment => "subscription_payment",
+            Category::Capacity => "capacity",
+            Category::Compute => "compute",
+            Category::Operations => "operations",
+            Category::Development => "development",
+            Category::Advertising => "advertising",
+            Category::AdRevenue => "ad_revenue",
+            Category::MarketResearch => "market_research",
+            Category::GroupResearch => "group_research",
+            Category::ResearchProject => "research_project",
+        }
+    }
+}
+
+/// A movement of cash that is no payment of a subscriber and no lead cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LedgerEntry {
+    /// Category.
+    pub category: Category,
+    /// Dollars; costs are negative.
+    pub amount: f64,
+    /// What the note says.
+    pub note: LedgerNote,
+}
+
+/// What the note of a movement says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LedgerNote {
+    /// What the category says, for everybody.
+    General,
+    /// The part aimed at groups, plans or customers.
+    Targeted,
+    /// Ad revenue from so many active subscribers.
+    Subscribers(u32),
+    /// An R&D project: tier and number.
+    Project(u8, u32),
+}
+
+impl Canonical for LedgerNote {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        match *self {
+            LedgerNote::General => (0u8, 0u32).feed(hasher),
+            LedgerNote::Targeted => (1u8, 0u32).feed(hasher),
+            LedgerNote::Subscribers(count) => (2u8, count).feed(hasher),
+            LedgerNote::Project(tier, number) => (3u8, (tier, number)).feed(hasher),
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! The same run is the same run: in another process, on other threads, left and continued, killed in the middle.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use novamind::lab::{Collector, Policy, RunSpec, play};
+use novamind::session::{Access, Configuration, Mode, NewRun, Session, Storage, Trajectory, Via};
+use serde_json::{Value, json};
+
+fn program(runs: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_novamind"));
+    command.env("NOVAMIND_RUNS", runs).env("NOVAMIND_CONFIG", runs.join("configuration"));
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+/// Runs a policy in the built program; one object per seed, without the time it took.
+fn run(command: &mut Command) -> Vec<Value> {
+    let output = command.arg("--json").output().expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout).expect("UTF-8");
+    let parse = |line: &str| {
+        let mut object: Value = serde_json::from_str(line).expect("an object");
+        object.as_object_mut().expect("an object").remove("seconds");
+        object
+    };
+    said.lines().map(parse).collect()
+}
+
+/// A market that fills so fast that whole threads have work after a few weeks.
+const CROWDED: [&str; 4] = ["--cash", "1e9", "--set", "leads.saturation_base=14.5"];
+
+#[test]
+fn the_built_program_and_the_library_reach_the_same_state() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let configuration = Configuration::shipped();
+    for (name, until, extra) in [("P6", 60, &[][..]), ("P1a", 32, &CROWDED)] {
+        let mut command = program(runs.path());
+        command.args(["run", "--policy", name, "--seed", "3", "--until", &until.to_string()]).args(extra);
+        let built = run(&mut command).remove(0);
+        let policy = Policy::find(name, &configuration).expect("a shipped policy");
+        let mut spec = RunSpec { until: Some(until), ..RunSpec::of_seed(3) };
+        if !extra.is_empty() {
+            spec.cash = Some(1e9);
+            spec.overrides = vec![("leads.saturation_base".to_owned(), "14.5".to_owned())];
+        }
+        let own = play(&policy, &spec, &configuration, &mut Collector::idle()).expect("it plays");
+        assert_eq!(built["state_hash"], own.state_hash, "{name}");
+        assert_eq!(built["cash"].as_f64().map(f64::to_bits), Some(own.cash.to_bits()), "{name}");
+        assert_eq!((built["day"].as_u64(), own.day), (Some(u64::from(until)), until));
+    }
+}
+
+#[test]
+fn figures_and_states_do_not_depend_on_threads() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let with = |jobs: Option<&str>, threads: &str, seeds: &str| {
+        let mut command = program(runs.path());
+        command.args(["run", "--policy", "P1a", "--seed", seeds, "--until", "32"]).args(CROWDED);
+        command.env("RAYON_NUM_THREADS", threads);
+        if let Some(jobs) = jobs {
+            command.args(["--jobs", jobs]);
+        }
+        run(&mut command)
+    };
+    let first = with(Some("1"), "1", "1..3");
+    assert!(first.iter().all(|run| run["subscribers"].as_u64().is_some_and(|count| count > 20_000)));
+    for (jobs, threads) in [(Some("2"), "1"), (Some("1"), "2"), (None, "2"), (Some("3"), "5")] {
+        assert_eq!(with(jobs, threads, "1..3"), first, "--jobs {jobs:?}, {threads} threads");
+    }
+    assert_eq!(with(None, "2", "2"), first[1..2], "a seed alone");
+}
+
+#[test]
+fn a_saved_run_holds_the_state_that_was_reported() {
+    let runs = tempfile::tempdir().expect("a folder");
+    // Spending in fractions of dollars: the trajectory has to give back every bit.
+    let mut command = program(runs.path());
+    command.args(["run", "--policy", "P1a", "--seed", "5", "--until", "84", "--save"]);
+    let said = run(&mut command).remove(0);
+    let id = said["run"].as_str().expect("a run").to_owned();
+    let verified = program(runs.path()).args(["replay", &id, "--verify"]).output().expect("it runs");
+    let text = String::from_utf8_lossy(&verified.stdout).into_owned();
+    assert!(verified.status.success(), "{}", String::from_utf8_lossy(&verified.stderr));
+    assert!(text.contains("12 states reached again, day 84"), "{text}");
+    let hash = said["state_hash"].as_str().expect("a hash");
+    assert!(text.contains(hash), "{text} instead of {hash}");
+    let opened = Session::open(&runs.path().join(&id), Access::Write, true).expect("it opens");
+    assert_eq!(opened.state_hash().0, hash);
+}
+
+const WEEKS: u32 = 6;
+
+/// What a player with some turnover does in a week.
+fn play_a_week(session: &mut Session, week: u32) {
+    let mut call = |tool: &str, arguments: Value| {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    };
+    if week == 0 {
+        call("set_prices", json!({"A": 12, "B": 25, "C": 55}));
+        call("set_model_tiers", json!({"B": 2, "C": 4}));
+        call("set_usage_quotas", json!({"A": 60000, "B": 250000, "C": 1200000}));
+        call("set_targeted_ad_spend", json!({"content_marketing": {"S1": 750}, "linkedin": {"E1": 3000}}));
+    }
+    call("set_daily_spend", json!({"operations": 100.1 + f64::from(week) / 3.0, "development": 200}));
+    call("set_capacity_tier", json!({"tier": week.min(3)}));
+    if week == 2 {
+        call("start_research_project", json!({"tier": 1}));
+    }
+    let forecasts = session.naive_forecasts();
+    session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+}
+
+#[test]
+fn leaving_at_any_week_changes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let new = |storage| NewRun { seed: Some(11), days: Some(42), storage, ..NewRun::default() };
+    let create = |storage| Session::create(new(storage), &Configuration::shipped()).expect("it begins");
+    let mut straight = create(Storage::Memory);
+    (0..WEEKS).for_each(|week| play_a_week(&mut straight, week));
+    // Left after every week, and after one of them only.
+    for left_after in (0..WEEKS).map(Some).chain([None]) {
+        let mut session = create(Storage::Runs(folder.path().to_owned()));
+        let place = session.folder().expect("a folder").to_owned();
+        for week in 0..WEEKS {
+            play_a_week(&mut session, week);
+            if left_after.is_none_or(|chosen| chosen == week) {
+                drop(session);
+                session = Session::open(&place, Access::Write, true).expect("it opens");
+            }
+        }
+        assert_eq!(session.state_hash(), straight.state_hash(), "left after {left_after:?}");
+        assert_eq!(session.observe().dashboard, straight.observe().dashboard);
+        assert_eq!(session.cash_by_day(), straight.cash_by_day());
+        assert_eq!(session.weeks(), straight.weeks());
+    }
+}
+
+#[test]
+fn the_mode_of_a_run_changes_nothing() {
+    let hash = |mode| {
+        let new = NewRun { seed: Some(11), days: Some(42), mode, ..NewRun::default() };
+        let mut session = Session::create(new, &Configuration::shipped()).expect("it begins");
+        (0..3).for_each(|week| play_a_week(&mut session, week));
+        session.state_hash()
+    };
+    let debug = hash(Mode::Debug);
+    assert_eq!(hash(Mode::Sandbox), debug);
+    assert_eq!(hash(Mode::Baseline), debug);
+}
+
+/// State hashes of the weeks of a run, by day.
+fn states(folder: &Path) -> Vec<(u32, String)> {
+    let read = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
+    let weeks = read.lines.iter().filter(|line| line.kind == "week");
+    weeks.map(|line| (line.day, line.fields["state_hash"].as_str().expect("a hash").to_owned())).collect()
+}
+
+fn only_run(runs: &Path) -> PathBuf {
+    let folders: Vec<_> = fs::read_dir(runs).expect("a folder").flatten().collect();
+    assert_eq!(folders.len(), 1);
+    folders[0].path()
+}
+
+const OPENING: &str = "set_prices A=12 B=25 C=55\nset_usage_quotas A=60000 B=250000 C=1200000\n\
+    set_targeted_ad_spend {\"content_marketing\": {\"S1\": 3000}}\nset_capacity_tier 6\n";
+
+fn start(runs: &Path, options: &[&str]) -> Child {
+    program(runs).args(["play", "--plain", "--json"]).args(options).spawn().expect("the program starts")
+}
+
+fn new_run_options() -> Vec<&'static str> {
+    [&["--seed", "9", "--days", "42", "--mode", "debug"][..], &CROWDED].concat()
+}
+
+/// Whether the last line on the disk is an advance: the week is being simulated.
+fn is_in_a_week(folder: &Path) -> bool {
+    let Ok(text) = fs::read_to_string(folder.join("trajectory.jsonl")) else { return false };
+    let last = text.strip_suffix('\n').and_then(|text| text.lines().last());
+    last.and_then(|line| serde_json::from_str::<Value>(line).ok())
+        .is_some_and(|line| line["kind"] == "advance")
+}
+
+/// Lets a program work until this many weeks are complete and another one runs, and kills it there.
+fn kill_in_a_week(mut child: Child, runs: &Path, complete: usize) {
+    let deadline = Instant::now() + Duration::from_secs(60);
+    let is_there = || {
+        let folder = fs::read_dir(runs).expect("a folder").flatten().next().map(|entry| entry.path());
+        folder.is_some_and(|folder| is_in_a_week(&folder) && states(&folder).len() >= complete)
+    };
+    while !is_there() {
+        let ended = child.try_wait().expect("a state");
+        assert!(
+            ended.is_none() && Instant::now() < deadline,
+            "it was never in week {}: {ended:?}",
+            complete + 1
+        );
+        std::thread::sleep(Duration::from_micros(200));
+    }
+    child.kill().expect("it is killed");
+    child.wait().expect("it ends");
+}
+
+#[test]
+fn a_program_killed_in_the_middle_of_a_week_loses_nothing() {
+    let next = "next naive\n";
+    let tell = |child: &mut Child, lines: &str| {
+        child.stdin.as_mut().expect("a pipe").write_all(lines.as_bytes()).expect("written");
+    };
+    let whole = tempfile::tempdir().expect("a folder");
+    let mut child = start(whole.path(), &new_run_options());
+    tell(&mut child, &format!("{OPENING}{}", next.repeat(6)));
+    assert!(child.wait_with_output().expect("it ends").status.success());
+    let expected = states(&only_run(whole.path()));
+    assert_eq!(expected.len(), 6);
+
+    let broken = tempfile::tempdir().expect("a folder");
+    let mut child = start(broken.path(), &new_run_options());
+    tell(&mut child, &format!("{OPENING}{}", next.repeat(6)));
+    let mut interrupted = 0;
+    for complete in 2..5 {
+        kill_in_a_week(child, broken.path(), complete);
+        interrupted += usize::from(is_in_a_week(&only_run(broken.path())));
+        child = start(broken.path(), &["--run", "latest"]);
+        tell(&mut child, next);
+    }
+    // By luck a week may end between the look and the kill, but hardly three times.
+    assert!(interrupted > 0, "no week was ever interrupted");
+    let folder = only_run(broken.path());
+    tell(&mut child, &next.repeat(6));
+    let output = child.wait_with_output().expect("it ends");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(states(&folder), expected);
+
+    // The database, too, is the one of the uninterrupted run.
+    let mut straight = Session::open(&only_run(whole.path()), Access::Write, true).expect("it opens");
+    let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
+    assert_eq!(session.state_hash(), straight.state_hash());
+    for sql in [
+        "SELECT COUNT(*), SUM(amount), SUM(id * amount) FROM ledger",
+        "SELECT COUNT(*), SUM(customer_id * start_day) FROM subscriptions WHERE status = 'subscribed'",
+        "SELECT SUM(usage_units * customer_id) FROM daily_usage",
+        "SELECT COUNT(*), SUM(issue_id * days_open) FROM issues",
+        "SELECT COUNT(*), SUM(predicted_value) FROM predictions",
+    ] {
+        assert_eq!(session.query(sql).expect("rows").rows, straight.query(sql).expect("rows").rows, "{sql}");
+    }
+}

@@ -1,0 +1,109 @@
+//! A person's folders, and the program that works in them.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A person's folders: runs and configuration.
+pub struct Home(pub TempDir);
+
+/// What a program said, and its exit code.
+pub struct Said {
+    pub out: String,
+    pub err: String,
+    pub code: i32,
+}
+
+impl Home {
+    pub fn new() -> Home {
+        let home = Home(tempfile::tempdir().expect("a folder"));
+        fs::create_dir(home.runs()).expect("a folder");
+        home
+    }
+
+    pub fn runs(&self) -> PathBuf {
+        self.0.path().join("runs")
+    }
+
+    pub fn write(&self, file: &str, text: impl AsRef<[u8]>) {
+        let path = self.0.path().join("configuration").join(file);
+        fs::create_dir_all(path.parent().expect("a parent")).expect("a folder");
+        fs::write(path, text).expect("a file");
+    }
+
+    pub fn command(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        command.env("NOVAMIND_RUNS", self.runs());
+        command.env("NOVAMIND_CONFIG", self.0.path().join("configuration"));
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    pub fn program(&self) -> Command {
+        self.command(env!("CARGO_BIN_EXE_novamind"))
+    }
+
+    pub fn run(&self, arguments: &[&str]) -> Said {
+        said(self.program().args(arguments), "")
+    }
+
+    pub fn play(&self, options: &[&str], lines: &str) -> Said {
+        said(self.program().args(["play", "--plain"]).args(options), lines)
+    }
+
+    /// A run of two weeks, left behind; its folder.
+    pub fn two_weeks(&self) -> PathBuf {
+        let lines = "set_prices A=12\nset_prices B=20\nnext naive\nset_prices C=50\nnext naive\n";
+        assert_eq!(self.play(&["--days", "28"], lines).code, 0);
+        self.only_run()
+    }
+
+    pub fn only_run(&self) -> PathBuf {
+        let folders: Vec<_> = fs::read_dir(self.runs()).expect("a folder").flatten().collect();
+        assert_eq!(folders.len(), 1);
+        folders[0].path()
+    }
+}
+
+pub fn said(command: &mut Command, lines: &str) -> Said {
+    let mut child = command.spawn().expect("the program starts");
+    // A program that cannot start does not read.
+    let _ = child.stdin.take().expect("a pipe").write_all(lines.as_bytes());
+    let Output { status, stdout, stderr } = child.wait_with_output().expect("the program ends");
+    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+    Said { out: text(stdout), err: text(stderr), code: status.code().expect("it ends by itself") }
+}
+
+impl Said {
+    /// It ended with this code and said all of this on standard error, in one line.
+    #[track_caller]
+    pub fn fails(&self, code: i32, parts: &[&str]) {
+        assert_eq!(self.code, code, "{}{}", self.out, self.err);
+        assert!(self.err.starts_with("novamind: ") && self.err.lines().count() == 1, "{}", self.err);
+        for part in parts {
+            assert!(self.err.contains(part), "{part} is missing in: {}", self.err);
+        }
+    }
+
+    #[track_caller]
+    pub fn objects(&self) -> Vec<Value> {
+        let parse = |line: &str| serde_json::from_str(line).unwrap_or_else(|error| panic!("{line}: {error}"));
+        self.out.lines().map(parse).collect()
+    }
+}
+
+pub fn id(folder: &Path) -> String {
+    folder.file_name().expect("a name").to_string_lossy().into_owned()
+}
+
+pub fn bytes_of(folder: &Path, file: &str) -> Vec<u8> {
+    fs::read(folder.join(file)).expect("bytes")
+}
+
+pub fn lines_of(bytes: &[u8]) -> Vec<Vec<u8>> {
+    bytes.split_inclusive(|byte| *byte == b'\n').map(<[u8]>::to_vec).collect()
+}

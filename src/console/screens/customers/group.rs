@@ -73,13 +73,13 @@ fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, company: &Company, facts: &F
     let y = Axis { write: &compact, holds: &[0.0] };
     let [stock, flows] = Layout::vertical([Constraint::Percentage(50), Constraint::Min(0)]).areas(area);
     let inside = canvas.pane(stock, &format!("{group} {words}"), &format!("{now} now"), false);
-    chart(canvas, inside, &[Line::through("", points(facts.stock(week)), Role::Series(0))], &x, &y);
+    chart(canvas, inside, &[Line::through(points(facts.stock(week)), Role::Series(0))], &x, &y);
     let trend = |figure: fn(&Flow) -> f64| points(facts.trend(week, figure));
     let inside = canvas.pane(flows, "Leads, new and cancelled by week", &flow_words(facts, week), false);
     let lines = [
-        Line::through("leads", trend(|flow| flow.leads), Role::Series(2)),
-        Line::through("new", trend(|flow| flow.signed), Role::Good),
-        Line { scattered: true, ..Line::through("cancelled", trend(|flow| flow.cancelled), Role::Bad) },
+        Line::through(trend(|flow| flow.leads), Role::Series(2)),
+        Line::through(trend(|flow| flow.signed), Role::Good),
+        Line { scattered: true, ..Line::through(trend(|flow| flow.cancelled), Role::Bad) },
     ];
     chart(canvas, inside, &lines, &x, &y);
 }

@@ -110,8 +110,8 @@ fn draw_ladder(
 fn draw_history(canvas: &mut Canvas<'_>, area: Rect, days: &[Day]) {
     let points = |value: fn(&Day) -> f64| days.iter().map(|day| (f64::from(day.day), value(day))).collect();
     let lines = [
-        Line::through("capacity", points(|day| day.capacity), Role::Warning),
-        Line::through("used", points(|day| day.usage), Role::Series(0)),
+        Line::through(points(|day| day.capacity), Role::Warning),
+        Line::through(points(|day| day.usage), Role::Series(0)),
     ];
     let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[] };
     chart(canvas, area, &lines, &x, &Axis { write: &compact, holds: &[0.0] });

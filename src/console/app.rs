@@ -87,7 +87,7 @@ pub struct Busy {
 /// Where the person is.
 pub enum Stage {
     /// In the start menu.
-    Menu(Menu),
+    Menu(Box<Menu>),
     /// In a run.
     Run(Box<Run>),
 }
@@ -212,7 +212,7 @@ pub struct Settings {
 impl App {
     /// The console in its start menu.
     pub fn new(settings: Settings) -> App {
-        let menu = Menu::new(&settings.configuration);
+        let menu = Box::new(Menu::new(&settings.configuration));
         App {
             theme: settings.theme,
             keys: settings.keys,
@@ -318,7 +318,7 @@ impl App {
             Some(Closing::ToShell(code)) => code,
             Some(Closing::ToMenu) | None => {
                 self.layers.clear();
-                self.stage = Stage::Menu(Menu::new(&self.configuration));
+                self.stage = Stage::Menu(Box::new(Menu::new(&self.configuration)));
                 self.orders.push(Order::ListRuns);
                 match problem {
                     Some(problem) => self.complain(problem),

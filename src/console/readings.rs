@@ -53,7 +53,7 @@ pub fn text_at(row: &[Cell], at: usize) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::screens::trial::played;
+    use crate::console::test_kit::played;
 
     #[test]
     fn every_statement_is_answered_before_the_first_week_and_after_the_second() {

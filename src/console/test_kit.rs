@@ -1,16 +1,21 @@
-//! What tests of screens need: a company from a run in memory, and a picture of a screen as text.
+//! What the tests of the screens share: companies from runs in memory, a screen that was told everything, its picture
+//! as text, and windows of every size.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use serde_json::{Value, json};
 
+use super::action::Action;
 use super::canvas::Canvas;
 use super::company::Company;
+use super::effect::Effect;
 use super::keys::Keys;
+use super::readings::Reading;
 use super::screens::{Look, Screen};
 use super::theme::Theme;
-use crate::session::{Configuration, NewRun, Session, Storage};
+use crate::session::{Configuration, NewRun, Rows, Session, Storage, Via};
 
-/// A run in memory.
+/// A run in memory on its first day.
 pub fn session() -> Session {
     let new = NewRun { storage: Storage::Memory, ..NewRun::default() };
     Session::create(new, &Configuration::shipped()).expect("a run in memory")
@@ -21,23 +26,87 @@ pub fn company() -> Company {
     Company::of(&session())
 }
 
-/// Draws a screen of a size; the lines of text that are seen.
-pub fn picture(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> Vec<String> {
-    let theme = Theme::find("dark", &Configuration::shipped()).expect("a theme");
+/// A run that was played for some weeks by a sensible beginner.
+pub fn played(weeks: usize) -> Session {
+    let new = NewRun { seed: Some(7), days: Some(200), storage: Storage::Memory, ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    if weeks > 0 {
+        open_shop(&mut session);
+    }
+    for _ in 0..weeks {
+        let forecasts = session.naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+    }
+    session
+}
+
+fn open_shop(session: &mut Session) {
+    let calls: [(&str, Value); 8] = [
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_model_tiers", json!({"B": 2, "C": 4})),
+        ("set_usage_quotas", json!({"A": 60000, "B": 250000, "C": 1200000})),
+        ("set_daily_spend", json!({"operations": 200, "development": 200})),
+        ("set_targeted_dev_spend", json!({"S1": 6000})),
+        ("set_targeted_ad_spend", json!({"content_marketing": {"S1": 750}, "linkedin": {"E1": 300}})),
+        ("set_capacity_tier", json!({"tier": 2})),
+        ("start_research_project", json!({"tier": 1})),
+    ];
+    for (tool, arguments) in calls {
+        session.call(tool, &arguments, Via::Form).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+}
+
+/// Answers of the database to what a screen asks.
+pub fn answers(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, Rows)> {
+    let ask = |reading: &Reading| {
+        let rows = session.query(reading.sql());
+        (*reading, rows.unwrap_or_else(|refusal| panic!("{reading:?}: {refusal}")))
+    };
+    screen.readings().iter().map(ask).collect()
+}
+
+/// A screen that knows all of a company.
+pub fn shown<S: Screen + Default>(session: &mut Session, company: &Company) -> S {
+    let mut screen = S::default();
     let keys = Keys::shipped();
+    let look = Look { company, keys: &keys, page: 5 };
+    screen.renew(&look);
+    for (reading, rows) in answers(session, &screen) {
+        screen.take(reading, &rows, &look);
+    }
+    screen
+}
+
+/// Lets a screen do an action.
+pub fn act(screen: &mut dyn Screen, action: Action, company: &Company) -> Vec<Effect> {
+    let keys = Keys::shipped();
+    screen.act(action, &Look { company, keys: &keys, page: 5 })
+}
+
+/// Draws a screen in a window; the lines of text that are seen.
+pub fn picture(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> Vec<String> {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);
+    let theme = Theme::find("mono", &Configuration::shipped()).expect("a theme");
     let mut canvas = Canvas::new(&mut buffer, &theme);
-    screen.draw(&mut canvas, area, &Look { company, keys: &keys, page: 10 });
+    let keys = Keys::shipped();
+    screen.draw(&mut canvas, area, &Look { company, keys: &keys, page: 5 });
     let line = |y: u16| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
     (0..height).map(|y| line(y).trim_end().to_owned()).collect()
 }
 
-/// Draws a screen in every small size: nothing may panic.
-pub fn sweep(screen: &dyn Screen, company: &Company) {
-    for width in 0..70 {
-        for height in 0..25 {
-            picture(screen, company, width, height);
+/// The same picture as one text.
+pub fn drawn(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> String {
+    picture(screen, company, width, height).join("\n")
+}
+
+/// Draws a screen in windows of every size with each of its panes in the focus.
+pub fn sweep(screen: &mut dyn Screen, company: &Company) {
+    for focus in 0..screen.panes() {
+        screen.set_focus(focus);
+        let small = (0..=70).step_by(3).flat_map(|width| (0..=25).map(move |height| (width, height)));
+        for (width, height) in small.chain([(80, 21), (110, 37), (200, 57), (300, 3), (3, 200), (140, 90)]) {
+            drawn(screen, company, width, height);
         }
     }
 }

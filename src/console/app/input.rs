@@ -226,9 +226,9 @@ impl App {
 
     fn show_report(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
-        match run.report.take().map_or_else(|| report::again(&run.company), Ok) {
-            Ok(report) => self.open(report),
-            Err(effect) => self.follow(vec![effect]),
+        match run.report.take().or_else(|| report::again(&run.company)) {
+            Some(report) => self.open(report),
+            None => self.complain("no week has passed yet: n lets one pass"),
         }
     }
 

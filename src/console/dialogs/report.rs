@@ -7,7 +7,6 @@ use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, centered};
 use crate::console::company::Company;
-use crate::console::effect::Effect;
 use crate::console::screens::{Look, overview};
 use crate::console::text::{arrow, wrapped};
 use crate::console::theme::Role;
@@ -175,10 +174,7 @@ fn outcome_of_forecast(company: &Company) -> String {
     format!("   you expected {}: {word} your interval", dollars(forecast.point))
 }
 
-/// Effects that show the report again.
-pub fn again(company: &Company) -> Result<Report, Effect> {
-    match company.weeks.last() {
-        Some(_) => Ok(Report { notices: Vec::new(), remark: None }),
-        None => Err(Effect::Complain("no week has passed yet: n lets one pass".to_owned())),
-    }
+/// The report of the last week, to be shown again; none before a week has passed.
+pub fn again(company: &Company) -> Option<Report> {
+    company.weeks.last().map(|_| Report { notices: Vec::new(), remark: None })
 }

@@ -9,8 +9,6 @@ pub mod overview;
 pub mod product;
 pub mod sql;
 pub mod tools;
-#[cfg(test)]
-pub mod trial;
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;

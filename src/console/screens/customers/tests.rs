@@ -1,6 +1,6 @@
 use super::model::*;
 use super::*;
-use crate::console::screens::trial::{act, drawn, played, shown, sweep};
+use crate::console::test_kit::{act, drawn, played, shown, sweep};
 use crate::session::Cell as Value;
 use crate::world::identifiers::Channel;
 

@@ -373,13 +373,13 @@ mod tests {
     fn no_size_is_too_small() {
         for company in [company(), played()] {
             let mut screen = renewed(&company);
-            sweep(&screen, &company);
+            sweep(&mut screen, &company);
             act(&mut screen, &company, Action::Filter);
-            sweep(&screen, &company);
+            sweep(&mut screen, &company);
             act(&mut screen, &company, Action::Discard);
             act(&mut screen, &company, Action::EditMemo);
             write(&mut screen, &company, "a long note with words");
-            sweep(&screen, &company);
+            sweep(&mut screen, &company);
         }
     }
 }

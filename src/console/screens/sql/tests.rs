@@ -186,18 +186,18 @@ fn keywords_are_coloured_where_the_text_is_scrolled_to() {
 fn no_size_is_too_small() {
     let company = company();
     let mut screen = Sql::default();
-    sweep(&screen, &company);
+    sweep(&mut screen, &company);
     write(&mut screen, &company, "SELECT * FROM ledger WHERE am");
-    sweep(&screen, &company);
+    sweep(&mut screen, &company);
     act(&mut screen, &company, Action::RunQuery);
     hear(&mut screen, &company, Ok(three_rows()));
     for focus in [RESULTS, BROWSER] {
         screen.set_focus(focus);
         act(&mut screen, &company, Action::Right);
         act(&mut screen, &company, Action::Filter);
-        sweep(&screen, &company);
+        sweep(&mut screen, &company);
         act(&mut screen, &company, Action::Discard);
     }
     act(&mut screen, &company, Action::History);
-    sweep(&screen, &company);
+    sweep(&mut screen, &company);
 }

@@ -63,7 +63,7 @@ fn a_short_run_ends_on_the_final_page() {
     console.press("n");
     console.shows("Day 17. You end with $998,555.");
     console.shows("rank 5 of");
-    console.press("enter");
+    console.press("enter down enter");
     console.shows("finished");
 }
 

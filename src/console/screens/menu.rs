@@ -185,7 +185,10 @@ impl Menu {
             choices.push((
                 Choice::Runs,
                 "Runs".to_owned(),
-                format!("all {} on this machine", self.list().len()),
+                match self.list().len() {
+                    1 => "the one on this machine".to_owned(),
+                    several => format!("all {several} on this machine"),
+                },
             ));
         }
         choices.push((Choice::Quit, "Quit".to_owned(), String::new()));
@@ -212,6 +215,7 @@ impl Menu {
     /// Actions worth showing.
     pub fn hints(&self) -> Vec<Action> {
         match self.page {
+            Page::Choices if self.latest().is_none() => vec![Action::Open, Action::NewRun, Action::Quit],
             Page::Choices => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],
             Page::NewRun => vec![Action::Open, Action::Left, Action::Right, Action::Close],
             Page::Runs => vec![Action::Open, Action::Close],

@@ -15,7 +15,7 @@ pub fn quota_factor(quota: f64, demand: f64, quality: &Quality) -> f64 {
     (quota.max(0.0) / demand).clamp(quality.quota_factor_min, quality.quota_factor_max)
 }
 
-/// Quality lost to overload and outages today: 0.08 o + 0.20 [outage].
+/// Quality lost to overload and outages today: 0.08 o + 0.20 outage (0 or 1).
 pub fn service_penalty(overload: f64, outage: bool, quality: &Quality) -> f64 {
     quality.service_overload_weight * overload + if outage { quality.service_outage_weight } else { 0.0 }
 }

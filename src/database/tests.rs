@@ -7,7 +7,6 @@ use super::query::Limits;
 use super::{Cell, Desk, Entry, Location, Position, Projector, QueryError, Rows};
 use crate::world::day::{step_day, tests::policy_p};
 use crate::world::events::Facts;
-use crate::world::identifiers::Group;
 use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::state::World;
@@ -48,9 +47,7 @@ impl Company {
         let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
         let (projector, found) = Projector::start(location, params.clone(), |_| false).expect("a database");
         assert_eq!(found, None);
-        let mut opening = entry(facts);
-        opening.knowledge = Group::all().map(|group| (group, world.market.knowledge[group])).collect();
-        projector.write(opening);
+        projector.write(entry(facts));
         projector.commit(position(0));
         policy_p(&mut world);
         Company { world, params, streams: Streams::new(42), projector }

@@ -64,7 +64,7 @@ impl Session {
             changes: Vec::new(),
         };
         match effect {
-            Effect::None => {}
+            Effect::None | Effect::ReadInsights(_) => {}
             Effect::Set(change) => {
                 let now = &self.world.settings;
                 let mut after = now.clone();
@@ -76,6 +76,15 @@ impl Session {
             Effect::StartResearch(tier) => {
                 preview.cost_now = f64::from(self.params.research(tier).cost);
                 preview.effect_day = Some(self.world.day + self.params.development.rd_min_duration_days);
+            }
+            Effect::ResearchMarket => {
+                preview.cost_now = self.params.market_research.discovery_cost_level_1;
+                preview.effect_day = Some(self.world.day);
+            }
+            Effect::ResearchGroup(_, target) => {
+                let level = self.params.level(target);
+                preview.cost_now = level.cost;
+                preview.effect_day = Some(self.world.day + level.delay_days);
             }
         }
         Ok(preview)
@@ -140,12 +149,12 @@ impl Session {
 
     fn apply(&mut self, tool: &'static dyn Tool, args: Value, undoes: Option<u64>, deed: Deed) {
         let spec = tool.spec();
-        if deed != Deed::None {
+        if !deed.only_reads() {
             let (day, tool) = (self.world.day, spec.name.to_owned());
             self.journal.push(JournalEntry::Call { day, tool, args, undoes });
         }
         match &deed {
-            Deed::None => return,
+            Deed::None | Deed::ReadInsights(_) => return,
             Deed::Set(_) => {
                 let seq = self.position.seq;
                 let before = self.world.settings.clone();
@@ -158,8 +167,16 @@ impl Session {
                     project.due_day
                 ));
             }
+            Deed::ResearchMarket(attempt) => self.this_week.done.push(match attempt.found {
+                Some(group) => format!("market research found group {group}"),
+                None => "market research found nothing".to_owned(),
+            }),
+            Deed::ResearchGroup(study, _) => {
+                let (group, level, day) = (study.group, study.target, study.due_day);
+                self.this_week.done.push(format!("study of {group} to level {level} ordered, done on day {day}"));
+            }
         }
-        self.world.apply(deed, &mut self.facts);
+        self.world.apply(deed, &self.params, &mut self.facts);
         self.after_call();
     }
 

@@ -18,7 +18,6 @@ use crate::database::{Location, Projector};
 use crate::notation::json_number;
 use crate::world::day::DayTrace;
 use crate::world::events::Facts;
-use crate::world::identifiers::Group;
 use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::state::World;
@@ -180,9 +179,7 @@ impl Session {
     /// Hands the set-up of day 0 to the database.
     pub(super) fn project_opening(&self) {
         if let Some(projector) = &self.projector {
-            let mut entry = entry_of(self.facts.clone(), &self.params);
-            entry.knowledge = Group::all().map(|group| (group, self.world.market.knowledge[group])).collect();
-            projector.write(entry);
+            projector.write(entry_of(self.facts.clone(), &self.params));
             projector.commit(self.position.clone());
         }
     }

@@ -3,7 +3,6 @@
 use serde_json::{Value, json};
 
 use super::{Arguments, Refusal, View, find};
-use crate::world::effect::Deed;
 use crate::world::events::Facts;
 use crate::world::identifiers::Group;
 use crate::world::params::Params;
@@ -31,8 +30,8 @@ impl Company {
         let effect = tool.plan(&view, &arguments)?;
         let deed = self.world.resolve(effect, &self.params, &self.streams);
         let data = tool.answer(&view, &arguments, &deed);
-        if deed != Deed::None {
-            self.world.apply(deed, &mut Facts::default());
+        if !deed.only_reads() {
+            self.world.apply(deed, &self.params, &mut Facts::default());
         }
         Ok(data)
     }

@@ -21,6 +21,15 @@ pub fn notice(notice: &Notice) -> String {
             let trend = reading.trend.id().replace('_', " ");
             format!("Purchasing managers' index {:.1} {arrow} ({trend})", reading.value)
         }
+        Notice::GroupFound { group, attempt } => {
+            format!("Market research found group {group} (attempt {attempt}). It is known at level 1.")
+        }
+        Notice::StudyComplete { study, noise } => {
+            let (group, level, day) = (study.group, study.target, study.due_day);
+            let what = if study.is_refresh() { "refreshed" } else { "raised" };
+            let accuracy = noise * 100.0;
+            format!("Study of group {group} complete: level {level}, \u{b1}{accuracy:.0}% (day {day}, {what})")
+        }
     }
 }
 
@@ -28,6 +37,21 @@ pub fn notice(notice: &Notice) -> String {
 mod tests {
     use super::*;
     use crate::world::market::economy::{Phase, Reading, Trend};
+
+    #[test]
+    fn studies_and_finds_name_group_level_and_accuracy() {
+        let group = crate::world::identifiers::Group::parse("D_S06").expect("a group");
+        let found = notice(&Notice::GroupFound { group, attempt: 4 });
+        assert_eq!(found, "Market research found group D_S06 (attempt 4). It is known at level 1.");
+        for (before, words) in [(1, "raised"), (2, "refreshed")] {
+            let study = crate::world::market::studies::Study { group, target: 2, before, due_day: 31 };
+            let text = notice(&Notice::StudyComplete { study, noise: 0.4 });
+            assert_eq!(
+                text,
+                format!("Study of group D_S06 complete: level 2, \u{b1}40% (day 31, {words})")
+            );
+        }
+    }
 
     #[test]
     fn readings_show_value_direction_and_band() {

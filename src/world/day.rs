@@ -9,7 +9,7 @@ use super::identifiers::{ByGroup, ByPlan, Group, Plan};
 use super::market::drift::Expectation;
 use super::market::economy::Dimension;
 use super::market::leads::LeadFactors;
-use super::market::{arrivals, competitors, drift, economy, reputation, surges, yields};
+use super::market::{arrivals, competitors, drift, economy, reputation, studies, surges, yields};
 use super::params::Params;
 use super::product::ads::AdLoad;
 use super::product::quality::{TenureTable, delivered_quality, service_penalty};
@@ -96,6 +96,7 @@ pub fn step_day(
     let metered = usage::meter(customers, &morning, params, facts);
     let service = service::observe(metered.total, &morning, params, streams, facts);
     research::complete(day, product, facts);
+    studies::complete(day, market, params, facts);
 
     // The market moves.
     let seats = ByGroup::from_fn(|group| market.economy.multiplier(group, Dimension::SeatCount, params));

@@ -3,7 +3,11 @@
 //! The three steps are apart so that a tool call can be checked without consequence ([`Effect`]), recorded
 //! with its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
-use super::events::{Category, Facts, LedgerEntry, LedgerNote, ResearchChange, SettingsChange};
+use super::events::{Category, Facts, LedgerEntry, LedgerNote, Notice, ResearchChange, SettingsChange};
+use super::identifiers::Group;
+use super::market::discovery::Attempt;
+use super::market::insights::{Insights, insights};
+use super::market::studies::Study;
 use super::params::Params;
 use super::product::research::{self, Project};
 use super::random::Streams;
@@ -19,6 +23,12 @@ pub enum Effect {
     Set(SettingsChange),
     /// An R&D project of this tier is paid and started.
     StartResearch(u8),
+    /// An attempt to find a group is paid and made.
+    ResearchMarket,
+    /// A study of a group up to this level is paid and ordered.
+    ResearchGroup(Group, u8),
+    /// Nothing changes, but the estimates of a group have errors that are drawn.
+    ReadInsights(Group),
 }
 
 /// A decided change whose draws are known.
@@ -31,6 +41,19 @@ pub enum Deed {
     Set(SettingsChange),
     /// An R&D project and its price in dollars.
     StartResearch(Project, f64),
+    /// An attempt to find a group.
+    ResearchMarket(Attempt),
+    /// A study of a group and its price in dollars.
+    ResearchGroup(Study, f64),
+    /// Nothing changes; the estimates of a group, none if it is not known.
+    ReadInsights(Option<Box<Insights>>),
+}
+
+impl Deed {
+    /// Whether it changes nothing.
+    pub fn only_reads(&self) -> bool {
+        matches!(self, Deed::None | Deed::ReadInsights(_))
+    }
 }
 
 impl World {
@@ -43,14 +66,22 @@ impl World {
                 let project = research::draw(&self.product, self.day, tier, params, streams);
                 Deed::StartResearch(project, f64::from(params.research(tier).cost))
             }
+            Effect::ResearchMarket => Deed::ResearchMarket(self.market.next_attempt(params, streams)),
+            Effect::ResearchGroup(group, target) => {
+                let study = self.market.plan_study(group, target, self.day, params);
+                Deed::ResearchGroup(study, params.level(target).cost)
+            }
+            Effect::ReadInsights(group) => {
+                Deed::ReadInsights(insights(group, &self.market, params, streams).map(Box::new))
+            }
         }
     }
 
     /// Applies a deed. What it does carries the day already simulated; `facts` receives it.
-    pub fn apply(&mut self, deed: Deed, facts: &mut Facts) {
+    pub fn apply(&mut self, deed: Deed, params: &Params, facts: &mut Facts) {
         facts.begin(self.day);
         match deed {
-            Deed::None => {}
+            Deed::None | Deed::ReadInsights(_) => {}
             Deed::Set(change) => {
                 self.settings.set(change.clone());
                 facts.settings.push(change);
@@ -62,6 +93,26 @@ impl World {
                 self.product.research.push(project);
                 facts.research.push(ResearchChange::Started(project));
             }
+            Deed::ResearchMarket(attempt) => self.research_market(&attempt, params, facts),
+            Deed::ResearchGroup(study, cost) => {
+                let note = LedgerNote::Study(study);
+                self.finance.book(LedgerEntry { category: Category::GroupResearch, amount: -cost, note }, facts);
+                self.market.studies.push(study);
+            }
+        }
+    }
+}
+
+impl World {
+    fn research_market(&mut self, attempt: &Attempt, params: &Params, facts: &mut Facts) {
+        let note = LedgerNote::General;
+        let category = Category::MarketResearch;
+        self.finance.book(LedgerEntry { category, amount: -attempt.cost, note }, facts);
+        self.market.note_attempt(attempt, self.day, params);
+        facts.attempts.push(*attempt);
+        if let Some(group) = attempt.found {
+            facts.knowledge.push((group, self.market.knowledge[group]));
+            facts.notices.push(Notice::GroupFound { group, attempt: attempt.earlier + 1 });
         }
     }
 }
@@ -79,7 +130,7 @@ mod tests {
         let deed = world.resolve(Effect::StartResearch(1), &params, &streams);
         assert_eq!(world.part_hashes(), before);
         assert_eq!(deed, world.resolve(Effect::StartResearch(1), &params, &streams));
-        world.apply(deed, &mut facts);
+        world.apply(deed, &params, &mut facts);
         assert_eq!(world.finance.cash, 833_333.0);
         let Deed::StartResearch(second, _) = world.resolve(Effect::StartResearch(1), &params, &streams)
         else {

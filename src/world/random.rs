@@ -61,6 +61,10 @@ parts! {
     LeadCount = "lead_count",
     /// (group, month): monthly change of the channel yields.
     LeadRateDrift = "lead_rate_drift",
+    /// (attempt): whether market research finds a group, and which.
+    MarketResearch = "market_research",
+    /// (group, level, field): error of an estimate.
+    Insight = "insight",
     /// (day): demand surge.
     Surge = "surge",
     /// (day): step of the hidden index of the economy.

@@ -63,6 +63,7 @@ impl World {
             LedgerEntry { category: Category::InitialFunding, amount: cash, note: LedgerNote::General };
         world.finance.book(funding, facts);
         facts.settings.push(SettingsChange::Core(world.settings.core));
+        facts.knowledge.extend(world.market.knowledge.pairs().map(|(group, own)| (group, *own)));
         world
     }
 

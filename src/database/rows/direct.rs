@@ -6,7 +6,6 @@ use super::ForecastRow;
 use crate::notation::plain_numbers;
 use crate::world::events::{Facts, Notice, ResearchChange, SettingsChange};
 use crate::world::identifiers::{Group, Plan};
-use crate::world::market::Knowledge;
 
 pub(super) fn service(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let Some(service) = facts.service else { return Ok(()) };
@@ -148,10 +147,17 @@ pub(super) fn forecasts(transaction: &Transaction<'_>, rows: &[ForecastRow]) -> 
     Ok(())
 }
 
-pub(super) fn knowledge(transaction: &Transaction<'_>, rows: &[(Group, Knowledge)]) -> rusqlite::Result<()> {
+pub(super) fn discovery(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    let mut log = transaction.prepare_cached(
+        "INSERT INTO segment_discovery (day, cost, success, discovered_group_id) VALUES (?1, ?2, ?3, ?4)",
+    )?;
+    for attempt in &facts.attempts {
+        let found = attempt.found.map(Group::id);
+        log.execute(params![facts.day, attempt.cost, found.is_some(), found])?;
+    }
     let mut write =
         transaction.prepare_cached("INSERT OR REPLACE INTO group_info_levels VALUES (?1, ?2, ?3, ?4, ?5)")?;
-    for (group, own) in rows {
+    for (group, own) in &facts.knowledge {
         let hidden = !group.initially_known();
         write.execute(params![group.id(), own.level, hidden, own.discovered_day, own.last_research_day])?;
     }

@@ -17,7 +17,6 @@ use crate::world::events::{
     TermsChanged,
 };
 use crate::world::identifiers::{Group, Plan};
-use crate::world::market::Knowledge;
 use crate::world::params::Params;
 
 /// What is to be written: the facts of a day or a call, and the words that belong to them.
@@ -33,8 +32,6 @@ pub struct Entry {
     pub addresses: BTreeMap<u32, String>,
     /// Forecasts that were filed.
     pub forecasts: Vec<ForecastRow>,
-    /// Groups whose knowledge changed.
-    pub knowledge: Vec<(Group, Knowledge)>,
 }
 
 /// A row of `predictions`.
@@ -139,7 +136,7 @@ impl RowWriter {
         direct::notices(transaction, facts, &entry.notices)?;
         direct::settings(transaction, facts)?;
         direct::forecasts(transaction, &entry.forecasts)?;
-        direct::knowledge(transaction, &entry.knowledge)
+        direct::discovery(transaction, facts)
     }
 
     fn usage(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
@@ -287,7 +284,14 @@ impl RowWriter {
             (_, LedgerNote::Project(tier, number)) => {
                 format!("R&D Tier {tier}: {} (t{tier}_{number})", self.params.research(tier).name)
             }
+            (_, LedgerNote::Study(study)) if study.is_refresh() => {
+                format!("Group research: {}, refresh at level {}", study.group, study.target)
+            }
+            (_, LedgerNote::Study(study)) => {
+                format!("Group research: {}, level {} to {}", study.group, study.before, study.target)
+            }
             (Category::InitialFunding, _) => "Initial seed funding".to_owned(),
+            (Category::MarketResearch, _) => "Market research: search for an unknown group".to_owned(),
             (Category::Capacity, _) => "Daily capacity cost".to_owned(),
             (Category::Compute, _) => "Compute costs".to_owned(),
             (Category::Operations, LedgerNote::Targeted) => "Targeted ops spend".to_owned(),

@@ -1,7 +1,9 @@
 //! The company and its environment: settings, service, research, notifications.
 
 use crate::world::canonical::{Canonical, CanonicalHasher, canonical};
+use crate::world::identifiers::Group;
 use crate::world::market::economy::Reading;
+use crate::world::market::studies::Study;
 use crate::world::product::research::Project;
 use crate::world::settings::{
     AdsStrength, CoreSettings, LeadPromotion, Promotion, TargetedAds, TargetedDevelopment, TargetedOperations,
@@ -135,6 +137,20 @@ pub enum Notice {
     },
     /// A reading of the economy was published.
     EconomyUpdate(Reading),
+    /// Market research found a group.
+    GroupFound {
+        /// The group.
+        group: Group,
+        /// Number of the attempt, from 1.
+        attempt: u32,
+    },
+    /// A study of a group is finished.
+    StudyComplete {
+        /// The study.
+        study: Study,
+        /// Largest relative error of its estimates.
+        noise: f64,
+    },
 }
 
 impl Notice {
@@ -145,6 +161,8 @@ impl Notice {
             Notice::LeadLostByTimeout { .. } => "lead_lost",
             Notice::ResearchComplete { .. } => "research_complete",
             Notice::EconomyUpdate(_) => "macro_economic_update",
+            Notice::GroupFound { .. } => "market_discovery",
+            Notice::StudyComplete { .. } => "group_research_complete",
         }
     }
 }
@@ -156,6 +174,8 @@ impl Canonical for Notice {
             Notice::LeadLostByTimeout { days } => (1u8, days).feed(hasher),
             Notice::ResearchComplete { tier, number } => (2u8, (tier, number)).feed(hasher),
             Notice::EconomyUpdate(reading) => (3u8, reading).feed(hasher),
+            Notice::GroupFound { group, attempt } => (4u8, (group, attempt)).feed(hasher),
+            Notice::StudyComplete { study, noise } => (5u8, (study, noise)).feed(hasher),
         }
     }
 }

@@ -20,6 +20,9 @@ pub use money::{Category, LedgerEntry, LedgerNote, Payment};
 pub use threads::{Sender, ThreadKind, ThreadTurn};
 
 use super::canonical::canonical;
+use super::identifiers::Group;
+use super::market::Knowledge;
+use super::market::discovery::Attempt;
 use super::market::economy::Reading;
 
 /// Everything that happened on one day, or through the tools after it.
@@ -35,6 +38,10 @@ pub struct Facts {
     pub service: Option<ServiceDay>,
     /// R&D projects that started or finished.
     pub research: Vec<ResearchChange>,
+    /// Attempts to find a group.
+    pub attempts: Vec<Attempt>,
+    /// Groups whose knowledge changed, as it is now.
+    pub knowledge: Vec<(Group, Knowledge)>,
     /// Readings of the economy that were published.
     pub readings: Vec<Reading>,
     /// Issues that were solved, by number.
@@ -67,7 +74,7 @@ pub struct Facts {
 
 canonical! {
     Facts {
-        day, settings, usage, service, research, readings, issues_resolved, issues_aged, issues_opened, endings,
+        day, settings, usage, service, research, attempts, knowledge, readings, issues_resolved, issues_aged, issues_opened, endings,
         changes, turns, channel_leads, arrivals, openings, payments, ledger, ads_revenue, notices,
     }
 }
@@ -81,6 +88,8 @@ impl Facts {
             usage,
             service,
             research,
+            attempts,
+            knowledge,
             readings,
             issues_resolved,
             issues_aged,
@@ -101,6 +110,8 @@ impl Facts {
         settings.clear();
         usage.clear();
         research.clear();
+        attempts.clear();
+        knowledge.clear();
         readings.clear();
         issues_resolved.clear();
         issues_opened.clear();

@@ -1,6 +1,7 @@
 //! Movements of cash.
 
 use crate::world::canonical::{Canonical, CanonicalHasher, canonical, canonical_codes};
+use crate::world::market::studies::Study;
 
 canonical! {
     Payment { customer, amount }
@@ -105,6 +106,8 @@ pub enum LedgerNote {
     Subscribers(u32),
     /// An R&D project: tier and number.
     Project(u8, u32),
+    /// A study of a group.
+    Study(Study),
 }
 
 impl Canonical for LedgerNote {
@@ -114,6 +117,7 @@ impl Canonical for LedgerNote {
             LedgerNote::Targeted => (1u8, 0u32).feed(hasher),
             LedgerNote::Subscribers(count) => (2u8, count).feed(hasher),
             LedgerNote::Project(tier, number) => (3u8, (tier, number)).feed(hasher),
+            LedgerNote::Study(study) => (4u8, study).feed(hasher),
         }
     }
 }

@@ -2,12 +2,15 @@
 
 pub mod arrivals;
 pub mod competitors;
+pub mod discovery;
 pub mod drift;
 pub mod economy;
+pub mod insights;
 pub mod leads;
 pub mod posts;
 pub mod reputation;
 pub mod social;
+pub mod studies;
 pub mod surges;
 pub mod yields;
 
@@ -32,6 +35,10 @@ pub struct Market {
     pub surges: Vec<surges::Surge>,
     /// What the company knows about each group.
     pub knowledge: ByGroup<Knowledge>,
+    /// Attempts to find a group so far.
+    pub attempts: u32,
+    /// Studies of groups that run, in the order in which they were ordered.
+    pub studies: Vec<studies::Study>,
     /// Reactions to the company's posts.
     pub own_posts: Vec<social::OwnPost>,
 }
@@ -45,11 +52,13 @@ pub struct Knowledge {
     pub discovered_day: Option<u32>,
     /// Last day on which the level rose.
     pub last_research_day: Option<u32>,
+    /// What estimates are made from, once the group is known.
+    pub snapshot: Option<insights::Snapshot>,
 }
 
 canonical! {
-    Market { reputation, drift, yields, economy, competitors, surges, knowledge, own_posts }
-    Knowledge { level, discovered_day, last_research_day }
+    Market { reputation, drift, yields, economy, competitors, surges, knowledge, attempts, studies, own_posts }
+    Knowledge { level, discovered_day, last_research_day, snapshot }
 }
 
 impl Market {
@@ -66,6 +75,7 @@ impl Market {
                 },
                 discovered_day: known.then_some(0),
                 last_research_day: known.then_some(0),
+                snapshot: discovery::opening_snapshot(group, params),
             }
         };
         Market {
@@ -76,6 +86,8 @@ impl Market {
             competitors: Vec::new(),
             surges: Vec::new(),
             knowledge: ByGroup::from_fn(knowledge),
+            attempts: 0,
+            studies: Vec::new(),
             own_posts: Vec::new(),
         }
     }

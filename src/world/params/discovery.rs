@@ -25,3 +25,31 @@ pub struct InfoLevel {
     /// Days until a study of this level is finished.
     pub delay_days: u32,
 }
+
+/// What a study may aim at, and how its estimates are shown (chapter 30 §12, chapter 10.3).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroupResearch {
+    /// Lowest level a study may aim at.
+    pub min_target_level: u8,
+    /// Highest level a study may aim at.
+    pub max_target_level: u8,
+    /// Referral rates up to this one are not reported, leads a day and subscriber.
+    pub network_display_min: f64,
+    /// Weights of reputation up to this one are not reported.
+    pub reputation_display_min: f64,
+    /// Decimals of the budget.
+    pub willingness_to_pay_decimals: u32,
+    /// Decimals of the usage.
+    pub usage_volume_decimals: u32,
+    /// Decimals of the quality floor.
+    pub quality_floor_decimals: u32,
+    /// Decimals of the aversion to long contracts.
+    pub lockin_decimals: u32,
+    /// Decimals of the growth of the market.
+    pub growth_rate_decimals: u32,
+    /// Decimals of referral rates and weights of reputation.
+    pub influence_decimals: u32,
+    /// Decimals of the reply delay.
+    pub response_days_decimals: u32,
+}

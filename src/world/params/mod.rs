@@ -95,6 +95,8 @@ pub struct Params {
     pub market_research: MarketResearch,
     /// Levels of knowledge 1..=5.
     pub info_level: Vec<InfoLevel>,
+    /// Studies of groups.
+    pub group_research: GroupResearch,
     /// The 26 groups, in their fixed order.
     pub group: Vec<GroupParams>,
     /// The five channels, in their fixed order.
@@ -151,6 +153,11 @@ impl Params {
     /// The model tier with this number, 1..=5.
     pub fn model(&self, tier: u8) -> &ModelTier {
         &self.model_tier[usize::from(tier) - 1]
+    }
+
+    /// The level of knowledge with this number, 1..=5.
+    pub fn level(&self, level: u8) -> &InfoLevel {
+        &self.info_level[usize::from(level) - 1]
     }
 
     /// The R&D tier with this number, 1..=20.

@@ -1,0 +1,130 @@
+//! Market research: paying for a chance to find an unknown group (chapter 30 §11).
+
+use super::Market;
+use super::drift::DriftTotals;
+use super::insights::Snapshot;
+use crate::world::canonical::canonical;
+use crate::world::identifiers::Group;
+use crate::world::params::Params;
+use crate::world::random::{Part, Stream, Streams};
+
+/// One attempt to find a group.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Attempt {
+    /// Attempts before this one, failed ones included.
+    pub earlier: u32,
+    /// Dollars paid.
+    pub cost: f64,
+    /// The group that was found.
+    pub found: Option<Group>,
+}
+
+canonical! { Attempt { earlier, cost, found } }
+
+/// The outcome of an attempt: found with a fixed chance, and then any of the undiscovered ones alike.
+pub fn draw_attempt(undiscovered: &[Group], chance: f64, stream: &mut Stream) -> Option<Group> {
+    if undiscovered.is_empty() || !stream.bernoulli(chance) {
+        return None;
+    }
+    undiscovered.get(stream.index(undiscovered.len())).copied()
+}
+
+impl Market {
+    /// The groups that are still to be found: individuals first, each segment by its numbers.
+    pub fn undiscovered(&self) -> impl Iterator<Item = Group> + '_ {
+        Group::all().filter(|group| !self.is_known(*group))
+    }
+
+    /// The attempt that market research would be now. It follows from the seed and the number of earlier
+    /// attempts alone.
+    pub fn next_attempt(&self, params: &Params, streams: &Streams) -> Attempt {
+        let law = &params.market_research;
+        let undiscovered: Vec<Group> = self.undiscovered().collect();
+        let mut stream = streams.open(Part::MarketResearch, [u64::from(self.attempts)]);
+        let found = draw_attempt(&undiscovered, law.market_research_discover_prob, &mut stream);
+        Attempt { earlier: self.attempts, cost: law.discovery_cost_level_1, found }
+    }
+
+    /// Counts an attempt, and knows the group it found from now on.
+    pub fn note_attempt(&mut self, attempt: &Attempt, day: u32, params: &Params) {
+        self.attempts += 1;
+        if let Some(group) = attempt.found {
+            let snapshot = Snapshot::take(group, day, &self.drift, params);
+            let knowledge = &mut self.knowledge[group];
+            knowledge.level = params.initial.initial_group_info_level;
+            (knowledge.discovered_day, knowledge.last_research_day) = (Some(day), Some(day));
+            knowledge.snapshot = Some(snapshot);
+        }
+    }
+}
+
+/// What is known of an initial group on day 0.
+pub(super) fn opening_snapshot(group: Group, params: &Params) -> Option<Snapshot> {
+    group.initially_known().then(|| Snapshot::take(group, 0, &DriftTotals::default(), params))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The groups that attempts find one after the other; `pause` days pass between two of them.
+    fn found(seed: u64, attempts: u32, pause: u32) -> Vec<Option<Group>> {
+        let (params, streams) = (Params::shipped(), Streams::new(seed));
+        let mut market = Market::opening(&params);
+        let each = |number: u32| {
+            let attempt = market.next_attempt(&params, &streams);
+            assert_eq!((attempt.earlier, attempt.cost), (number, 25_000.0));
+            market.note_attempt(&attempt, number * pause, &params);
+            attempt.found
+        };
+        (0..attempts).map(each).collect()
+    }
+
+    #[test]
+    fn the_sequence_depends_on_seed_and_number_alone() {
+        assert_eq!(found(42, 60, 0), found(42, 60, 7));
+        assert_ne!(found(42, 60, 0), found(43, 60, 0));
+    }
+
+    #[test]
+    fn every_group_is_found_once_and_then_nothing_more() {
+        let all: Vec<Group> = found(7, 400, 1).into_iter().flatten().collect();
+        let mut distinct = all.clone();
+        distinct.sort_unstable();
+        distinct.dedup();
+        assert_eq!((all.len(), distinct.len()), (20, 20));
+        assert!(all.iter().all(|group| !group.initially_known()));
+    }
+
+    #[test]
+    fn three_attempts_in_ten_succeed_and_no_group_is_preferred() {
+        let (mut successes, mut first) = (0u32, [0u32; Group::COUNT]);
+        for seed in 0..4000 {
+            let outcomes = found(seed, 5, 0);
+            successes += outcomes.iter().flatten().count() as u32;
+            if let Some(group) = outcomes[0] {
+                first[group.index()] += 1;
+            }
+        }
+        assert!((f64::from(successes) / 20_000.0 - 0.3).abs() < 0.013, "{successes}");
+        // 1,200 first finds over 20 groups: 60 each, with a spread of 7.6.
+        assert!(first[..6].iter().all(|count| *count == 0));
+        assert!(first[6..].iter().all(|count| (25..=95).contains(count)), "{first:?}");
+    }
+
+    #[test]
+    fn a_found_group_is_known_from_that_day_with_the_market_of_that_day() {
+        let params = Params::shipped();
+        let mut market = Market::opening(&params);
+        market.drift.global_quality = 0.12;
+        let group = Group::parse("D_S06").expect("a group");
+        let attempt = Attempt { earlier: 0, cost: 25_000.0, found: Some(group) };
+        market.note_attempt(&attempt, 28, &params);
+        let own = market.knowledge[group];
+        assert_eq!((own.level, own.discovered_day, own.last_research_day), (1, Some(28), Some(28)));
+        let snapshot = own.snapshot.expect("a snapshot");
+        assert_eq!(snapshot.day, 28);
+        assert!((snapshot.q_min - (params.group(group).q_min_mean + 0.12)).abs() < 1e-12);
+        assert_eq!(market.undiscovered().count(), 19);
+    }
+}

@@ -1,0 +1,415 @@
+//! Insights: what a study tells of a group, true values times a noise that shrinks with the level
+//! (chapter 30 §12.3, §12.4).
+
+use super::Market;
+use super::drift::DriftTotals;
+use super::economy::round_to;
+use super::leads::market_cap;
+use crate::world::canonical::canonical;
+use crate::world::identifiers::Group;
+use crate::world::params::{GroupParams, Params};
+use crate::world::random::{Part, Streams};
+
+/// The moving values of a group as they were on a day; hidden, estimates are made from it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Snapshot {
+    /// Day.
+    pub day: u32,
+    /// Mean budget, dollars a month.
+    pub c_max: f64,
+    /// Mean quality floor.
+    pub q_min: f64,
+    /// Customers or accounts the market holds.
+    pub market_cap: f64,
+}
+
+canonical! { Snapshot { day, c_max, q_min, market_cap } }
+
+impl Snapshot {
+    /// The group on a day, with the drift of the whole group and without that of single customers.
+    pub fn take(group: Group, day: u32, drift: &DriftTotals, params: &Params) -> Snapshot {
+        let own = params.group(group);
+        let moved = drift.expectation(group);
+        Snapshot {
+            day,
+            c_max: own.c_max_mean + moved.c_max,
+            q_min: own.q_min_mean + moved.quality,
+            market_cap: market_cap(own.base_market_cap, own.annual_cap_growth_rate, day, &params.leads),
+        }
+    }
+}
+
+/// A value that is estimated; each has a noise of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Field {
+    /// Budget.
+    WillingnessToPay,
+    /// Units a day.
+    UsageVolume,
+    /// Quality floor.
+    QualityFloor,
+    /// Size of the market.
+    MarketCap,
+    /// Growth of the market.
+    GrowthRate,
+    /// Aversion to long contracts.
+    LockinAversion,
+    /// Fewest seats of a company.
+    SeatMinimum,
+    /// Most seats of a company.
+    SeatMaximum,
+    /// Turns a company takes part in.
+    DecisionRounds,
+    /// Days a company takes to answer.
+    ResponseDays,
+    /// Leads that the group brings to another one.
+    ReferralTo(Group),
+    /// Leads that another group brings to it.
+    ReferralFrom(Group),
+    /// Weight of its reputation for another group.
+    ReputationTo(Group),
+    /// Weight of another group's reputation for it.
+    ReputationFrom(Group),
+}
+
+impl Field {
+    /// Number of the field as a key of random streams; frozen, recorded runs depend on it.
+    fn key(self) -> u64 {
+        let linked = |direction: u64, group: Group| 100 * direction + group.index() as u64;
+        match self {
+            Field::WillingnessToPay => 0,
+            Field::UsageVolume => 1,
+            Field::QualityFloor => 2,
+            Field::MarketCap => 3,
+            Field::GrowthRate => 4,
+            Field::LockinAversion => 5,
+            Field::SeatMinimum => 6,
+            Field::SeatMaximum => 7,
+            Field::DecisionRounds => 8,
+            Field::ResponseDays => 9,
+            Field::ReferralTo(other) => linked(1, other),
+            Field::ReferralFrom(other) => linked(2, other),
+            Field::ReputationTo(other) => linked(3, other),
+            Field::ReputationFrom(other) => linked(4, other),
+        }
+    }
+}
+
+/// Estimates of a group, rounded as they are shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Insights {
+    /// Group.
+    pub group: Group,
+    /// Level of knowledge, 1..=5.
+    pub level: u8,
+    /// Largest relative error of that level.
+    pub noise: f64,
+    /// Budget, dollars a month, of companies per seat.
+    pub willingness_to_pay: f64,
+    /// Units a day, of companies per seat.
+    pub usage_volume: f64,
+    /// Quality floor.
+    pub quality_floor: f64,
+    /// Customers or accounts the market holds, at least 1.
+    pub market_cap: u64,
+    /// Growth of the market a year, at least 0.
+    pub growth_rate: f64,
+    /// Aversion to long contracts, at least 0.
+    pub lockin_aversion: f64,
+    /// What only companies have.
+    pub company: Option<CompanyInsights>,
+    /// Leads a day and subscriber that the group brings to others, the largest first.
+    pub referrals_to: Vec<(Group, f64)>,
+    /// Leads a day and subscriber that others bring to it, the largest first.
+    pub referrals_from: Vec<(Group, f64)>,
+    /// Weights of its reputation for others, the largest first.
+    pub reputation_to: Vec<(Group, f64)>,
+    /// Weights of others' reputation for it, the largest first.
+    pub reputation_from: Vec<(Group, f64)>,
+}
+
+/// Estimates of a group of companies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CompanyInsights {
+    /// Fewest seats, at least 1.
+    pub seats_least: u64,
+    /// Most seats, at least the fewest.
+    pub seats_most: u64,
+    /// Turns a company takes part in, at least 1.
+    pub decision_rounds: u64,
+    /// Days a company takes to answer, at least 1.
+    pub response_days: f64,
+}
+
+/// Insights into a known group at its present level; equal on every call, after a refresh, and whatever else
+/// was found. None for a group that was not discovered.
+pub fn insights(group: Group, market: &Market, params: &Params, streams: &Streams) -> Option<Insights> {
+    let level = u64::from(market.knowledge[group].level);
+    let mut draw = |field: Field| {
+        let keys = [group.index() as u64, level, field.key()];
+        streams.open(Part::Insight, keys).between(-1.0, 1.0)
+    };
+    insights_with(group, market, params, &mut draw)
+}
+
+/// Insights with given noise: `draw` tells z in [-1, 1) of each field.
+fn insights_with(
+    group: Group,
+    market: &Market,
+    params: &Params,
+    draw: &mut dyn FnMut(Field) -> f64,
+) -> Option<Insights> {
+    let known = &market.knowledge[group];
+    let snapshot = known.snapshot.filter(|_| known.level >= 1)?;
+    let (own, law) = (params.group(group), &params.group_research);
+    let noise = params.level(known.level).noise;
+    let mut estimate = |field: Field, truth: f64| truth * (1.0 + noise * draw(field));
+    let willingness_to_pay =
+        round_to(estimate(Field::WillingnessToPay, snapshot.c_max), law.willingness_to_pay_decimals);
+    let usage_volume =
+        round_to(estimate(Field::UsageVolume, own.usage_demand_mean), law.usage_volume_decimals);
+    let quality_floor = round_to(estimate(Field::QualityFloor, snapshot.q_min), law.quality_floor_decimals);
+    let market_cap = whole(estimate(Field::MarketCap, snapshot.market_cap));
+    let growth = estimate(Field::GrowthRate, own.annual_cap_growth_rate).max(0.0);
+    let lockin = estimate(Field::LockinAversion, own.lockin_penalty_mean).max(0.0);
+    let company = company_insights(own, law.response_days_decimals, &mut estimate);
+    let mut links = |field: fn(Group) -> Field, least: f64, truth: &dyn Fn(Group) -> f64| {
+        let others = Group::all().filter(|other| *other != group && market.is_known(*other));
+        let mut others: Vec<Group> = others.filter(|other| truth(*other) > least).collect();
+        others.sort_by_key(|other| other.id());
+        let shown = |other: &Group| {
+            let value = estimate(field(*other), truth(*other)).max(0.0);
+            (*other, round_to(value, law.influence_decimals))
+        };
+        let mut values: Vec<(Group, f64)> = others.iter().map(shown).collect();
+        values.sort_by(|left, right| right.1.total_cmp(&left.1));
+        values
+    };
+    let (network, reputation) = (law.network_display_min, law.reputation_display_min);
+    Some(Insights {
+        group,
+        level: known.level,
+        noise,
+        willingness_to_pay,
+        usage_volume,
+        quality_floor,
+        market_cap,
+        growth_rate: round_to(growth, law.growth_rate_decimals),
+        lockin_aversion: round_to(lockin, law.lockin_decimals),
+        company,
+        referrals_to: links(Field::ReferralTo, network, &|other| params.referral_rate(group, other)),
+        referrals_from: links(Field::ReferralFrom, network, &|other| params.referral_rate(other, group)),
+        reputation_to: links(Field::ReputationTo, reputation, &|other| params.reputation_weight(group, other)),
+        reputation_from: links(Field::ReputationFrom, reputation, &|other| {
+            params.reputation_weight(other, group)
+        }),
+    })
+}
+
+fn company_insights(
+    own: &GroupParams,
+    decimals: u32,
+    estimate: &mut dyn FnMut(Field, f64) -> f64,
+) -> Option<CompanyInsights> {
+    let (least, most) = (f64::from(own.seat_count_min?), f64::from(own.seat_count_max?));
+    let (rounds, delay) = (own.max_negotiation_turns_mean?, own.reply_delay_mean?);
+    let seats_least = whole(estimate(Field::SeatMinimum, least));
+    let seats_most = whole(estimate(Field::SeatMaximum, most)).max(seats_least);
+    let decision_rounds = whole(estimate(Field::DecisionRounds, rounds));
+    let response_days = round_to(estimate(Field::ResponseDays, delay).max(1.0), decimals);
+    Some(CompanyInsights { seats_least, seats_most, decision_rounds, response_days })
+}
+
+/// The whole part of an estimate, at least 1.
+fn whole(value: f64) -> u64 {
+    value.trunc().max(1.0) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use super::*;
+
+    /// The recorded draws of the released simulator, by the first four characters of "<group>_insights".
+    fn recorded(group: Group) -> Vec<f64> {
+        let text = include_str!("../../../tests/data/insight_noise.csv");
+        let name: String = format!("{}_insights", group.id()).chars().take(4).collect();
+        let line = text.lines().find_map(|line| line.strip_prefix(&format!("{name},")));
+        line.expect("a recorded sequence").split(',').map(|u| u.parse().expect("a number")).collect()
+    }
+
+    /// Gives each field the draw it has in the released simulator, which takes one after the other and one for
+    /// the group's own referrals too.
+    fn recorded_noise(group: Group, market: &Market, params: &Params) -> HashMap<Field, f64> {
+        let law = &params.group_research;
+        let mut fields = vec![
+            Some(Field::WillingnessToPay),
+            Some(Field::UsageVolume),
+            Some(Field::QualityFloor),
+            Some(Field::MarketCap),
+            Some(Field::GrowthRate),
+            Some(Field::LockinAversion),
+        ];
+        if group.is_enterprise() {
+            let company =
+                [Field::SeatMinimum, Field::SeatMaximum, Field::DecisionRounds, Field::ResponseDays];
+            fields.extend(company.map(Some));
+        }
+        let mut others: Vec<Group> = Group::all().filter(|other| market.is_known(*other)).collect();
+        others.retain(|other| *other != group);
+        others.sort_by_key(|other| other.id());
+        let linked = |field: fn(Group) -> Field, reported: &dyn Fn(Group) -> bool| -> Vec<Option<Field>> {
+            others.iter().filter(|other| reported(**other)).map(|other| Some(field(*other))).collect()
+        };
+        let refers = |from, to| params.referral_rate(from, to) > law.network_display_min;
+        let weighs = |from, to| params.reputation_weight(from, to) > law.reputation_display_min;
+        fields.extend(linked(Field::ReferralTo, &|other| refers(group, other)));
+        fields.extend(linked(Field::ReferralFrom, &|other| refers(other, group)));
+        fields.push(None);
+        fields.extend(linked(Field::ReputationTo, &|other| weighs(group, other)));
+        fields.extend(linked(Field::ReputationFrom, &|other| weighs(other, group)));
+        fields.into_iter().zip(recorded(group)).filter_map(|(field, u)| Some((field?, 2.0 * u - 1.0))).collect()
+    }
+
+    fn estimates(id: &str, level: u8, day: u32) -> Insights {
+        let params = Params::shipped();
+        let mut market = Market::opening(&params);
+        let group = Group::parse(id).expect("a group");
+        market.knowledge[group].level = level;
+        market.knowledge[group].snapshot = Some(Snapshot::take(group, day, &market.drift, &params));
+        let noise = recorded_noise(group, &market, &params);
+        insights_with(group, &market, &params, &mut |field| noise[&field]).expect("a known group")
+    }
+
+    fn named(list: &[(Group, f64)]) -> Vec<(&'static str, f64)> {
+        list.iter().map(|(group, value)| (group.id(), *value)).collect()
+    }
+
+    #[test]
+    fn check_23_of_chapter_30_individuals() {
+        for (id, level, values, cap) in [
+            ("S1", 1, [25.87, 91.1, 0.081, 0.0962, 0.1906], 272_812),
+            ("S1", 5, [48.14, 80.9, 0.099, 0.192, 0.16235], 272_062),
+            ("D_S01", 1, [58.18, 86.4, 0.097, 0.1781, 0.09051], 37_155),
+        ] {
+            let own = estimates(id, level, 0);
+            let shown = [
+                own.willingness_to_pay,
+                own.usage_volume,
+                own.quality_floor,
+                own.growth_rate,
+                own.lockin_aversion,
+            ];
+            assert_eq!((shown, own.market_cap), (values, cap), "{id} at level {level}");
+            assert_eq!(own.company, None);
+        }
+    }
+
+    #[test]
+    fn check_23_of_chapter_30_companies() {
+        let company = |least, most, rounds, days| {
+            Some(CompanyInsights {
+                seats_least: least,
+                seats_most: most,
+                decision_rounds: rounds,
+                response_days: days,
+            })
+        };
+        for (id, level, values, cap, of_company) in [
+            ("E1", 1, [19.62, 52.1, 0.736, 0.0516, 0.07558], 1471, company(25, 740, 6, 5.2)),
+            ("E3", 3, [101.61, 114.4, 0.719, 0.0801, 0.03472], 116, company(247, 1963, 15, 22.1)),
+        ] {
+            let own = estimates(id, level, 0);
+            let shown = [
+                own.willingness_to_pay,
+                own.usage_volume,
+                own.quality_floor,
+                own.growth_rate,
+                own.lockin_aversion,
+            ];
+            assert_eq!((shown, own.market_cap), (values, cap), "{id} at level {level}");
+            assert_eq!(own.company, of_company, "{id}");
+        }
+        let ten = estimates("D_E10", 1, 0);
+        assert_eq!((ten.willingness_to_pay, ten.usage_volume, ten.quality_floor), (53.07, 98.7, 0.55));
+        assert_eq!(ten.market_cap, 188);
+    }
+
+    #[test]
+    fn check_23_of_chapter_30_and_9_of_chapter_50_influence() {
+        let e1 = estimates("E1", 1, 0);
+        assert_eq!(named(&e1.referrals_from), [("S3", 0.0073), ("E3", 0.0004)]);
+        let weights = [("E2", 0.0502), ("S3", 0.0488), ("E3", 0.0228), ("S1", 0.0209), ("S2", 0.0167)];
+        assert_eq!(named(&e1.reputation_to), weights);
+        let s1 = estimates("S1", 1, 0);
+        assert_eq!(named(&s1.referrals_to), [("S3", 0.0023), ("S2", 0.0013)]);
+        assert_eq!(named(&s1.referrals_from), [("S3", 0.0053), ("S2", 0.0006)]);
+        let out = [("S3", 0.1676), ("S2", 0.0342), ("E1", 0.0124), ("E3", 0.0069), ("E2", 0.0042)];
+        assert_eq!(named(&s1.reputation_to), out);
+        let into = [("S3", 0.3762), ("S2", 0.0656), ("E3", 0.0333), ("E1", 0.0193), ("E2", 0.0133)];
+        assert_eq!(named(&s1.reputation_from), into);
+    }
+
+    #[test]
+    fn check_10_of_chapter_50_each_level_is_closer_to_the_truth() {
+        for (level, day, pay, usage, cap, growth) in [
+            (2, 3, 35.15, 86.8, 272_948, 0.1361),
+            (3, 19, 40.72, 84.3, 275_147, 0.1601),
+            (4, 35, 44.43, 82.6, 277_407, 0.1760),
+            (5, 52, 48.14, 80.9, 279_814, 0.1920),
+        ] {
+            let own = estimates("S1", level, day);
+            assert_eq!(
+                (own.willingness_to_pay, own.usage_volume, own.market_cap, own.growth_rate),
+                (pay, usage, cap, growth),
+                "level {level}"
+            );
+        }
+    }
+
+    #[test]
+    fn noise_is_fixed_per_level_and_fresh_at_the_next() {
+        let params = Params::shipped();
+        let mut market = Market::opening(&params);
+        let streams = Streams::new(42);
+        let s1 = Group::at(0).expect("S1");
+        let told = |market: &Market| insights(s1, market, &params, &streams).expect("S1 is known");
+        let first = told(&market);
+        assert_eq!(first, told(&market));
+        assert_ne!(first, insights(s1, &market, &params, &Streams::new(43)).expect("S1 is known"));
+        // A group that is found later shifts nothing that was told before.
+        let found = Group::parse("D_S05").expect("a group");
+        market.knowledge[found].level = 1;
+        let more = told(&market);
+        assert_eq!(more.willingness_to_pay, first.willingness_to_pay);
+        assert!(first.reputation_to.iter().all(|link| more.reputation_to.contains(link)));
+        // Two levels tell no exact truth: their draws are not proportional.
+        market.knowledge[s1].level = 2;
+        let truth = params.group(s1).c_max_mean;
+        let z = |value: f64, noise: f64| (value / truth - 1.0) / noise;
+        let better = told(&market);
+        let (one, two) = (z(first.willingness_to_pay, 0.65), z(better.willingness_to_pay, 0.40));
+        assert!((one - two).abs() > 0.01, "{one} and {two}");
+        assert_eq!(insights(Group::parse("D_E01").expect("a group"), &market, &params, &streams), None);
+    }
+
+    #[test]
+    fn errors_stay_within_the_noise_of_the_level_and_fill_it() {
+        let params = Params::shipped();
+        let mut market = Market::opening(&params);
+        let s1 = Group::at(0).expect("S1");
+        let truth = params.group(s1).c_max_mean;
+        for level in 1..=5 {
+            market.knowledge[s1].level = level;
+            let noise = params.level(level).noise;
+            let errors: Vec<f64> = (0..500)
+                .map(|seed| insights(s1, &market, &params, &Streams::new(seed)).expect("S1 is known"))
+                .map(|told| (told.willingness_to_pay / truth - 1.0) / noise)
+                .collect();
+            assert!(errors.iter().all(|error| error.abs() < 1.01), "level {level}");
+            assert!(errors.iter().any(|error| *error < -0.97) && errors.iter().any(|error| *error > 0.97));
+            assert!(errors.iter().sum::<f64>().abs() / 500.0 < 0.1, "level {level}");
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Group research: studies that are paid at once and finish some days later (chapter 30 §12, step 7).
+
+use super::Market;
+use super::insights::Snapshot;
+use crate::world::canonical::canonical;
+use crate::world::events::{Facts, Notice};
+use crate::world::identifiers::Group;
+use crate::world::params::{GroupResearch, Params};
+
+/// A study that runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Study {
+    /// Group.
+    pub group: Group,
+    /// Level it aims at, 2..=5.
+    pub target: u8,
+    /// Level of the group when it was ordered.
+    pub before: u8,
+    /// First day on which it is finished.
+    pub due_day: u32,
+}
+
+canonical! { Study { group, target, before, due_day } }
+
+impl Study {
+    /// Whether it brings the figures of the day and no better accuracy.
+    pub fn is_refresh(&self) -> bool {
+        self.target == self.before
+    }
+}
+
+/// Level a study aims at when none is named: the present one, at least the lowest there is.
+pub fn default_target(level: u8, law: &GroupResearch) -> u8 {
+    level.max(law.min_target_level)
+}
+
+impl Market {
+    /// The study of a group that runs, if one does.
+    pub fn running_study(&self, group: Group) -> Option<&Study> {
+        self.studies.iter().find(|study| study.group == group)
+    }
+
+    /// The study that an order of today would be.
+    pub fn plan_study(&self, group: Group, target: u8, day: u32, params: &Params) -> Study {
+        let due_day = day + params.level(target).delay_days;
+        Study { group, target, before: self.knowledge[group].level, due_day }
+    }
+}
+
+/// Finishes what is due, in the order in which it was ordered: the level rises, and the snapshot is today's
+/// market as it stands this morning.
+pub fn complete(day: u32, market: &mut Market, params: &Params, facts: &mut Facts) {
+    let Market { studies, knowledge, drift, .. } = market;
+    for study in studies.extract_if(.., |study| study.due_day <= day) {
+        let own = &mut knowledge[study.group];
+        if study.target > own.level {
+            own.level = study.target;
+            own.last_research_day = Some(day);
+        }
+        own.snapshot = Some(Snapshot::take(study.group, day, drift, params));
+        facts.knowledge.push((study.group, *own));
+        facts.notices.push(Notice::StudyComplete { study, noise: params.level(own.level).noise });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(actual: f64, expected: f64) {
+        assert!((actual - expected).abs() < 1e-6, "{actual} instead of {expected}");
+    }
+
+    fn order(market: &mut Market, id: &str, target: u8, day: u32, params: &Params) -> Group {
+        let group = Group::parse(id).expect("a group");
+        let study = market.plan_study(group, target, day, params);
+        market.studies.push(study);
+        group
+    }
+
+    #[test]
+    fn check_24_of_chapter_30() {
+        let params = Params::shipped();
+        let (mut market, mut facts) = (Market::opening(&params), Facts::default());
+        let s1 = order(&mut market, "S1", 2, 0, &params);
+        market.drift.global_quality = 0.12;
+        market.drift.quality[s1] = 0.03;
+        market.drift.c_max[s1] = 0.5;
+        complete(2, &mut market, &params, &mut facts);
+        assert_eq!(market.knowledge[s1].level, 1);
+        complete(3, &mut market, &params, &mut facts);
+        let snapshot = market.knowledge[s1].snapshot.expect("a snapshot");
+        near(snapshot.c_max, 50.5);
+        near(snapshot.q_min, 0.25);
+        near(snapshot.market_cap, 272_447.123_288);
+        assert_eq!((market.knowledge[s1].level, market.knowledge[s1].last_research_day), (2, Some(3)));
+
+        order(&mut market, "S1", 2, 7, &params);
+        complete(10, &mut market, &params, &mut facts);
+        let snapshot = market.knowledge[s1].snapshot.expect("a snapshot");
+        near(snapshot.c_max, 50.5);
+        near(snapshot.q_min, 0.25);
+        near(snapshot.market_cap, 273_490.410_959);
+        assert_eq!((market.knowledge[s1].level, market.knowledge[s1].last_research_day), (2, Some(3)));
+        assert_eq!(facts.notices.len(), 2);
+        assert!(market.studies.is_empty());
+    }
+
+    #[test]
+    fn check_10_of_chapter_50_levels_and_days() {
+        let params = Params::shipped();
+        let (mut market, mut facts) = (Market::opening(&params), Facts::default());
+        for (day, target, due) in [(0, 2, 3), (14, 3, 19), (28, 4, 35), (42, 5, 52)] {
+            let s1 = order(&mut market, "S1", target, day, &params);
+            assert_eq!(market.running_study(s1).map(|study| study.due_day), Some(due));
+            complete(due - 1, &mut market, &params, &mut facts);
+            assert_eq!(market.knowledge[s1].level, target - 1);
+            complete(due, &mut market, &params, &mut facts);
+            assert_eq!(market.knowledge[s1].level, target);
+        }
+    }
+
+    #[test]
+    fn studies_of_several_groups_run_side_by_side_and_levels_can_be_skipped() {
+        let params = Params::shipped();
+        let (mut market, mut facts) = (Market::opening(&params), Facts::default());
+        let s1 = order(&mut market, "S1", 5, 0, &params);
+        let e2 = order(&mut market, "E2", 2, 0, &params);
+        complete(3, &mut market, &params, &mut facts);
+        assert_eq!((market.knowledge[s1].level, market.knowledge[e2].level), (1, 2));
+        complete(10, &mut market, &params, &mut facts);
+        assert_eq!(market.knowledge[s1].level, 5);
+        assert_eq!(facts.knowledge.iter().map(|(group, _)| group.id()).collect::<Vec<_>>(), ["E2", "S1"]);
+        assert_eq!((default_target(1, &params.group_research), default_target(4, &params.group_research)), (2, 4));
+    }
+}

@@ -53,7 +53,8 @@ fn ask(folder: &std::path::Path, sql: &str) -> Result<Rows, Failure> {
         && position.seq >= last.seq
         && trajectory.lines.get(position.seq as usize).is_some_and(|line| line.hash == position.line_hash)
     {
-        let limits = crate::database::query::Limits { rows: 5000, time: std::time::Duration::from_secs(120) };
+        let time = std::time::Duration::from_secs(120);
+        let limits = crate::database::query::Limits { rows: 5000, time, steps: None };
         return desk.ask(sql, limits).map_err(|error| crate::session::Refusal::from(error).into());
     }
     let mut session = Session::open(folder, Access::Read, true)?;
@@ -61,9 +62,7 @@ fn ask(folder: &std::path::Path, sql: &str) -> Result<Rows, Failure> {
 }
 
 fn changes_rows(fields: &serde_json::Map<String, serde_json::Value>) -> bool {
-    let reads = |name: &str| {
-        crate::tools::find(name).is_some_and(|tool| tool.spec().kind == crate::tools::Kind::Read)
-    };
+    let reads = |name: &str| crate::tools::find(name).is_some_and(|tool| !tool.spec().kind.acts());
     let tool = fields.get("tool").and_then(serde_json::Value::as_str).unwrap_or_default();
     fields.get("ok") == Some(&serde_json::Value::Bool(true)) && !reads(tool)
 }

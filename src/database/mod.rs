@@ -7,11 +7,15 @@
 
 pub mod catalogue;
 pub mod query;
+pub mod text;
 
 mod block_table;
 mod blocks;
+mod guard;
 mod help;
+mod interrupt;
 mod location;
+mod memory;
 mod projector;
 mod rows;
 
@@ -19,7 +23,8 @@ mod rows;
 mod tests;
 
 pub use catalogue::{Column, Table, table, tables};
+pub use interrupt::Interrupt;
 pub use location::Location;
 pub use projector::{Position, ProjectionError, Projector, desk_of, position_of};
-pub use query::{Cell, Desk, Interrupt, QueryError, Rows};
+pub use query::{Cell, Desk, QueryError, Rows, ScriptError};
 pub use rows::{Entry, ForecastRow};

@@ -1,23 +1,25 @@
 //! Guarded queries: one read-only statement over the 19 visible tables (chapter 60 §3.4, rule C).
 //!
-//! The connection can only read; an authorizer allows the visible tables, their insides only from within a
-//! view, and ordinary functions; limits bound the size of statements and values; a progress handler stops what
-//! takes too long. What is refused is decided by what a statement does, never by how its text looks.
+//! The connection can only read; an authorizer ([`super::guard`]) allows the visible tables and ordinary functions;
+//! limits bound the size of statements, values and results; a progress handler stops what takes too long or too
+//! much memory. What is refused is decided by what a statement does, never by how its text looks.
 
-use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, RwLock};
 use std::time::{Duration, Instant};
 
 use rusqlite::Connection;
 use rusqlite::fallible_iterator::FallibleIterator;
-use rusqlite::hooks::{AuthAction, AuthContext, Authorization};
+use rusqlite::hooks::{AuthContext, Authorization};
 use rusqlite::limits::Limit;
 use rusqlite::types::ValueRef;
 
+use super::block_table;
 use super::blocks::SharedShelf;
+use super::guard::{Guard, Objection, Objections, is_hidden_table};
 use super::help::{explain_error, hints};
+use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS};
 use super::location::Location;
-use super::{block_table, catalogue};
 
 /// One value of a result.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +32,15 @@ pub enum Cell {
     Real(f64),
     /// Text; blobs arrive as text too.
     Text(String),
+}
+
+impl Cell {
+    fn text_length(&self) -> usize {
+        match self {
+            Cell::Text(text) => text.len(),
+            _ => 0,
+        }
+    }
 }
 
 /// A result.
@@ -57,109 +68,33 @@ pub struct QueryError {
     /// Place in the statement in bytes, where it is known.
     pub position: Option<usize>,
 }
-
-/// Stops a running query from another thread, or by itself when its time is over.
-#[derive(Debug, Clone)]
-pub struct Interrupt(Arc<Clockwork>);
-
-#[derive(Debug)]
-struct Clockwork {
-    stopped: AtomicBool,
-    started: Instant,
-    /// Milliseconds after `started` at which the running query has to end.
-    deadline: AtomicU64,
+/// Why a script was not run to its end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ScriptError {
+    /// Number of the statement, from 1.
+    pub statement: usize,
+    /// What is wrong with it.
+    pub error: QueryError,
 }
 
-impl Interrupt {
-    fn new() -> Interrupt {
-        let (stopped, deadline) = (AtomicBool::new(false), AtomicU64::new(u64::MAX));
-        Interrupt(Arc::new(Clockwork { stopped, started: Instant::now(), deadline }))
-    }
-
-    /// Stops the query that is running, if one is.
-    pub fn stop(&self) {
-        self.0.stopped.store(true, Ordering::Relaxed);
-    }
-
-    fn begin(&self, time: Duration) {
-        let deadline = self.0.started.elapsed() + time;
-        self.0.deadline.store(deadline.as_millis() as u64, Ordering::Relaxed);
-        self.0.stopped.store(false, Ordering::Relaxed);
-    }
-
-    fn is_stopped(&self) -> bool {
-        self.0.stopped.load(Ordering::Relaxed)
-    }
-
-    fn must_end(&self) -> bool {
-        self.is_stopped()
-            || self.0.started.elapsed().as_millis() as u64 > self.0.deadline.load(Ordering::Relaxed)
-    }
-}
-
-/// Size limits of a query.
+/// Limits of a query.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
     /// Rows at most.
     pub rows: usize,
     /// Time at most.
     pub time: Duration,
+    /// Steps of SQLite's machine at most, in tens of thousands; none: only time and memory count.
+    pub steps: Option<u64>,
 }
 
-/// What the authorizer objected to, as a number.
-#[derive(Clone, Default)]
-struct Objection(Arc<AtomicU8>);
-
-const SCHEMA: u8 = 1;
-const HIDDEN: u8 = 2;
-const WRITE: u8 = 3;
-
-/// Tables that the released simulator hides and that do not exist here; asking for them has a code of its own.
-const HIDDEN_TABLES: [&str; 25] = [
-    "events",
-    "api_costs",
-    "customer_state",
-    "group_reputation",
-    "group_awareness",
-    "reputation_history",
-    "global_state",
-    "feature_tests",
-    "test_assignments",
-    "customer_personas",
-    "customer_persona_map",
-    "group_characteristics",
-    "enterprise_thread_counter",
-    "world_context",
-    "pending_group_research",
-    "group_parameters",
-    "competitor_events",
-    "_hidden_leads_per_1k_snapshot",
-    "_hidden_group_params_history",
-    "_hidden_quality_snapshot",
-    "_hidden_satisfaction_snapshot",
-    "_hidden_lead_multiplier_snapshot",
-    "global_drift_state",
-    "group_insight_snapshots",
-    "_rng_states",
-];
-
-/// Tables inside the database, and whether a visible table is made of them row by row.
-const INSIDES: [(&str, bool); 9] = [
-    ("customer_rows", true),
-    ("subscription_rows", true),
-    ("ledger_rows", true),
-    ("issue_rows", true),
-    ("words", false),
-    ("projection", false),
-    ("issue_clock", false),
-    ("usage_blocks", false),
-    ("ads_blocks", false),
-];
+/// A result may hold this many bytes of text.
+const MOST_TEXT: usize = 64 << 20;
 
 /// A place to ask questions.
 pub struct Desk {
     connection: Connection,
-    objection: Objection,
+    objections: Objections,
     /// Set while the desk itself works on the connection.
     trusted: Arc<AtomicBool>,
     interrupt: Interrupt,
@@ -180,8 +115,9 @@ impl Desk {
         let mut connection = location.open_reader()?;
         let seen = SharedShelf::default();
         block_table::register(&connection, &seen)?;
-        connection.pragma_update(None, "query_only", true)?;
         connection.pragma_update(None, "temp_store", "MEMORY")?;
+        let guard = Guard::set_up(&connection)?;
+        connection.pragma_update(None, "query_only", true)?;
         connection.set_limit(Limit::SQLITE_LIMIT_ATTACHED, 0)?;
         connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, 16 << 20)?;
         connection.set_limit(Limit::SQLITE_LIMIT_SQL_LENGTH, 1 << 20)?;
@@ -193,18 +129,18 @@ impl Desk {
         for table in ["daily_usage", "ads_revenue"] {
             connection.prepare(&format!("SELECT 1 FROM {table}"))?;
         }
-        let (objection, trusted) = (Objection::default(), Arc::new(AtomicBool::new(false)));
-        let (noted, by_desk) = (objection.clone(), trusted.clone());
+        let (objections, trusted) = (guard.objections(), Arc::new(AtomicBool::new(false)));
+        let by_desk = trusted.clone();
         connection.authorizer(Some(move |context: AuthContext<'_>| {
             match by_desk.load(Ordering::Relaxed) {
                 true => Authorization::Allow,
-                false => authorize(&context, &noted),
+                false => guard.authorize(&context),
             }
         }))?;
         let interrupt = Interrupt::new();
         let clock = interrupt.clone();
-        connection.progress_handler(10_000, Some(move || clock.must_end()))?;
-        Ok(Desk { connection, objection, trusted, interrupt, gate, shelf: shelf.clone(), seen })
+        connection.progress_handler(STEPS_BETWEEN_LOOKS as i32, Some(move || clock.must_end()))?;
+        Ok(Desk { connection, objections, trusted, interrupt, gate, shelf: shelf.clone(), seen })
     }
 
     /// A handle that stops the queries of this desk.
@@ -220,21 +156,64 @@ impl Desk {
         if sql.trim().is_empty() {
             return Err(refusal("sql_empty", "no SQL was given"));
         }
-        self.objection.0.store(0, Ordering::Relaxed);
-        self.interrupt.begin(limits.time);
-        self.look().map_err(|error| self.told(sql, Fault::Sqlite(error), limits))?;
+        self.look(sql, limits)?;
         let answer = self.run(sql, limits).map_err(|fault| self.told(sql, fault, limits));
-        self.as_desk("ROLLBACK").map_err(|error| refusal("sql_error", &error.to_string()))?;
+        self.look_away()?;
         answer
     }
 
+    /// Runs statements one after the other, each with the rows and time of `limits`, all of them in `time`
+    /// together; `answered` gets each result. They all see the same state.
+    ///
+    /// # Errors
+    /// The first statement that is refused; the ones before it were answered.
+    pub fn run_script(
+        &self,
+        sql: &str,
+        limits: Limits,
+        time: Duration,
+        mut answered: impl FnMut(Rows),
+    ) -> Result<(), ScriptError> {
+        let end = Instant::now() + time;
+        let at = |statement: usize| move |error: QueryError| ScriptError { statement, error };
+        self.look(sql, limits).map_err(at(1))?;
+        let mut batch = rusqlite::Batch::new(&self.connection, sql);
+        let mut done = Ok(());
+        for number in 1.. {
+            let own =
+                Limits { time: limits.time.min(end.saturating_duration_since(Instant::now())), ..limits };
+            self.interrupt.go_on(own.time, own.steps);
+            let answer = match batch.next() {
+                Ok(None) => break,
+                Ok(Some(statement)) => self.fetch(statement, sql, own),
+                Err(error) => Err(Fault::Sqlite(error)),
+            };
+            match answer {
+                Ok(rows) => answered(rows),
+                Err(fault) => {
+                    done = Err(at(number)(self.told(sql, fault, own)));
+                    break;
+                }
+            }
+        }
+        self.look_away().map_err(at(1))?;
+        done
+    }
+
     /// Fixes what the query sees: rows and blocks of the same commit, whatever is written meanwhile.
-    fn look(&self) -> rusqlite::Result<()> {
+    fn look(&self, sql: &str, limits: Limits) -> Result<(), QueryError> {
+        self.objections.clear();
+        self.interrupt.begin(limits.time, limits.steps);
         let _open = self.gate.read().unwrap_or_else(|poisoned| poisoned.into_inner());
-        self.as_desk("BEGIN; SELECT seq FROM projection")?;
+        self.as_desk("BEGIN; SELECT seq FROM projection")
+            .map_err(|error| self.told(sql, Fault::Sqlite(error), limits))?;
         let shelf = self.shelf.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
         *self.seen.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = shelf;
         Ok(())
+    }
+
+    fn look_away(&self) -> Result<(), QueryError> {
+        self.as_desk("ROLLBACK").map_err(|error| refusal("sql_error", &error.to_string()))
     }
 
     fn as_desk(&self, sql: &str) -> rusqlite::Result<()> {
@@ -246,13 +225,22 @@ impl Desk {
 
     fn run(&self, sql: &str, limits: Limits) -> Result<Rows, Fault> {
         let mut batch = rusqlite::Batch::new(&self.connection, sql);
-        let Some(mut statement) = batch.next()? else {
+        let Some(statement) = batch.next()? else {
             return Err(Fault::Empty);
         };
         match batch.next() {
             Ok(None) => {}
             _ => return Err(Fault::Several),
         }
+        self.fetch(statement, sql, limits)
+    }
+
+    fn fetch(
+        &self,
+        mut statement: rusqlite::Statement<'_>,
+        sql: &str,
+        limits: Limits,
+    ) -> Result<Rows, Fault> {
         if statement.is_explain() != 0 {
             return Err(Fault::Explain);
         }
@@ -264,13 +252,18 @@ impl Desk {
         let mut cursor = statement.query([])?;
         let mut next = cursor.next()?;
         let mut rows = Vec::new();
-        let mut truncated = false;
+        let (mut truncated, mut text) = (false, 0);
         while let Some(row) = next {
             if rows.len() == limits.rows {
                 truncated = true;
                 break;
             }
-            rows.push((0..width).map(|at| row.get_ref(at).map(cell)).collect::<Result<Vec<_>, _>>()?);
+            let cells = (0..width).map(|at| row.get_ref(at).map(cell)).collect::<Result<Vec<_>, _>>()?;
+            text += cells.iter().map(Cell::text_length).sum::<usize>();
+            if text > MOST_TEXT {
+                return Err(Fault::TooLarge);
+            }
+            rows.push(cells);
             next = cursor.next()?;
         }
         let warning = truncated
@@ -280,7 +273,7 @@ impl Desk {
     }
 
     fn told(&self, sql: &str, fault: Fault, limits: Limits) -> QueryError {
-        let objection = self.objection.0.load(Ordering::Relaxed);
+        let objection = self.objections.last();
         match fault {
             Fault::Empty => refusal("sql_empty", "no SQL was given"),
             Fault::Several => {
@@ -288,27 +281,29 @@ impl Desk {
             }
             Fault::Explain => refusal("sql_schema", "query plans are not shown"),
             Fault::Write => write_refusal(),
-            Fault::Sqlite(_) if objection == WRITE => write_refusal(),
-            Fault::Sqlite(_) if objection == SCHEMA => refusal(
+            Fault::TooLarge => {
+                let most = MOST_TEXT >> 20;
+                refusal("sql_error", &format!("the result is larger than {most} MiB; ask for less at a time"))
+            }
+            Fault::Sqlite(_) if objection == Objection::Write => write_refusal(),
+            Fault::Sqlite(_) if objection == Objection::Schema => refusal(
                 "sql_schema",
                 "schema statements are not allowed; the table browser describes all tables",
             ),
-            Fault::Sqlite(_) if objection == HIDDEN => hidden_refusal(None),
+            Fault::Sqlite(_) if objection == Objection::Hidden => hidden_refusal(None),
             Fault::Sqlite(error) => self.told_by_sqlite(sql, &error, limits),
         }
     }
 
     fn told_by_sqlite(&self, sql: &str, error: &rusqlite::Error, limits: Limits) -> QueryError {
         if error.sqlite_error_code() == Some(rusqlite::ErrorCode::OperationInterrupted) {
-            return if self.interrupt.is_stopped() {
-                refusal("sql_timeout", "the query was cancelled")
-            } else {
-                let seconds = limits.time.as_secs();
-                refusal(
-                    "sql_timeout",
-                    &format!("the query ran longer than {seconds} s; ask for less at a time"),
-                )
+            let seconds = limits.time.as_secs();
+            let message = match self.interrupt.cause() {
+                Cause::Request => "the query was cancelled".to_owned(),
+                Cause::Memory => "the query needs too much memory; ask for less at a time".to_owned(),
+                Cause::Time => format!("the query ran longer than {seconds} s; ask for less at a time"),
             };
+            return refusal("sql_timeout", &message);
         }
         let (text, position) = match error {
             rusqlite::Error::SqlInputError { msg, offset, .. } => {
@@ -322,7 +317,7 @@ impl Desk {
         }
         if let Some(table) = text.strip_prefix("no such table: ") {
             let name = table.rsplit('.').next().unwrap_or(table);
-            if HIDDEN_TABLES.iter().any(|hidden| hidden.eq_ignore_ascii_case(name)) {
+            if is_hidden_table(name) {
                 return hidden_refusal(Some(name));
             }
             if name.to_lowercase().starts_with("pragma_") {
@@ -338,6 +333,7 @@ enum Fault {
     Several,
     Explain,
     Write,
+    TooLarge,
     Sqlite(rusqlite::Error),
 }
 
@@ -371,31 +367,4 @@ fn cell(value: ValueRef<'_>) -> Cell {
             Cell::Text(String::from_utf8_lossy(bytes).into_owned())
         }
     }
-}
-
-fn authorize(context: &AuthContext<'_>, objection: &Objection) -> Authorization {
-    let problem = match context.action {
-        AuthAction::Select | AuthAction::Recursive => return Authorization::Allow,
-        AuthAction::Function { function_name } if function_name != "load_extension" => {
-            return Authorization::Allow;
-        }
-        AuthAction::Read { table_name, column_name } => {
-            let name = table_name.to_lowercase();
-            let inside = INSIDES.iter().find(|(table, _)| *table == name);
-            let visible = catalogue::table(&name).is_some();
-            let from_view = context.accessor.is_some_and(|view| catalogue::table(view).is_some());
-            // Without a column only rows are counted: those of a common table expression, or of a view that the
-            // planner has opened up.
-            let counted = column_name.is_empty() && inside.is_none_or(|(_, behind_view)| *behind_view);
-            let engine = name.starts_with("sqlite_") || name.starts_with("pragma_");
-            if visible || from_view || (counted && !engine) {
-                return Authorization::Allow;
-            }
-            if engine { SCHEMA } else { HIDDEN }
-        }
-        AuthAction::Pragma { .. } => SCHEMA,
-        _ => WRITE,
-    };
-    objection.0.store(problem, Ordering::Relaxed);
-    Authorization::Deny
 }

@@ -11,7 +11,7 @@ use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::state::World;
 
-const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(20) };
+const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(20), steps: None };
 
 fn entry(facts: Facts) -> Entry {
     Entry {
@@ -317,8 +317,9 @@ fn results_are_capped_and_slow_queries_end() {
     assert_eq!((cut.rows.len(), cut.truncated), (5000, true));
     assert!(cut.warning.is_some());
     let endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n";
-    let error =
-        desk.ask(endless, Limits { rows: 10, time: Duration::from_millis(50) }).expect_err("too slow");
+    let error = desk
+        .ask(endless, Limits { rows: 10, time: Duration::from_millis(50), steps: None })
+        .expect_err("too slow");
     assert_eq!(error.code, "sql_timeout");
     let interrupt = desk.interrupt();
     let stopper = std::thread::spawn(move || {

@@ -234,7 +234,8 @@ impl Day<'_> {
         sum(list, "total_costs_cum", figures.total_costs);
         let lead_cost = self.xray.params().leads.lead_acquisition_cost;
         for category in Category::ALL {
-            let other = facts.ledger.iter().filter(|entry| entry.category == category);
+            let booked = facts.ledger.iter().chain(self.xray.called());
+            let other = booked.filter(|entry| entry.category == category);
             let value = match category {
                 Category::LeadAcquisitionCost => -lead_cost * facts.arrivals.len() as f64,
                 Category::SubscriptionPayment => figures.payments_received,
@@ -338,6 +339,7 @@ impl Day<'_> {
             ("lead_lost", timeout),
             ("lead_lost_timeout", timeout),
             ("macro_economic_update", count(|notice| matches!(notice, Notice::EconomyUpdate(_)))),
+            ("group_research_complete", count(|notice| matches!(notice, Notice::StudyComplete { .. }))),
             ("research_complete", count(|notice| matches!(notice, Notice::ResearchComplete { .. }))),
         ] {
             push(list, "notif_cum", kind, Kind::Sum, value);
@@ -348,6 +350,7 @@ impl Day<'_> {
         let market = &self.xray.world().market;
         let discovered = Group::all().filter(|group| !group.initially_known() && market.is_known(*group));
         now(list, "discovered", discovered.count() as f64);
+        now(list, "discovery_attempts", f64::from(market.attempts));
         sum(list, "customers_total", self.xray.facts().arrivals.len() as f64);
     }
 

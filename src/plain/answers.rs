@@ -1,9 +1,9 @@
 //! Answers as text and as JSON (chapter 70 §8.3).
 
 use serde_json::{Map, Value, json};
-use unicode_width::UnicodeWidthStr;
 
-use crate::session::{Cell, Refusal, Rows};
+use crate::database::text::aligned;
+use crate::session::Refusal;
 
 /// The answer to a line.
 #[derive(Debug, Clone, PartialEq)]
@@ -143,60 +143,11 @@ fn table_of(list: &[Value]) -> String {
     aligned(&columns, &rows)
 }
 
-/// A value of a result as text.
-pub fn cell_text(cell: &Cell) -> String {
-    match cell {
-        Cell::Null => "NULL".to_owned(),
-        Cell::Integer(number) => number.to_string(),
-        Cell::Real(number) => format!("{number:?}"),
-        Cell::Text(text) => text.clone(),
-    }
-}
-
-/// A result as aligned columns under their names, with the count of rows, warning and hint.
-pub fn table(rows: &Rows) -> String {
-    let cells: Vec<Vec<String>> = rows
-        .rows
-        .iter()
-        .map(|row| row.iter().map(|cell| cell_text(cell).replace(['\n', '\r', '\t'], " ")).collect())
-        .collect();
-    let mut text = aligned(&rows.columns, &cells);
-    text += &match (rows.rows.len(), rows.truncated) {
-        (count, true) => format!("({count} rows, more exist)\n"),
-        (1, false) => "(1 row)\n".to_owned(),
-        (count, false) => format!("({count} rows)\n"),
-    };
-    if let Some(warning) = &rows.warning {
-        text += &format!("warning: {warning}\n");
-    }
-    if let Some(hint) = &rows.hint {
-        text += &format!("hint: {hint}\n");
-    }
-    text
-}
-
-fn aligned(columns: &[String], rows: &[Vec<String>]) -> String {
-    let width = |at: usize| {
-        let cells = rows.iter().filter_map(|row| row.get(at)).chain([&columns[at]]);
-        cells.map(|cell| cell.width()).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
-    let line = |cells: &[String]| {
-        let mut text = String::new();
-        for (cell, width) in cells.iter().zip(&widths) {
-            text += cell;
-            text += &" ".repeat(width - cell.width() + 2);
-        }
-        text.trim_end().to_owned() + "\n"
-    };
-    let mut text = line(columns);
-    rows.iter().for_each(|row| text += &line(row));
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::database::text::table;
+    use crate::session::{Cell, Rows};
 
     #[test]
     fn answers_look_like_the_example_of_chapter_70() {

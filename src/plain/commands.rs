@@ -8,11 +8,12 @@ use serde_json::{Value, json};
 
 pub use readings::change as change_line;
 
-use super::answers::{Answer, table};
+use super::answers::Answer;
 use super::grammar::{self, Argument, Line, Problem, as_object};
 use super::input::Input;
 use super::next;
 use super::signals::{Phase, Watch};
+use crate::database::text::table;
 use crate::notation::nearest;
 use crate::session::{Mode, Refusal, Session, Via, rows_as_json};
 use crate::tools::{self, Kind, Module, Tool};

@@ -14,7 +14,7 @@ use std::io::{self, IsTerminal, Write};
 
 use serde_json::{Value, json};
 
-pub use answers::{cell_text, table};
+pub use crate::database::text::{cell_text, table};
 
 use crate::session::Session;
 use answers::Answer;

@@ -9,7 +9,7 @@ use super::changes::{Change, changes, daily_cost};
 use super::error::RunError;
 use super::trajectory::Durability;
 use super::{JournalEntry, Session, UndoStep};
-use crate::tools::{Arguments, Kind, Refusal, Tool, View, find};
+use crate::tools::{Arguments, Kind, Refusal, Task, Tool, View, find};
 use crate::world::effect::{Deed, Effect};
 use crate::world::settings::Settings;
 use crate::world::state::World;
@@ -101,7 +101,7 @@ impl Session {
         }
         let (arguments, effect) = self.plan(tool, arguments)?;
         let deed = self.world.resolve(effect, &self.params, &self.streams);
-        Ok(tool.answer(&View::new(&self.world, &self.params), &arguments, &deed))
+        Ok(tool.answer(&self.view(), &arguments, &deed))
     }
 
     /// Calls a tool; `next_week` and `query` have functions of their own.
@@ -123,10 +123,14 @@ impl Session {
         let started = Instant::now();
         let tool = self.tool(name)?;
         let allowed = self.refuse_if_over(tool.spec().kind);
-        let planned = allowed.and_then(|()| self.plan(tool, arguments)).map(|(arguments, effect)| {
+        let planned = allowed.and_then(|()| self.plan(tool, arguments)).and_then(|(arguments, effect)| {
             let deed = self.world.resolve(effect, &self.params, &self.streams);
-            let answer = tool.answer(&View::new(&self.world, &self.params), &arguments, &deed);
-            (arguments, deed, answer)
+            let task = tool.task(&self.view(), &arguments);
+            let answer = match &task {
+                Some(Task::Run { code, seconds }) => self.run_statements(code, *seconds)?,
+                _ => tool.answer(&self.view(), &arguments, &deed),
+            };
+            Ok((arguments, deed, task, answer))
         });
         let took_ms = started.elapsed().as_secs_f64() * 1e3;
         let mut fields = CallFields { tool: tool.spec().name, arguments, via, took_ms, undoes };
@@ -136,11 +140,12 @@ impl Session {
                 let _ = self.record_call(fields.refused(&refusal), Durability::Written);
                 Err(refusal)
             }
-            Ok((given, deed, answer)) => {
+            Ok((given, deed, task, answer)) => {
                 let given = Value::Object(given.as_map().clone());
                 fields.arguments = &given;
                 let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
                 self.record_call(fields.accepted(&answer), durability).map_err(not_saved)?;
+                task.iter().for_each(|task| self.apply_task(task));
                 self.apply(tool, given, undoes, deed);
                 Ok(answer)
             }
@@ -173,10 +178,13 @@ impl Session {
             }),
             Deed::ResearchGroup(study, _) => {
                 let (group, level, day) = (study.group, study.target, study.due_day);
-                self.this_week.done.push(format!("study of {group} to level {level} ordered, done on day {day}"));
+                self.this_week
+                    .done
+                    .push(format!("study of {group} to level {level} ordered, done on day {day}"));
             }
         }
         self.world.apply(deed, &self.params, &mut self.facts);
+        self.called.extend_from_slice(&self.facts.ledger);
         self.after_call();
     }
 
@@ -233,13 +241,18 @@ impl Session {
 
     fn plan(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Effect), Refusal> {
         let arguments = Arguments::of(tool.spec(), arguments)?;
-        let effect = tool.plan(&View::new(&self.world, &self.params), &arguments)?;
+        let effect = tool.plan(&self.view(), &arguments)?;
         Ok((arguments, effect))
+    }
+
+    /// What tools may look at.
+    fn view(&self) -> View<'_> {
+        View::new(&self.world, &self.params).within(&self.office)
     }
 
     /// Refuses what acts once the run is over, and everything that would write a run that is only read.
     pub(super) fn refuse_if_over(&self, kind: Kind) -> Result<(), Refusal> {
-        if kind == Kind::Read {
+        if !kind.acts() {
             return Ok(());
         }
         if let Some(ended) = self.ended {
@@ -353,10 +366,13 @@ impl Session {
         let tool = self.tool(name).map_err(|refusal| refusal.message)?;
         let (given, effect) = self.plan(tool, arguments).map_err(|refusal| refusal.to_string())?;
         let deed = self.world.resolve(effect, &self.params, &self.streams);
-        let answer = tool.answer(&View::new(&self.world, &self.params), &given, &deed);
-        if fields.get("result") != Some(&answer) {
+        let task = tool.task(&self.view(), &given);
+        // What statements said is not asked again: the database may be ahead of this line.
+        let runs = matches!(task, Some(Task::Run { .. }));
+        if !runs && fields.get("result") != Some(&tool.answer(&self.view(), &given, &deed)) {
             return Err("the call answers differently now".to_owned());
         }
+        task.iter().for_each(|task| self.apply_task(task));
         let undoes = fields.get("undoes").and_then(Value::as_u64);
         self.apply(tool, Value::Object(given.as_map().clone()), undoes, deed);
         if undoes.is_some() {

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::act::{Via, not_saved};
+use super::scripts::as_field;
 use super::trajectory::{Durability, Line, seconds};
 use super::week::{Forecasts, WeekFigures};
 use super::xray::Xray;
@@ -104,9 +105,14 @@ impl Session {
             }
         };
         let day = self.world.day;
-        let fields = advance_fields(&text, &forecasts, via);
+        let calculated = self.run_calculations();
+        let mut fields = advance_fields(&text, &forecasts, via);
+        if !calculated.is_empty() {
+            fields.insert("calculations".to_owned(), as_field(&calculated));
+        }
         let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
         let at = self.append("advance", day, fields, durability).map_err(not_saved)?;
+        self.calculated = calculated;
         self.file(text, &forecasts, &at);
         Ok(self.run_week(progress))
     }
@@ -162,8 +168,9 @@ impl Session {
             self.chain_facts();
             self.project_facts();
             let debug = self.manifest.mode == super::Mode::Debug;
-            let xray = debug.then(|| Xray::new(&self.world, &self.params, &self.facts, &self.trace));
+            let xray = debug.then(|| Xray::new(self));
             progress(&DayReport { figures: &figures, week_end, xray });
+            self.called.clear();
         }
     }
 
@@ -287,6 +294,7 @@ impl Session {
         let first = line.fields.get("forecasts").and_then(|forecasts| forecasts.get(0));
         let filled_naively = first.and_then(|first| first.get("filled_naively")) == Some(&Value::Bool(true));
         let rationale = line.fields.get("rationale").and_then(Value::as_str).unwrap_or_default();
+        self.recall_calculations(&line.fields);
         self.file(rationale.to_owned(), &Forecasts { all, filled_naively }, &line.at);
         Ok(())
     }

@@ -87,7 +87,7 @@ impl Session {
         self.asked.drain(..surplus);
     }
 
-    fn desk(&mut self) -> Result<&Desk, Refusal> {
+    pub(super) fn desk(&mut self) -> Result<&Desk, Refusal> {
         self.wait_for_database()?;
         if self.desk.is_none() {
             self.desk = Some(self.open_desk()?);
@@ -101,6 +101,7 @@ fn limits(session: &Session) -> Limits {
     Limits {
         rows: own.query_row_limit as usize,
         time: Duration::from_secs(u64::from(own.query_timeout_seconds)),
+        steps: None,
     }
 }
 

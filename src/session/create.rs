@@ -11,6 +11,7 @@ use super::manifest::{FORMAT, Manifest, differences, sync_folder};
 use super::mode::Mode;
 use super::record::{FactsChain, entry_of};
 use super::runs::{earlier_runs, lock_run};
+use super::scripts::Office;
 use super::trajectory::{Durability, TrajectoryWriter, now};
 use super::week::WeekFigures;
 use super::{Session, ThisWeek};
@@ -169,6 +170,9 @@ impl Session {
             this_week: ThisWeek { settings, undo: Vec::new(), done: Vec::new() },
             journal: Vec::new(),
             asked: Vec::new(),
+            office: Office::default(),
+            calculated: Vec::new(),
+            called: Vec::new(),
             memo_in_memory: String::new(),
             facts_chain: FactsChain::default(),
             ended: None,

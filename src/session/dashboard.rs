@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::scripts::Calculated;
 use super::week::{WeekFigures, week_of};
 use crate::notation::{dollars, grouped, percent, signed_dollars};
 use crate::world::identifiers::{ByPlan, Group, Plan};
@@ -51,6 +52,7 @@ pub fn build(
     params: &Params,
     week: Option<&WeekFigures>,
     stocks: &WeekFigures,
+    calculated: &[Calculated],
     waiting: Waiting,
 ) -> String {
     let mut text = format!("=== Week {} (day {}) ===\n", week_of(world.day), world.day);
@@ -60,6 +62,7 @@ pub fn build(
     }
     settings_block(&mut text, world);
     quality_block(&mut text, world, params);
+    calculations_block(&mut text, calculated);
     inbox_block(&mut text, week, waiting);
     text
 }
@@ -146,6 +149,19 @@ fn quality_block(text: &mut String, world: &World, params: &Params) {
     }
 }
 
+fn calculations_block(text: &mut String, calculated: &[Calculated]) {
+    if calculated.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "\n--- Weekly calculations ---");
+    for Calculated { name, output } in calculated {
+        let _ = writeln!(text, "{name}:");
+        output.lines().for_each(|line| {
+            let _ = writeln!(text, "  {line}");
+        });
+    }
+}
+
 fn inbox_block(text: &mut String, week: Option<&WeekFigures>, waiting: Waiting) {
     let _ = writeln!(text, "\n--- Inbox ---");
     let mut lines = 0;
@@ -181,7 +197,7 @@ mod tests {
     fn day_0_shows_stocks_settings_and_quality() {
         let (world, params) = world();
         let stocks = WeekFigures { cash: 1_000_000.0, ..WeekFigures::default() };
-        let text = build(&world, &params, None, &stocks, Waiting::default());
+        let text = build(&world, &params, None, &stocks, &[], Waiting::default());
         let expected = "=== Week 0 (day 0) ===\n\
             Cash: $1,000,000 | Individual Subscribers: 0\n\
             Enterprise Subscribed Seats: 0 | Open Issues: 0\n\n\
@@ -211,7 +227,7 @@ mod tests {
         world.settings.core.tiers = ByPlan([1, 2, 3]);
         world.product.shared_bonus = 0.02257;
         world.product.group_bonus[Group::at(0).expect("S1")] = 0.27773;
-        let text = build(&world, &params, None, &WeekFigures::default(), Waiting::default());
+        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
         assert!(text.contains("S1      0.3002        0.3752        0.4503        +0.2777"), "{text}");
         assert!(text.contains("S2      0.1335        0.1669        0.2003        0\n"), "{text}");
         assert!(text.contains("global bonus 0.0226"), "{text}");
@@ -234,7 +250,7 @@ mod tests {
             ..WeekFigures::default()
         };
         let waiting = Waiting { threads: 2, days_left: 4 };
-        let text = build(&world, &params, Some(&week), &week, waiting);
+        let text = build(&world, &params, Some(&week), &week, &[], waiting);
         for part in [
             "Overload (peak): 12.3% | Outage: yes (40 minutes)",
             "P95 Latency (peak): 250 ms | Error Rate (peak): 1.23%",

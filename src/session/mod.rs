@@ -20,6 +20,7 @@ mod observe;
 mod open;
 mod record;
 mod runs;
+mod scripts;
 mod trajectory;
 mod week;
 mod xray;
@@ -45,6 +46,7 @@ pub use mode::Mode;
 pub use observe::{Observation, WaitingThread};
 pub use open::{Access, Verification, verify};
 pub use runs::{RunSummary, delete_run, end_run, find_run, list_runs, run_folder};
+pub use scripts::Calculated;
 pub use trajectory::{Line, Trajectory};
 pub use week::{Forecasts, WeekFigures, week_of};
 pub use xray::Xray;
@@ -54,12 +56,13 @@ pub use crate::tools::Refusal;
 
 use crate::database::{Position, Projector};
 use crate::world::day::DayTrace;
-use crate::world::events::Facts;
+use crate::world::events::{Facts, LedgerEntry};
 use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::settings::Settings;
 use crate::world::state::World;
 use record::FactsChain;
+use scripts::Office;
 use trajectory::TrajectoryWriter;
 
 /// How a run ended.
@@ -124,6 +127,12 @@ pub struct Session {
     journal: Vec<JournalEntry>,
     /// Statements the database was asked in this run, each once, the newest last.
     asked: Vec<String>,
+    /// What is kept with the run besides its company.
+    office: Office,
+    /// What the calculations said before the last week.
+    calculated: Vec<Calculated>,
+    /// Money that calls moved since the last day.
+    called: Vec<LedgerEntry>,
     /// Notes of a run without a folder.
     memo_in_memory: String,
     /// Hashes of this week's facts.
@@ -216,7 +225,7 @@ impl Session {
         if self.manifest.mode != Mode::Debug {
             return Err(Refusal::new("not_in_this_mode", "hidden state is shown in debug runs only"));
         }
-        Ok(Xray::new(&self.world, &self.params, &self.facts, &self.trace))
+        Ok(Xray::new(self))
     }
 
     /// Puts everything on the disk.

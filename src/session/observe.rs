@@ -127,7 +127,7 @@ impl Session {
             days_left: waiting.iter().map(|thread| thread.days_left).min().unwrap_or(0),
         };
         let week = if self.running_week.days_run > 0 { Some(&self.running_week) } else { self.weeks.last() };
-        dashboard::build(&self.world, &self.params, week, &stocks, waiting)
+        dashboard::build(&self.world, &self.params, week, &stocks, &self.calculated, waiting)
     }
 
     /// Quality delivered to every known group, as the dashboard shows it.

@@ -1,8 +1,9 @@
 //! The hidden state, for debug runs: what the player never sees.
 
+use super::Session;
 use crate::world::customers::columns::Block;
 use crate::world::day::DayTrace;
-use crate::world::events::{Facts, Notice};
+use crate::world::events::{Facts, LedgerEntry, Notice};
 use crate::world::identifiers::{Channel, Group, Plan};
 use crate::world::market::economy::Dimension;
 use crate::world::market::leads::LeadFactors;
@@ -16,16 +17,18 @@ pub struct Xray<'a> {
     params: &'a Params,
     facts: &'a Facts,
     trace: &'a DayTrace,
+    called: &'a [LedgerEntry],
 }
 
 impl<'a> Xray<'a> {
-    pub(super) fn new(
-        world: &'a World,
-        params: &'a Params,
-        facts: &'a Facts,
-        trace: &'a DayTrace,
-    ) -> Xray<'a> {
-        Xray { world, params, facts, trace }
+    pub(super) fn new(session: &'a Session) -> Xray<'a> {
+        let Session { world, params, facts, trace, called, .. } = session;
+        Xray { world, params, facts, trace, called }
+    }
+
+    /// Money that calls moved between the day before and the last day.
+    pub fn called(&self) -> &'a [LedgerEntry] {
+        self.called
     }
 
     /// The state.

@@ -89,6 +89,14 @@ pub fn integer(value: &Value) -> Option<i64> {
     value.as_i64().or_else(|| value.as_f64().filter(exact).map(|number| number as i64))
 }
 
+/// A text argument, empty if it was not given.
+pub fn text<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str, Refusal> {
+    match arguments.get(name) {
+        None => Ok(""),
+        Some(value) => value.as_str().ok_or_else(|| wrong_type(name, "text")),
+    }
+}
+
 /// `wrong_type` for an argument.
 pub fn wrong_type(field: &str, expected: &str) -> Refusal {
     Refusal::at(field, "wrong_type", format!("{field} has the wrong type: {expected} is expected"))

@@ -2,14 +2,18 @@
 
 use super::Tool;
 use super::analytics::{SetTargetedDevSpend, SetTargetedOpsSpend};
+use super::calculations::{ListDailyCalculations, RegisterDailyCalculation, RemoveDailyCalculation};
+use super::documentation::{DescribeTables, GetToolDocumentation, ListAllTables};
 use super::infrastructure::{GetCostInfo, SetCapacityTier};
+use super::market::{GetGroupInsights, GetMarketOverview, ResearchGroup, ResearchMarket};
 use super::marketing::{SetAdsStrength, SetDailySpend, SetLeadPromotion, SetTargetedAdSpend};
 use super::pricing::{SetModelTiers, SetPrices, SetPromotion, SetUsageQuotas};
 use super::research::{ListResearchProjects, StartResearchProject};
+use super::scripts::{DeleteScript, ListScripts, PythonExec, RegisterScript, RunScript};
 use super::time::{GetVars, NextWeek, Query};
 
 /// All tools, in the order in which they are shown.
-pub static CATALOGUE: [&dyn Tool; 17] = [
+pub static CATALOGUE: [&dyn Tool; 32] = [
     &SetPrices,
     &SetModelTiers,
     &SetUsageQuotas,
@@ -22,9 +26,24 @@ pub static CATALOGUE: [&dyn Tool; 17] = [
     &SetTargetedDevSpend,
     &StartResearchProject,
     &ListResearchProjects,
+    &ResearchMarket,
+    &ResearchGroup,
+    &GetMarketOverview,
+    &GetGroupInsights,
     &SetCapacityTier,
     &GetCostInfo,
     &NextWeek,
+    &PythonExec,
+    &RegisterDailyCalculation,
+    &RemoveDailyCalculation,
+    &ListDailyCalculations,
+    &ListAllTables,
+    &DescribeTables,
+    &GetToolDocumentation,
+    &RegisterScript,
+    &RunScript,
+    &ListScripts,
+    &DeleteScript,
     &Query,
     &GetVars,
 ];

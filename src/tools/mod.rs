@@ -7,15 +7,21 @@
 pub mod arguments;
 pub mod catalogue;
 pub mod describe;
+pub mod notebook;
 pub mod refusal;
 pub mod spec;
+pub mod surroundings;
 pub mod view;
 
 mod analytics;
+mod calculations;
+mod documentation;
 mod infrastructure;
+mod market;
 mod marketing;
 mod pricing;
 mod research;
+mod scripts;
 mod time;
 
 #[cfg(test)]
@@ -25,8 +31,10 @@ use serde_json::{Map, Value};
 
 pub use arguments::Arguments;
 pub use catalogue::{CATALOGUE, find};
+pub use notebook::{Kept, Notebook, Task};
 pub use refusal::Refusal;
 pub use spec::{Argument, ArgumentKind, Key, Kind, Module, Output, Range, Spec, When};
+pub use surroundings::{Surroundings, TableDocument};
 pub use time::{FORECAST_KEYS, Forecast, forecasts, rationale};
 pub use view::View;
 
@@ -49,6 +57,11 @@ pub trait Tool: Sync {
     /// # Errors
     /// The refusals of its specification, in the order of its checks.
     fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal>;
+
+    /// What the session has to do for an accepted call besides its effect on the world.
+    fn task(&self, _view: &View<'_>, _arguments: &Arguments) -> Option<Task> {
+        None
+    }
 
     /// The data of the answer, given what was decided. Numbers as chapter 50 says.
     fn answer(&self, view: &View<'_>, arguments: &Arguments, deed: &Deed) -> Value;

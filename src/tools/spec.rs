@@ -45,6 +45,8 @@ pub enum Module {
     Analytics,
     /// R&D.
     Research,
+    /// Finding and studying groups.
+    Market,
     /// Capacity and costs.
     Infrastructure,
     /// Time and data.
@@ -53,11 +55,12 @@ pub enum Module {
 
 impl Module {
     /// All modules in the order in which they are shown.
-    pub const ALL: [Module; 6] = [
+    pub const ALL: [Module; 7] = [
         Module::Pricing,
         Module::Marketing,
         Module::Analytics,
         Module::Research,
+        Module::Market,
         Module::Infrastructure,
         Module::Time,
     ];
@@ -69,6 +72,7 @@ impl Module {
             Module::Marketing => "marketing",
             Module::Analytics => "analytics",
             Module::Research => "research",
+            Module::Market => "market",
             Module::Infrastructure => "infrastructure",
             Module::Time => "time",
         }
@@ -86,9 +90,16 @@ pub enum Kind {
     Read,
     /// Lets time pass.
     Time,
+    /// Works on what is kept with the run, never on the company.
+    Engine,
 }
 
 impl Kind {
+    /// Whether a call can change the company.
+    pub fn acts(self) -> bool {
+        !matches!(self, Kind::Read | Kind::Engine)
+    }
+
     /// Word for documentation.
     pub fn id(self) -> &'static str {
         match self {
@@ -96,6 +107,7 @@ impl Kind {
             Kind::Purchase => "purchase",
             Kind::Read => "read",
             Kind::Time => "time",
+            Kind::Engine => "engine",
         }
     }
 }

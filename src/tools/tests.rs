@@ -1,5 +1,8 @@
 //! Every refusal and result of chapter 50 for these tools, against a fresh world.
 
+mod engine;
+mod market;
+
 use serde_json::{Value, json};
 
 use super::{Arguments, Refusal, View, find};

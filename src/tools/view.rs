@@ -1,5 +1,6 @@
 //! What a tool may look at when it is planned.
 
+use super::surroundings::{Nothing, Surroundings};
 use crate::world::identifiers::Group;
 use crate::world::params::Params;
 use crate::world::settings::Settings;
@@ -10,12 +11,23 @@ use crate::world::state::World;
 pub struct View<'a> {
     world: &'a World,
     params: &'a Params,
+    surroundings: &'a dyn Surroundings,
 }
 
 impl<'a> View<'a> {
     /// A look at a world.
     pub fn new(world: &'a World, params: &'a Params) -> View<'a> {
-        View { world, params }
+        View { world, params, surroundings: &Nothing }
+    }
+
+    /// The same look, with what a session has besides the world.
+    pub fn within(self, surroundings: &'a dyn Surroundings) -> View<'a> {
+        View { surroundings, ..self }
+    }
+
+    /// Words, tables, and what is kept with the run.
+    pub fn surroundings(&self) -> &'a dyn Surroundings {
+        self.surroundings
     }
 
     /// Decision day: the last simulated day.

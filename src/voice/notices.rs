@@ -28,7 +28,9 @@ pub fn notice(notice: &Notice) -> String {
             let (group, level, day) = (study.group, study.target, study.due_day);
             let what = if study.is_refresh() { "refreshed" } else { "raised" };
             let accuracy = noise * 100.0;
-            format!("Study of group {group} complete: level {level}, \u{b1}{accuracy:.0}% (day {day}, {what})")
+            format!(
+                "Study of group {group} complete: level {level}, \u{b1}{accuracy:.0}% (day {day}, {what})"
+            )
         }
     }
 }
@@ -46,10 +48,7 @@ mod tests {
         for (before, words) in [(1, "raised"), (2, "refreshed")] {
             let study = crate::world::market::studies::Study { group, target: 2, before, due_day: 31 };
             let text = notice(&Notice::StudyComplete { study, noise: 0.4 });
-            assert_eq!(
-                text,
-                format!("Study of group D_S06 complete: level 2, \u{b1}40% (day 31, {words})")
-            );
+            assert_eq!(text, format!("Study of group D_S06 complete: level 2, \u{b1}40% (day 31, {words})"));
         }
     }
 

@@ -96,7 +96,8 @@ impl World {
             Deed::ResearchMarket(attempt) => self.research_market(&attempt, params, facts),
             Deed::ResearchGroup(study, cost) => {
                 let note = LedgerNote::Study(study);
-                self.finance.book(LedgerEntry { category: Category::GroupResearch, amount: -cost, note }, facts);
+                self.finance
+                    .book(LedgerEntry { category: Category::GroupResearch, amount: -cost, note }, facts);
                 self.market.studies.push(study);
             }
         }

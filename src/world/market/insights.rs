@@ -199,7 +199,9 @@ fn insights_with(
         company,
         referrals_to: links(Field::ReferralTo, network, &|other| params.referral_rate(group, other)),
         referrals_from: links(Field::ReferralFrom, network, &|other| params.referral_rate(other, group)),
-        reputation_to: links(Field::ReputationTo, reputation, &|other| params.reputation_weight(group, other)),
+        reputation_to: links(Field::ReputationTo, reputation, &|other| {
+            params.reputation_weight(group, other)
+        }),
         reputation_from: links(Field::ReputationFrom, reputation, &|other| {
             params.reputation_weight(other, group)
         }),
@@ -269,7 +271,11 @@ mod tests {
         fields.push(None);
         fields.extend(linked(Field::ReputationTo, &|other| weighs(group, other)));
         fields.extend(linked(Field::ReputationFrom, &|other| weighs(other, group)));
-        fields.into_iter().zip(recorded(group)).filter_map(|(field, u)| Some((field?, 2.0 * u - 1.0))).collect()
+        fields
+            .into_iter()
+            .zip(recorded(group))
+            .filter_map(|(field, u)| Some((field?, 2.0 * u - 1.0)))
+            .collect()
     }
 
     fn estimates(id: &str, level: u8, day: u32) -> Insights {

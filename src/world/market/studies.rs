@@ -131,6 +131,9 @@ mod tests {
         complete(10, &mut market, &params, &mut facts);
         assert_eq!(market.knowledge[s1].level, 5);
         assert_eq!(facts.knowledge.iter().map(|(group, _)| group.id()).collect::<Vec<_>>(), ["E2", "S1"]);
-        assert_eq!((default_target(1, &params.group_research), default_target(4, &params.group_research)), (2, 4));
+        assert_eq!(
+            (default_target(1, &params.group_research), default_target(4, &params.group_research)),
+            (2, 4)
+        );
     }
 }

@@ -14,7 +14,7 @@ use crate::console::text::{number, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{dollars, signed_dollars};
-use crate::tools::{Kind, Module, Spec};
+use crate::tools::{Module, Spec};
 
 /// Width of the names of rows.
 const NAME: u16 = 19;
@@ -88,7 +88,7 @@ fn draw_list(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
             false => Role::Text,
         };
         let draft =
-            tools.forms.get(text).is_some_and(|form| form.sheet.is_changed() && form.spec.kind != Kind::Read);
+            tools.forms.get(text).is_some_and(|form| form.sheet.is_changed() && form.spec.kind.acts());
         canvas.clear(row, if here { role } else { Role::Text });
         canvas.text(row, &format!("  {text}{}", if draft { " *" } else { "" }), role);
         canvas.click(row, Click::Row(0, place));
@@ -371,7 +371,7 @@ fn outcome_lines(form: &Form, look: &Look<'_>, width: usize) -> Vec<(String, Rol
         Some(Err(refusal)) => paragraph(&format!("! {}", refusal.message), Role::Bad),
         None => {}
     }
-    if form.sheet.is_changed() || form.spec.kind == Kind::Read {
+    if form.sheet.is_changed() || !form.spec.kind.acts() {
         paragraph(&format!("≡ {}", form.call()), Role::Dim);
     }
     if let Some(answer) = &form.answer

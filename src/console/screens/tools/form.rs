@@ -80,8 +80,7 @@ impl Form {
     /// Asks what the call would do.
     pub fn check(&mut self) -> Vec<Effect> {
         self.preview = None;
-        let quiet =
-            self.spec.kind == Kind::Read || (self.spec.kind == Kind::Setting && !self.sheet.is_changed());
+        let quiet = !self.spec.kind.acts() || (self.spec.kind == Kind::Setting && !self.sheet.is_changed());
         match self.sheet.arguments() {
             Ok(arguments) if !quiet => vec![Effect::Check { tool: self.spec.name, arguments }],
             _ => Vec::new(),

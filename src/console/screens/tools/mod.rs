@@ -17,7 +17,7 @@ use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::message::News;
 use crate::console::widgets::Field;
-use crate::tools::{CATALOGUE, Kind, Spec};
+use crate::tools::{CATALOGUE, Spec};
 use form::Form;
 
 /// The screen.
@@ -70,8 +70,7 @@ impl Tools {
 
     /// Tools whose forms hold values that were not sent.
     pub fn unsent(&self) -> Vec<&'static str> {
-        let unsent =
-            self.forms.values().filter(|form| form.spec.kind != Kind::Read && form.sheet.is_changed());
+        let unsent = self.forms.values().filter(|form| form.spec.kind.acts() && form.sheet.is_changed());
         unsent.map(|form| form.spec.name).collect()
     }
 

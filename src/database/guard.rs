@@ -1,0 +1,168 @@
+//! What a statement may do: read the visible tables, their insides only from within a view, and call ordinary
+//! functions (chapter 60 §3.4). Decided by what it does, never by how its text looks.
+
+use std::collections::hash_map::RandomState;
+use std::hash::{BuildHasher, Hasher};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use rusqlite::Connection;
+use rusqlite::hooks::{AuthAction, AuthContext, Authorization};
+
+use super::catalogue;
+
+/// What the authorizer objected to last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Objection {
+    /// Nothing.
+    None,
+    /// The schema was asked for.
+    Schema,
+    /// A table that is not visible was asked for.
+    Hidden,
+    /// Something was to be changed.
+    Write,
+}
+
+/// The last objection, shared between the authorizer and the desk.
+#[derive(Clone, Default)]
+pub(super) struct Objections(Arc<AtomicU8>);
+
+impl Objections {
+    pub fn clear(&self) {
+        self.0.store(0, Ordering::Relaxed);
+    }
+
+    pub fn last(&self) -> Objection {
+        match self.0.load(Ordering::Relaxed) {
+            0 => Objection::None,
+            1 => Objection::Schema,
+            2 => Objection::Hidden,
+            _ => Objection::Write,
+        }
+    }
+}
+
+/// Tables that the released simulator hides and that do not exist here; asking for them has a code of its own.
+const HIDDEN_TABLES: [&str; 25] = [
+    "events",
+    "api_costs",
+    "customer_state",
+    "group_reputation",
+    "group_awareness",
+    "reputation_history",
+    "global_state",
+    "feature_tests",
+    "test_assignments",
+    "customer_personas",
+    "customer_persona_map",
+    "group_characteristics",
+    "enterprise_thread_counter",
+    "world_context",
+    "pending_group_research",
+    "group_parameters",
+    "competitor_events",
+    "_hidden_leads_per_1k_snapshot",
+    "_hidden_group_params_history",
+    "_hidden_quality_snapshot",
+    "_hidden_satisfaction_snapshot",
+    "_hidden_lead_multiplier_snapshot",
+    "global_drift_state",
+    "group_insight_snapshots",
+    "_rng_states",
+];
+
+/// Whether a name belongs to a table that the released simulator hides; case does not count.
+pub(super) fn is_hidden_table(name: &str) -> bool {
+    HIDDEN_TABLES.iter().any(|hidden| hidden.eq_ignore_ascii_case(name))
+}
+
+/// Tables inside the database, and whether a visible table is made of them row by row.
+const INSIDES: [(&str, bool); 9] = [
+    ("customer_rows", true),
+    ("subscription_rows", true),
+    ("ledger_rows", true),
+    ("issue_rows", true),
+    ("words", false),
+    ("projection", false),
+    ("issue_clock", false),
+    ("usage_blocks", false),
+    ("ads_blocks", false),
+];
+
+/// Watches what statements do.
+pub(super) struct Guard {
+    objections: Objections,
+    /// What the names of the inner views begin with; nobody outside can know it.
+    secret: String,
+}
+
+impl Guard {
+    /// Puts the views that visible tables are made of behind views of the same names.
+    ///
+    /// SQLite tells the authorizer from within which view a table is read, but a common table expression counts as
+    /// a view there. So the insides open only to views whose names nobody can write.
+    pub fn set_up(connection: &Connection) -> rusqlite::Result<Guard> {
+        let secret = format!("inner_{:016x}{:016x}_", random_bits(), random_bits());
+        let mut statement =
+            connection.prepare("SELECT name, sql FROM main.sqlite_schema WHERE type = 'view'")?;
+        let views: Vec<(String, String)> =
+            statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect::<Result<_, _>>()?;
+        for (name, sql) in views {
+            let body = sql.split_once(&name).map_or(sql.as_str(), |(_, body)| body);
+            connection.execute_batch(&format!(
+                "CREATE TEMP VIEW {secret}{name}{body}; CREATE TEMP VIEW {name} AS SELECT * FROM {secret}{name}"
+            ))?;
+        }
+        Ok(Guard { objections: Objections::default(), secret })
+    }
+
+    /// The objections of this guard.
+    pub fn objections(&self) -> Objections {
+        self.objections.clone()
+    }
+
+    /// Allows or denies one thing that a statement would do.
+    pub fn authorize(&self, context: &AuthContext<'_>) -> Authorization {
+        match self.problem(context) {
+            None => Authorization::Allow,
+            Some(problem) => {
+                self.objections.0.store(problem as u8, Ordering::Relaxed);
+                Authorization::Deny
+            }
+        }
+    }
+
+    fn problem(&self, context: &AuthContext<'_>) -> Option<Objection> {
+        match context.action {
+            AuthAction::Select | AuthAction::Recursive => None,
+            AuthAction::Function { function_name } if function_name != "load_extension" => None,
+            AuthAction::Read { table_name, column_name } => {
+                self.reading(table_name, column_name, context.accessor)
+            }
+            AuthAction::Pragma { .. } => Some(Objection::Schema),
+            _ => Some(Objection::Write),
+        }
+    }
+
+    fn reading(&self, table: &str, column: &str, accessor: Option<&str>) -> Option<Objection> {
+        let name = table.to_lowercase();
+        let inside = INSIDES.iter().find(|(table, _)| *table == name);
+        let visible = catalogue::table(&name).is_some() || name.starts_with(&self.secret);
+        let from_view = accessor.is_some_and(|view| view.starts_with(&self.secret));
+        // Without a column only rows are counted: those of a common table expression, or of a view that the
+        // planner has opened up.
+        let counted = column.is_empty() && inside.is_none_or(|(_, behind_view)| *behind_view);
+        let engine = name.starts_with("sqlite_") || name.starts_with("pragma_");
+        match (visible || from_view || (counted && !engine), engine) {
+            (true, _) => None,
+            (false, true) => Some(Objection::Schema),
+            (false, false) => Some(Objection::Hidden),
+        }
+    }
+}
+
+/// 64 bits that nobody can foretell. They only name views of one connection, never anything of a run.
+fn random_bits() -> u64 {
+    RandomState::new().build_hasher().finish()
+}

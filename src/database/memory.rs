@@ -1,0 +1,9 @@
+//! How much memory SQLite uses.
+#![expect(unsafe_code, reason = "SQLite tells it only through its C interface")]
+
+/// Bytes that SQLite has allocated in this process.
+pub(super) fn bytes_in_use() -> u64 {
+    // SAFETY: the function takes nothing, may be called at any time from any thread, and only reads a counter.
+    let bytes = unsafe { rusqlite::ffi::sqlite3_memory_used() };
+    u64::try_from(bytes).unwrap_or(0)
+}

@@ -1,0 +1,44 @@
+use serde_json::{Value, json};
+
+use super::super::arguments::Arguments;
+use super::super::{Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::kept;
+use crate::world::effect::{Deed, Effect};
+
+/// Lists the calculations.
+pub struct ListDailyCalculations;
+
+static SPEC: Spec = Spec {
+    name: "list_daily_calculations",
+    module: Module::Time,
+    kind: Kind::Engine,
+    summary: "List the names of the kept calculations",
+    arguments: &[],
+    own_unknown: false,
+    whole: None,
+    when: When::Never,
+    effect: "",
+    cost: "nothing",
+    writes: &[],
+    refusals: &[],
+    returns: &[Output {
+        name: "calculations",
+        kind: "list of text",
+        doc: "names in the order in which they were kept",
+    }],
+    example: r#"{}"#,
+};
+
+impl Tool for ListDailyCalculations {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
+        Ok(Effect::None)
+    }
+
+    fn answer(&self, view: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+        json!({ "calculations": kept(view).names() })
+    }
+}

@@ -1,0 +1,25 @@
+//! Calculations: named SQL statements that run before every week, for the dashboard (chapter 50 §5).
+
+mod list_daily_calculations;
+mod register_daily_calculation;
+mod remove_daily_calculation;
+
+pub use list_daily_calculations::ListDailyCalculations;
+pub use register_daily_calculation::RegisterDailyCalculation;
+pub use remove_daily_calculation::RemoveDailyCalculation;
+
+use super::notebook::{Kept, Shelf};
+use super::refusal::Refusal;
+use super::view::View;
+
+/// The calculations of the run.
+fn kept<'a>(view: &View<'a>) -> &'a Shelf {
+    view.surroundings().notebook().shelf(Kept::Calculation)
+}
+
+fn not_found(name: &str, view: &View<'_>) -> Refusal {
+    let names = kept(view).names();
+    let known =
+        if names.is_empty() { "none is kept".to_owned() } else { format!("kept: {}", names.join(", ")) };
+    Refusal::at("name", "calculation_not_found", format!("calculation {name} does not exist; {known}"))
+}

@@ -1,0 +1,64 @@
+use serde_json::{Value, json};
+
+use super::super::arguments::{Arguments, text};
+use super::super::{
+    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, View, When,
+};
+use super::{kept, not_found};
+use crate::world::effect::{Deed, Effect};
+
+/// Drops a calculation.
+pub struct RemoveDailyCalculation;
+
+static SPEC: Spec = Spec {
+    name: "remove_daily_calculation",
+    module: Module::Time,
+    kind: Kind::Engine,
+    summary: "Drop a named calculation",
+    arguments: &[Argument {
+        name: "name",
+        alias: None,
+        kind: ArgumentKind::Text,
+        required: true,
+        unit: "",
+        doc: "name of the calculation",
+    }],
+    own_unknown: false,
+    whole: None,
+    when: When::Now,
+    effect: "The calculation runs no more.",
+    cost: "nothing",
+    writes: &[],
+    refusals: &["calculation_not_found"],
+    returns: &[
+        Output { name: "name", kind: "text", doc: "the name" },
+        Output { name: "remaining", kind: "list of text", doc: "names that are left" },
+    ],
+    example: r#"{"name": "cash"}"#,
+};
+
+impl Tool for RemoveDailyCalculation {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+        let name = text(arguments, "name")?;
+        match kept(view).get(name) {
+            Some(_) => Ok(Effect::None),
+            None => Err(not_found(name, view)),
+        }
+    }
+
+    fn task(&self, _: &View<'_>, arguments: &Arguments) -> Option<Task> {
+        let name = text(arguments, "name").ok()?.to_owned();
+        Some(Task::Forget { what: Kept::Calculation, name })
+    }
+
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+        let name = text(arguments, "name").unwrap_or_default();
+        let mut remaining = kept(view).names();
+        remaining.retain(|own| *own != name);
+        json!({ "name": name, "remaining": remaining })
+    }
+}

@@ -1,0 +1,56 @@
+use serde_json::Value;
+
+use super::super::arguments::Arguments;
+use super::super::describe::as_json;
+use super::super::{
+    Argument, ArgumentKind, CATALOGUE, Kind, Module, Output, Refusal, Spec, Tool, View, When,
+};
+use super::chosen;
+use crate::world::effect::{Deed, Effect};
+
+/// Documents tools.
+pub struct GetToolDocumentation;
+
+static SPEC: Spec = Spec {
+    name: "get_tool_documentation",
+    module: Module::Time,
+    kind: Kind::Engine,
+    summary: "Tell everything about tools: arguments, effect, cost, refusals, results",
+    arguments: &[Argument {
+        name: "tool_names",
+        alias: None,
+        kind: ArgumentKind::Structure("a name, a list of names, or all"),
+        required: false,
+        unit: "",
+        doc: "names of tools; all of them if left out",
+    }],
+    own_unknown: false,
+    whole: None,
+    when: When::Never,
+    effect: "",
+    cost: "nothing",
+    writes: &[],
+    refusals: &["tool_not_found"],
+    returns: &[Output { name: "<tool>", kind: "object", doc: "one field per tool: its document" }],
+    example: r#"{"tool_names": "set_prices"}"#,
+};
+
+fn all_names() -> Vec<&'static str> {
+    CATALOGUE.iter().map(|tool| tool.spec().name).collect()
+}
+
+impl Tool for GetToolDocumentation {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+        chosen(arguments, "tool_names", &all_names(), "tool_not_found").map(|_| Effect::None)
+    }
+
+    fn answer(&self, _: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+        let names = chosen(arguments, "tool_names", &all_names(), "tool_not_found").unwrap_or_default();
+        let tools = CATALOGUE.iter().filter(|tool| names.contains(&tool.spec().name));
+        tools.map(|tool| (tool.spec().name.to_owned(), as_json(*tool))).collect()
+    }
+}

@@ -1,0 +1,42 @@
+//! Finding groups and studying them.
+
+mod get_group_insights;
+mod get_market_overview;
+mod research_group;
+mod research_market;
+
+use serde_json::Value;
+
+pub use get_group_insights::GetGroupInsights;
+pub use get_market_overview::GetMarketOverview;
+pub use research_group::ResearchGroup;
+pub use research_market::ResearchMarket;
+
+use super::arguments::{Arguments, wrong_type};
+use super::refusal::Refusal;
+use super::view::View;
+use crate::world::identifiers::Group;
+
+/// The known group that the argument `group_id` names.
+fn known_group(arguments: &Arguments, view: &View<'_>) -> Result<Group, Refusal> {
+    let given = arguments.get("group_id").unwrap_or(&Value::Null);
+    let id = given.as_str().ok_or_else(|| wrong_type("group_id", "text, for instance S1"))?;
+    Group::parse(id).filter(|group| view.knows(*group)).ok_or_else(|| {
+        let known: Vec<&str> = view.known_groups().map(Group::id).collect();
+        let message = format!(
+            "group {id} is not known yet; known are {}; research_market finds others",
+            known.join(", ")
+        );
+        Refusal::at("group_id", "group_not_discovered", message)
+    })
+}
+
+/// Segment as answers write it.
+fn segment(group: Group) -> &'static str {
+    if group.is_enterprise() { "Enterprise" } else { "Individual" }
+}
+
+/// The error of a level as answers write it, for instance ±40%.
+fn noise_label(noise: f64) -> String {
+    format!("\u{b1}{:.0}%", noise * 100.0)
+}

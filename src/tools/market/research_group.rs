@@ -1,0 +1,107 @@
+use serde_json::{Value, json};
+
+use super::super::arguments::Arguments;
+use super::super::research::affordable;
+use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
+use super::known_group;
+use crate::world::effect::{Deed, Effect};
+use crate::world::identifiers::Group;
+use crate::world::market::studies::default_target;
+
+/// Orders a study of a group.
+pub struct ResearchGroup;
+
+static SPEC: Spec = Spec {
+    name: "research_group",
+    module: Module::Market,
+    kind: Kind::Purchase,
+    summary: "Order a study of a known group: better estimates, or fresh ones",
+    arguments: &[
+        Argument {
+            name: "group_id",
+            alias: None,
+            kind: ArgumentKind::Text,
+            required: true,
+            unit: "group",
+            doc: "a known group, for instance S1",
+        },
+        Argument {
+            name: "target_level",
+            alias: None,
+            kind: ArgumentKind::Integer(Range::between(2.0, 5.0)),
+            required: false,
+            unit: "level",
+            doc: "level 2 to 5; left out: the present level, at least 2. Levels may be skipped; the present level is \
+                  a refresh",
+        },
+    ],
+    own_unknown: false,
+    whole: None,
+    when: When::AtCompletion,
+    effect: "On its completion day the level rises to the target, and get_group_insights tells the market of that \
+             day. Level 2 takes 3 days, 3 takes 5, 4 takes 7, 5 takes 10; the errors are at most 40, 25, 15 and 5 %. \
+             One study of a group at a time; studies of several groups run side by side.",
+    cost: "$60,000 for level 2, $175,000 for 3, $350,000 for 4, $700,000 for 5, at once",
+    writes: &["ledger", "group_info_levels", "notifications"],
+    refusals: &[
+        "group_not_discovered",
+        "level_out_of_range",
+        "no_downgrade",
+        "study_in_progress",
+        "insufficient_funds",
+    ],
+    returns: &[
+        Output { name: "group_id", kind: "text", doc: "the group" },
+        Output { name: "new_level", kind: "integer", doc: "level it will have" },
+        Output { name: "expected_completion_day", kind: "integer", doc: "day" },
+        Output { name: "is_refresh", kind: "boolean", doc: "whether the level stays" },
+    ],
+    example: r#"{"group_id": "E2", "target_level": 3}"#,
+};
+
+/// The level that is aimed at. Unlike elsewhere 3.0 is no level here, as in the released simulator.
+fn target_of(arguments: &Arguments, group: Group, view: &View<'_>) -> Result<u8, Refusal> {
+    let law = &view.params().group_research;
+    let level = view.world().market.knowledge[group].level;
+    let Some(given) = arguments.get("target_level") else { return Ok(default_target(level, law)) };
+    let range = u64::from(law.min_target_level)..=u64::from(law.max_target_level);
+    let target = given.as_u64().filter(|target| range.contains(target)).ok_or_else(|| {
+        let message = format!("the level must be 2, 3, 4 or 5, not {given}; {group} is at level {level}");
+        Refusal::at("target_level", "level_out_of_range", message)
+    })? as u8;
+    if target < level {
+        let message = format!(
+            "group {group} is already at level {level}; the same level is a refresh, a higher one more accurate"
+        );
+        return Err(Refusal::at("target_level", "no_downgrade", message));
+    }
+    Ok(target)
+}
+
+impl Tool for ResearchGroup {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+        let group = known_group(arguments, view)?;
+        let target = target_of(arguments, group, view)?;
+        if let Some(study) = view.world().market.running_study(group) {
+            let message =
+                format!("a study of {group} runs until day {}; order again after it", study.due_day);
+            return Err(Refusal::at("group_id", "study_in_progress", message));
+        }
+        affordable(view.params().level(target).cost, view)?;
+        Ok(Effect::ResearchGroup(group, target))
+    }
+
+    fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
+        let Deed::ResearchGroup(study, _) = deed else { return Value::Null };
+        json!({
+            "group_id": study.group,
+            "new_level": study.target,
+            "expected_completion_day": study.due_day,
+            "is_refresh": study.is_refresh(),
+        })
+    }
+}

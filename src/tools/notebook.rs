@@ -1,0 +1,130 @@
+//! What a player keeps with a run: calculations for the dashboard, and scripts (chapter 50 §5).
+//!
+//! Both are names for SQL statements. Nothing of it reaches the world.
+
+/// What is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kept {
+    /// Run before every week; the output stands on the dashboard.
+    Calculation,
+    /// Run on request.
+    Script,
+}
+
+/// What a tool asks of the session besides its effect on the world.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Task {
+    /// Keep statements under a name.
+    Keep {
+        /// As what.
+        what: Kept,
+        /// Name.
+        name: String,
+        /// Statements.
+        code: String,
+    },
+    /// Forget a name.
+    Forget {
+        /// What it was.
+        what: Kept,
+        /// Name.
+        name: String,
+    },
+    /// Run statements now; the answer is their output.
+    Run {
+        /// Statements.
+        code: String,
+        /// Time for all of them, seconds.
+        seconds: f64,
+    },
+}
+
+/// Named statements in the order in which their names were first kept.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Shelf(Vec<(String, String)>);
+
+impl Shelf {
+    /// The statements of a name.
+    pub fn get(&self, name: &str) -> Option<&str> {
+        self.0.iter().find(|(own, _)| own == name).map(|(_, code)| code.as_str())
+    }
+
+    /// All names.
+    pub fn names(&self) -> Vec<&str> {
+        self.0.iter().map(|(name, _)| name.as_str()).collect()
+    }
+
+    /// Names and statements.
+    pub fn entries(&self) -> &[(String, String)] {
+        &self.0
+    }
+
+    fn keep(&mut self, name: &str, code: &str) {
+        match self.0.iter_mut().find(|(own, _)| own == name) {
+            Some((_, old)) => code.clone_into(old),
+            None => self.0.push((name.to_owned(), code.to_owned())),
+        }
+    }
+
+    fn forget(&mut self, name: &str) {
+        self.0.retain(|(own, _)| own != name);
+    }
+}
+
+/// The calculations and scripts of a run.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Notebook {
+    calculations: Shelf,
+    scripts: Shelf,
+}
+
+impl Notebook {
+    /// An empty one.
+    pub const fn new() -> Notebook {
+        Notebook { calculations: Shelf(Vec::new()), scripts: Shelf(Vec::new()) }
+    }
+
+    /// What is kept of a kind.
+    pub fn shelf(&self, what: Kept) -> &Shelf {
+        match what {
+            Kept::Calculation => &self.calculations,
+            Kept::Script => &self.scripts,
+        }
+    }
+
+    fn shelf_mut(&mut self, what: Kept) -> &mut Shelf {
+        match what {
+            Kept::Calculation => &mut self.calculations,
+            Kept::Script => &mut self.scripts,
+        }
+    }
+
+    /// Keeps or forgets what a task says; running changes nothing.
+    pub fn apply(&mut self, task: &Task) {
+        match task {
+            Task::Keep { what, name, code } => self.shelf_mut(*what).keep(name, code),
+            Task::Forget { what, name } => self.shelf_mut(*what).forget(name),
+            Task::Run { .. } => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_keep_their_place_when_their_statements_change() {
+        let mut notebook = Notebook::new();
+        let what = Kept::Calculation;
+        let keep = |name: &str, code: &str| Task::Keep { what, name: name.to_owned(), code: code.to_owned() };
+        for task in [keep("a", "SELECT 1"), keep("b", "SELECT 2"), keep("a", "SELECT 3")] {
+            notebook.apply(&task);
+        }
+        assert_eq!(notebook.shelf(what).names(), ["a", "b"]);
+        assert_eq!(notebook.shelf(what).get("a"), Some("SELECT 3"));
+        assert!(notebook.shelf(Kept::Script).names().is_empty());
+        notebook.apply(&Task::Forget { what, name: "a".to_owned() });
+        assert_eq!(notebook.shelf(what).entries(), [("b".to_owned(), "SELECT 2".to_owned())]);
+    }
+}

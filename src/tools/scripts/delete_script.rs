@@ -1,0 +1,60 @@
+use serde_json::{Value, json};
+
+use super::super::arguments::Arguments;
+use super::super::{
+    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, View, When,
+};
+use super::{find, stored};
+use crate::world::effect::{Deed, Effect};
+
+/// Deletes a script.
+pub struct DeleteScript;
+
+static SPEC: Spec = Spec {
+    name: "delete_script",
+    module: Module::Time,
+    kind: Kind::Engine,
+    summary: "Delete a stored script",
+    arguments: &[Argument {
+        name: "name",
+        alias: None,
+        kind: ArgumentKind::Text,
+        required: true,
+        unit: "",
+        doc: "name of the script",
+    }],
+    own_unknown: false,
+    whole: None,
+    when: When::Now,
+    effect: "The script is gone.",
+    cost: "nothing",
+    writes: &[],
+    refusals: &["script_not_found"],
+    returns: &[
+        Output { name: "name", kind: "text", doc: "the name" },
+        Output { name: "remaining", kind: "list of text", doc: "names that are left" },
+    ],
+    example: r#"{"name": "churn"}"#,
+};
+
+impl Tool for DeleteScript {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+        find(arguments, view).map(|_| Effect::None)
+    }
+
+    fn task(&self, view: &View<'_>, arguments: &Arguments) -> Option<Task> {
+        let (name, _) = find(arguments, view).ok()?;
+        Some(Task::Forget { what: Kept::Script, name: name.to_owned() })
+    }
+
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+        let Ok((name, _)) = find(arguments, view) else { return Value::Null };
+        let mut remaining = stored(view).names();
+        remaining.retain(|own| *own != name);
+        json!({ "name": name, "remaining": remaining })
+    }
+}

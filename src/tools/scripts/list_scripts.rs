@@ -1,0 +1,44 @@
+use serde_json::{Value, json};
+
+use super::super::arguments::Arguments;
+use super::super::{Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::stored;
+use crate::world::effect::{Deed, Effect};
+
+/// Lists the scripts.
+pub struct ListScripts;
+
+static SPEC: Spec = Spec {
+    name: "list_scripts",
+    module: Module::Time,
+    kind: Kind::Engine,
+    summary: "List the names of the stored scripts",
+    arguments: &[],
+    own_unknown: false,
+    whole: None,
+    when: When::Never,
+    effect: "",
+    cost: "nothing",
+    writes: &[],
+    refusals: &[],
+    returns: &[Output {
+        name: "scripts",
+        kind: "list of text",
+        doc: "names in the order in which they were stored",
+    }],
+    example: r#"{}"#,
+};
+
+impl Tool for ListScripts {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
+        Ok(Effect::None)
+    }
+
+    fn answer(&self, view: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+        json!({ "scripts": stored(view).names() })
+    }
+}

@@ -1,0 +1,44 @@
+//! Scripts: SQL statements that are run at once, or kept under a name (chapter 50 §5).
+//!
+//! Agents run Python here. A console has none, so a script is a list of read-only statements, its output their
+//! results as tables; the session runs them under the guard and the limits of a query.
+
+mod delete_script;
+mod list_scripts;
+mod python_exec;
+mod register_script;
+mod run_script;
+
+pub use delete_script::DeleteScript;
+pub use list_scripts::ListScripts;
+pub use python_exec::PythonExec;
+pub use register_script::RegisterScript;
+pub use run_script::RunScript;
+
+use super::arguments::{Arguments, text};
+use super::notebook::{Kept, Shelf};
+use super::refusal::Refusal;
+use super::view::View;
+
+/// A script runs at most this long, in seconds.
+const LONGEST_SECONDS: f64 = 600.0;
+
+/// The scripts of the run.
+fn stored<'a>(view: &View<'a>) -> &'a Shelf {
+    view.surroundings().notebook().shelf(Kept::Script)
+}
+
+/// Name and statements of the script that the argument `name` names.
+fn find<'a>(arguments: &'a Arguments, view: &View<'a>) -> Result<(&'a str, &'a str), Refusal> {
+    let name = text(arguments, "name")?.trim();
+    let found = stored(view).get(name).map(|code| (name, code));
+    found.ok_or_else(|| {
+        let names = stored(view).names();
+        let known = if names.is_empty() {
+            "none is stored".to_owned()
+        } else {
+            format!("stored: {}", names.join(", "))
+        };
+        Refusal::at("name", "script_not_found", format!("script {name} does not exist; {known}"))
+    })
+}

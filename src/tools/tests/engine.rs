@@ -1,0 +1,187 @@
+//! Calculations, scripts and documents. Running statements is the session's work and tested there.
+
+use serde_json::{Value, json};
+
+use super::super::{Arguments, Kept, Notebook, Refusal, Surroundings, TableDocument, Task, View, find};
+use crate::world::effect::Deed;
+use crate::world::events::Facts;
+use crate::world::market::economy::Reading;
+use crate::world::params::Params;
+use crate::world::state::World;
+
+/// A desk with a notebook and two tables.
+#[derive(Default)]
+struct Desk {
+    notebook: Notebook,
+}
+
+impl Surroundings for Desk {
+    fn describe(&self, _: &Reading) -> String {
+        String::new()
+    }
+
+    fn tables(&self) -> Vec<TableDocument> {
+        vec![
+            TableDocument {
+                name: "ledger",
+                description: "cash",
+                columns: vec![("id", "number"), ("day", "day")],
+            },
+            TableDocument { name: "issues", description: "support", columns: vec![("issue_id", "number")] },
+        ]
+    }
+
+    fn notebook(&self) -> &Notebook {
+        &self.notebook
+    }
+}
+
+impl Desk {
+    fn try_call(&mut self, name: &str, given: &Value) -> Result<(Value, Option<Task>), Refusal> {
+        let tool = find(name).expect("the tool exists");
+        let params = Params::shipped();
+        let world = World::open(500, 1.0, &params, &mut Facts::default());
+        let view = View::new(&world, &params).within(self);
+        let arguments = Arguments::of(tool.spec(), given)?;
+        tool.plan(&view, &arguments)?;
+        let answer = tool.answer(&view, &arguments, &Deed::None);
+        let task = tool.task(&view, &arguments);
+        task.iter().for_each(|task| self.notebook.apply(task));
+        Ok((answer, task))
+    }
+
+    fn call(&mut self, name: &str, given: Value) -> Value {
+        self.try_call(name, &given).unwrap_or_else(|refusal| panic!("{name} {given}: {refusal}")).0
+    }
+
+    fn assert_refused(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
+        for (given, code, field) in cases {
+            let refusal = self.try_call(name, given).expect_err(&format!("{name} {given} is wrong"));
+            assert_eq!(
+                (refusal.code, refusal.field.as_deref().unwrap_or("")),
+                (*code, *field),
+                "{name} {given}"
+            );
+            assert!(refusal.message.len() > 10);
+        }
+        let spec = find(name).expect("the tool exists").spec();
+        // How running ends is tested with a database.
+        let by_session = ["script_failed", "script_timeout"];
+        for code in spec.refusals.iter().filter(|code| !by_session.contains(code)) {
+            assert!(cases.iter().any(|(_, tested, _)| tested == code), "{name}: {code} is not tested");
+        }
+    }
+}
+
+#[test]
+fn calculations_are_kept_listed_and_removed() {
+    let mut desk = Desk::default();
+    let data = desk.call("register_daily_calculation", json!({"name": "mrr", "code": "SELECT 1"}));
+    assert_eq!(data, json!({"name": "mrr", "code_length": 8}));
+    desk.call("register_daily_calculation", json!({"name": "", "code": "SELECT '\u{e9}'"}));
+    let data = desk.call("register_daily_calculation", json!({"name": "mrr", "code": "SELECT 22"}));
+    assert_eq!(data["code_length"], 9);
+    assert_eq!(desk.call("list_daily_calculations", json!({})), json!({"calculations": ["mrr", ""]}));
+    assert_eq!(desk.notebook.shelf(Kept::Calculation).get("mrr"), Some("SELECT 22"));
+    desk.assert_refused(
+        "register_daily_calculation",
+        &[
+            (json!({"code": "SELECT 1"}), "argument_missing", "name"),
+            (json!({"name": "x"}), "argument_missing", "code"),
+            (json!({"name": 5, "code": "SELECT 1"}), "wrong_type", "name"),
+            (json!({"name": "x", "code": ["SELECT 1"]}), "wrong_type", "code"),
+        ],
+    );
+    desk.assert_refused(
+        "remove_daily_calculation",
+        &[
+            (json!({"name": "MRR"}), "calculation_not_found", "name"),
+            (json!({"name": 1}), "wrong_type", "name"),
+            (json!({}), "argument_missing", "name"),
+        ],
+    );
+    let data = desk.call("remove_daily_calculation", json!({"name": "mrr"}));
+    assert_eq!(data, json!({"name": "mrr", "remaining": [""]}));
+    desk.assert_refused("list_daily_calculations", &[(json!({"x": 1}), "unknown_argument", "x")]);
+}
+
+#[test]
+fn scripts_are_stored_found_and_deleted() {
+    let mut desk = Desk::default();
+    desk.assert_refused(
+        "register_script",
+        &[
+            (json!({"name": " \t", "code": "SELECT 1"}), "script_name_blank", "name"),
+            (json!({"name": "x", "code": 5}), "wrong_type", "code"),
+            (json!({"name": "x"}), "argument_missing", "code"),
+        ],
+    );
+    let data = desk.call("register_script", json!({"name": " churn ", "code": "SELECT 1"}));
+    assert_eq!(data, json!({"name": "churn", "code_length": 8}));
+    desk.call("register_script", json!({"name": "other", "code": "SELECT 2"}));
+    assert_eq!(desk.call("list_scripts", json!({})), json!({"scripts": ["churn", "other"]}));
+    let missing = [(json!({"name": "nothing"}), "script_not_found", "name")];
+    desk.assert_refused("run_script", &missing);
+    desk.assert_refused("delete_script", &missing);
+    let (_, task) = desk.try_call("run_script", &json!({"name": "churn"})).expect("it is stored");
+    assert_eq!(task, Some(Task::Run { code: "SELECT 1".to_owned(), seconds: 600.0 }));
+    let data = desk.call("delete_script", json!({"name": "churn"}));
+    assert_eq!(data, json!({"name": "churn", "remaining": ["other"]}));
+    desk.assert_refused("run_script", &[(json!({"name": "churn"}), "script_not_found", "name")]);
+}
+
+#[test]
+fn python_exec() {
+    let mut desk = Desk::default();
+    let (_, task) =
+        desk.try_call("python_exec", &json!({"code": "SELECT 1", "timeout_seconds": 2.5})).expect("a script");
+    assert_eq!(task, Some(Task::Run { code: "SELECT 1".to_owned(), seconds: 2.5 }));
+    desk.assert_refused(
+        "python_exec",
+        &[
+            (json!({}), "argument_missing", "code"),
+            (json!({"code": 5}), "wrong_type", "code"),
+            (json!({"code": "SELECT 1", "timeout_seconds": 0}), "wrong_type", "timeout_seconds"),
+            (json!({"code": "SELECT 1", "timeout_seconds": 601}), "wrong_type", "timeout_seconds"),
+            (json!({"code": "SELECT 1", "timeout_seconds": "5"}), "wrong_type", "timeout_seconds"),
+        ],
+    );
+}
+
+#[test]
+fn documents_of_tables_and_tools() {
+    let mut desk = Desk::default();
+    let data = desk.call("list_all_tables", json!({}));
+    assert_eq!(data, json!({"count": 2, "tables": {"ledger": "cash", "issues": "support"}}));
+    let ledger = json!({"description": "cash", "columns": {"id": "number", "day": "day"}});
+    for given in [json!("ledger"), json!(["ledger"]), json!(["ledger", "nothing"])] {
+        let data = desk.call("describe_tables", json!({"table_names": given}));
+        assert_eq!(data, json!({"tables": {"ledger": ledger}}));
+    }
+    for given in [json!({}), json!({"table_names": "all"}), json!({"table_names": null})] {
+        let data = desk.call("describe_tables", given);
+        assert_eq!(data["tables"].as_object().map(|tables| tables.len()), Some(2));
+    }
+    let wrong = |field: &str, code: &'static str| {
+        [
+            (json!({ field: "nothing" }), code, field.to_owned()),
+            (json!({ field: [] }), code, field.to_owned()),
+            (json!({ field: 5 }), "wrong_type", field.to_owned()),
+            (json!({ field: [5] }), "wrong_type", field.to_owned()),
+        ]
+    };
+    for (tool, field, code) in [
+        ("describe_tables", "table_names", "table_not_found"),
+        ("get_tool_documentation", "tool_names", "tool_not_found"),
+    ] {
+        let cases = wrong(field, code);
+        let cases: Vec<(Value, &str, &str)> =
+            cases.iter().map(|(given, code, field)| (given.clone(), *code, field.as_str())).collect();
+        desk.assert_refused(tool, &cases);
+    }
+    let data = desk.call("get_tool_documentation", json!({"tool_names": ["set_prices", "query"]}));
+    assert_eq!(data.as_object().map(|tools| tools.len()), Some(2));
+    assert_eq!(data["set_prices"]["name"], "set_prices");
+    let all = desk.call("get_tool_documentation", json!({}));
+    assert_eq!(all.as_object().map(|tools| tools.len()), Some(super::super::CATALOGUE.len()));
+}

@@ -333,7 +333,7 @@ macro_rules! shipped {
 
 /// Names and texts of the policies compiled into the program.
 pub fn shipped_policies() -> &'static [(&'static str, &'static str)] {
-    shipped!["baseline", "P0", "P1a", "P1b", "P1c", "P1s", "P2", "P4", "P6", "P9"]
+    shipped!["baseline", "P0", "P1a", "P1b", "P1c", "P1s", "P2", "P4", "P6", "P8", "P9"]
 }
 
 impl Policy {

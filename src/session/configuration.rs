@@ -54,7 +54,7 @@ macro_rules! shipped {
     };
 }
 
-const SHIPPED: [(&str, &str); 11] = shipped![
+const SHIPPED: [(&str, &str); 12] = shipped![
     "default",
     "short",
     "competitor-off",
@@ -66,6 +66,7 @@ const SHIPPED: [(&str, &str); 11] = shipped![
     "demand-surges",
     "paper",
     "corrected",
+    "reference-seed42",
 ];
 
 /// Name of the standard scenario.
@@ -292,6 +293,6 @@ mod tests {
         std::fs::write(&file, "title = \"Mine\"\nwrong = 1\n").expect("a file");
         let error = configuration.scenario("mine").expect_err("an unknown key").to_string();
         assert!(error.contains("line 2") && error.contains("wrong"), "{error}");
-        assert!(configuration.scenario("none").expect_err("no such").to_string().contains("corrected, mine"));
+        assert!(configuration.scenario("none").expect_err("no such").to_string().contains("corrected, reference-seed42, mine"));
     }
 }

@@ -16,5 +16,6 @@ pub mod params;
 pub mod product;
 pub mod random;
 pub mod retention;
+pub mod series;
 pub mod settings;
 pub mod state;

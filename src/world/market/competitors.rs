@@ -5,7 +5,8 @@ use crate::world::canonical::canonical;
 use crate::world::identifiers::Group;
 use crate::world::params::{Competitor, Params};
 use crate::world::product::Product;
-use crate::world::random::{Part, Streams};
+use crate::world::random::{Part, Stream, Streams};
+use crate::world::series::GivenEvent;
 
 /// One competitor event.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,12 +48,18 @@ pub fn severity(boost: f64, law: &Competitor) -> Severity {
     }
 }
 
-/// Chance of an event on a day, 0 where none can happen (chapter 30 §7.1).
-pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, params: &Params) -> f64 {
+/// Whether rivals move at all at this time of the run.
+fn events_possible(day: u32, total_days: u32, params: &Params) -> bool {
     let law = &params.competitor;
     let too_early = day < params.drift.drift_grace_period_days;
     let too_late = i64::from(day) > i64::from(total_days) - i64::from(law.competitor_event_late_cutoff_days);
-    if law.competitor_events_disabled || too_early || too_late {
+    !law.competitor_events_disabled && !too_early && !too_late
+}
+
+/// Chance of an event on a day, 0 where none can happen (chapter 30 §7.1).
+pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, params: &Params) -> f64 {
+    let law = &params.competitor;
+    if !events_possible(day, total_days, params) {
         return 0.0;
     }
     let (mut mean, mut least) = (law.competitor_event_mean_interval, law.competitor_event_min_interval);
@@ -104,11 +111,11 @@ pub fn react(
     let law = &params.competitor;
     let chance = event_probability(day, total_days, events.last().map(|event| event.day), params);
     let mut stream = streams.open(Part::CompetitorEvent, [u64::from(day)]);
-    if chance <= 0.0 || !stream.bernoulli(chance) {
-        return;
-    }
-    let size = stream.log_normal(law.competitor_event_boost_mu, law.competitor_event_boost_sigma);
-    let u = stream.between(law.competitor_feedback_u_min, law.competitor_feedback_u_max);
+    let drawn = match params.replayed_series().and_then(|series| series.competitor_event(day)) {
+        Some(given) => given.filter(|_| events_possible(day, total_days, params)),
+        None => draw_event(chance, law, &mut stream),
+    };
+    let Some(GivenEvent { size, u }) = drawn else { return };
     let sampled = sampled_boost(size, day, total_days, law);
     let event = resolve_event(day, sampled, u, &mut product.shared_bank, law);
     raise_expectations(event.boost, drift, params);
@@ -119,6 +126,16 @@ pub fn react(
         drain_group(group, v, product, drift, law);
     }
     events.push(event);
+}
+
+/// Size and share of the bank of today's event, if there is one.
+fn draw_event(chance: f64, law: &Competitor, stream: &mut Stream) -> Option<GivenEvent> {
+    if chance <= 0.0 || !stream.bernoulli(chance) {
+        return None;
+    }
+    let size = stream.log_normal(law.competitor_event_boost_mu, law.competitor_event_boost_sigma);
+    let u = stream.between(law.competitor_feedback_u_min, law.competitor_feedback_u_max);
+    Some(GivenEvent { size, u })
 }
 
 /// An event raises everyone's expectations, and those of reactive groups further.

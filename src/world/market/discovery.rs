@@ -40,8 +40,12 @@ impl Market {
     pub fn next_attempt(&self, params: &Params, streams: &Streams) -> Attempt {
         let law = &params.market_research;
         let undiscovered: Vec<Group> = self.undiscovered().collect();
-        let mut stream = streams.open(Part::MarketResearch, [u64::from(self.attempts)]);
-        let found = draw_attempt(&undiscovered, law.market_research_discover_prob, &mut stream);
+        let drawn = || {
+            let mut stream = streams.open(Part::MarketResearch, [u64::from(self.attempts)]);
+            draw_attempt(&undiscovered, law.market_research_discover_prob, &mut stream)
+        };
+        let given = params.replayed_series().and_then(|series| series.attempt(self.attempts));
+        let found = given.unwrap_or_else(drawn).filter(|group| undiscovered.contains(group));
         Attempt { earlier: self.attempts, cost: law.discovery_cost_level_1, found }
     }
 

@@ -192,9 +192,12 @@ fn phase_of_run(law: &MacroEconomy, streams: &Streams) -> f64 {
 /// Moves the index by a day, measures when a month is full, and publishes what has waited long enough.
 pub fn step(day: u32, economy: &mut Economy, params: &Params, streams: &Streams, facts: &mut Facts) {
     let law = &params.economy;
-    let target = cycle_target(day, phase_of_run(law, streams), law);
-    let z = streams.open(Part::Macro, [u64::from(day)]).standard_normal();
-    economy.pmi = next_pmi(economy.pmi, target, z, law);
+    let drawn = || {
+        let target = cycle_target(day, phase_of_run(law, streams), law);
+        let z = streams.open(Part::Macro, [u64::from(day)]).standard_normal();
+        next_pmi(economy.pmi, target, z, law)
+    };
+    economy.pmi = params.replayed_series().and_then(|series| series.pmi(day)).unwrap_or_else(drawn);
     economy.started = true;
     economy.history.push(economy.pmi);
     let interval = law.macro_pmi_update_interval_days;

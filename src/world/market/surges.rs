@@ -33,12 +33,25 @@ pub fn draw_surge(day: u32, law: &DemandSurge, streams: &Streams) -> Option<Surg
     Some(Surge { day, end_day: day + duration, multiplier })
 }
 
+/// The surge of a day: the recorded one where a record is replayed, otherwise drawn.
+fn surge_of(day: u32, params: &Params, streams: &Streams) -> Option<Surge> {
+    let law = &params.demand_surge;
+    match params.replayed_series().and_then(|series| series.demand_surge(day)) {
+        None => draw_surge(day, law, streams),
+        Some(given) => given.filter(|_| law.probability > 0.0).map(|given| Surge {
+            day,
+            end_day: day + given.days,
+            multiplier: given.multiplier,
+        }),
+    }
+}
+
 /// On the first day of a week, draws the surges of all its days.
 pub fn draw_week(day: u32, total_days: u32, surges: &mut Vec<Surge>, params: &Params, streams: &Streams) {
     let length = params.run.days_per_week;
     if day % length == 1 {
         let days = day..=week_end(day, length, total_days);
-        surges.extend(days.filter_map(|day| draw_surge(day, &params.demand_surge, streams)));
+        surges.extend(days.filter_map(|day| surge_of(day, params, streams)));
     }
 }
 

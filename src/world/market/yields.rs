@@ -15,14 +15,18 @@ pub fn vary(day: u32, yields: &mut ByChannel<ByGroup<f64>>, params: &Params, str
     if !day.is_multiple_of(interval) {
         return;
     }
+    let month = day / interval;
     let mut alphabetical = Channel::ALL;
     alphabetical.sort_by_key(|channel| channel.id());
     for group in Group::all() {
-        let keys = [group.index() as u64, u64::from(day / interval)];
+        let keys = [group.index() as u64, u64::from(month)];
         let mut stream = streams.open(Part::LeadRateDrift, keys);
         for channel in alphabetical {
             let value = &mut yields[channel][group];
-            if *value > 0.0 {
+            let series = params.replayed_series();
+            if let Some(given) = series.and_then(|series| series.channel_yield(channel, group, month)) {
+                *value = given;
+            } else if *value > 0.0 {
                 *value = varied_yield(*value, stream.standard_normal(), &params.leads);
             }
         }

@@ -42,6 +42,8 @@ pub struct Params {
     pub limits: Limits,
     /// Which form odd mechanics take.
     pub fidelity: Fidelity,
+    /// Which recorded series are replayed.
+    pub series: SeriesChoice,
     /// The willingness curve.
     pub participation: Participation,
     /// Bounds of a new customer's traits.

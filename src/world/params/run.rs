@@ -194,3 +194,21 @@ pub enum PostJudge {
     /// Nobody.
     None,
 }
+
+/// Recorded series that are replayed instead of being drawn (chapter 70 §2).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SeriesChoice {
+    /// Which record.
+    pub replayed: Replayed,
+}
+
+/// A record of what does not depend on the company.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Replayed {
+    /// None: everything is drawn.
+    None,
+    /// The released simulator's seed 42.
+    Seed42,
+}

@@ -25,10 +25,15 @@ pub fn involuntary_rate(mean: f64, std: f64, z: f64, law: &InvoluntaryChurn) -> 
 
 /// The rate of a group in the month that holds a day.
 pub fn involuntary_rate_of(group: Group, day: u32, params: &Params, streams: &Streams) -> f64 {
-    let month = day / params.involuntary_churn.month_days;
+    let law = &params.involuntary_churn;
+    let month = day / law.month_days;
+    let given = params.replayed_series().and_then(|series| series.involuntary_rate(group, month));
+    if let Some(rate) = given.filter(|_| law.enable_involuntary_churn) {
+        return rate;
+    }
     let z = streams.open(Part::InvoluntaryMu, [group.index() as u64, u64::from(month)]).standard_normal();
     let own = params.group(group);
-    involuntary_rate(own.involuntary_churn_mean, own.involuntary_churn_std, z, &params.involuntary_churn)
+    involuntary_rate(own.involuntary_churn_mean, own.involuntary_churn_std, z, law)
 }
 
 /// The acceptable plan with the largest surplus; the earlier one on a tie, none if nothing is acceptable.

@@ -1,0 +1,186 @@
+//! A world that replays the recorded series arrives at the figures that were measured with it.
+
+use super::*;
+use crate::world::day::step_day;
+use crate::world::events::Facts;
+use crate::world::market::Market;
+use crate::world::market::competitors::sampled_boost;
+use crate::world::market::economy::{Dimension, Reading};
+use crate::world::market::surges::surge_factor;
+use crate::world::params::{Source, SurgeStart, shipped_sources};
+use crate::world::random::Streams;
+use crate::world::retention::renewal::involuntary_rate_of;
+use crate::world::state::World;
+
+fn replaying() -> Params {
+    let scenario = include_str!("../../../configs/scenarios/reference-seed42.toml");
+    let table: toml::Table = scenario.parse().expect("a scenario");
+    let world = table.get("world").and_then(toml::Value::as_table).expect("overrides");
+    let text = toml::to_string(world).expect("a table");
+    Params::load(&shipped_sources(), &[Source { name: "scenario".to_owned(), text }]).expect("parameters")
+}
+
+/// A file of measured figures, row by row.
+macro_rules! measured {
+    ($file:literal) => {
+        include_str!(concat!("../../../tests/data/seed42/", $file, ".csv"))
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').collect::<Vec<&str>>())
+    };
+}
+
+fn number(text: &str) -> f64 {
+    text.parse().expect("a number")
+}
+
+fn day(text: &str) -> u32 {
+    text.parse().expect("a day")
+}
+
+fn group(id: &str) -> Group {
+    Group::parse(id).expect("a group")
+}
+
+/// Plays an untouched company; `each` sees the world and the facts of every day.
+fn untouched(seed: u64, mut each: impl FnMut(&World, &Facts)) {
+    let (params, streams, mut facts) = (replaying(), Streams::new(seed), Facts::default());
+    let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+    for _ in 0..500 {
+        step_day(&mut world, &params, &streams, &mut facts);
+        each(&world, &facts);
+    }
+}
+
+#[test]
+fn the_economy_is_the_recorded_one_on_every_day_with_its_publications() {
+    let pmi: Vec<f64> = measured!("pmi_daily").map(|row| number(row[1])).collect();
+    let mut published: Vec<(u32, Reading)> = Vec::new();
+    // The seed of the run does not count.
+    untouched(7, |world, facts| {
+        assert_eq!(world.market.economy.pmi.to_bits(), pmi[world.day as usize - 1].to_bits());
+        published.extend(facts.readings.iter().map(|reading| (world.day, *reading)));
+    });
+    let rows: Vec<Vec<&str>> = measured!("pmi_publications").filter(|row| day(row[1]) <= 500).collect();
+    assert_eq!(published.len(), rows.len());
+    for ((published_day, reading), row) in published.iter().zip(rows) {
+        assert_eq!((reading.measured_day, *published_day), (day(row[0]), day(row[1])));
+        assert_eq!((reading.value, reading.change), (number(row[2]), number(row[3])));
+        assert_eq!((reading.trend.id(), reading.phase.id()), (row[4], row[5]));
+    }
+}
+
+#[test]
+fn multipliers_of_the_economy_agree_at_the_checkpoints() {
+    let params = replaying();
+    untouched(42, |world, _| {
+        for row in measured!("macro_multipliers").filter(|row| day(row[0]) == world.day) {
+            let economy = &world.market.economy;
+            let own = |dimension| economy.multiplier(group(row[1]), dimension, &params);
+            for (dimension, text) in [
+                (Dimension::LeadGeneration, row[2]),
+                (Dimension::WillingnessToPay, row[3]),
+                (Dimension::SeatCount, row[4]),
+            ] {
+                // Groups without this sensitivity have no value.
+                if !text.is_empty() {
+                    assert!((own(dimension) - number(text)).abs() < 1e-12, "{row:?}");
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn rivals_move_on_the_recorded_days_and_expectations_follow() {
+    let mut seen: Vec<(u32, f64)> = Vec::new();
+    untouched(42, |world, _| {
+        seen = world.market.competitors.iter().map(|event| (event.day, event.sampled)).collect();
+        for row in measured!("drift_untouched").filter(|row| day(row[0]) == world.day) {
+            let drift = &world.market.drift;
+            let own = group(row[1]);
+            for (value, text) in
+                [(drift.quality[own], row[2]), (drift.c_max[own], row[3]), (drift.global_quality, row[4])]
+            {
+                assert!((value - number(text)).abs() < 1e-12, "{row:?}: {value}");
+            }
+        }
+    });
+    let recorded: Vec<(u32, f64)> =
+        measured!("competitor_events_dev_groups_0").map(|row| (day(row[0]), number(row[3]))).collect();
+    assert_eq!(seen, recorded);
+    let params = replaying();
+    for row in measured!("competitor_events_dev_groups_0") {
+        let given = SEED_42.competitor_event(day(row[0])).flatten().expect("an event");
+        assert_eq!(given.u, number(row[4]));
+        assert_eq!(sampled_boost(given.size, day(row[0]), 500, &params.competitor), number(row[3]));
+    }
+}
+
+#[test]
+fn surges_act_as_recorded() {
+    let mut seen = Vec::new();
+    untouched(42, |world, _| {
+        if world.day == 402 {
+            // The surge of day 405 acts from the first day of its week.
+            let factor = surge_factor(402, &world.market.surges, SurgeStart::Week);
+            assert_eq!(factor, 6.745419511721691);
+        }
+        seen = world.market.surges.iter().map(|surge| (surge.day, surge.multiplier, surge.end_day)).collect();
+    });
+    let recorded: Vec<(u32, f64, u32)> =
+        measured!("demand_surges").map(|row| (day(row[0]), number(row[2]), day(row[3]))).collect();
+    assert_eq!(seen, recorded);
+}
+
+#[test]
+fn attempts_find_the_recorded_groups() {
+    let (params, streams) = (replaying(), Streams::new(3));
+    let mut market = Market::opening(&params);
+    for row in measured!("market_research") {
+        let attempt = market.next_attempt(&params, &streams);
+        market.note_attempt(&attempt, 10, &params);
+        assert_eq!(attempt.found.map_or("", Group::id), row[2]);
+        assert_eq!(market.undiscovered().count().to_string(), row[3]);
+    }
+    assert_eq!(market.next_attempt(&params, &streams).found, None);
+}
+
+#[test]
+fn payments_fail_at_the_recorded_rates() {
+    let (params, streams) = (replaying(), Streams::new(3));
+    for row in measured!("involuntary_churn") {
+        for own in [day(row[2]), day(row[3])] {
+            let rate = involuntary_rate_of(group(row[0]), own, &params, &streams);
+            assert_eq!(rate.to_bits(), number(row[4]).to_bits(), "{row:?}");
+        }
+    }
+}
+
+#[test]
+fn channels_yield_what_was_recorded() {
+    let channel = |id: &str| Channel::parse(id).expect("a channel");
+    untouched(3, |world, _| {
+        let month = world.day - world.day % 30;
+        if [0, 29].contains(&(world.day % 30)) {
+            for row in measured!("channel_drift").filter(|row| day(row[0]) == month) {
+                let own = world.market.yields[channel(row[1])][group(row[2])];
+                assert_eq!(own.to_bits(), number(row[3]).to_bits(), "{row:?}");
+            }
+        }
+    });
+}
+
+#[test]
+fn beyond_the_record_the_world_draws_as_usual() {
+    assert_eq!((SEED_42.pmi(0), SEED_42.pmi(505)), (None, None));
+    assert_eq!((SEED_42.competitor_event(505), SEED_42.demand_surge(505)), (None, None));
+    assert_eq!(SEED_42.involuntary_rate(group("S1"), 17), None);
+    assert_eq!(SEED_42.channel_yield(Channel::Linkedin, group("S1"), 17), None);
+    let (params, streams, mut facts) = (replaying(), Streams::new(3), Facts::default());
+    let mut world = World::open(600, 1_000_000.0, &params, &mut facts);
+    for _ in 0..600 {
+        step_day(&mut world, &params, &streams, &mut facts);
+    }
+    assert!(world.market.competitors.iter().any(|event| event.day > 505));
+}

@@ -76,11 +76,19 @@ impl Verdict {
 fn run_golden(golden: &Golden, context: &Context) -> Result<(), Failure> {
     let names = policies_of(&golden.folder, &golden.only)?;
     let pool = thread_pool(golden.jobs)?;
-    let mut verdicts = Vec::new();
+    let (mut verdicts, mut unplayed) = (Vec::new(), Vec::new());
     for name in &names {
         let mut reference = read_reference(&golden.folder, name)?;
         reference.cells.retain(|(figure, group, _), _| !left_out(&golden.without, figure, group));
-        let policy = find_policy(golden, context, name)?;
+        // One policy that is missing or wrong does not hide what the others have to say.
+        let policy = match find_policy(golden, context, name) {
+            Ok(policy) => policy,
+            Err(failure) => {
+                print(&format!("{name}  cannot be played: {failure}\n"))?;
+                unplayed.push(name.as_str());
+                continue;
+            }
+        };
         let seeds = &golden.seeds;
         let comparison = compare(&reference, &figures(&policy, &reference, seeds, context, &pool)?);
         let biased = confirm(&comparison, &policy, &reference, seeds, context, &pool)?;
@@ -88,7 +96,7 @@ fn run_golden(golden: &Golden, context: &Context) -> Result<(), Failure> {
         print(&describe(&verdict, golden.all))?;
         verdicts.push(verdict);
     }
-    conclude(&verdicts, &golden.seeds)
+    conclude(&verdicts, &unplayed, &golden.seeds)
 }
 
 fn left_out(without: &[String], figure: &str, group: &str) -> bool {
@@ -187,12 +195,26 @@ fn describe(verdict: &Verdict, all: bool) -> String {
         100.0 * comparison.share_below(3.0),
         if verdict.passes() { "passes" } else { "FAILS" },
     );
-    let listed: Vec<_> = if all { comparison.cells.iter().collect() } else { comparison.worst(10) };
-    for cell in listed.into_iter().chain(&comparison.shown) {
-        text += &format!("  {cell}\n");
+    for line in comparison.by_figure() {
+        text += &format!("  {line}\n");
     }
-    for (figure, first, second) in &verdict.biased {
-        text += &format!("  biased: {figure}, median z {first:.2} and {second:.2} on following seeds\n");
+    let (head, listed): (_, Vec<_>) = match all {
+        true => ("all cells", comparison.cells.iter().collect()),
+        false => ("the ten worst cells", comparison.worst(10)),
+    };
+    text += &format!("  {head}:\n");
+    listed.into_iter().for_each(|cell| text += &format!("    {cell}\n"));
+    for cell in &comparison.shown {
+        text += &format!("  shown only: {cell}\n");
+    }
+    for (figure, first) in comparison.suspects() {
+        let again = verdict.biased.iter().find(|(biased, ..)| *biased == figure);
+        text += &match again {
+            Some((.., second)) => {
+                format!("  biased: {figure}, median z {first:.2} and {second:.2} on the following seeds\n")
+            }
+            None => format!("  suspicious: {figure}, median z {first:.2}, not so on the following seeds\n"),
+        };
     }
     for name in &comparison.missing {
         text += &format!("  missing: {name}\n");
@@ -200,7 +222,7 @@ fn describe(verdict: &Verdict, all: bool) -> String {
     text
 }
 
-fn conclude(verdicts: &[Verdict], seeds: &Seeds) -> Result<(), Failure> {
+fn conclude(verdicts: &[Verdict], unplayed: &[&str], seeds: &Seeds) -> Result<(), Failure> {
     let cells: usize = verdicts.iter().map(|verdict| verdict.comparison.cells.len()).sum();
     let below = |bound: f64| {
         let counts = verdicts
@@ -218,9 +240,12 @@ fn conclude(verdicts: &[Verdict], seeds: &Seeds) -> Result<(), Failure> {
     if seeds.last - seeds.first + 1 < 24 {
         return Err(Failure::usage("a verdict needs at least 24 seeds"));
     }
-    if verdicts.iter().all(Verdict::passes) && below(3.0) >= SHARE_OF_ALL {
-        Ok(())
-    } else {
-        Err(Failure::failed("the figures differ from the reference"))
+    let failing = verdicts.iter().filter(|verdict| !verdict.passes());
+    let mut problems: Vec<String> =
+        failing.map(|verdict| format!("{} differs from the reference", verdict.comparison.policy)).collect();
+    problems.extend(unplayed.iter().map(|name| format!("{name} cannot be played")));
+    if below(3.0) < SHARE_OF_ALL {
+        problems.push(format!("over all policies less than {:.0} % have |z| < 3", 100.0 * SHARE_OF_ALL));
     }
+    if problems.is_empty() { Ok(()) } else { Err(Failure::failed(problems.join("; "))) }
 }

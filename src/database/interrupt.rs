@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use super::memory::bytes_in_use;
 
-/// Steps of SQLite's machine between two looks at the clock.
-pub(super) const STEPS_BETWEEN_LOOKS: u32 = 10_000;
+/// Steps of SQLite's machine between two looks at clock and memory: few, for each may take a value of two megabytes.
+pub(super) const STEPS_BETWEEN_LOOKS: u32 = 250;
 
 /// Memory that SQLite may take for a query beyond what it had before, in bytes: sorting and recursion keep their
 /// rows in memory.

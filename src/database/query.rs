@@ -84,7 +84,7 @@ pub struct Limits {
     pub rows: usize,
     /// Time at most.
     pub time: Duration,
-    /// Steps of SQLite's machine at most, in tens of thousands; none: only time and memory count.
+    /// Steps of SQLite's machine at most; none: only time and memory count.
     pub steps: Option<u64>,
 }
 
@@ -119,7 +119,9 @@ impl Desk {
         let guard = Guard::set_up(&connection)?;
         connection.pragma_update(None, "query_only", true)?;
         connection.set_limit(Limit::SQLITE_LIMIT_ATTACHED, 0)?;
-        connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, 16 << 20)?;
+        // A function works on its values in one step that nothing can stop, so values and patterns are short.
+        connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, 2 << 20)?;
+        connection.set_limit(Limit::SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 1000)?;
         connection.set_limit(Limit::SQLITE_LIMIT_SQL_LENGTH, 1 << 20)?;
         connection.set_limit(Limit::SQLITE_LIMIT_EXPR_DEPTH, 500)?;
         connection.set_limit(Limit::SQLITE_LIMIT_COMPOUND_SELECT, 200)?;
@@ -310,6 +312,9 @@ impl Desk {
                 (msg.clone(), usize::try_from(*offset).ok())
             }
             rusqlite::Error::SqliteFailure(_, Some(text)) => (text.clone(), None),
+            rusqlite::Error::InvalidParameterCount(..) => {
+                ("a statement has no parameters here; write the values where they belong".to_owned(), None)
+            }
             other => (other.to_string(), None),
         };
         if text.starts_with("cannot modify") || text.ends_with("may not be modified") {

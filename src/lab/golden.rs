@@ -232,6 +232,26 @@ impl Comparison {
             .collect()
     }
 
+    /// A line per figure: its cells, their median, and the one that differs most.
+    pub fn by_figure(&self) -> Vec<String> {
+        let mut by_figure: BTreeMap<&str, Vec<&ComparedCell>> = BTreeMap::new();
+        self.cells.iter().for_each(|cell| by_figure.entry(&cell.figure).or_default().push(cell));
+        let line = |(figure, cells): (&str, Vec<&ComparedCell>)| {
+            let scores: Vec<f64> = cells.iter().map(|cell| cell.z).collect();
+            let worst = cells.iter().max_by(|left, right| left.z.abs().total_cmp(&right.z.abs()))?;
+            let middle = median(&scores)?;
+            let (mean, error, own) = (worst.reference.mean, worst.standard_error(), worst.own.mean);
+            let place = format!("{} day {}", worst.group, worst.day);
+            Some(format!(
+                "{figure:<32} {:>3} cells  median z {middle:>6.2}  worst {:>6.2} ({}: {mean:.4} \u{b1} {error:.4}, ours {own:.4})",
+                cells.len(),
+                worst.z,
+                place.trim_start()
+            ))
+        };
+        by_figure.into_iter().filter_map(line).collect()
+    }
+
     /// The cells that differ most.
     pub fn worst(&self, count: usize) -> Vec<&ComparedCell> {
         let mut cells: Vec<&ComparedCell> = self.cells.iter().collect();
@@ -241,9 +261,16 @@ impl Comparison {
     }
 }
 
+impl ComparedCell {
+    /// Standard error of the reference's mean.
+    fn standard_error(&self) -> f64 {
+        self.reference.std / (self.reference.count.max(1) as f64).sqrt()
+    }
+}
+
 impl fmt::Display for ComparedCell {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let error = self.reference.std / (self.reference.count.max(1) as f64).sqrt();
+        let error = self.standard_error();
         write!(
             formatter,
             "{:<32} {:<18} day {:>3}  {:>16.6} ± {:<14.6} {:>16.6}  z {:>7.2}",
@@ -291,5 +318,10 @@ mod tests {
         assert_eq!(comparison.missing, ["subs S1"]);
         assert_eq!(comparison.share_below(3.0), 0.5);
         assert_eq!(comparison.worst(1)[0].figure, "cash");
+        let lines = comparison.by_figure();
+        assert!(
+            lines.len() == 2 && lines[0].starts_with("cash ") && lines[0].contains("5 cells"),
+            "{lines:?}"
+        );
     }
 }

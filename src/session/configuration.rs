@@ -293,6 +293,12 @@ mod tests {
         std::fs::write(&file, "title = \"Mine\"\nwrong = 1\n").expect("a file");
         let error = configuration.scenario("mine").expect_err("an unknown key").to_string();
         assert!(error.contains("line 2") && error.contains("wrong"), "{error}");
-        assert!(configuration.scenario("none").expect_err("no such").to_string().contains("corrected, reference-seed42, mine"));
+        assert!(
+            configuration
+                .scenario("none")
+                .expect_err("no such")
+                .to_string()
+                .contains("corrected, reference-seed42, mine")
+        );
     }
 }

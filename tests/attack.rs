@@ -1,0 +1,225 @@
+//! Hundreds of statements against the SQL prompt: nothing hidden is read, nothing is written, and each one ends
+//! within the limits (specification, chapter 60 §3.4).
+
+use std::path::Path;
+use std::time::Duration;
+
+use novamind::database::query::Limits;
+use novamind::session::{Cell, Configuration, Desk, NewRun, QueryError, Rows, Session, Storage, Via};
+use serde_json::json;
+
+/// No clock decides here: what is endless ends by its number of steps.
+const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(3600), steps: Some(400_000) };
+
+/// For what is to be answered to its end.
+const AMPLE: Limits = Limits { steps: Some(1_000_000_000), ..LIMITS };
+
+/// A company of six weeks, with rows in as many tables as it can have.
+fn played(folder: &Path) -> Session {
+    let storage = Storage::Runs(folder.to_owned());
+    let new = NewRun { seed: Some(7), days: Some(60), storage, ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_model_tiers", json!({"B": 2, "C": 4})),
+        ("set_usage_quotas", json!({"A": 60000, "B": 250000, "C": 1200000})),
+        ("set_targeted_dev_spend", json!({"S1": 6000})),
+        ("set_targeted_ad_spend", json!({"content_marketing": {"S1": 750}, "linkedin": {"E1": 3000}})),
+        ("set_ads_strength", json!({"global_strength": 0.3})),
+        ("research_market", json!({})),
+    ] {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+    for _ in 0..6 {
+        let forecasts = session.naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    }
+    session.wait_for_database().expect("everything is written");
+    session
+}
+
+/// Everything in a database file, the schema included.
+fn contents(folder: &Path) -> Vec<String> {
+    let flags = rusqlite::OpenFlags::SQLITE_OPEN_READ_ONLY;
+    let connection =
+        rusqlite::Connection::open_with_flags(folder.join("world.db"), flags).expect("a database");
+    let texts = |sql: &str| -> Vec<String> {
+        let mut statement = connection.prepare(sql).expect("a statement");
+        let width = statement.column_count();
+        let row = |row: &rusqlite::Row<'_>| {
+            (0..width)
+                .map(|at| row.get_ref(at).map(|value| format!("{value:?}")))
+                .collect::<Result<Vec<_>, _>>()
+        };
+        let rows = statement.query_map([], row).expect("rows");
+        rows.map(|row| row.expect("a row").join("|")).collect()
+    };
+    let mut all = texts("SELECT type, name, sql FROM sqlite_schema ORDER BY 1, 2");
+    let tables = "SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY 1";
+    let mut statement = connection.prepare(tables).expect("a statement");
+    let names: Vec<String> =
+        statement.query_map([], |row| row.get(0)).expect("rows").map(|name| name.expect("a name")).collect();
+    names.iter().for_each(|name| all.extend(texts(&format!("SELECT * FROM \"{name}\""))));
+    all
+}
+
+struct Attack {
+    head: String,
+    sql: String,
+}
+
+fn attacks() -> Vec<Attack> {
+    let mut head = String::new();
+    let mut attacks = Vec::new();
+    for line in include_str!("data/attacks.txt").lines() {
+        if let Some(inner) = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
+            inner.clone_into(&mut head);
+        } else if !line.is_empty() && !line.starts_with("# ") {
+            attacks.push(Attack { head: head.clone(), sql: line.replace("\\n", "\n").replace("\\t", "\t") });
+        }
+    }
+    attacks
+}
+
+fn first_cell(rows: &Rows) -> String {
+    match rows.rows.first().and_then(|row| row.first()) {
+        Some(Cell::Integer(number)) => number.to_string(),
+        Some(Cell::Real(number)) => number.to_string(),
+        Some(Cell::Text(text)) => text.clone(),
+        Some(Cell::Null) => "NULL".to_owned(),
+        None => String::new(),
+    }
+}
+
+/// What is wrong with the outcome of an attack; none if it is as it must be.
+fn problem(attack: &Attack, outcome: &Result<Rows, QueryError>) -> Option<String> {
+    let (head, value) = attack.head.split_once(' ').unwrap_or((&attack.head, ""));
+    let fits = match (head, outcome) {
+        ("refused", Err(error)) => error.code == value,
+        ("stopped", Err(error)) => ["sql_timeout", "sql_error"].contains(&error.code),
+        ("answered", Ok(rows)) => value.is_empty() || first_cell(rows) == value,
+        _ => false,
+    };
+    let told = match outcome {
+        Ok(rows) => format!("answered with {} rows, first {}", rows.rows.len(), first_cell(rows)),
+        Err(error) => format!("refused {}: {}", error.code, error.message),
+    };
+    (!fits).then(|| format!("{}\n    must be {}, but was {told}", attack.sql, attack.head))
+}
+
+fn ask_all(desk: &Desk, attacks: &[Attack], secrets: &[String]) {
+    let mut problems = Vec::new();
+    for attack in attacks {
+        let limits = if attack.head.starts_with("answered") { AMPLE } else { LIMITS };
+        let outcome = desk.ask(&attack.sql, limits);
+        problems.extend(problem(attack, &outcome));
+        let texts: Vec<String> = match outcome {
+            Ok(rows) => {
+                assert!(rows.rows.len() <= LIMITS.rows, "{}", attack.sql);
+                let text = |cell: Cell| if let Cell::Text(text) = cell { Some(text) } else { None };
+                rows.rows.into_iter().flatten().filter_map(text).chain(rows.columns).collect()
+            }
+            Err(error) => vec![error.message],
+        };
+        for secret in secrets {
+            if texts.iter().any(|text| text.contains(secret.as_str()))
+                && !attack.sql.contains(secret.as_str())
+            {
+                problems.push(format!("{}\n    tells {secret}", attack.sql));
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{} of {}:\n{}", problems.len(), attacks.len(), problems.join("\n"));
+}
+
+#[test]
+fn statements_read_nothing_hidden_write_nothing_and_end() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = played(runs.path());
+    let folder = session.folder().expect("a folder").to_owned();
+    let (before, hash) = (contents(&folder), session.state_hash());
+    let position = rusqlite::Connection::open(folder.join("world.db"))
+        .and_then(|own| own.query_row("SELECT line_hash FROM projection", [], |row| row.get::<_, String>(0)));
+    // Names and values of the inside, which no answer and no message may tell.
+    let mut secrets: Vec<String> =
+        ["inner_", "customer_rows", "usage_blocks", "issue_clock", "CREATE TABLE"].map(str::to_owned).into();
+    secrets.push(position.expect("a position"));
+
+    let attacks = attacks();
+    assert!(attacks.len() >= 300, "{}", attacks.len());
+    let desk = session.open_desk().expect("a desk");
+    ask_all(&desk, &attacks, &secrets);
+
+    assert_eq!(contents(&folder), before, "something was written");
+    assert_eq!(session.state_hash(), hash);
+    for stray in ["attack_copy.db", "attack_other.db", "attack_file.txt"] {
+        assert!(!Path::new(stray).exists() && !folder.join(stray).exists(), "{stray} was made");
+    }
+    // The desk still answers.
+    let rows = desk.ask("SELECT count(*) FROM group_info_levels", LIMITS).expect("an answer");
+    assert_eq!(first_cell(&rows), "26");
+}
+
+#[test]
+fn sealed_columns_and_tables_do_not_exist_in_any_form() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = played(runs.path());
+    let mut attacks = Vec::new();
+    let mut reader = csv::Reader::from_reader(include_str!("data/sealed.csv").as_bytes());
+    for record in reader.records().map(|record| record.expect("a row")) {
+        let (table, column) = (&record[0], &record[1]);
+        let (head, forms): (&str, &[&str]) = if column.is_empty() {
+            let forms = &[
+                "SELECT * FROM {t}",
+                "SELECT count(*) FROM {t}",
+                "select x from \"{t}\"",
+                "SELECT a.x FROM [{t}] a",
+                "SELECT * FROM ledger, {t}",
+                "SELECT * FROM main.{t}",
+                "SELECT (SELECT x FROM {t})",
+                "SELECT * FROM ledger WHERE id IN (SELECT x FROM {t})",
+                "WITH x AS (SELECT * FROM {t}) SELECT * FROM x",
+                "WITH ledger AS (SELECT * FROM {t}) SELECT * FROM ledger",
+            ];
+            ("refused sql_hidden_table", forms)
+        } else {
+            let forms = &[
+                "SELECT {c} FROM {t}",
+                "SELECT {c} AS x FROM {t}",
+                "SELECT max({c}) FROM {t}",
+                "SELECT a.{c} FROM {t} a",
+                "SELECT [{c}] FROM {t}",
+                "SELECT 1 FROM {t} WHERE {c} IS NOT NULL",
+                "SELECT * FROM {t} ORDER BY {c}",
+                "SELECT count(*) FROM {t} GROUP BY {c}",
+                "SELECT first_value({c}) OVER () FROM {t}",
+                "SELECT * FROM {t} a JOIN {t} b ON a.{c} = b.{c}",
+                "WITH x AS (SELECT {c} FROM {t}) SELECT * FROM x",
+                "SELECT (SELECT {c} FROM {t} LIMIT 1)",
+            ];
+            ("refused sql_error", forms)
+        };
+        let statements = forms.iter().map(|form| form.replace("{t}", table).replace("{c}", column));
+        attacks.extend(statements.map(|sql| Attack { head: head.to_owned(), sql }));
+    }
+    assert!(attacks.len() > 700);
+    ask_all(&session.open_desk().expect("a desk"), &attacks, &[]);
+}
+
+#[test]
+fn a_query_that_takes_too_much_memory_is_stopped() {
+    let session = Session::create(NewRun { days: Some(60), ..NewRun::default() }, &Configuration::shipped())
+        .expect("a run");
+    let desk = session.open_desk().expect("a desk");
+    let limits = Limits { steps: None, ..LIMITS };
+    let sorted = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) \
+                  SELECT length(z) FROM (SELECT randomblob(1900000) AS z FROM n ORDER BY 1)";
+    let error = desk.ask(sorted, limits).expect_err("too much memory");
+    assert_eq!(error.code, "sql_timeout");
+    assert!(error.message.contains("memory"), "{}", error.message);
+    let wide = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT hex(zeroblob(1000000)) FROM n";
+    let error = desk.ask(wide, limits).expect_err("too large a result");
+    assert_eq!(error.code, "sql_error");
+    assert!(error.message.contains("MiB"), "{}", error.message);
+    desk.ask("SELECT 1", limits).expect("an answer");
+}

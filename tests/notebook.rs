@@ -83,9 +83,9 @@ fn calculations_run_before_the_week_and_stand_on_its_dashboard() {
     let long =
         "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 900) SELECT x FROM n";
     call(&mut session, "register_daily_calculation", json!({"name": "long", "code": long}));
-    assert!(!session.dashboard().contains("Weekly calculations"));
+    assert!(!session.dashboard().contains("Weekly Calculations"));
     let dashboard = week(&mut session);
-    let expected = "\n--- Weekly calculations ---\nmoney:\n  day  cash\n  0    1000000.0\nwrong:\n  failed: statement 1: there is no column c_max";
+    let expected = "\n--- Weekly Calculations ---\nmoney:\n  day  cash\n  0    1000000.0\nwrong:\n  failed: statement 1: there is no column c_max";
     assert!(dashboard.contains(expected), "{dashboard}");
     assert_eq!(session.calculated()[2].output.chars().count(), 500);
     call(&mut session, "remove_daily_calculation", json!({"name": "long"}));

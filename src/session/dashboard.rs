@@ -153,7 +153,7 @@ fn calculations_block(text: &mut String, calculated: &[Calculated]) {
     if calculated.is_empty() {
         return;
     }
-    let _ = writeln!(text, "\n--- Weekly calculations ---");
+    let _ = writeln!(text, "\n--- Weekly Calculations ---");
     for Calculated { name, output } in calculated {
         let _ = writeln!(text, "{name}:");
         output.lines().for_each(|line| {

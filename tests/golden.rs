@@ -18,7 +18,7 @@ fn policies_end_where_the_released_simulator_ends() {
     let output = command.output().expect("the program starts");
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
-    for policy in ["P0", "P1a", "P1b", "P6"] {
+    for policy in ["P0", "P1a", "P1b", "P6", "P8"] {
         assert!(said.contains(&format!("{policy} ")), "{policy} was not compared:\n{said}");
     }
 }

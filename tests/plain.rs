@@ -207,3 +207,40 @@ fn termination_at_the_prompt_leaves_at_once_with_everything_saved() {
     let (said, _) = play(runs.path(), &["--run", "latest"], "get_vars\nchanges\n");
     assert!(said.contains("price A: 0 → 12"), "{said}");
 }
+
+#[test]
+fn market_and_engine_tools_are_commands() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let lines = "market.research_market()\nresearch_group S1\nresearch_group(\"S1\", 3)\nget_market_overview\nget_group_insights E1\n\
+                 register_daily_calculation name=money code=\"SELECT sum(amount) AS cash FROM ledger\"\n\
+                 register_script(name=\"one\", code=\"SELECT 1 AS x\")\nrun_script one\nrun_script two\n\
+                 python_exec \"SELECT count(*) AS n FROM customers\"\npython_exec \"DROP TABLE ledger\"\n\
+                 list_scripts\ndescribe_tables predictions\nlist_all_tables\nget_tool_documentation set_prices\n\
+                 next naive\ndashboard\n";
+    let (text, code) = play(runs.path(), &["--json", "--days", "28", "--seed", "7"], lines);
+    assert_eq!(code, 0);
+    let said = objects(&text);
+    let by_line = |line: u64| {
+        said.iter()
+            .find(|object| object["line"].as_u64() == Some(line))
+            .unwrap_or_else(|| panic!("{line}:\n{text}"))
+    };
+    assert_eq!(by_line(1)["command"], "research_market");
+    assert_eq!(by_line(2)["data"]["expected_completion_day"], 3);
+    assert_eq!(by_line(3)["code"], "usage");
+    assert_eq!(by_line(4)["data"]["macroeconomic"], Value::Null);
+    assert_eq!(by_line(5)["data"]["noise"], "\u{b1}65%");
+    assert_eq!(by_line(6)["data"]["code_length"], 39);
+    assert_eq!(by_line(8)["data"]["stdout"], "x\n1\n");
+    assert_eq!(by_line(9)["code"], "script_not_found");
+    assert_eq!(by_line(10)["data"]["stdout"], "n\n1\n");
+    assert_eq!((&by_line(11)["code"], &by_line(11)["field"]), (&"script_failed".into(), &"code".into()));
+    assert_eq!(by_line(12)["data"]["scripts"][0], "one");
+    assert!(by_line(13)["data"]["tables"]["predictions"]["columns"]["submit_day"].is_string());
+    assert_eq!(by_line(14)["data"]["count"], 19);
+    assert_eq!(by_line(15)["data"]["set_prices"]["module"], "pricing");
+    let dashboard = by_line(17)["data"]["dashboard"].as_str().expect("text");
+    assert!(dashboard.contains("--- Weekly Calculations ---\nmoney:\n  cash\n  "), "{dashboard}");
+    let notices = by_line(16)["data"]["notifications"].to_string();
+    assert!(notices.contains("Study of group S1 complete: level 2"), "{notices}");
+}

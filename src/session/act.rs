@@ -9,8 +9,11 @@ use super::changes::{Change, changes, daily_cost};
 use super::error::RunError;
 use super::trajectory::Durability;
 use super::{JournalEntry, Session, UndoStep};
+use crate::notation::cents;
 use crate::tools::{Arguments, Kind, Refusal, Tool, View, find};
 use crate::world::effect::{Deed, Effect};
+use crate::world::enterprise::letters::Letter;
+use crate::world::events::Offering;
 use crate::world::settings::Settings;
 use crate::world::state::World;
 
@@ -77,6 +80,10 @@ impl Session {
                 preview.cost_now = f64::from(self.params.research(tier).cost);
                 preview.effect_day = Some(self.world.day + self.params.development.rd_min_duration_days);
             }
+            Effect::SendDeals(_) => {
+                preview.effect_day = Some(self.world.day + self.params.enterprise.reply_delay_min_days);
+            }
+            Effect::RejectDeals(_) => preview.effect_day = Some(self.world.day),
         }
         Ok(preview)
     }
@@ -144,6 +151,7 @@ impl Session {
             let (day, tool) = (self.world.day, spec.name.to_owned());
             self.journal.push(JournalEntry::Call { day, tool, args, undoes });
         }
+        self.this_week.done.extend(self.in_words(&deed));
         match &deed {
             Deed::None => return,
             Deed::Set(_) => {
@@ -151,16 +159,26 @@ impl Session {
                 let before = self.world.settings.clone();
                 self.this_week.undo.push(UndoStep { seq, tool: spec.name, before });
             }
-            Deed::StartResearch(project, _) => {
-                self.this_week.done.push(format!(
-                    "R&D project {} started, done on day {}",
-                    project.id(),
-                    project.due_day
-                ));
-            }
+            Deed::StartResearch(..) | Deed::SendDeals(_) | Deed::RejectDeals(_) => {}
         }
         self.world.apply(deed, &mut self.facts);
         self.after_call();
+    }
+
+    /// What cannot be taken back of a deed, in words.
+    fn in_words(&self, deed: &Deed) -> Vec<String> {
+        match deed {
+            Deed::None | Deed::Set(_) => Vec::new(),
+            Deed::StartResearch(project, _) => {
+                vec![format!("R&D project {} started, done on day {}", project.id(), project.due_day)]
+            }
+            Deed::SendDeals(letters) => letters.iter().map(letter_in_words).collect(),
+            Deed::RejectDeals(threads) => {
+                let ended = self.world.enterprise.threads.iter();
+                let ended = ended.filter(|thread| threads.contains(&thread.number));
+                ended.map(|thread| format!("talks with customer {} ended", thread.customer)).collect()
+            }
+        }
     }
 
     /// What follows every applied deed, live or replayed.
@@ -262,6 +280,12 @@ impl Session {
         let fields = CallFields { tool, arguments, via, took_ms: 0.0, undoes: None };
         let _ = self.record_call(fields.refused(refusal), Durability::Written);
     }
+}
+
+fn letter_in_words(letter: &Letter) -> String {
+    let offer = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
+    let offers: Vec<String> = letter.offerings.iter().map(offer).collect();
+    format!("customer {} offered {}", letter.customer, offers.join(", "))
 }
 
 /// The arguments that restore what a tool had set before.

@@ -2,6 +2,7 @@
 
 use super::Tool;
 use super::analytics::{SetTargetedDevSpend, SetTargetedOpsSpend};
+use super::enterprise::{RejectEnterpriseDeal, SendEnterpriseDeal};
 use super::infrastructure::{GetCostInfo, SetCapacityTier};
 use super::marketing::{SetAdsStrength, SetDailySpend, SetLeadPromotion, SetTargetedAdSpend};
 use super::pricing::{SetModelTiers, SetPrices, SetPromotion, SetUsageQuotas};
@@ -9,7 +10,7 @@ use super::research::{ListResearchProjects, StartResearchProject};
 use super::time::{GetVars, NextWeek, Query};
 
 /// All tools, in the order in which they are shown.
-pub static CATALOGUE: [&dyn Tool; 17] = [
+pub static CATALOGUE: [&dyn Tool; 19] = [
     &SetPrices,
     &SetModelTiers,
     &SetUsageQuotas,
@@ -24,6 +25,8 @@ pub static CATALOGUE: [&dyn Tool; 17] = [
     &ListResearchProjects,
     &SetCapacityTier,
     &GetCostInfo,
+    &SendEnterpriseDeal,
+    &RejectEnterpriseDeal,
     &NextWeek,
     &Query,
     &GetVars,

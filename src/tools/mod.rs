@@ -12,6 +12,7 @@ pub mod spec;
 pub mod view;
 
 mod analytics;
+mod enterprise;
 mod infrastructure;
 mod marketing;
 mod pricing;

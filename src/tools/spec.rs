@@ -47,18 +47,21 @@ pub enum Module {
     Research,
     /// Capacity and costs.
     Infrastructure,
+    /// Companies.
+    Enterprise,
     /// Time and data.
     Time,
 }
 
 impl Module {
     /// All modules in the order in which they are shown.
-    pub const ALL: [Module; 6] = [
+    pub const ALL: [Module; 7] = [
         Module::Pricing,
         Module::Marketing,
         Module::Analytics,
         Module::Research,
         Module::Infrastructure,
+        Module::Enterprise,
         Module::Time,
     ];
 
@@ -70,6 +73,7 @@ impl Module {
             Module::Analytics => "analytics",
             Module::Research => "research",
             Module::Infrastructure => "infrastructure",
+            Module::Enterprise => "enterprise",
             Module::Time => "time",
         }
     }
@@ -82,6 +86,8 @@ pub enum Kind {
     Setting,
     /// Spends money at once.
     Purchase,
+    /// Acts once and costs nothing.
+    OneShot,
     /// Reads.
     Read,
     /// Lets time pass.
@@ -94,6 +100,7 @@ impl Kind {
         match self {
             Kind::Setting => "setting",
             Kind::Purchase => "purchase",
+            Kind::OneShot => "one_shot",
             Kind::Read => "read",
             Kind::Time => "time",
         }
@@ -111,6 +118,8 @@ pub enum When {
     Now,
     /// After a delay that the answer states.
     AtCompletion,
+    /// When the customer answers.
+    CustomerReply,
     /// It changes nothing.
     Never,
 }
@@ -123,6 +132,7 @@ impl When {
             When::NextBilling => "next bill of each customer",
             When::Now => "at once",
             When::AtCompletion => "at completion",
+            When::CustomerReply => "when the customer answers",
             When::Never => "changes nothing",
         }
     }

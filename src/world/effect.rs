@@ -3,6 +3,7 @@
 //! The three steps are apart so that a tool call can be checked without consequence ([`Effect`]), recorded
 //! with its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
+use super::enterprise::letters::{Letter, Proposal};
 use super::events::{Category, Facts, LedgerEntry, LedgerNote, ResearchChange, SettingsChange};
 use super::params::Params;
 use super::product::research::{self, Project};
@@ -19,6 +20,10 @@ pub enum Effect {
     Set(SettingsChange),
     /// An R&D project of this tier is paid and started.
     StartResearch(u8),
+    /// Offerings go out to companies.
+    SendDeals(Vec<Proposal>),
+    /// Threads with companies are ended, by number.
+    RejectDeals(Vec<u32>),
 }
 
 /// A decided change whose draws are known.
@@ -31,6 +36,10 @@ pub enum Deed {
     Set(SettingsChange),
     /// An R&D project and its price in dollars.
     StartResearch(Project, f64),
+    /// Letters to companies.
+    SendDeals(Vec<Letter>),
+    /// Threads that are ended, by number.
+    RejectDeals(Vec<u32>),
 }
 
 impl World {
@@ -43,6 +52,14 @@ impl World {
                 let project = research::draw(&self.product, self.day, tier, params, streams);
                 Deed::StartResearch(project, f64::from(params.research(tier).cost))
             }
+            Effect::SendDeals(proposals) => Deed::SendDeals(self.enterprise.address(
+                &proposals,
+                self.day,
+                &self.customers,
+                params,
+                streams,
+            )),
+            Effect::RejectDeals(threads) => Deed::RejectDeals(threads),
         }
     }
 
@@ -62,6 +79,10 @@ impl World {
                 self.product.research.push(project);
                 facts.research.push(ResearchChange::Started(project));
             }
+            Deed::SendDeals(letters) => {
+                self.enterprise.send(&letters, self.day, &mut self.customers, facts);
+            }
+            Deed::RejectDeals(threads) => self.enterprise.reject(&threads, self.day, facts),
         }
     }
 }

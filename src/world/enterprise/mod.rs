@@ -17,7 +17,7 @@ mod triggers;
 #[cfg(test)]
 mod stories;
 #[cfg(test)]
-mod test_kit;
+pub(crate) mod test_kit;
 
 use std::collections::BTreeSet;
 

@@ -20,6 +20,25 @@ use crate::world::product::quality::TenureTable;
 use crate::world::random::Streams;
 use crate::world::settings::Settings;
 
+/// A company with plain values.
+pub(crate) fn company_of(group: Group, n: u32, customer: u32, standing: Standing) -> Company {
+    Company {
+        customer,
+        group,
+        n,
+        subscription: customer - 1,
+        negotiator: Negotiator {
+            reply_delay_mean: 3.0,
+            reply_delay_std: 0.0,
+            initial_offer_factor: 0.75,
+            max_negotiation_turns: 6,
+        },
+        persona: PersonaPicks::default(),
+        contract_end_day: 0,
+        standing,
+    }
+}
+
 /// Tiers 3, 4, 5, wide quotas, product quality 0.8 for everybody, nobody else in the world.
 pub(super) struct Kit {
     pub params: Params,
@@ -95,21 +114,12 @@ impl Kit {
 
     /// The company of K; `delay` days pass before it answers.
     pub fn company(&self, delay: f64, max_turns: u32) -> Company {
-        Company {
-            customer: 2,
-            group: self.group,
-            n: 1,
-            subscription: 1,
-            negotiator: Negotiator {
-                reply_delay_mean: delay,
-                reply_delay_std: 0.0,
-                initial_offer_factor: 0.75,
-                max_negotiation_turns: max_turns,
-            },
-            persona: PersonaPicks::default(),
-            contract_end_day: 0,
-            standing: Standing::Lead(self.row()),
-        }
+        let negotiator = Negotiator {
+            reply_delay_mean: delay,
+            max_negotiation_turns: max_turns,
+            ..company_of(self.group, 1, 2, Standing::Subscriber).negotiator
+        };
+        Company { negotiator, ..company_of(self.group, 1, 2, Standing::Lead(self.row())) }
     }
 
     /// Makes K a subscriber since day 3 at these terms, with a contract to day 33.

@@ -13,7 +13,7 @@ use crate::notation::json_number;
 use crate::tools::{self, Kind, Refusal};
 use crate::voice;
 use crate::world::day::step_day;
-use crate::world::events::{DayFigures, SubscriptionEnded, SubscriptionStatus};
+use crate::world::events::{DayFigures, Sender, SubscriptionEnded, SubscriptionStatus};
 use crate::world::market::surges::week_end;
 
 /// A day that was just simulated.
@@ -181,6 +181,8 @@ impl Session {
             week.threads_opened += 1;
             week.thread_seats += turn.seats;
         }
+        let replies = self.facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+        week.replies += replies.filter(|turn| turn.number > 0).count() as u32;
         let left = |ending: &&SubscriptionEnded| {
             ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
         };

@@ -170,6 +170,10 @@ fn inbox_block(text: &mut String, week: Option<&WeekFigures>, waiting: Waiting) 
             writeln!(text, "- {} new enterprise leads ({} seats)", week.threads_opened, week.thread_seats);
         lines += 1;
     }
+    if let Some(week) = week.filter(|week| week.replies > 0) {
+        let _ = writeln!(text, "- {} new replies", week.replies);
+        lines += 1;
+    }
     if waiting.threads > 0 {
         let _ = writeln!(
             text,
@@ -247,6 +251,7 @@ mod tests {
             seats_lost: 120,
             threads_opened: 2,
             thread_seats: 512,
+            replies: 3,
             ..WeekFigures::default()
         };
         let waiting = Waiting { threads: 2, days_left: 4 };
@@ -257,6 +262,7 @@ mod tests {
             "Cash Change: -$2,095",
             "Enterprise Lost: 1 companies, 120 seats",
             "- 2 new enterprise leads (512 seats)",
+            "- 3 new replies",
             "- 2 awaiting your response; the first is lost in 4 days",
         ] {
             assert!(text.contains(part), "{part} is missing in {text}");

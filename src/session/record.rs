@@ -11,18 +11,21 @@ use super::trajectory::Durability;
 use crate::database::Entry;
 use crate::voice;
 use crate::world::canonical::hash_of;
-use crate::world::events::Facts;
+use crate::world::events::{Facts, Sender};
 use crate::world::params::Params;
 use crate::world::state::{PartHash, World, combined_hash};
 
 /// Facts with the words that belong to them.
 pub(super) fn entry_of(facts: Facts, params: &Arc<Params>) -> Entry {
     let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
+    let writers = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+    let named = companies.map(|arrival| arrival.customer).chain(writers.map(|turn| turn.customer));
     Entry {
         notices: facts.notices.iter().map(voice::notice).collect(),
         readings: facts.readings.iter().map(voice::reading).collect(),
-        addresses: companies
-            .map(|arrival| (arrival.customer, voice::address(arrival.customer, &params.personas.email)))
+        turns: facts.turns.iter().map(|turn| voice::message(turn, &params.personas)).collect(),
+        addresses: named
+            .map(|customer| (customer, voice::address(customer, &params.personas.email)))
             .collect(),
         facts,
         ..Entry::default()

@@ -4,6 +4,7 @@ use super::Tool;
 use super::analytics::{SetTargetedDevSpend, SetTargetedOpsSpend};
 use super::calculations::{ListDailyCalculations, RegisterDailyCalculation, RemoveDailyCalculation};
 use super::documentation::{DescribeTables, GetToolDocumentation, ListAllTables};
+use super::enterprise::{RejectEnterpriseDeal, SendEnterpriseDeal};
 use super::infrastructure::{GetCostInfo, SetCapacityTier};
 use super::market::{GetGroupInsights, GetMarketOverview, ResearchGroup, ResearchMarket};
 use super::marketing::{SetAdsStrength, SetDailySpend, SetLeadPromotion, SetTargetedAdSpend};
@@ -13,7 +14,7 @@ use super::scripts::{DeleteScript, ListScripts, PythonExec, RegisterScript, RunS
 use super::time::{GetVars, NextWeek, Query};
 
 /// All tools, in the order in which they are shown.
-pub static CATALOGUE: [&dyn Tool; 32] = [
+pub static CATALOGUE: [&dyn Tool; 34] = [
     &SetPrices,
     &SetModelTiers,
     &SetUsageQuotas,
@@ -32,6 +33,8 @@ pub static CATALOGUE: [&dyn Tool; 32] = [
     &GetGroupInsights,
     &SetCapacityTier,
     &GetCostInfo,
+    &SendEnterpriseDeal,
+    &RejectEnterpriseDeal,
     &NextWeek,
     &PythonExec,
     &RegisterDailyCalculation,

@@ -16,6 +16,7 @@ pub mod view;
 mod analytics;
 mod calculations;
 mod documentation;
+mod enterprise;
 mod infrastructure;
 mod market;
 mod marketing;

@@ -369,6 +369,157 @@ fn set_capacity_tier() {
     assert_eq!(data, json!({"tier": 2, "capacity_units": 800000, "cost_per_day": 530}));
 }
 
+/// A company with two leads (customers 2 and 3), a subscriber (4), an individual (5), a lost lead (6).
+fn with_companies() -> Company {
+    use crate::world::customers::columns::tests::subscriber;
+    use crate::world::enterprise::Standing;
+    use crate::world::enterprise::test_kit::company_of;
+    let mut company = Company::new();
+    let (e1, s1) = (Group::parse("E1").expect("a group"), Group::parse("S1").expect("a group"));
+    let world = &mut company.world;
+    let mut facts = Facts::default();
+    world.customers.arrive(0, e1, 3);
+    world.customers.arrive(0, s1, 1);
+    world.customers.arrive(0, e1, 1);
+    let row =
+        |customer: u32, n| crate::world::customers::columns::Subscriber { customer, n, ..subscriber(n) };
+    for (customer, n) in [(2, 1), (3, 2)] {
+        let lead = company_of(e1, n, customer, Standing::Lead(row(customer, n)));
+        world.enterprise.open_lead(0, lead, &mut facts);
+    }
+    world.customers.groups[e1].activate(row(4, 3));
+    world.enterprise.companies.push(company_of(e1, 3, 4, Standing::Subscriber));
+    company
+}
+
+#[test]
+fn send_enterprise_deal() {
+    let mut company = with_companies();
+    let deal = |deals: Value| json!({ "deals": deals });
+    company.assert_refused(
+        "send_enterprise_deal",
+        &[
+            (json!({}), "deals_missing", "deals"),
+            (deal(json!([])), "deals_missing", "deals"),
+            (deal(json!("")), "deals_missing", "deals"),
+            (deal(json!([5])), "deal_malformed", "deals.0"),
+            (deal(json!("2: B 30")), "deal_malformed", "deals.0"),
+            (deal(json!([[2]])), "deal_malformed", "deals.0"),
+            (deal(json!([[null, [["B", 5]]]])), "customer_missing", "deals.0.customer_id"),
+            (deal(json!({"offerings": [["B", 5]]})), "customer_missing", "deals.0.customer_id"),
+            (deal(json!([[2, []]])), "offerings_missing", "deals.0.offerings"),
+            (deal(json!([[2, "B 30"]])), "offerings_missing", "deals.0.offerings"),
+            (deal(json!([{"customer_id": 2}])), "offerings_missing", "deals.0.offerings"),
+            (deal(json!([[2, [["B", 5], ["B"]]]])), "offering_short", "deals.0.offerings.1"),
+            (deal(json!([[2, [{"plan": "B"}]]])), "offering_no_price", "deals.0.offerings.0"),
+            (deal(json!([[2, ["B"]]])), "offering_malformed", "deals.0.offerings.0"),
+            (deal(json!([[2, [["D", 5]]]])), "offering_malformed", "deals.0.offerings.0"),
+            (deal(json!([[2, [["B", -1]]]])), "offering_malformed", "deals.0.offerings.0"),
+            (deal(json!([[2, [[4, 5]]]])), "offering_malformed", "deals.0.offerings.0"),
+            (deal(json!([[99, [["B", 5]]]])), "customer_not_found", "deals.0.customer_id"),
+            (deal(json!([[-3, [["B", 5]]]])), "customer_not_found", "deals.0.customer_id"),
+            (deal(json!([[5, [["B", 5]]]])), "not_enterprise", "deals.0.customer_id"),
+            (deal(json!([[1, [["B", 5]]]])), "not_enterprise", "deals.0.customer_id"),
+            (deal(json!([[6, [["B", 5]]]])), "no_subscription", "deals.0.customer_id"),
+            // Numbers that are none stop the whole call, whatever else it holds.
+            (
+                deal(json!([[2, [["B", 5]]], [3, [["B", "abc"]]]])),
+                "wrong_type",
+                "deals.1.offerings.0.price_per_seat",
+            ),
+            (deal(json!([[2.5, [["B", 5]]]])), "wrong_type", "deals.0.customer_id"),
+            (deal(json!([["two", [["B", 5]]]])), "wrong_type", "deals.0.customer_id"),
+            (deal(json!([[true, [["B", 5]]]])), "wrong_type", "deals.0.customer_id"),
+            (deal(json!([[2, [["B", "inf"]]]])), "wrong_type", "deals.0.offerings.0.price_per_seat"),
+            // Of several that all fail, the first one speaks.
+            (deal(json!([[99, [["B", 5]]], [2, []]])), "customer_not_found", "deals.0.customer_id"),
+        ],
+    );
+}
+
+/// Offerings of the newest turn of a customer's open thread.
+fn offered(company: &Company, customer: u32) -> Vec<(&'static str, f64)> {
+    let thread = company.world.enterprise.open_thread_of(customer).expect("an open thread");
+    thread.offerings().iter().map(|offering| (offering.plan.id(), offering.price)).collect()
+}
+
+#[test]
+fn deals_may_be_written_in_many_ways() {
+    for deals in [
+        json!([[2, [["B", 31.5]]]]),
+        json!([["2", [["B", "31.5", 12]]]]),
+        json!([{"customer_id": 2.0, "offerings": [{"plan": "B", "price_per_seat": 31.5}]}]),
+        json!({"customer_id": 2, "offerings": [{"plan": "B", "price": 31.5, "price_per_seat": 7}]}),
+        json!([[2, [{"price": 31.5}], "more"]]),
+    ] {
+        let mut company = with_companies();
+        let data = company.call("send_enterprise_deal", json!({ "deals": deals }));
+        assert_eq!(data, json!({"results": [{"customer_id": 2, "success": true}]}), "{deals}");
+        assert_eq!(offered(&company, 2), [("B", 31.5)], "{deals}");
+    }
+    let mut company = with_companies();
+    let whole = json!({"customer_id": 2, "offerings": [["C", 0]]});
+    company.call("enterprise.send_enterprise_deal", whole);
+    assert_eq!(offered(&company, 2), [("C", 0.0)]);
+}
+
+/// Check 14 of chapter 50.
+#[test]
+fn one_bad_deal_does_not_stop_the_others() {
+    let mut company = with_companies();
+    let four = json!([[2, [["A", 1], ["B", 2], ["C", 3], ["A", 4]]]]);
+    company.call("send_enterprise_deal", json!({ "deals": four }));
+    assert_eq!(offered(&company, 2), [("A", 1.0), ("B", 2.0), ("C", 3.0)]);
+    let mixed = json!([[999_999, [["B", 5]]], [3, [["B", "7.5"]]], [4, []], 8]);
+    let data = company.call("send_enterprise_deal", json!({ "deals": mixed }));
+    let expected = json!({"results": [
+        {"customer_id": 4, "error": "offerings required"},
+        {"error": "invalid format"},
+        {"customer_id": 999_999, "error": "not found"},
+        {"customer_id": 3, "success": true},
+    ]});
+    assert_eq!(data, expected);
+    assert_eq!(offered(&company, 3), [("B", 7.5)]);
+    let data = company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
+    assert_eq!(data["results"][0]["success"], true);
+    let thread = company.world.enterprise.open_thread_of(4).expect("a renegotiation");
+    assert_eq!((thread.kind.id(), thread.last().number), ("renegotiation", 0));
+}
+
+#[test]
+fn reject_enterprise_deal() {
+    let mut company = with_companies();
+    let deal = |deals: Value| json!({ "deals": deals });
+    company.assert_refused(
+        "reject_enterprise_deal",
+        &[
+            (json!({}), "deals_missing", "deals"),
+            (deal(json!([])), "deals_missing", "deals"),
+            (deal(json!([[2, 3]])), "deal_malformed", "deals.0"),
+            (deal(json!([true])), "deal_malformed", "deals.0"),
+            (deal(json!([{"customer": 2}])), "customer_missing", "deals.0.customer_id"),
+            (deal(json!([[null]])), "customer_missing", "deals.0.customer_id"),
+            (deal(json!([4])), "no_active_thread", "deals.0.customer_id"),
+            (deal(json!([77])), "no_active_thread", "deals.0.customer_id"),
+            (deal(json!([2, "x"])), "wrong_type", "deals.1.customer_id"),
+        ],
+    );
+    company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
+    let data = company.call("reject_enterprise_deal", deal(json!([2, {"customer_id": "4"}, [2], 3])));
+    let expected = json!({"results": [
+        {"customer_id": 2, "success": true},
+        {"customer_id": 4, "success": true},
+        {"customer_id": 2, "error": "no active thread"},
+        {"customer_id": 3, "success": true},
+    ]});
+    assert_eq!(data, expected);
+    // A rejected lead never comes back; a subscriber stays one.
+    let again = company.refused("send_enterprise_deal", json!({"deals": [[2, [["B", 5]]]]}));
+    assert_eq!(again.0, "no_subscription");
+    company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
+    assert_eq!(company.call("reject_enterprise_deal", deal(json!(4)))["results"][0]["success"], true);
+}
+
 #[test]
 fn readings_tell_what_they_should() {
     let mut company = Company::new();

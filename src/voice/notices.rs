@@ -11,6 +11,20 @@ pub fn notice(notice: &Notice) -> String {
         Notice::LeadLostByTimeout { days } => {
             format!("A company that asked for an offer got no answer for {days} days and has turned away.")
         }
+        Notice::LeadSilent => {
+            "A company that asked for an offer no longer answers; the talks are over.".to_owned()
+        }
+        Notice::CounterOffer { customer } => format!("Customer {customer} answers with a price of its own."),
+        Notice::ChurnThreat { customer } => format!(
+            "Customer {customer} threatens to leave and pays nothing until this is settled. It waits seven days for an answer."
+        ),
+        Notice::PlanWish { customer, upgrade } => {
+            let direction = if *upgrade { "higher" } else { "lower" };
+            format!(
+                "Customer {customer} asks for the price of a {direction} plan. It waits seven days for an answer."
+            )
+        }
+        Notice::DealWon { price } => format!("A deal was closed at ${price:.2} a seat and month."),
         Notice::ResearchComplete { tier, number } => format!("R&D complete: t{tier}_{number}"),
         Notice::EconomyUpdate(reading) => {
             let arrow = match reading.change {
@@ -50,6 +64,19 @@ mod tests {
             let text = notice(&Notice::StudyComplete { study, noise: 0.4 });
             assert_eq!(text, format!("Study of group D_S06 complete: level 2, \u{b1}40% (day 31, {words})"));
         }
+    }
+
+    #[test]
+    fn negotiations_say_what_chapter_40_lets_them_say() {
+        let leave = notice(&Notice::ChurnThreat { customer: 7 });
+        assert!(leave.starts_with("Customer 7 threatens to leave"), "{leave}");
+        let up = notice(&Notice::PlanWish { customer: 9, upgrade: true });
+        let down = notice(&Notice::PlanWish { customer: 9, upgrade: false });
+        assert!(up.contains("Customer 9") && up.contains("higher") && down.contains("lower"));
+        assert!(notice(&Notice::CounterOffer { customer: 12 }).contains("Customer 12"));
+        assert_eq!(notice(&Notice::DealWon { price: 33.5 }), "A deal was closed at $33.50 a seat and month.");
+        assert!(notice(&Notice::LeadLostByTimeout { days: 7 }).contains("7 days"));
+        assert!(!notice(&Notice::LeadSilent).contains(char::is_numeric));
     }
 
     #[test]

@@ -1,8 +1,7 @@
 //! A day, as a list: read [`step_day`] from top to bottom (specification, chapter 20 §5).
 
-use std::collections::BTreeSet;
-
 use super::customers::Customers;
+use super::enterprise::Negotiation;
 use super::events::{Category, DayFigures, Facts, LedgerEntry, LedgerNote};
 use super::finance::{Finance, pay_running_costs};
 use super::identifiers::{ByGroup, ByPlan, Group, Plan};
@@ -37,6 +36,8 @@ pub struct Morning {
     pub multipliers: ByPlan<f64>,
     /// Product quality by group before the multiplier.
     pub product: ByGroup<f64>,
+    /// Product quality before the multiplier and without what was done for single groups.
+    pub shared_quality: f64,
     /// What the market adds to curves.
     pub expectations: ByGroup<Expectation>,
     /// Active subscriptions.
@@ -55,6 +56,7 @@ impl Morning {
             quotas: ByPlan::from_fn(|plan| core.quotas[plan] as f64),
             multipliers: ByPlan::from_fn(|plan| params.model(core.tiers[plan]).quality_multiplier),
             product: ByGroup::from_fn(|group| world.product.quality(group, params)),
+            shared_quality: params.quality.base_product_quality + world.product.shared_bonus,
             expectations: ByGroup::from_fn(|group| world.market.drift.expectation(group)),
             subscribers: world.customers.active(),
         }
@@ -130,7 +132,18 @@ pub fn step_day(
         streams,
     };
     let renewals = renewal::decide(customers, &mut market.reputation, &judgement, facts);
-    enterprise.time_out(day, params, facts);
+    let talks = Negotiation {
+        morning: &morning,
+        settings,
+        product,
+        drift: &market.drift,
+        service_penalty: penalty,
+        ads: &ads,
+        tenure: &tenure,
+        params,
+        streams,
+    };
+    let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts);
     let knowledge = market.knowledge;
     reputation::contribute(&mut market.reputation, &moods, |group| knowledge[group].level >= 1, params);
 
@@ -142,8 +155,8 @@ pub fn step_day(
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;
 
     // Money changes hands.
-    let suspended = BTreeSet::new();
-    let bill = billing::Terms { morning: &morning, settings, suspended: &suspended, params, streams };
+    let suspended = &negotiated.suspended;
+    let bill = billing::Terms { morning: &morning, settings, suspended, params, streams };
     let received = billing::collect(customers, &bill, facts);
     finance.cash += received;
     let costs = pay_running_costs(finance, &metered, &morning, settings, params, facts);
@@ -161,7 +174,7 @@ pub fn step_day(
         new_individual_leads: leads.individuals,
         new_enterprise_leads: leads.companies,
         new_individual_subscribers: leads.subscribed,
-        new_enterprise_seats: 0,
+        new_enterprise_seats: negotiated.new_seats,
         cancellations: renewals.cancellations,
         upgrades: renewals.upgrades,
         downgrades: renewals.downgrades,
@@ -225,6 +238,7 @@ pub(crate) mod tests {
             quotas: ByPlan([0.0; 3]),
             multipliers: ByPlan([0.6; 3]),
             product: ByGroup::from_fn(|_| 0.2),
+            shared_quality: 0.2,
             expectations: ByGroup::default(),
             subscribers: ByGroup::default(),
         }

@@ -3,6 +3,7 @@
 //! The three steps are apart so that a tool call can be checked without consequence ([`Effect`]), recorded
 //! with its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
+use super::enterprise::letters::{Letter, Proposal};
 use super::events::{Category, Facts, LedgerEntry, LedgerNote, Notice, ResearchChange, SettingsChange};
 use super::identifiers::Group;
 use super::market::discovery::Attempt;
@@ -29,6 +30,10 @@ pub enum Effect {
     ResearchGroup(Group, u8),
     /// Nothing changes, but the estimates of a group have errors that are drawn.
     ReadInsights(Group),
+    /// Offerings go out to companies.
+    SendDeals(Vec<Proposal>),
+    /// Threads with companies are ended, by number.
+    RejectDeals(Vec<u32>),
 }
 
 /// A decided change whose draws are known.
@@ -47,6 +52,10 @@ pub enum Deed {
     ResearchGroup(Study, f64),
     /// Nothing changes; the estimates of a group, none if it is not known.
     ReadInsights(Option<Box<Insights>>),
+    /// Letters to companies.
+    SendDeals(Vec<Letter>),
+    /// Threads that are ended, by number.
+    RejectDeals(Vec<u32>),
 }
 
 impl Deed {
@@ -74,6 +83,14 @@ impl World {
             Effect::ReadInsights(group) => {
                 Deed::ReadInsights(insights(group, &self.market, params, streams).map(Box::new))
             }
+            Effect::SendDeals(proposals) => Deed::SendDeals(self.enterprise.address(
+                &proposals,
+                self.day,
+                &self.customers,
+                params,
+                streams,
+            )),
+            Effect::RejectDeals(threads) => Deed::RejectDeals(threads),
         }
     }
 
@@ -100,6 +117,10 @@ impl World {
                     .book(LedgerEntry { category: Category::GroupResearch, amount: -cost, note }, facts);
                 self.market.studies.push(study);
             }
+            Deed::SendDeals(letters) => {
+                self.enterprise.send(&letters, self.day, &mut self.customers, facts);
+            }
+            Deed::RejectDeals(threads) => self.enterprise.reject(&threads, self.day, facts),
         }
     }
 }

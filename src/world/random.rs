@@ -71,6 +71,12 @@ parts! {
     Macro = "macro",
     /// (day): test, size, feedback and drains of a competitor event.
     CompetitorEvent = "competitor_event",
+    /// (thread, turn): days until a company answers an offer.
+    ReplyDelay = "reply_delay",
+    /// (group, n): misjudged quality of a company in its first negotiation.
+    NegotiationNoise = "negotiation_noise",
+    /// (day, group, n): whether a company asks for another plan.
+    PlanChange = "plan_change",
 }
 
 /// The random streams of one run.

@@ -128,6 +128,30 @@ pub enum Notice {
         /// Days since its last turn.
         days: u32,
     },
+    /// A company that asked for an offer fell silent.
+    LeadSilent,
+    /// A company names a price.
+    CounterOffer {
+        /// The company.
+        customer: u32,
+    },
+    /// A customer threatens to leave.
+    ChurnThreat {
+        /// The company.
+        customer: u32,
+    },
+    /// A customer asks for another plan.
+    PlanWish {
+        /// The company.
+        customer: u32,
+        /// For a higher one.
+        upgrade: bool,
+    },
+    /// A deal was closed at this price, dollars a month and seat.
+    DealWon {
+        /// Price.
+        price: f64,
+    },
     /// An R&D project is finished.
     ResearchComplete {
         /// Tier, 1..=20.
@@ -157,8 +181,12 @@ impl Notice {
     /// Type as the tables write it.
     pub fn kind(&self) -> &'static str {
         match self {
-            Notice::EnterpriseLead => "large_customer_message",
-            Notice::LeadLostByTimeout { .. } => "lead_lost",
+            Notice::EnterpriseLead
+            | Notice::CounterOffer { .. }
+            | Notice::ChurnThreat { .. }
+            | Notice::PlanWish { .. } => "large_customer_message",
+            Notice::LeadLostByTimeout { .. } | Notice::LeadSilent => "lead_lost",
+            Notice::DealWon { .. } => "deal_won",
             Notice::ResearchComplete { .. } => "research_complete",
             Notice::EconomyUpdate(_) => "macro_economic_update",
             Notice::GroupFound { .. } => "market_discovery",
@@ -176,6 +204,11 @@ impl Canonical for Notice {
             Notice::EconomyUpdate(reading) => (3u8, reading).feed(hasher),
             Notice::GroupFound { group, attempt } => (4u8, (group, attempt)).feed(hasher),
             Notice::StudyComplete { study, noise } => (5u8, (study, noise)).feed(hasher),
+            Notice::LeadSilent => 10u8.feed(hasher),
+            Notice::CounterOffer { customer } => (11u8, customer).feed(hasher),
+            Notice::ChurnThreat { customer } => (12u8, customer).feed(hasher),
+            Notice::PlanWish { customer, upgrade } => (13u8, (customer, upgrade)).feed(hasher),
+            Notice::DealWon { price } => (14u8, price).feed(hasher),
         }
     }
 }

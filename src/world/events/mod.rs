@@ -17,7 +17,7 @@ pub use customers::{
 };
 pub use figures::DayFigures;
 pub use money::{Category, LedgerEntry, LedgerNote, Payment};
-pub use threads::{Sender, ThreadKind, ThreadTurn};
+pub use threads::{DealClosed, Offering, Sender, ThreadKind, ThreadTurn, TurnContent};
 
 use super::canonical::canonical;
 use super::identifiers::Group;
@@ -56,6 +56,8 @@ pub struct Facts {
     pub changes: Vec<TermsChanged>,
     /// Turns of enterprise threads.
     pub turns: Vec<ThreadTurn>,
+    /// Deals with companies.
+    pub deals: Vec<DealClosed>,
     /// Leads by paid channel and group.
     pub channel_leads: Vec<ChannelLeads>,
     /// New customers.
@@ -75,7 +77,7 @@ pub struct Facts {
 canonical! {
     Facts {
         day, settings, usage, service, research, attempts, knowledge, readings, issues_resolved, issues_aged, issues_opened, endings,
-        changes, turns, channel_leads, arrivals, openings, payments, ledger, ads_revenue, notices,
+        changes, turns, deals, channel_leads, arrivals, openings, payments, ledger, ads_revenue, notices,
     }
 }
 
@@ -97,6 +99,7 @@ impl Facts {
             endings,
             changes,
             turns,
+            deals,
             channel_leads,
             arrivals,
             openings,
@@ -118,6 +121,7 @@ impl Facts {
         endings.clear();
         changes.clear();
         turns.clear();
+        deals.clear();
         channel_leads.clear();
         arrivals.clear();
         openings.clear();

@@ -2,6 +2,7 @@
 //! draws, remembers, or touches a number of the world.
 
 pub mod address;
+pub mod grammar;
 pub mod notices;
 pub mod readings;
 

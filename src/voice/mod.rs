@@ -3,6 +3,7 @@
 
 pub mod address;
 pub mod grammar;
+pub mod judge;
 pub mod notices;
 pub mod readings;
 

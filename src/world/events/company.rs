@@ -1,6 +1,7 @@
 //! The company and its environment: settings, service, research, notifications.
 
 use crate::world::canonical::{Canonical, CanonicalHasher, canonical};
+use crate::world::identifiers::Group;
 use crate::world::market::economy::Reading;
 use crate::world::product::research::Project;
 use crate::world::settings::{
@@ -8,6 +9,7 @@ use crate::world::settings::{
 };
 
 canonical! {
+    Reaction { post, views, mean, strongest }
     ServiceDay { total_usage, overload, outage, downtime_minutes, p95_ms, error_rate, capacity_tier, capacity_units }
 }
 
@@ -135,6 +137,21 @@ pub enum Notice {
     },
     /// A reading of the economy was published.
     EconomyUpdate(Reading),
+    /// A post of the player was read.
+    OwnPostSeen(Reaction),
+}
+
+/// How the public took a post of the player.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reaction {
+    /// Number of the post.
+    pub post: u32,
+    /// How often it was seen.
+    pub views: u64,
+    /// Mean reaction of the groups that judged it, -1..=1.
+    pub mean: f64,
+    /// The strongest reactions, the strongest first.
+    pub strongest: [Option<(Group, f64)>; 3],
 }
 
 impl Notice {
@@ -145,6 +162,7 @@ impl Notice {
             Notice::LeadLostByTimeout { .. } => "lead_lost",
             Notice::ResearchComplete { .. } => "research_complete",
             Notice::EconomyUpdate(_) => "macro_economic_update",
+            Notice::OwnPostSeen(_) => "social_media",
         }
     }
 }
@@ -156,6 +174,7 @@ impl Canonical for Notice {
             Notice::LeadLostByTimeout { days } => (1u8, days).feed(hasher),
             Notice::ResearchComplete { tier, number } => (2u8, (tier, number)).feed(hasher),
             Notice::EconomyUpdate(reading) => (3u8, reading).feed(hasher),
+            Notice::OwnPostSeen(reaction) => (20u8, reaction).feed(hasher),
         }
     }
 }

@@ -5,7 +5,6 @@ pub mod competitors;
 pub mod drift;
 pub mod economy;
 pub mod leads;
-pub mod posts;
 pub mod reputation;
 pub mod social;
 pub mod surges;
@@ -14,6 +13,7 @@ pub mod yields;
 use super::canonical::canonical;
 use super::identifiers::{ByChannel, ByGroup, Group};
 use super::params::Params;
+use super::settings::Settings;
 
 /// The hidden state of the market.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +32,8 @@ pub struct Market {
     pub surges: Vec<surges::Surge>,
     /// What the company knows about each group.
     pub knowledge: ByGroup<Knowledge>,
-    /// Reactions to the company's posts.
-    pub own_posts: Vec<social::OwnPost>,
+    /// Social media.
+    pub social: social::Social,
 }
 
 /// What the company knows about a group.
@@ -48,7 +48,7 @@ pub struct Knowledge {
 }
 
 canonical! {
-    Market { reputation, drift, yields, economy, competitors, surges, knowledge, own_posts }
+    Market { reputation, drift, yields, economy, competitors, surges, knowledge, social }
     Knowledge { level, discovered_day, last_research_day }
 }
 
@@ -76,7 +76,7 @@ impl Market {
             competitors: Vec::new(),
             surges: Vec::new(),
             knowledge: ByGroup::from_fn(knowledge),
-            own_posts: Vec::new(),
+            social: social::Social::opening(&Settings::opening(params)),
         }
     }
 

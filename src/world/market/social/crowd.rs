@@ -1,0 +1,246 @@
+//! Customers' posts: who is picked among everybody who may post (chapter 30 §5.2, §5.3, steps 17 and 22).
+//!
+//! Drawing one after the other without replacement, each by its weight among those left, is the order of arrival
+//! in a race of exponential clocks with these weights as their rates. So the first of the subscribers are drawn
+//! while all of them are still there, and those who leave later in the day join the race with clocks of their own.
+
+use rayon::prelude::*;
+
+use super::Social;
+use super::engagement::draw_engagement;
+use super::opinions::Scene;
+use super::sentiment::{Sentiment, sentiment};
+use super::weights::{cancelled_weight, lost_company_weight, post_weight};
+use crate::world::customers::Customers;
+use crate::world::customers::columns::Block;
+use crate::world::customers::traits::draw_traits;
+use crate::world::events::{Cause, Facts, Matter, Opinion, PostAuthor, Theme, ThreadKind, Troubles};
+use crate::world::identifiers::{Group, Plan};
+use crate::world::params::{CustomerPosts, Params};
+use crate::world::random::{Part, Stream, Streams};
+
+/// An individual who gave up today because no plan was acceptable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GaveUp {
+    /// Customer number.
+    pub customer: u32,
+    /// Group.
+    pub group: Group,
+    /// Running number within the group.
+    pub n: u32,
+    /// Satisfaction after today's update.
+    pub satisfaction: f64,
+    /// Days subscribed.
+    pub days_subscribed: u32,
+    /// Plan it leaves.
+    pub plan: Plan,
+    /// Price it paid, dollars a month.
+    pub price: f64,
+}
+
+/// A company that was a customer and was lost today to a negotiation (chapter 40 §14.3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LostCompany {
+    /// Customer number.
+    pub customer: u32,
+    /// Group.
+    pub group: Group,
+    /// Running number within the group.
+    pub n: u32,
+    /// Whole seats.
+    pub seats: u32,
+    /// Days subscribed, where known.
+    pub days_subscribed: Option<u32>,
+    /// How the negotiation began.
+    pub thread: ThreadKind,
+    /// Nobody answered the company; otherwise it fell silent itself.
+    pub unanswered: bool,
+}
+
+/// Satisfaction before today's update, block by block; none on a day without customers' posts.
+pub struct Before(Vec<Vec<f64>>);
+
+/// Whether customers are heard on a day.
+pub fn is_posting_day(day: u32, params: &Params) -> bool {
+    match params.fidelity.customer_posts {
+        CustomerPosts::Weekly => day.is_multiple_of(params.run.days_per_week),
+        CustomerPosts::Daily => true,
+    }
+}
+
+/// Remembers moods before they move, if customers are heard today.
+pub fn remember(day: u32, customers: &Customers, params: &Params) -> Option<Before> {
+    let moods = || customers.blocks().map(|(_, block)| block.satisfaction.clone()).collect();
+    is_posting_day(day, params).then(|| Before(moods()))
+}
+
+/// Somebody who wants to post.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    /// When its clock rings.
+    time: f64,
+    customer: u32,
+    group: Group,
+    n: u32,
+    /// Satisfaction that decides the tone; none: always a complaint.
+    satisfaction: Option<f64>,
+    opinion: Opinion,
+}
+
+/// The race for the posts of a day.
+pub struct Crowd {
+    stream: Stream,
+    candidates: Vec<Candidate>,
+    places: usize,
+}
+
+/// Starts the race among all subscribers, right after their moods have moved.
+pub fn listen(
+    before: Option<Before>,
+    customers: &Customers,
+    scene: &Scene<'_>,
+    streams: &Streams,
+) -> Option<Crowd> {
+    let Before(before) = before?;
+    let mut stream = streams.open(Part::CustomerPosts, [u64::from(scene.morning.day)]);
+    let places = scene.params.social.max_posts_per_day as usize;
+    let blocks: Vec<(Group, &Block)> = customers.blocks().collect();
+    let weigh = |(group, block): &(Group, &Block), moods: &Vec<f64>| -> f64 {
+        (0..block.len()).map(|at| weight(scene, *group, block, at, moods[at])).sum()
+    };
+    let jobs = blocks.par_iter().zip(&before).with_min_len(4);
+    let mut sums: Vec<f64> = jobs.map(|(block, moods)| weigh(block, moods)).collect();
+    let mut picked: Vec<(usize, usize)> = Vec::new();
+    let (mut candidates, mut time) = (Vec::new(), 0.0);
+    while candidates.len() < places {
+        let total: f64 = sums.iter().sum();
+        if total <= 0.0 {
+            break;
+        }
+        time += stream.exponential(1.0 / total);
+        let target = stream.uniform() * total;
+        let taken = |number: usize, at: usize| picked.contains(&(number, at));
+        let Some((number, at)) = find(&blocks, &before, &sums, target, scene, taken) else { break };
+        picked.push((number, at));
+        let (group, block) = blocks[number];
+        let mood = before[number][at];
+        sums[number] = (sums[number] - weight(scene, group, block, at, mood)).max(0.0);
+        candidates.push(Candidate {
+            time,
+            customer: block.customer[at],
+            group,
+            n: block.n[at],
+            satisfaction: Some(block.satisfaction[at]),
+            opinion: scene.opinion(group, block, at, mood, stream.uniform()),
+        });
+    }
+    Some(Crowd { stream, candidates, places })
+}
+
+fn weight(scene: &Scene<'_>, group: Group, block: &Block, at: usize, before: f64) -> f64 {
+    post_weight(&scene.loudness(group, block, at, before), &scene.params.social)
+}
+
+/// The row at which the running sum of the weights of those not yet taken passes the target; the last one where
+/// rounding lets the target pass them all.
+fn find(
+    blocks: &[(Group, &Block)],
+    before: &[Vec<f64>],
+    sums: &[f64],
+    mut target: f64,
+    scene: &Scene<'_>,
+    taken: impl Fn(usize, usize) -> bool,
+) -> Option<(usize, usize)> {
+    let mut last = None;
+    for (number, (group, block)) in blocks.iter().enumerate() {
+        if sums[number] <= 0.0 {
+            continue;
+        }
+        let rows = (0..block.len()).filter(|at| !taken(number, *at));
+        if target >= sums[number] {
+            target -= sums[number];
+            last = rows.last().map(|at| (number, at)).or(last);
+            continue;
+        }
+        for at in rows {
+            last = Some((number, at));
+            target -= weight(scene, *group, block, at, before[number][at]);
+            if target < 0.0 {
+                return last;
+            }
+        }
+    }
+    last
+}
+
+impl Crowd {
+    /// Those who gave up and the companies that were lost join the race.
+    pub fn join(&mut self, gave_up: &[GaveUp], lost: &[LostCompany], params: &Params) {
+        let law = &params.social;
+        for own in gave_up {
+            let weight = cancelled_weight(own.satisfaction, 1.0, law);
+            let theme = if own.satisfaction < 0.0 { Theme::Quality } else { Theme::Price };
+            let opinion = Opinion {
+                cause: Cause::Cancelled,
+                troubles: Troubles::default(),
+                theme,
+                days_subscribed: own.days_subscribed,
+                plan: Some(own.plan),
+                price: own.price,
+                seats: 1,
+                waiting_days: 0,
+                downtime_minutes: 0,
+            };
+            self.enter(weight, own.customer, own.group, own.n, opinion);
+        }
+        for own in lost {
+            let weight = lost_company_weight(f64::from(own.seats), law);
+            let opinion = Opinion {
+                cause: Cause::Lost { thread: own.thread, unanswered: own.unanswered },
+                troubles: Troubles::default(),
+                theme: Theme::Support,
+                days_subscribed: own.days_subscribed.unwrap_or(law.enterprise_churn_event_fallback_days),
+                plan: None,
+                price: 0.0,
+                seats: own.seats,
+                waiting_days: 0,
+                downtime_minutes: 0,
+            };
+            self.enter(weight, own.customer, own.group, own.n, opinion);
+        }
+    }
+
+    fn enter(&mut self, weight: f64, customer: u32, group: Group, n: u32, opinion: Opinion) {
+        let time = self.stream.exponential(1.0 / weight);
+        self.candidates.push(Candidate { time, customer, group, n, satisfaction: None, opinion });
+    }
+
+    /// The first ones post.
+    pub fn publish(mut self, social: &mut Social, params: &Params, streams: &Streams, facts: &mut Facts) {
+        self.candidates.sort_by(|one, other| one.time.total_cmp(&other.time));
+        self.candidates.truncate(self.places);
+        for own in self.candidates {
+            let u = self.stream.uniform();
+            // Those who have left always complain.
+            let tone =
+                own.satisfaction.map_or(Sentiment::Negative, |mood| sentiment(mood, u, &params.social));
+            let engagement = draw_engagement(tone, own.group.id(), params, &mut self.stream);
+            let author = author_of(own.customer, own.group, own.n, own.opinion.seats, params, streams);
+            social.publish(Some(author), tone, engagement, Matter::Opinion(own.opinion), facts);
+        }
+    }
+}
+
+/// A customer as an author, with the profile that was drawn at its arrival.
+pub fn author_of(
+    customer: u32,
+    group: Group,
+    n: u32,
+    seats: u32,
+    params: &Params,
+    streams: &Streams,
+) -> PostAuthor {
+    // Nothing of the profile depends on the speed of deals.
+    let persona = draw_traits(group, n, 1.0, params, streams).persona;
+    PostAuthor { customer, group, n, persona, company: if group.is_enterprise() { seats } else { 0 } }
+}

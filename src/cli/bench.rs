@@ -1,5 +1,7 @@
 //! `novamind bench`: the speed of this machine's simulator.
 
+mod console;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -19,7 +21,7 @@ pub struct Options {
     #[arg(long, default_value = "5", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
     runs: u32,
     /// Only this case; may be repeated.
-    #[arg(long, value_name = "NAME", value_parser = CASES.iter().map(|case| case.name).collect::<Vec<_>>())]
+    #[arg(long, value_name = "NAME", value_parser = every_case().map(|case| case.name).collect::<Vec<_>>())]
     only: Vec<String>,
     /// One repetition, and nothing that takes minutes.
     #[arg(long, conflicts_with = "runs")]
@@ -35,6 +37,11 @@ pub struct Options {
     measure: bool,
 }
 
+/// Everything that is measured.
+fn every_case() -> impl Iterator<Item = &'static Case> {
+    CASES.iter().chain(console::CASES)
+}
+
 impl Options {
     fn repetitions(&self) -> usize {
         if self.quick { 1 } else { self.runs as usize }
@@ -44,7 +51,7 @@ impl Options {
         let named = |case: &&Case| self.only.iter().any(|name| name == case.name);
         let asked_for =
             |case: &&Case| if self.only.is_empty() { !(self.quick && case.long) } else { named(case) };
-        CASES.iter().filter(asked_for).collect()
+        every_case().filter(asked_for).collect()
     }
 }
 

@@ -2,7 +2,6 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
 use super::action::Action;
@@ -14,7 +13,7 @@ use super::screens::{Look, ScreenId};
 use super::text::short_dollars;
 use super::theme::Role;
 use super::widgets::spark::bar;
-use crate::notation::{dollars, grouped};
+use crate::notation::{compact, dollars, grouped};
 use crate::session::Ended;
 
 /// Smallest window that is drawn.
@@ -86,30 +85,37 @@ fn draw_top(canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
     let poor = seen.runway_weeks.is_some_and(|weeks| weeks < 8.0);
     let wide = row.width >= 110;
     let money = |value: f64| if wide { dollars(value) } else { short_dollars(value) };
+    let count = |value: u32| if wide { grouped(f64::from(value), 0) } else { compact(f64::from(value)) };
     let moved = format!("{} {}", if change < 0.0 { "▼" } else { "▲" }, money(change.abs()));
-    let mut pieces: Vec<Span<'_>> = vec![
-        canvas.span(" NovaMind  ", Role::Title),
-        canvas.span(
-            format!("day {}/{} · wk {}/{}   ", seen.day, seen.last_day, seen.week, seen.last_day.div_ceil(7)),
-            Role::Text,
-        ),
-        canvas.span(format!("cash {}", money(seen.cash)), if poor { Role::Warning } else { Role::Strong }),
-        canvas.span(format!(" {moved}"), if change < 0.0 { Role::Bad } else { Role::Good }),
-        canvas.span(format!("   runway {runway}"), if poor { Role::Warning } else { Role::Text }),
-        canvas.span(format!("   subs {}", grouped(f64::from(seen.subscribers), 0)), Role::Text),
+    let pieces = [
+        (" NovaMind".to_owned(), Role::Title),
+        (format!("  day {}/{}", seen.day, seen.last_day), Role::Text),
+        (format!(" · wk {}/{}", seen.week, seen.last_day.div_ceil(7)), Role::Text),
+        (format!("   cash {}", money(seen.cash)), if poor { Role::Warning } else { Role::Strong }),
+        (format!(" {moved}"), if change < 0.0 { Role::Bad } else { Role::Good }),
+        (format!("   runway {runway}"), if poor { Role::Warning } else { Role::Text }),
+        (format!("   subs {}", count(seen.subscribers)), Role::Text),
+        (format!("   seats {}", count(seen.seats)), Role::Text),
     ];
-    if row.width >= 90 {
-        pieces.push(canvas.span(format!("   seats {}", grouped(f64::from(seen.seats), 0)), Role::Text));
-    }
-    canvas.line(row, &Line::from(pieces));
     let state = match seen.ended {
         None => seen.mode.id().to_uppercase(),
         Some(Ended::Horizon) => "FINISHED".to_owned(),
         Some(Ended::Bankruptcy) => "BANKRUPT".to_owned(),
         Some(Ended::Abandoned) => "GIVEN UP".to_owned(),
     };
-    let place = Rect { x: row.right().saturating_sub(10), width: 10, ..row };
-    canvas.aligned(place, &format!("{state} "), Role::Title, Align::Right);
+    let state = format!("{state} ");
+    let width = (state.width() as u16).min(row.width);
+    let mut left = Rect { width: row.width - width, ..row };
+    for (piece, role) in pieces {
+        // Half a figure would be a wrong one.
+        let taken = piece.width() as u16;
+        if taken + 1 > left.width {
+            break;
+        }
+        canvas.text(left, &piece, role);
+        left = Rect { x: left.x + taken, width: left.width - taken, ..left };
+    }
+    canvas.aligned(Rect { x: row.right() - width, width, ..row }, &state, Role::Title, Align::Right);
 }
 
 fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
@@ -184,6 +190,13 @@ fn actions_shown(app: &App) -> Vec<Action> {
         if !typing {
             actions.extend(always);
         }
+        let mut seen = Vec::new();
+        actions.retain(|action| {
+            !seen.contains(action) && {
+                seen.push(*action);
+                true
+            }
+        });
     }
     actions
 }

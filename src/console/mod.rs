@@ -17,6 +17,7 @@ pub mod keys;
 pub mod message;
 pub mod readings;
 pub mod screens;
+pub mod speed;
 mod terminal;
 #[cfg(test)]
 mod test_kit;

@@ -14,7 +14,7 @@ use crate::console::screens::{Look, overview};
 use crate::console::text::{number, short_dollars, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::chart::zero_if_near;
-use crate::console::widgets::field::parse_number;
+use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::console::widgets::{Axis, Editor, Field, Line, chart};
 use crate::notation::{dollars, grouped, percent};
 use crate::session::Forecasts;
@@ -242,7 +242,7 @@ impl Dialog for Filing {
                 self.problem = None;
             }
             Step::Forecasts if self.typing => {
-                self.cell().key(key);
+                self.problem = (!self.cell().number_key(key)).then(|| ONLY_NUMBERS.to_owned());
                 self.naive = false;
             }
             Step::Forecasts => {

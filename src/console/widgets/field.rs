@@ -61,6 +61,15 @@ impl Field {
         true
     }
 
+    /// Does what a key does in a field for a number; false if no number has such a letter.
+    pub fn number_key(&mut self, key: &KeyEvent) -> bool {
+        let plain = !key.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT);
+        match key.code {
+            KeyCode::Char(letter) if plain && !in_a_number(letter) => false,
+            _ => self.key(key),
+        }
+    }
+
     /// Puts text at the cursor; line ends become blanks.
     pub fn insert(&mut self, text: &str) {
         let clean: String =
@@ -117,6 +126,14 @@ impl Field {
         let before = pieces[from..self.cursor].concat().width() as u16;
         canvas.cursor = Some(Position::new((area.x + before).min(area.right() - 1), area.y));
     }
+}
+
+/// Said where a number is typed and something else came.
+pub const ONLY_NUMBERS: &str = "this is a number: 1200, 1.5k, 2M; esc leaves the field";
+
+fn in_a_number(letter: char) -> bool {
+    letter.is_ascii_digit()
+        || matches!(letter, '.' | ',' | '_' | '-' | '+' | '$' | 'e' | 'E' | 'k' | 'K' | 'm' | 'M')
 }
 
 /// Reads a number as people type it: `1,200`, `$3.5k`, `2M`, `1_000`.
@@ -184,6 +201,8 @@ mod tests {
             ("12 x", None),
         ] {
             assert_eq!(parse_number(text), number, "{text}");
+            let typed = text.chars().all(|letter| in_a_number(letter) || letter == ' ');
+            assert!(typed || number.is_none(), "{text} can be typed");
         }
     }
 }

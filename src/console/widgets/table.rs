@@ -11,6 +11,9 @@ use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, fit};
 use crate::console::theme::Role;
 
+/// Narrowest part of a column of words that is worth showing.
+const LEAST_WORDS: u16 = 8;
+
 /// A column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
@@ -265,6 +268,13 @@ impl Table {
             let role = if focused && *at == self.column { Role::Title } else { Role::Header };
             canvas.aligned(cell, &column.title, role, column.align);
         }
+        // Says that more columns stand to the right.
+        if let Some((last, (x, width))) = columns.last()
+            && last + 1 < self.columns.len()
+            && x + width < area.width
+        {
+            canvas.text(Rect { x: area.right() - 1, width: 1, ..head }, "›", Role::Key);
+        }
         let from = first_row(self.selected, height as usize, self.shown.len());
         for (line, row) in self.shown.iter().enumerate().skip(from).take(height as usize) {
             let y = area.y + 1 + (line - from) as u16;
@@ -314,7 +324,13 @@ impl Table {
             let order = std::iter::once(0).chain(from..self.columns.len());
             for at in order.filter(|at| *at < self.columns.len()) {
                 let own = self.widths[at];
-                if x >= width {
+                // A part of a column only if it is still a readable part of words.
+                let room = width.saturating_sub(x);
+                let readable = match self.columns[at].align {
+                    Align::Right => own,
+                    _ => own.min(LEAST_WORDS),
+                };
+                if room == 0 || (x > 0 && room < readable) {
                     break;
                 }
                 columns.push((at, (x, own.min(width - x))));

@@ -2,7 +2,7 @@
 //!
 //! A [`Case`] is something that is measured in a process of its own, so that its peak memory is its own too; it
 //! yields samples of one or more [`Figure`]s, and a figure's value is their median. New figures, for instance
-//! those of the console, are further entries of [`CASES`].
+//! those of the console, are further cases: [`CASES`] are those of the simulator.
 //!
 //! **Where the subscribers come from.** All cases play the policy P1a (the paper's best configuration) with seed
 //! 42, the same company that the 500-day figures play. It passes 10,000, 40,000 and 165,000 subscribers by
@@ -30,7 +30,7 @@ use serde::Serialize;
 use super::runner::RunError;
 use crate::session::{Configuration, Refusal, RunError as SessionError};
 
-pub use cases::CASES;
+pub use cases::{CASES, keep_a_large_company};
 pub use machine::calibrate;
 
 /// What a figure counts.
@@ -156,6 +156,13 @@ pub struct Bench {
 /// Why something could not be measured.
 #[derive(Debug)]
 pub struct BenchError(String);
+
+impl BenchError {
+    /// An error in words.
+    pub fn new(words: String) -> BenchError {
+        BenchError(words)
+    }
+}
 
 impl fmt::Display for BenchError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -114,14 +114,15 @@ fn draw_facts(
         let figures = format!("{:>9} {:>6}", grouped(held.customers, 0), percent(share, 0));
         lines.push((format!("  {plan} {}", bar(share, bars)), figures, Role::Text));
     }
-    lines.push(head("sources, 12 weeks"));
+    let heads = format!("{:>8} {:>5} {:>6}", "leads", "share", "conv.");
+    lines.push(("sources, 12 weeks".to_owned(), heads, Role::Header));
     let mut sources: Vec<_> = facts.sources.iter().collect();
     sources.sort_by(|left, right| right.1.0.total_cmp(&left.1.0));
     let leads = sources.iter().map(|(_, (leads, _))| leads).sum::<f64>().max(1.0);
     for (source, (own, signed)) in sources {
         let conversion = if *own > 0.0 { percent(signed / own, 0) } else { "–".to_owned() };
         let share = percent(own / leads, 0);
-        let figures = format!("{:>8} {share:>4} {conversion:>5} sign", compact(*own));
+        let figures = format!("{:>8} {share:>5} {conversion:>6}", compact(*own));
         lines.push((format!("  {source}"), figures, Role::Text));
     }
     lines.push(head("money"));

@@ -9,6 +9,7 @@ use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::keys::Chord;
 use crate::console::widgets::Field;
+use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::notation::dollars;
 use crate::session::{Preview, Refusal};
 use crate::tools::{Kind, Spec};
@@ -177,10 +178,7 @@ impl Form {
         self.typing = None;
         if let Some(slot) = self.sheet.slot_mut(self.at)
             && !slot.is_changed()
-            && slot
-                .draft
-                .as_ref()
-                .is_some_and(|draft| crate::console::widgets::field::parse_number(draft.text()).is_some())
+            && slot.draft.as_ref().is_some_and(|draft| parse_number(draft.text()).is_some())
         {
             // What was typed is what holds: the cell counts as untouched.
             slot.draft = None;
@@ -286,8 +284,8 @@ impl Form {
             && let Some(slot) = self.sheet.slot_mut(self.at)
             && let Some(field) = &mut slot.draft
         {
-            field.key(key);
-            return self.check();
+            let taken = field.number_key(key);
+            return if taken { self.check() } else { vec![Effect::Complain(ONLY_NUMBERS.to_owned())] };
         }
         Vec::new()
     }

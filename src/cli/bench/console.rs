@@ -1,0 +1,73 @@
+//! The rows of the speed table that the console adds.
+
+use crate::console::app::Settings;
+use crate::console::keys::Keys;
+use crate::console::speed;
+use crate::console::theme::Theme;
+use crate::lab::bench::{Bench, BenchError, Case, Figure, Samples, Unit, keep_a_large_company};
+
+/// Weeks whose keys are measured for each repetition: some hundred keys.
+const WEEKS: usize = 6;
+
+/// What is measured.
+pub const CASES: &[Case] = &[
+    Case {
+        name: "frame",
+        figures: &[Figure {
+            name: "first frame of the console",
+            unit: Unit::Milliseconds,
+            target: Some(100.0),
+            stretch: None,
+        }],
+        fresh: true,
+        long: false,
+        measure: first_frame,
+    },
+    Case {
+        name: "keys",
+        figures: &[
+            Figure {
+                name: "key to frame while a week runs, 200×60: 99 of 100",
+                unit: Unit::Milliseconds,
+                target: Some(16.0),
+                stretch: None,
+            },
+            Figure {
+                name: "key to frame while a week runs, 200×60: median",
+                unit: Unit::Milliseconds,
+                target: None,
+                stretch: None,
+            },
+        ],
+        fresh: false,
+        long: false,
+        measure: keys,
+    },
+];
+
+fn settings(bench: &Bench) -> Result<Settings, BenchError> {
+    let configuration = bench.configuration.clone();
+    Ok(Settings {
+        theme: Theme::find("dark", &configuration).map_err(BenchError::new)?,
+        keys: Keys::of_user(&configuration).map_err(BenchError::new)?,
+        ascii: false,
+        configuration,
+        runs: bench.scratch.clone(),
+    })
+}
+
+fn first_frame(bench: &Bench) -> Result<Samples, BenchError> {
+    let once = |_| Ok(speed::first_frame(|| settings(bench))? * 1e3);
+    Ok(vec![(0..bench.repetitions).map(once).collect::<Result<_, BenchError>>()?])
+}
+
+fn keys(bench: &Bench) -> Result<Samples, BenchError> {
+    let run = keep_a_large_company(bench)?;
+    let mut seconds = speed::keys_during_weeks(settings(bench)?, &run, WEEKS * bench.repetitions)?;
+    seconds.sort_by(f64::total_cmp);
+    let at = |share: f64| -> Vec<f64> {
+        let place = (seconds.len() as f64 * share).ceil() as usize;
+        seconds.get(place.saturating_sub(1)).map(|value| value * 1e3).into_iter().collect()
+    };
+    Ok(vec![at(0.99), at(0.5)])
+}

@@ -1,0 +1,197 @@
+//! The rules of the house, checked on its own text: short files, arrows that point down, nothing unfinished, no clock
+//! and no order of chance in the simulator, configuration that can be read.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A source file without its tests.
+struct Source {
+    path: PathBuf,
+    lines: Vec<String>,
+}
+
+impl Source {
+    fn read(path: PathBuf) -> Source {
+        let text = fs::read_to_string(&path).expect("a source file");
+        let lines =
+            text.lines().take_while(|line| *line != "#[cfg(test)]" || !followed_by_tests(&text, line));
+        Source { lines: lines.map(str::to_owned).collect(), path }
+    }
+
+    /// Lines that are no comment, with their numbers.
+    fn code(&self) -> impl Iterator<Item = (usize, &str)> {
+        let numbered = self.lines.iter().enumerate().map(|(at, line)| (at + 1, line.as_str()));
+        numbered.filter(|(_, line)| !line.trim_start().starts_with("//"))
+    }
+
+    /// First folder or file below `src`.
+    fn house(&self) -> String {
+        let below = self.path.strip_prefix(root().join("src")).expect("below src");
+        let first = below.components().next().expect("a name").as_os_str().to_string_lossy();
+        first.trim_end_matches(".rs").to_owned()
+    }
+
+    fn is_tests(&self) -> bool {
+        self.path.file_name().is_some_and(|name| name == "tests.rs" || name == "test_kit.rs")
+    }
+
+    /// Complains about every line of code that a rule forbids.
+    fn complaints(&self, forbidden: impl Fn(&str) -> Option<String>) -> Vec<String> {
+        let complaint = |(number, line): (usize, &str)| {
+            forbidden(line).map(|why| format!("{}:{number}: {why}", self.path.display()))
+        };
+        self.code().filter_map(complaint).collect()
+    }
+}
+
+fn followed_by_tests(text: &str, line: &str) -> bool {
+    text.contains(&format!("{line}\nmod tests {{"))
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(files(&path, extension));
+        } else if path.extension().is_some_and(|it| it == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn sources() -> Vec<Source> {
+    files(&root().join("src"), "rs").into_iter().map(Source::read).filter(|file| !file.is_tests()).collect()
+}
+
+#[track_caller]
+fn assert_none(complaints: &[String]) {
+    assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
+}
+
+#[test]
+fn a_file_is_one_idea() {
+    let long: Vec<String> = sources()
+        .iter()
+        .filter(|file| file.lines.len() > 500)
+        .map(|file| format!("{}: {} lines", file.path.display(), file.lines.len()))
+        .collect();
+    assert_none(&long);
+}
+
+#[test]
+fn nothing_is_left_unfinished() {
+    let words = ["todo!", "unimplemented!", "dbg!", "#[ignore", "FIXME", "XXX"];
+    let complaint =
+        |line: &str| words.iter().find(|word| line.contains(**word)).map(|word| (*word).to_owned());
+    let complaints: Vec<String> = sources().iter().flat_map(|file| file.complaints(complaint)).collect();
+    assert_none(&complaints);
+}
+
+/// Houses whose code a house may use.
+fn may_use(house: &str) -> &'static [&'static str] {
+    match house {
+        "main" | "lib" => &["cli"],
+        "notation" => &[],
+        "world" => &["notation"],
+        "tools" | "database" | "voice" => &["world", "notation"],
+        "session" => &["tools", "database", "voice", "world", "notation"],
+        "console" | "plain" | "server" | "lab" => &["session", "tools", "database", "world", "notation"],
+        "cli" => &["console", "plain", "server", "lab", "session", "tools", "database", "world", "notation"],
+        other => panic!("{other} has no floor yet: say in this test and in src/lib.rs where it stands"),
+    }
+}
+
+/// What of `world` the upper floors may use: plain identifiers. The laboratory works on debug runs and reads all.
+fn of_world(house: &str) -> Option<&'static str> {
+    matches!(house, "console" | "plain" | "server" | "cli").then_some("crate::world::identifiers")
+}
+
+#[test]
+fn arrows_point_down() {
+    let mut complaints = Vec::new();
+    for file in sources() {
+        let house = file.house();
+        let allowed = may_use(&house);
+        complaints.extend(file.complaints(|line| {
+            line.match_indices("crate::").find_map(|(at, word)| {
+                let rest = &line[at + word.len()..];
+                let used = rest.split(|letter: char| !letter.is_ascii_lowercase() && letter != '_').next()?;
+                let known = root().join("src").join(used).is_dir();
+                let plain =
+                    of_world(&house).is_none_or(|path| used != "world" || line[at..].starts_with(path));
+                let fine = !known || used == house || (allowed.contains(&used) && plain);
+                (!fine).then(|| format!("{house} may not use {}", line[at..].trim()))
+            })
+        }));
+    }
+    assert_none(&complaints);
+}
+
+#[test]
+fn the_simulator_knows_no_clock_no_files_and_no_order_of_chance() {
+    let words = [
+        "HashMap",
+        "HashSet",
+        "RandomState",
+        "Instant",
+        "SystemTime",
+        "std::fs",
+        "std::env",
+        "std::net",
+        "println!",
+        "eprintln!",
+        "thread_rng",
+        "rusqlite",
+    ];
+    let complaint =
+        |line: &str| words.iter().find(|word| line.contains(**word)).map(|word| (*word).to_owned());
+    let pure =
+        sources().into_iter().filter(|file| matches!(file.house().as_str(), "world" | "voice" | "tools"));
+    let complaints: Vec<String> = pure.flat_map(|file| file.complaints(complaint)).collect();
+    assert_none(&complaints);
+}
+
+#[test]
+fn only_the_command_line_prints() {
+    let complaint = |line: &str| {
+        let prints = ["println!", "print!("].iter().any(|word| line.contains(word));
+        prints.then(|| "it prints".to_owned())
+    };
+    let quiet = sources().into_iter().filter(|file| {
+        !matches!(file.house().as_str(), "cli" | "plain" | "main")
+            && !file.path.ends_with("console/terminal.rs")
+    });
+    let complaints: Vec<String> = quiet.flat_map(|file| file.complaints(complaint)).collect();
+    assert_none(&complaints);
+}
+
+#[test]
+fn every_shipped_table_can_be_read() {
+    for folder in ["configs", "assets"] {
+        for path in files(&root().join(folder), "toml") {
+            let text = fs::read_to_string(&path).expect("a file");
+            if let Err(problem) = text.parse::<toml::Table>() {
+                panic!("{}: {problem}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn every_file_begins_by_saying_what_it_is() {
+    let complaints: Vec<String> = sources()
+        .iter()
+        // A tool's file holds one type, and that says it.
+        .filter(|file| !file.lines.iter().any(|line| line.starts_with("impl Tool for")))
+        .filter(|file| !file.lines.first().is_some_and(|line| line.starts_with("//! ")))
+        .map(|file| file.path.display().to_string())
+        .collect();
+    assert_none(&complaints);
+}

@@ -73,6 +73,7 @@ impl Session {
                 preview.effect_day = Some(self.world.day + 1);
                 preview.changes = changes(now, &after);
             }
+            Effect::Post(_) => preview.effect_day = Some(self.world.day + 1),
             Effect::StartResearch(tier) => {
                 preview.cost_now = f64::from(self.params.research(tier).cost);
                 preview.effect_day = Some(self.world.day + self.params.development.rd_min_duration_days);
@@ -92,7 +93,7 @@ impl Session {
         }
         let (arguments, effect) = self.plan(tool, arguments)?;
         let deed = self.world.resolve(effect, &self.params, &self.streams);
-        Ok(tool.answer(&View::new(&self.world, &self.params), &arguments, &deed))
+        Ok(tool.answer(&self.view(), &arguments, &deed))
     }
 
     /// Calls a tool; `next_week` and `query` have functions of their own.
@@ -116,7 +117,7 @@ impl Session {
         let allowed = self.refuse_if_over(tool.spec().kind);
         let planned = allowed.and_then(|()| self.plan(tool, arguments)).map(|(arguments, effect)| {
             let deed = self.world.resolve(effect, &self.params, &self.streams);
-            let answer = tool.answer(&View::new(&self.world, &self.params), &arguments, &deed);
+            let answer = tool.answer(&self.view(), &arguments, &deed);
             (arguments, deed, answer)
         });
         let took_ms = started.elapsed().as_secs_f64() * 1e3;
@@ -151,6 +152,7 @@ impl Session {
                 let before = self.world.settings.clone();
                 self.this_week.undo.push(UndoStep { seq, tool: spec.name, before });
             }
+            Deed::Post(_) => self.this_week.done.push("post published, read tomorrow".to_owned()),
             Deed::StartResearch(project, _) => {
                 self.this_week.done.push(format!(
                     "R&D project {} started, done on day {}",
@@ -214,9 +216,14 @@ impl Session {
         })
     }
 
+    /// What tools may look at.
+    fn view(&self) -> View<'_> {
+        View::new(&self.world, &self.params).with_posts(&self.feed.posts)
+    }
+
     fn plan(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Effect), Refusal> {
         let arguments = Arguments::of(tool.spec(), arguments)?;
-        let effect = tool.plan(&View::new(&self.world, &self.params), &arguments)?;
+        let effect = tool.plan(&self.view(), &arguments)?;
         Ok((arguments, effect))
     }
 
@@ -336,7 +343,7 @@ impl Session {
         let tool = self.tool(name).map_err(|refusal| refusal.message)?;
         let (given, effect) = self.plan(tool, arguments).map_err(|refusal| refusal.to_string())?;
         let deed = self.world.resolve(effect, &self.params, &self.streams);
-        let answer = tool.answer(&View::new(&self.world, &self.params), &given, &deed);
+        let answer = tool.answer(&self.view(), &given, &deed);
         if fields.get("result") != Some(&answer) {
             return Err("the call answers differently now".to_owned());
         }

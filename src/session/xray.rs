@@ -1,5 +1,6 @@
 //! The hidden state, for debug runs: what the player never sees.
 
+use crate::voice::judge::Judgement;
 use crate::world::customers::columns::Block;
 use crate::world::day::DayTrace;
 use crate::world::events::{Facts, Notice};
@@ -16,6 +17,7 @@ pub struct Xray<'a> {
     params: &'a Params,
     facts: &'a Facts,
     trace: &'a DayTrace,
+    judgements: &'a [Vec<Judgement>],
 }
 
 impl<'a> Xray<'a> {
@@ -24,8 +26,9 @@ impl<'a> Xray<'a> {
         params: &'a Params,
         facts: &'a Facts,
         trace: &'a DayTrace,
+        judgements: &'a [Vec<Judgement>],
     ) -> Xray<'a> {
-        Xray { world, params, facts, trace }
+        Xray { world, params, facts, trace, judgements }
     }
 
     /// The state.
@@ -86,6 +89,13 @@ impl<'a> Xray<'a> {
     /// Blocks of a group.
     pub fn blocks(&self, group: Group) -> impl Iterator<Item = &'a Block> + Clone + use<'a> {
         self.world.customers.groups[group].blocks.iter()
+    }
+
+    /// Why the groups took a post of the player as they did, one judgement per group that was known; empty until the
+    /// post was judged.
+    pub fn judgements(&self, own_post: u32) -> &'a [Judgement] {
+        let at = (own_post as usize).checked_sub(1);
+        at.and_then(|at| self.judgements.get(at)).map_or(&[], Vec::as_slice)
     }
 
     /// Notices of the last day.

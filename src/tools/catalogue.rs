@@ -1,15 +1,17 @@
 //! The list of all tools.
 
 use super::Tool;
-use super::analytics::{SetTargetedDevSpend, SetTargetedOpsSpend};
+use super::analytics::{GetSocialPosts, SetTargetedDevSpend, SetTargetedOpsSpend};
 use super::infrastructure::{GetCostInfo, SetCapacityTier};
-use super::marketing::{SetAdsStrength, SetDailySpend, SetLeadPromotion, SetTargetedAdSpend};
+use super::marketing::{
+    PostSocialMedia, SetAdsStrength, SetDailySpend, SetLeadPromotion, SetTargetedAdSpend,
+};
 use super::pricing::{SetModelTiers, SetPrices, SetPromotion, SetUsageQuotas};
 use super::research::{ListResearchProjects, StartResearchProject};
 use super::time::{GetVars, NextWeek, Query};
 
 /// All tools, in the order in which they are shown.
-pub static CATALOGUE: [&dyn Tool; 17] = [
+pub static CATALOGUE: [&dyn Tool; 19] = [
     &SetPrices,
     &SetModelTiers,
     &SetUsageQuotas,
@@ -18,6 +20,8 @@ pub static CATALOGUE: [&dyn Tool; 17] = [
     &SetTargetedAdSpend,
     &SetAdsStrength,
     &SetLeadPromotion,
+    &PostSocialMedia,
+    &GetSocialPosts,
     &SetTargetedOpsSpend,
     &SetTargetedDevSpend,
     &StartResearchProject,

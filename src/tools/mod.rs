@@ -28,7 +28,7 @@ pub use catalogue::{CATALOGUE, find};
 pub use refusal::Refusal;
 pub use spec::{Argument, ArgumentKind, Key, Kind, Module, Output, Range, Spec, When};
 pub use time::{FORECAST_KEYS, Forecast, forecasts, rationale};
-pub use view::View;
+pub use view::{PublicPost, View};
 
 use crate::notation::plain_numbers;
 use crate::world::effect::{Deed, Effect};

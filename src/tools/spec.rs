@@ -82,6 +82,8 @@ pub enum Kind {
     Setting,
     /// Spends money at once.
     Purchase,
+    /// Happens once and cannot be taken back.
+    OneShot,
     /// Reads.
     Read,
     /// Lets time pass.
@@ -94,6 +96,7 @@ impl Kind {
         match self {
             Kind::Setting => "setting",
             Kind::Purchase => "purchase",
+            Kind::OneShot => "one-shot",
             Kind::Read => "read",
             Kind::Time => "time",
         }

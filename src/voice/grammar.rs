@@ -58,6 +58,11 @@ impl Context {
         self.values.get(name).map(String::as_str)
     }
 
+    /// Names of its values and conditions.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.values.keys().chain(&self.tags).copied()
+    }
+
     /// Whether a condition holds.
     pub fn holds(&self, tag: &str) -> bool {
         self.tags.contains(tag)
@@ -115,7 +120,15 @@ impl Grammar {
     /// # Errors
     /// It is no TOML of this form, a symbol is unknown, a rule contains itself or cannot always be filled.
     pub fn read(source: &str) -> Result<Grammar, GrammarError> {
-        parse::read(source)
+        parse::read(&[source])
+    }
+
+    /// Reads a grammar that stands in several files, which share their names and rules.
+    ///
+    /// # Errors
+    /// As [`Grammar::read`], or two files define one rule.
+    pub fn read_all(sources: &[&str]) -> Result<Grammar, GrammarError> {
+        parse::read(sources)
     }
 
     /// Whether there is a rule of this name.

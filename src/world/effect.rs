@@ -3,7 +3,8 @@
 //! The three steps are apart so that a tool call can be checked without consequence ([`Effect`]), recorded
 //! with its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
-use super::events::{Category, Facts, LedgerEntry, LedgerNote, ResearchChange, SettingsChange};
+use super::events::{Category, Facts, LedgerEntry, LedgerNote, OwnPostMade, ResearchChange, SettingsChange};
+use super::market::social::own::OwnPost;
 use super::params::Params;
 use super::product::research::{self, Project};
 use super::random::Streams;
@@ -19,6 +20,17 @@ pub enum Effect {
     Set(SettingsChange),
     /// An R&D project of this tier is paid and started.
     StartResearch(u8),
+    /// The player posts in public.
+    Post(Draft),
+}
+
+/// A post that the player is about to publish.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Draft {
+    /// Its text.
+    pub content: String,
+    /// Number of the post it answers.
+    pub reply_to: Option<u32>,
 }
 
 /// A decided change whose draws are known.
@@ -31,6 +43,8 @@ pub enum Deed {
     Set(SettingsChange),
     /// An R&D project and its price in dollars.
     StartResearch(Project, f64),
+    /// A post of the player.
+    Post(OwnPostMade),
 }
 
 impl World {
@@ -42,6 +56,10 @@ impl World {
             Effect::StartResearch(tier) => {
                 let project = research::draw(&self.product, self.day, tier, params, streams);
                 Deed::StartResearch(project, f64::from(params.research(tier).cost))
+            }
+            Effect::Post(Draft { content, reply_to }) => {
+                let post = self.market.social.own.len() as u32 + 1;
+                Deed::Post(OwnPostMade { post, content, reply_to })
             }
         }
     }
@@ -61,6 +79,11 @@ impl World {
                     .book(LedgerEntry { category: Category::ResearchProject, amount: -cost, note }, facts);
                 self.product.research.push(project);
                 facts.research.push(ResearchChange::Started(project));
+            }
+            Deed::Post(made) => {
+                let own = OwnPost::new(self.day, made.content.clone(), made.reply_to);
+                self.market.social.own.push(own);
+                facts.own_posts.push(made);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 mod create;
 mod direct;
+mod posts;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -29,6 +30,8 @@ pub struct Entry {
     pub notices: Vec<String>,
     /// Description of each published reading of the facts.
     pub readings: Vec<String>,
+    /// Text of each post of others among the facts.
+    pub posts: Vec<String>,
     /// Address of each company among the arrivals, by customer number.
     pub addresses: BTreeMap<u32, String>,
     /// Forecasts that were filed.
@@ -136,6 +139,8 @@ impl RowWriter {
         self.arrivals(transaction, entry)?;
         self.ledger(transaction, facts)?;
         self.ads(transaction, facts)?;
+        posts::posts(transaction, facts, &entry.posts)?;
+        posts::own_posts(transaction, facts)?;
         direct::notices(transaction, facts, &entry.notices)?;
         direct::settings(transaction, facts)?;
         direct::forecasts(transaction, &entry.forecasts)?;

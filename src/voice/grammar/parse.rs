@@ -6,7 +6,8 @@ use toml::{Table, Value};
 
 use super::{Alternative, Grammar, GrammarError, Part};
 
-/// Names that a file declares.
+/// Names that the files declare.
+#[derive(Default)]
 struct Names {
     given: BTreeSet<String>,
     maybe: BTreeSet<String>,
@@ -14,18 +15,20 @@ struct Names {
     rules: BTreeSet<String>,
 }
 
-pub(super) fn read(source: &str) -> Result<Grammar, GrammarError> {
-    let table: Table = source.parse().map_err(|error: toml::de::Error| GrammarError(error.to_string()))?;
+pub(super) fn read(sources: &[&str]) -> Result<Grammar, GrammarError> {
     let mut texts = BTreeMap::new();
-    if let Some(Value::Table(rules)) = table.get("rules") {
-        flatten("", rules, &mut texts)?;
+    let mut names = Names::default();
+    for source in sources {
+        let table: Table =
+            source.parse().map_err(|error: toml::de::Error| GrammarError(error.to_string()))?;
+        if let Some(Value::Table(rules)) = table.get("rules") {
+            flatten("", rules, &mut texts)?;
+        }
+        names.given.append(&mut list(&table, "given")?);
+        names.maybe.append(&mut list(&table, "maybe")?);
+        names.tags.append(&mut list(&table, "tags")?);
     }
-    let names = Names {
-        given: list(&table, "given")?,
-        maybe: list(&table, "maybe")?,
-        tags: list(&table, "tags")?,
-        rules: texts.keys().cloned().collect(),
-    };
+    names.rules = texts.keys().cloned().collect();
     let mut rules = BTreeMap::new();
     for (name, texts) in &texts {
         let alternatives: Result<Vec<Alternative>, GrammarError> =
@@ -59,7 +62,9 @@ fn flatten(
                 let texts: Option<Vec<String>> =
                     texts.iter().map(|text| text.as_str().map(str::to_owned)).collect();
                 let texts = texts.ok_or_else(|| GrammarError(format!("rule {name}: not only texts")))?;
-                rules.insert(name, texts);
+                if rules.insert(name.clone(), texts).is_some() {
+                    return Err(GrammarError(format!("rule {name} stands there twice")));
+                }
             }
             _ => return Err(GrammarError(format!("rule {name} is no list of texts"))),
         }
@@ -230,7 +235,7 @@ mod tests {
     use super::*;
 
     fn problem(source: &str) -> String {
-        read(source).expect_err("it has to be refused").to_string()
+        read(&[source]).expect_err("it has to be refused").to_string()
     }
 
     #[test]
@@ -248,5 +253,8 @@ mod tests {
         ] {
             assert!(problem(source).contains(words), "{source}: {}", problem(source));
         }
+        let twice =
+            read(&["[rules]\na = [\"x\"]", "[rules]\na = [\"y\"]"]).expect_err("it has to be refused");
+        assert!(twice.to_string().contains("twice"));
     }
 }

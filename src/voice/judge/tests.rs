@@ -272,7 +272,7 @@ fn heaps_of_words_go_nowhere() {
     let lexicon = Lexicon::shipped();
     let mut stream = Streams::new(16).open(Part::Voice, [0]);
     let lists: Vec<&Vec<Entry>> = lexicon.topics.values().chain(lexicon.words.all()).collect();
-    let facts = Circumstances { quota_up: true, price_cut: true, ..with_outage() };
+    let facts = Circumstances { quota_up: true, ..usual() };
     let (mut viral, mut judged) = (0, 0);
     for _ in 0..800 {
         let words: Vec<&str> = (0..stream.integer(4, 24))

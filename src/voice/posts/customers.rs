@@ -19,13 +19,17 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
 /// Days after which somebody is no longer new, and after which they are an old customer.
 const SETTLED: u32 = 30;
 const VETERAN: u32 = 120;
-/// One of so many casual posts is written without capitals.
-const WITHOUT_CAPITALS: usize = 6;
+/// One of so many casual authors writes without capitals.
+const WITHOUT_CAPITALS: u32 = 9;
 
 /// One draft of a post.
-pub(super) fn draft(context: &Context, casual: bool, choose: Chooser<'_>) -> String {
-    let text = GRAMMAR.write("post", context, choose);
-    if casual && choose(WITHOUT_CAPITALS) == 0 { text.to_lowercase() } else { text }
+pub(super) fn draft(context: &Context, choose: Chooser<'_>) -> String {
+    GRAMMAR.write("post", context, choose)
+}
+
+/// Whether an author writes without capitals; everybody keeps to their habit.
+pub(super) fn without_capitals(author: &PostAuthor) -> bool {
+    Register::of(Some(author.group)) == Register::Casual && author.n % WITHOUT_CAPITALS == 0
 }
 
 /// What the grammar is told about a post.
@@ -91,10 +95,11 @@ fn shape(cause: Cause, tone: Sentiment) -> &'static str {
     match (cause, tone) {
         (Cause::Cancelled, _) => "leaving",
         (Cause::Lost { .. }, _) => "lost",
-        (_, Sentiment::Positive) => "positive",
         (_, Sentiment::Neutral) => "neutral",
+        (Cause::Improved | Cause::Declined | Cause::General, Sentiment::Positive) => "positive",
         (Cause::Improved | Cause::Declined | Cause::General, Sentiment::Negative) => "grumble",
-        _ => "trouble",
+        (_, Sentiment::Positive) => "forgiving",
+        (_, Sentiment::Negative) => "trouble",
     }
 }
 

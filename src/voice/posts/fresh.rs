@@ -11,7 +11,7 @@ const DRAFTS: usize = 24;
 /// Drafts that are tried at most to find one that is new as a whole.
 const MOST_DRAFTS: usize = 400;
 
-/// The last texts, oldest first.
+/// The last texts without capitals, oldest first.
 #[derive(Debug, Clone, Default)]
 pub struct Recent(VecDeque<String>);
 
@@ -40,17 +40,18 @@ impl Recent {
         if self.0.len() == MEMORY {
             self.0.pop_front();
         }
-        self.0.push_back(text.to_owned());
+        self.0.push_back(text.to_lowercase());
     }
 
     /// How much of a text was read lately: sentences, the beginning, or, far worse, all of it.
     fn staleness(&self, text: &str) -> usize {
-        if self.0.iter().any(|other| other == text) {
+        let text = text.to_lowercase();
+        if self.0.iter().any(|other| *other == text) {
             return MOST_DRAFTS;
         }
         let known =
-            sentences(text).filter(|own| self.0.iter().any(|other| sentences(other).any(|it| it == *own)));
-        let alike = self.0.iter().rev().take(OPENINGS).any(|other| opening(other) == opening(text));
+            sentences(&text).filter(|own| self.0.iter().any(|other| sentences(other).any(|it| it == *own)));
+        let alike = self.0.iter().rev().take(OPENINGS).any(|other| opening(other) == opening(&text));
         2 * known.count() + usize::from(alike)
     }
 }

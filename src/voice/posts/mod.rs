@@ -38,8 +38,8 @@ impl Writer {
         match (post.matter, post.author) {
             (Matter::Opinion(opinion), Some(author)) => {
                 let context = customers::context(&author, &opinion, post.sentiment, params);
-                let casual = words::Register::of(Some(author.group)) == words::Register::Casual;
-                self.recent.freshest(|| customers::draft(&context, casual, &mut choose))
+                let text = self.recent.freshest(|| customers::draft(&context, &mut choose));
+                if customers::without_capitals(&author) { text.to_lowercase() } else { text }
             }
             (Matter::Reading(reading), _) => {
                 self.recent.freshest(|| press::about_reading(&reading, &mut choose))

@@ -48,7 +48,8 @@ fn no_two_equal_texts_within_sixty_posts() {
     let texts: Vec<String> = feed().into_iter().map(|(_, text)| text).collect();
     for (at, text) in texts.iter().enumerate() {
         let before = &texts[at.saturating_sub(60)..at];
-        assert!(!before.contains(text), "post {at} repeats: {text}");
+        let repeats = before.iter().any(|other| other.to_lowercase() == text.to_lowercase());
+        assert!(!repeats, "post {at} repeats: {text}");
     }
     assert!(texts.len() > 2500);
 }
@@ -58,11 +59,13 @@ fn no_slip_that_a_machine_can_see() {
     for (post, text) in feed() {
         assert!(!text.is_empty() && text == text.trim(), "{post:?}: {text:?}");
         assert!(text.split_whitespace().count() <= 150, "{text}");
-        for slip in [
-            "  ", " .", " ,", "..", " ?", "{", "}", "[", "]", "|", "a/an", "?.", ":.", ".,", " a a",
-            " an an", "I are", "we am", "We I",
-        ] {
+        for slip in ["  ", " .", " ,", "..", " ?", "{", "}", "[", "]", "|", "a/an", "?.", ":.", ".,", "!."] {
             assert!(!text.contains(slip), "{slip:?} in {text}");
+        }
+        let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
+        assert!(words.windows(2).all(|pair| pair[0] != pair[1]), "a word comes twice: {text}");
+        for pair in ["i are", "we am", "i was we", "we is", "our my", "my our"] {
+            assert!(!words.join(" ").contains(pair), "{pair:?} in {text}");
         }
         let first = text.chars().next().expect("a character");
         let casual = post
@@ -70,14 +73,8 @@ fn no_slip_that_a_machine_can_see() {
             .is_some_and(|author| words::Register::of(Some(author.group)) == words::Register::Casual);
         assert!(!first.is_lowercase() || casual, "{text}");
         assert!(text.ends_with(['.', '!', '?', ')', '(', ']']), "{text}");
-        for hidden in ["satisf", "S =", "sentiment", "churn"] {
-            assert!(
-                !text.to_lowercase().contains(hidden)
-                    || text.contains("churn analyses")
-                    || text.contains("Churn analyses"),
-                "{hidden} in {text}"
-            );
-        }
+        let hidden = ["satisfaction", "sentiment", "participation", "c_max", "q_min"];
+        assert!(hidden.iter().all(|word| !text.to_lowercase().contains(word)), "{text}");
     }
 }
 
@@ -89,15 +86,12 @@ fn companies_speak_as_we_and_people_as_i() {
             text.split(|c: char| !c.is_alphanumeric() && c != '\'').map(str::to_lowercase).collect();
         let says = |word: &str| words.iter().any(|own| own == word);
         if author.group.is_enterprise() {
-            assert!(!says("i'm") && !says("my") && !says("me"), "{text}");
-        } else {
-            assert!(
-                !says("our")
-                    || text.contains("our bug")
-                    || text.contains("ours")
-                    || !text.contains("our NovaMind"),
-                "{text}"
-            );
+            for word in ["i", "i'm", "i've", "i'll", "my", "me", "mine"] {
+                assert!(!says(word), "{word} in {text}");
+            }
+        } else if author.group.id() != "D_S04" {
+            // Agency people speak for their team now and then.
+            assert!(!says("we") && !says("we're"), "{text}");
         }
     }
 }

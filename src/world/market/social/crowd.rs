@@ -244,3 +244,131 @@ pub fn author_of(
     let persona = draw_traits(group, n, 1.0, params, streams).persona;
     PostAuthor { customer, group, n, persona, company: if group.is_enterprise() { seats } else { 0 } }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::customers::columns::Subscriber;
+    use crate::world::customers::columns::tests::subscriber;
+    use crate::world::day::tests::morning;
+    use crate::world::events::{Post, ServiceDay};
+    use crate::world::product::ads::AdLoad;
+    use crate::world::product::quality::TenureTable;
+    use crate::world::settings::Settings;
+
+    fn group() -> Group {
+        Group::parse("S1").expect("a group")
+    }
+
+    /// The posts of a seventh day on which these subscribers are there and these have left.
+    fn posts(rows: &[Subscriber], gave_up: &[GaveUp], lost: &[LostCompany], seed: u64) -> Vec<Post> {
+        let (params, streams) = (Params::shipped(), Streams::new(seed));
+        let settings = Settings::opening(&params);
+        let mut social = Social::opening(&settings);
+        let mut customers = Customers::default();
+        rows.iter().for_each(|row| customers.groups[group()].activate(*row));
+        let day = morning(70);
+        let before = remember(70, &customers, &params);
+        let ads = AdLoad::of(&settings.ads_strength, &params);
+        let chronicle = social.chronicle.clone();
+        let scene = Scene {
+            morning: &day,
+            service: &ServiceDay::quiet(),
+            ads: &ads,
+            tenure: &TenureTable::up_to(100, &params.quality),
+            chronicle: &chronicle,
+            params: &params,
+        };
+        let mut crowd = listen(before, &customers, &scene, &streams).expect("a posting day");
+        crowd.join(gave_up, lost, &params);
+        let mut facts = Facts::default();
+        facts.begin(70);
+        crowd.publish(&mut social, &params, &streams, &mut facts);
+        facts.posts
+    }
+
+    fn content(n: u32, satisfaction: f64) -> Subscriber {
+        Subscriber { satisfaction, usage_rate: 0.0, ..subscriber(n) }
+    }
+
+    fn quitter() -> GaveUp {
+        GaveUp {
+            customer: 900,
+            group: group(),
+            n: 900,
+            satisfaction: -0.2,
+            days_subscribed: 30,
+            plan: Plan::A,
+            price: 12.0,
+        }
+    }
+
+    fn lost_company() -> LostCompany {
+        LostCompany {
+            customer: 800,
+            group: Group::parse("E1").expect("a group"),
+            n: 7,
+            seats: 120,
+            days_subscribed: None,
+            thread: ThreadKind::NewLead,
+            unanswered: true,
+        }
+    }
+
+    #[test]
+    fn five_different_subscribers_post_or_all_there_are() {
+        let rows: Vec<Subscriber> = (1..=40).map(|n| content(n, 0.1)).collect();
+        let mut authors: Vec<u32> =
+            posts(&rows, &[], &[], 1).iter().filter_map(|post| post.author).map(|own| own.customer).collect();
+        authors.sort_unstable();
+        authors.dedup();
+        assert_eq!(authors.len(), 5);
+        assert_eq!(posts(&rows[..3], &[], &[], 1).len(), 3);
+        assert_eq!(posts(&[], &[], &[], 1).len(), 0);
+        assert_eq!(posts(&[], &[quitter()], &[], 1).len(), 1);
+        assert_eq!(posts(&rows, &[], &[], 1), posts(&rows, &[], &[], 1));
+    }
+
+    #[test]
+    fn the_first_post_falls_by_weight() {
+        // Weights 1 + 10 |S|: 1, 2, 3 and 15 for somebody who gave up at -0.2.
+        let rows = [content(1, 0.0), content(2, 0.1), content(3, 0.2)];
+        let runs = 4000;
+        let mut first = [0.0; 4];
+        for seed in 0..runs {
+            let posts = posts(&rows, &[quitter()], &[], seed);
+            let author = posts[0].author.expect("a customer").n;
+            first[if author == 900 { 3 } else { author as usize - 1 }] += 1.0 / runs as f64;
+        }
+        for (share, weight) in first.into_iter().zip([1.0, 2.0, 3.0, 15.0]) {
+            let expected: f64 = weight / 21.0;
+            let error = (expected * (1.0 - expected) / runs as f64).sqrt();
+            assert!((share - expected).abs() < 4.0 * error, "{first:?}");
+        }
+    }
+
+    #[test]
+    fn those_who_left_complain_and_say_why() {
+        let found = posts(&[], &[quitter()], &[lost_company()], 3);
+        assert_eq!(found[0].author.map(|author| author.company), Some(120), "960 against 15");
+        assert!(found.iter().all(|post| post.sentiment == Sentiment::Negative));
+        let causes: Vec<Cause> = found
+            .iter()
+            .map(|post| match post.matter {
+                Matter::Opinion(opinion) => opinion.cause,
+                _ => panic!("an opinion"),
+            })
+            .collect();
+        assert!(causes.contains(&Cause::Cancelled));
+        assert!(causes.contains(&Cause::Lost { thread: ThreadKind::NewLead, unanswered: true }));
+    }
+
+    #[test]
+    fn customers_are_heard_on_the_seventh_day() {
+        let mut params = Params::shipped();
+        let days: Vec<u32> = (1..=21).filter(|day| is_posting_day(*day, &params)).collect();
+        assert_eq!(days, [7, 14, 21]);
+        params.fidelity.customer_posts = CustomerPosts::Daily;
+        assert!((1..=21).all(|day| is_posting_day(day, &params)));
+    }
+}

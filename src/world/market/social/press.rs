@@ -182,4 +182,24 @@ mod tests {
         assert!(rounds.windows(2).all(|pair| (5..=20).contains(&(pair[1] - pair[0]))), "{rounds:?}");
         assert!((150..=310).contains(&(social.next_post - 1)), "{}", social.next_post - 1);
     }
+
+    /// Renewal theory: by day 60 there are 60/12.5 - 0.39 rounds of 5 posts, and one reading.
+    #[test]
+    fn the_first_sixty_days_bring_23_posts_on_average() {
+        let params = Params::shipped();
+        let seeds = 300;
+        let mut count = 0.0;
+        for seed in 0..seeds {
+            let (streams, mut facts) = (Streams::new(seed), Facts::default());
+            let mut social = Social::opening(&Settings::opening(&params));
+            let mut economy = Economy::opening(&params);
+            for day in 1..=60 {
+                crate::world::market::economy::step(day, &mut economy, &params, &streams, &mut facts);
+                write_about_the_economy(day, &economy, &mut social, &params, &streams, &mut facts);
+            }
+            count += f64::from(social.next_post - 1);
+        }
+        let mean = count / seeds as f64;
+        assert!((mean - 23.04).abs() < 4.0 * 7.0 / (seeds as f64).sqrt(), "{mean}");
+    }
 }

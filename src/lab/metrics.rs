@@ -4,10 +4,11 @@ use std::collections::{BTreeMap, VecDeque};
 
 use crate::session::{DayReport, Xray};
 use crate::world::events::{
-    Category, DealClosed, EndCause, Notice, Source, SubscriptionEnded, SubscriptionStatus, ThreadKind,
+    Category, DealClosed, EndCause, Notice, Post, Source, SubscriptionEnded, SubscriptionStatus, ThreadKind,
 };
 use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
 use crate::world::market::economy::Dimension;
+use crate::world::market::social::sentiment::Sentiment;
 
 /// One value.
 #[derive(Debug, Clone, PartialEq)]
@@ -173,6 +174,7 @@ impl Day<'_> {
         self.mood(&mut list);
         self.product(&mut list);
         self.market(&mut list);
+        self.posts(&mut list);
         self.notices(&mut list);
         self.enterprise(&mut list);
         list
@@ -361,6 +363,25 @@ impl Day<'_> {
             Kind::Now,
             market.economy.published.map(|reading| reading.value),
         );
+    }
+
+    fn posts(&self, list: &mut Vec<Daily>) {
+        let posts = || self.xray.facts().posts.iter();
+        let count = |customer: bool, tone: Sentiment| {
+            let fits = |post: &&Post| post.author.is_some() == customer && post.sentiment == tone;
+            posts().filter(fits).count() as f64
+        };
+        let tones = [
+            ("negative", Sentiment::Negative),
+            ("neutral", Sentiment::Neutral),
+            ("positive", Sentiment::Positive),
+        ];
+        sum(list, "posts_total_cum", posts().count() as f64);
+        for (figure, customer) in [("posts_customer_cum", true), ("posts_market_cum", false)] {
+            for (name, tone) in tones {
+                push(list, figure, name, Kind::Sum, Some(count(customer, tone)));
+            }
+        }
     }
 
     fn notices(&self, list: &mut Vec<Daily>) {

@@ -76,6 +76,7 @@ impl Session {
                 preview.effect_day = Some(self.world.day + 1);
                 preview.changes = changes(now, &after);
             }
+            Effect::Post(_) => preview.effect_day = Some(self.world.day + 1),
             Effect::StartResearch(tier) => {
                 preview.cost_now = f64::from(self.params.research(tier).cost);
                 preview.effect_day = Some(self.world.day + self.params.development.rd_min_duration_days);
@@ -177,7 +178,8 @@ impl Session {
             | Deed::ResearchMarket(_)
             | Deed::ResearchGroup(..)
             | Deed::SendDeals(_)
-            | Deed::RejectDeals(_) => {}
+            | Deed::RejectDeals(_)
+            | Deed::Post(_) => {}
         }
         self.world.apply(deed, &self.params, &mut self.facts);
         self.called.extend_from_slice(&self.facts.ledger);
@@ -188,6 +190,7 @@ impl Session {
     fn in_words(&self, deed: &Deed) -> Vec<String> {
         match deed {
             Deed::None | Deed::Set(_) | Deed::ReadInsights(_) => Vec::new(),
+            Deed::Post(_) => vec!["post published, read tomorrow".to_owned()],
             Deed::StartResearch(project, _) => {
                 vec![format!("R&D project {} started, done on day {}", project.id(), project.due_day)]
             }
@@ -259,6 +262,11 @@ impl Session {
         })
     }
 
+    /// What tools may look at.
+    fn view(&self) -> View<'_> {
+        View::new(&self.world, &self.params).within(&self.office).with_posts(&self.feed.posts)
+    }
+
     fn plan(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Effect), Refusal> {
         let arguments = Arguments::of(tool.spec(), arguments)?;
         let effect = tool.plan(&self.view(), &arguments)?;
@@ -266,10 +274,6 @@ impl Session {
     }
 
     /// What tools may look at.
-    fn view(&self) -> View<'_> {
-        View::new(&self.world, &self.params).within(&self.office)
-    }
-
     /// Refuses what acts once the run is over, and everything that would write a run that is only read.
     pub(super) fn refuse_if_over(&self, kind: Kind) -> Result<(), Refusal> {
         if !kind.acts() {

@@ -11,7 +11,6 @@ use super::{Ended, JournalEntry, Session};
 use crate::database::{Entry, ForecastRow};
 use crate::notation::json_number;
 use crate::tools::{self, Kind, Refusal};
-use crate::voice;
 use crate::world::day::step_day;
 use crate::world::events::{DayFigures, Sender, SubscriptionEnded, SubscriptionStatus};
 use crate::world::market::surges::week_end;
@@ -162,9 +161,13 @@ impl Session {
         while self.world.day < until && !self.world.is_over(&self.params) {
             let (figures, trace) = step_day(&mut self.world, &self.params, &self.streams, &mut self.facts);
             self.trace = trace;
+            self.judge_own_posts();
+            self.word_posts();
             self.cash_by_day.push(figures.cash);
             self.count_day(&figures);
-            self.notices.extend(self.facts.notices.iter().map(|notice| (figures.day, voice::notice(notice))));
+            let told = self.facts.notices.iter().map(|notice| (figures.day, self.notice_text(notice)));
+            let told: Vec<(u32, String)> = told.collect();
+            self.notices.extend(told);
             self.chain_facts();
             self.project_facts();
             let debug = self.manifest.mode == super::Mode::Debug;

@@ -3,6 +3,7 @@
 mod engine;
 mod market;
 
+use crate::world::effect::Deed;
 use serde_json::{Value, json};
 
 use super::{Arguments, Refusal, View, find};
@@ -553,4 +554,91 @@ fn undiscovered_groups_become_known_by_discovery() {
     let group = Group::parse("D_S06").expect("a group");
     company.world.market.knowledge[group].level = 1;
     company.call("set_targeted_dev_spend", json!({"D_S06": 5}));
+}
+
+#[test]
+fn post_social_media() {
+    let mut company = Company::new();
+    for (arguments, code, field) in [
+        (json!({}), "argument_missing", Some("content")),
+        (json!({"content": 5}), "wrong_type", Some("content")),
+        (json!({"content": "x".repeat(281)}), "too_long", Some("content")),
+        (json!({"content": " \n "}), "blank", Some("content")),
+        (json!({"content": "Hi", "reply_to_post_id": 1}), "post_not_found", Some("reply_to_post_id")),
+        (json!({"content": "Hi", "reply_to_post_id": -4}), "post_not_found", Some("reply_to_post_id")),
+        (json!({"content": "Hi", "reply_to_post_id": "1"}), "wrong_type", Some("reply_to_post_id")),
+        (json!({"content": "Hi", "to": 1}), "unknown_argument", Some("to")),
+    ] {
+        let (own_code, own_field) = company.refused("post_social_media", arguments);
+        assert_eq!((own_code, own_field.as_deref()), (code, field));
+    }
+    let content = "\u{fc}".repeat(280);
+    assert_eq!(
+        company.call("post_social_media", json!({"content": content, "reply_to_post_id": null})),
+        json!({"agent_post_id": 1, "day": 0, "content": content, "reply_to_post_id": null})
+    );
+    assert_eq!(company.refused("post_social_media", json!({"content": "More."})), ("already_posted", None));
+    company.world.day = 7;
+    company.world.market.social.next_post = 12;
+    assert_eq!(
+        company.call("post_social_media", json!({"content": "Thanks.", "reply_to_post_id": 11.0}))["reply_to_post_id"],
+        json!(11)
+    );
+    assert_eq!(company.world.market.social.own.len(), 2);
+}
+
+#[test]
+fn get_social_posts() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "get_social_posts",
+        &[(json!({"limit": "x"}), "wrong_type", "limit"), (json!({"days": 1.5}), "wrong_type", "days")],
+    );
+    assert_eq!(company.call("get_social_posts", json!({})), json!({"posts": []}));
+    company.call("post_social_media", json!({"content": "We are live."}));
+    let group = |id| Group::parse(id).expect("a group");
+    let post = |post, written_by| super::PublicPost {
+        post,
+        day: 7,
+        content: format!("post {post}"),
+        own_post: None,
+        source_group: None,
+        written_by,
+        profile: None,
+    };
+    let comment = super::PublicPost {
+        own_post: Some(1),
+        source_group: Some(group("E2")),
+        profile: Some("Castell & Byrne"),
+        ..post(3, Some(group("E2")))
+    };
+    let posts = [post(1, None), post(2, Some(group("D_S01"))), comment];
+    let view = View::new(&company.world, &company.params).with_posts(&posts);
+    let tool = find("get_social_posts").expect("the tool exists");
+    let read = |arguments: Value| {
+        let arguments = Arguments::of(tool.spec(), &arguments).expect("right arguments");
+        tool.answer(&view, &arguments, &Deed::None)
+    };
+    let all = read(json!({"days": 1}));
+    assert_eq!(all["total"], json!(3));
+    assert_eq!(
+        all["posts"][0],
+        json!({
+            "post_id": 3, "day": 7, "content": "post 3", "reply_to_agent_post_id": 1, "source_group_id": "E2",
+            "group_id": "E2", "customer_type": "large", "custom_name": null, "persona_name": "Castell & Byrne",
+            "replying_to_your_post": "We are live.",
+        })
+    );
+    assert_eq!(
+        (&all["posts"][1]["group_id"], &all["posts"][1]["customer_type"]),
+        (&json!("D_S01"), &json!("small"))
+    );
+    assert_eq!(
+        (&all["posts"][2]["group_id"], &all["posts"][2]["persona_name"]),
+        (&json!("S1"), &json!(null))
+    );
+    assert!(all["posts"][2].get("replying_to_your_post").is_none());
+    assert_eq!(read(json!({"limit": 1}))["posts"].as_array().map(Vec::len), Some(1));
+    assert_eq!(read(json!({"limit": 0})), json!({"posts": []}));
+    assert_eq!(read(json!({"limit": -1}))["total"], json!(3));
 }

@@ -8,6 +8,9 @@ use super::identifiers::{ByGroup, ByPlan, Group, Plan};
 use super::market::drift::Expectation;
 use super::market::economy::Dimension;
 use super::market::leads::LeadFactors;
+use super::market::social::crowd;
+use super::market::social::opinions::Scene;
+use super::market::social::press;
 use super::market::{arrivals, competitors, drift, economy, reputation, studies, surges, yields};
 use super::params::Params;
 use super::product::ads::AdLoad;
@@ -108,6 +111,7 @@ pub fn step_day(
     yields::vary(day, &mut market.yields, params, streams);
     economy::step(day, &mut market.economy, params, streams, facts);
     competitors::react(day, total_days, &mut market.competitors, product, &mut market.drift, params, streams);
+    press::write_about_rivals(day, &market.competitors, &mut market.social, params, streams, facts);
     development::improve(day, product, settings, params, streams);
 
     // Subscribers call for help, feel, decide; companies wait for answers.
@@ -117,7 +121,17 @@ pub fn step_day(
     let calls = issues::read_calls(day, service.outage, customers, params, streams);
     let felt =
         satisfaction::Conditions { morning: &morning, service: &service, ads: &ads, tenure: &tenure, params };
+    let before = crowd::remember(day, customers, params);
     let moods = satisfaction::update(customers, &felt);
+    let scene = Scene {
+        morning: &morning,
+        service: &service,
+        ads: &ads,
+        tenure: &tenure,
+        chronicle: &market.social.chronicle,
+        params,
+    };
+    let mut crowd = crowd::listen(before, customers, &scene, streams);
     issues::settle(day, service.outage, calls, settings, customers, issue_desk, params, streams, facts);
     let judgement = renewal::Judgement {
         morning: &morning,
@@ -147,6 +161,13 @@ pub fn step_day(
     let knowledge = market.knowledge;
     reputation::contribute(&mut market.reputation, &moods, |group| knowledge[group].level >= 1, params);
 
+    // People and the press write.
+    if let Some(mut crowd) = crowd.take() {
+        crowd.join(&renewals.gave_up, &negotiated.lost, params);
+        crowd.publish(&mut market.social, params, streams, facts);
+    }
+    press::write_about_the_economy(day, &market.economy, &mut market.social, params, streams, facts);
+
     // New customers come.
     let coming =
         arrivals::Arrivals { morning: &morning, settings, market, service_penalty: penalty, params, streams };
@@ -161,6 +182,7 @@ pub fn step_day(
     finance.cash += received;
     let costs = pay_running_costs(finance, &metered, &morning, settings, params, facts);
     earn_from_ads(customers, &ads, finance, facts);
+    market.social.chronicle.write(day, &service, settings, product);
 
     let figures = DayFigures {
         day,

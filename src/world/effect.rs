@@ -4,10 +4,13 @@
 //! with its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
 use super::enterprise::letters::{Letter, Proposal};
-use super::events::{Category, Facts, LedgerEntry, LedgerNote, Notice, ResearchChange, SettingsChange};
+use super::events::{
+    Category, Facts, LedgerEntry, LedgerNote, Notice, OwnPostMade, ResearchChange, SettingsChange,
+};
 use super::identifiers::Group;
 use super::market::discovery::Attempt;
 use super::market::insights::{Insights, insights};
+use super::market::social::own::OwnPost;
 use super::market::studies::Study;
 use super::params::Params;
 use super::product::research::{self, Project};
@@ -34,6 +37,17 @@ pub enum Effect {
     SendDeals(Vec<Proposal>),
     /// Threads with companies are ended, by number.
     RejectDeals(Vec<u32>),
+    /// The player posts in public.
+    Post(Draft),
+}
+
+/// A post that the player is about to publish.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Draft {
+    /// Its text.
+    pub content: String,
+    /// Number of the post it answers.
+    pub reply_to: Option<u32>,
 }
 
 /// A decided change whose draws are known.
@@ -56,6 +70,8 @@ pub enum Deed {
     SendDeals(Vec<Letter>),
     /// Threads that are ended, by number.
     RejectDeals(Vec<u32>),
+    /// A post of the player.
+    Post(OwnPostMade),
 }
 
 impl Deed {
@@ -91,6 +107,10 @@ impl World {
                 streams,
             )),
             Effect::RejectDeals(threads) => Deed::RejectDeals(threads),
+            Effect::Post(Draft { content, reply_to }) => {
+                let post = self.market.social.own.len() as u32 + 1;
+                Deed::Post(OwnPostMade { post, content, reply_to })
+            }
         }
     }
 
@@ -121,6 +141,11 @@ impl World {
                 self.enterprise.send(&letters, self.day, &mut self.customers, facts);
             }
             Deed::RejectDeals(threads) => self.enterprise.reject(&threads, self.day, facts),
+            Deed::Post(made) => {
+                let own = OwnPost::new(self.day, made.content.clone(), made.reply_to);
+                self.market.social.own.push(own);
+                facts.own_posts.push(made);
+            }
         }
     }
 }

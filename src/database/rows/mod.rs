@@ -2,6 +2,7 @@
 
 mod create;
 mod direct;
+mod posts;
 mod threads;
 
 use std::collections::BTreeMap;
@@ -32,6 +33,9 @@ pub struct Entry {
     /// Text of each turn of the facts; empty where nothing is said in words.
     pub turns: Vec<String>,
     /// Address of each company that came or wrote, by customer number.
+    /// Text of each post of others among the facts.
+    pub posts: Vec<String>,
+    /// Address of each company among the arrivals, by customer number.
     pub addresses: BTreeMap<u32, String>,
     /// Forecasts that were filed.
     pub forecasts: Vec<ForecastRow>,
@@ -149,6 +153,8 @@ impl RowWriter {
         self.arrivals(transaction, entry)?;
         self.ledger(transaction, facts)?;
         self.ads(transaction, facts)?;
+        posts::posts(transaction, facts, &entry.posts)?;
+        posts::own_posts(transaction, facts)?;
         direct::notices(transaction, facts, &entry.notices)?;
         direct::settings(transaction, facts)?;
         direct::forecasts(transaction, &entry.forecasts)?;

@@ -19,6 +19,8 @@ pub struct CompanyLost {
     pub customer: u32,
     /// Its group.
     pub group: Group,
+    /// Running number within its group.
+    pub n: u32,
     /// Whole seats.
     pub seats: u32,
     /// Days it had been a subscriber; none if it has been gone for longer.
@@ -99,6 +101,7 @@ impl Step<'_> {
         self.result.lost.push(CompanyLost {
             customer,
             group,
+            n: row.n,
             seats: row.seats as u32,
             days_subscribed: left.map(|row| self.today() - row.start_day),
             kind,

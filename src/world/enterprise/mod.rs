@@ -4,7 +4,7 @@
 //! Start with [`Enterprise::step`], the order of the enterprise part of a day. What the player writes between
 //! two weeks is in [`letters`].
 
-mod churn;
+pub mod churn;
 mod company;
 mod evaluation;
 pub mod letters;

@@ -10,6 +10,7 @@ use crate::world::settings::{
 };
 
 canonical! {
+    Reaction { post, views, mean, strongest }
     ServiceDay { total_usage, overload, outage, downtime_minutes, p95_ms, error_rate, capacity_tier, capacity_units }
 }
 
@@ -175,6 +176,21 @@ pub enum Notice {
         /// Largest relative error of its estimates.
         noise: f64,
     },
+    /// A post of the player was read.
+    OwnPostSeen(Reaction),
+}
+
+/// How the public took a post of the player.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reaction {
+    /// Number of the post.
+    pub post: u32,
+    /// How often it was seen.
+    pub views: u64,
+    /// Mean reaction of the groups that judged it, -1..=1.
+    pub mean: f64,
+    /// The strongest reactions, the strongest first.
+    pub strongest: [Option<(Group, f64)>; 3],
 }
 
 impl Notice {
@@ -191,6 +207,7 @@ impl Notice {
             Notice::EconomyUpdate(_) => "macro_economic_update",
             Notice::GroupFound { .. } => "market_discovery",
             Notice::StudyComplete { .. } => "group_research_complete",
+            Notice::OwnPostSeen(_) => "social_media",
         }
     }
 }
@@ -209,6 +226,7 @@ impl Canonical for Notice {
             Notice::ChurnThreat { customer } => (12u8, customer).feed(hasher),
             Notice::PlanWish { customer, upgrade } => (13u8, (customer, upgrade)).feed(hasher),
             Notice::DealWon { price } => (14u8, price).feed(hasher),
+            Notice::OwnPostSeen(reaction) => (20u8, reaction).feed(hasher),
         }
     }
 }

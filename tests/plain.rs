@@ -230,7 +230,7 @@ fn market_and_engine_tools_are_commands() {
     assert_eq!(by_line(3)["code"], "usage");
     assert_eq!(by_line(4)["data"]["macroeconomic"], Value::Null);
     assert_eq!(by_line(5)["data"]["noise"], "\u{b1}65%");
-    assert_eq!(by_line(6)["data"]["code_length"], 39);
+    assert_eq!(by_line(6)["data"]["code_length"], 38);
     assert_eq!(by_line(8)["data"]["stdout"], "x\n1\n");
     assert_eq!(by_line(9)["code"], "script_not_found");
     assert_eq!(by_line(10)["data"]["stdout"], "n\n1\n");

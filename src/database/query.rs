@@ -1,6 +1,6 @@
 //! Guarded queries: one read-only statement over the 19 visible tables (chapter 60 §3.4, rule C).
 //!
-//! The connection can only read; an authorizer ([`super::guard`]) allows the visible tables and ordinary functions;
+//! The connection can only read; an authorizer (`guard.rs`) allows the visible tables and ordinary functions;
 //! limits bound the size of statements, values and results; a progress handler stops what takes too long or too
 //! much memory. What is refused is decided by what a statement does, never by how its text looks.
 

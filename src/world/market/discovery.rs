@@ -72,13 +72,13 @@ mod tests {
     use super::*;
 
     /// The groups that attempts find one after the other; `pause` days pass between two of them.
-    fn found(seed: u64, attempts: u32, pause: u32) -> Vec<Option<Group>> {
-        let (params, streams) = (Params::shipped(), Streams::new(seed));
-        let mut market = Market::opening(&params);
+    fn found(params: &Params, seed: u64, attempts: u32, pause: u32) -> Vec<Option<Group>> {
+        let streams = Streams::new(seed);
+        let mut market = Market::opening(params);
         let each = |number: u32| {
-            let attempt = market.next_attempt(&params, &streams);
+            let attempt = market.next_attempt(params, &streams);
             assert_eq!((attempt.earlier, attempt.cost), (number, 25_000.0));
-            market.note_attempt(&attempt, number * pause, &params);
+            market.note_attempt(&attempt, number * pause, params);
             attempt.found
         };
         (0..attempts).map(each).collect()
@@ -86,13 +86,14 @@ mod tests {
 
     #[test]
     fn the_sequence_depends_on_seed_and_number_alone() {
-        assert_eq!(found(42, 60, 0), found(42, 60, 7));
-        assert_ne!(found(42, 60, 0), found(43, 60, 0));
+        let params = Params::shipped();
+        assert_eq!(found(&params, 42, 60, 0), found(&params, 42, 60, 7));
+        assert_ne!(found(&params, 42, 60, 0), found(&params, 43, 60, 0));
     }
 
     #[test]
     fn every_group_is_found_once_and_then_nothing_more() {
-        let all: Vec<Group> = found(7, 400, 1).into_iter().flatten().collect();
+        let all: Vec<Group> = found(&Params::shipped(), 7, 400, 1).into_iter().flatten().collect();
         let mut distinct = all.clone();
         distinct.sort_unstable();
         distinct.dedup();
@@ -102,9 +103,10 @@ mod tests {
 
     #[test]
     fn three_attempts_in_ten_succeed_and_no_group_is_preferred() {
+        let params = Params::shipped();
         let (mut successes, mut first) = (0u32, [0u32; Group::COUNT]);
         for seed in 0..4000 {
-            let outcomes = found(seed, 5, 0);
+            let outcomes = found(&params, seed, 5, 0);
             successes += outcomes.iter().flatten().count() as u32;
             if let Some(group) = outcomes[0] {
                 first[group.index()] += 1;

@@ -120,6 +120,28 @@ fn a_line_that_cannot_be_read_says_where_and_what_is_near() {
     assert!(said[9]["error"].as_str().is_some_and(|text| text.contains("ledger")));
 }
 
+/// A list of deals may stand without its name; nobody is there yet to be offered anything.
+#[test]
+fn deals_are_written_as_lists() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let lines = r#"send_enterprise_deal [[99, [["B", 31.5]]], [98, []]]
+send_enterprise_deal deals=[[1, [["B", 31.5]]]]
+enterprise.send_enterprise_deal {"customer_id": 7, "offerings": [{"plan": "C"}]}
+reject_enterprise_deal 12
+reject_enterprise_deal
+inbox
+"#;
+    let (said, code) = play(runs.path(), &["--days", "28", "--json"], lines);
+    assert_eq!(code, 0, "{said}");
+    let answers: Vec<Value> =
+        objects(&said).into_iter().filter(|object| object.get("command").is_some()).collect();
+    let codes: Vec<&str> = answers.iter().filter_map(|answer| answer["code"].as_str()).collect();
+    let expected =
+        ["customer_not_found", "not_enterprise", "offering_no_price", "no_active_thread", "deals_missing"];
+    assert_eq!(codes, expected, "{said}");
+    assert_eq!(answers[0]["field"], "deals.0.customer_id");
+}
+
 #[test]
 fn strict_scripts_end_at_the_first_refusal() {
     let runs = tempfile::tempdir().expect("a folder");

@@ -157,6 +157,9 @@ struct Day<'a> {
     threads_opened: u32,
 }
 
+/// What is averaged over deals.
+type PerDeal = fn(&DealClosed) -> f64;
+
 fn company_left(ending: &SubscriptionEnded) -> bool {
     ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
 }
@@ -450,7 +453,7 @@ impl Day<'_> {
             let count = deals.iter().filter(|(_, deal)| deal.plan == plan).count();
             push(list, "ent_accepted_plan_cum", plan.id(), Kind::Sum, Some(count as f64));
         }
-        let means: [(&'static str, fn(&DealClosed) -> f64); 4] = [
+        let means: [(&'static str, PerDeal); 4] = [
             ("ent_acc_agent_turns_mean", |deal| f64::from(deal.agent_turns)),
             ("ent_acc_days_mean", |deal| f64::from(deal.days)),
             ("ent_acc_price_mean", |deal| deal.price),

@@ -105,8 +105,8 @@ fn offering(given: &Value, at: usize, customer: i64, path: &str) -> Result<Offer
             }
         },
         Value::Object(map) => {
-            let price = ["price", "price_per_seat"].into_iter().filter_map(|name| map.get(name));
-            match price.filter(|price| !price.is_null()).next() {
+            let mut prices = ["price", "price_per_seat"].into_iter().filter_map(|name| map.get(name));
+            match prices.find(|price| !price.is_null()) {
                 Some(price) => (map.get("plan"), price),
                 None => {
                     let message = "an offering needs price_per_seat, dollars a month and seat".to_owned();

@@ -31,7 +31,6 @@ pub struct Company {
 }
 
 /// Where a company stands.
-#[expect(clippy::large_enum_variant, reason = "subscribers stand in the columns, and the others are few")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum Standing {
     /// It negotiates about a first deal; the row it will have as a subscriber.

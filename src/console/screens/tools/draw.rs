@@ -135,7 +135,8 @@ fn keys(form: &Form, look: &Look<'_>) -> String {
     match form.sheet.blocks.is_empty() {
         true => "enter asks".to_owned(),
         false => format!(
-            "type a number · {} · {} · {}",
+            "type {} · {} · {} · {}",
+            if form.sheet.blocks.iter().all(Block::is_text) { "a list as JSON" } else { "a number" },
             look.hint(Action::Apply),
             look.hint(Action::ResetForm),
             look.hint(Action::CopyCall)
@@ -224,6 +225,11 @@ fn draw_head(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
         canvas.text(row, &format!("{:<19}{:>11} {:>11}", "", "new", "now"), Role::Header);
         return;
     }
+    if block.is_text() {
+        let words = format!("{}: {}", block.argument.name, block.argument.kind.words());
+        canvas.text(row, &words, Role::Header);
+        return;
+    }
     let name = format!("{} ({})", block.argument.name, block.argument.unit);
     if block.columns.len() == 1 {
         canvas.text(row, &format!("{name}: {}", block.argument.doc), Role::Header);
@@ -241,6 +247,9 @@ fn draw_head(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
 fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: Rect, focused: bool) {
     let block = &form.sheet.blocks[at];
     let here = focused && (at, index) == (form.at.block, form.at.row);
+    if block.is_text() {
+        return draw_text(form, at, canvas, row, here);
+    }
     canvas.text(
         Rect { width: NAME.min(row.width), ..row },
         &block.rows[index],
@@ -265,6 +274,26 @@ fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: 
         let words = format!("{}, {} · {}", block.argument.unit, block.range().words(), block.argument.doc);
         canvas.text(doc, &words, Role::Dim);
     }
+}
+
+/// A line of text takes the whole row.
+fn draw_text(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: bool) {
+    let place = Place { block: at, row: 0, column: 0 };
+    let Some(slot) = form.sheet.slot(place) else { return };
+    if let Some(count) = form.sheet.places().position(|own| own == place) {
+        canvas.click(row, Click::Row(1, count));
+    }
+    if let Some(field) = slot.draft.as_ref().filter(|_| here && form.typing.is_some()) {
+        return field.draw(canvas, row);
+    }
+    let text = slot.text();
+    let role = match (here, text.is_empty()) {
+        (true, _) => Role::Selection,
+        (false, true) => Role::Dim,
+        (false, false) => Role::Changed,
+    };
+    canvas.clear(row, if here { Role::Selection } else { Role::Text });
+    canvas.text(row, if text.is_empty() { "·" } else { &text }, role);
 }
 
 fn draw_cell(form: &Form, place: Place, canvas: &mut Canvas<'_>, area: Rect, here: bool) {

@@ -81,7 +81,11 @@ impl Form {
     /// Asks what the call would do.
     pub fn check(&mut self) -> Vec<Effect> {
         self.preview = None;
-        let quiet = !self.spec.kind.acts() || (self.spec.kind == Kind::Setting && !self.sheet.is_changed());
+        let quiet = match self.spec.kind {
+            Kind::Setting | Kind::OneShot => !self.sheet.is_changed(),
+            Kind::Purchase | Kind::Time => false,
+            Kind::Read | Kind::Engine => true,
+        };
         match self.sheet.arguments() {
             Ok(arguments) if !quiet => vec![Effect::Check { tool: self.spec.name, arguments }],
             _ => Vec::new(),
@@ -95,8 +99,9 @@ impl Form {
             Ok(arguments) => arguments,
             Err(place) => {
                 self.at = place;
-                let path = self.sheet.blocks[place.block].path(place.row, place.column);
-                return vec![Effect::Complain(format!("{path}: a number is expected here"))];
+                let block = &self.sheet.blocks[place.block];
+                let path = block.path(place.row, place.column);
+                return vec![Effect::Complain(format!("{path}: {}", block.expected()))];
             }
         };
         let tool = self.spec.name;
@@ -114,7 +119,7 @@ impl Form {
                 }
                 _ => vec![Effect::Call { tool, arguments }],
             },
-            Kind::OneShot => {
+            Kind::OneShot if self.sheet.is_changed() => {
                 let text = format!("{tool} {arguments} cannot be taken back.");
                 vec![Effect::ConfirmCall { tool, arguments, text }]
             }
@@ -155,10 +160,20 @@ impl Form {
     fn edit(&mut self) {
         if let Some(block) = self.at_adding_row() {
             self.adding = Some((block, Field::default()));
-        } else if let Some(slot) = self.sheet.slot_mut(self.at) {
-            self.typing = Some(slot.draft.clone());
-            slot.draft = Some(Field::to_replace(slot.text()));
+            return;
         }
+        let text = self.is_at_text();
+        if let Some(slot) = self.sheet.slot_mut(self.at) {
+            self.typing = Some(slot.draft.clone());
+            let held = slot.text();
+            // A number is replaced by what is typed; words are changed.
+            slot.draft = Some(if text { Field::of(held) } else { Field::to_replace(held) });
+        }
+    }
+
+    /// Whether the focus is on a line of text.
+    fn is_at_text(&self) -> bool {
+        self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_text)
     }
 
     /// The block whose last line adds a row, if the focus is there.
@@ -267,27 +282,39 @@ impl Form {
         self.at = Place { block, row, column: self.at.column.min(cells - 1) };
     }
 
-    /// Takes a typed key; a digit begins to type.
+    /// Takes a typed key; a digit begins to type, in a line of text any letter.
     pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         if let Some((_, field)) = &mut self.adding {
             field.key(key);
             return Vec::new();
         }
-        let begins = Chord::of(key).begins_number();
+        let text = self.is_at_text();
+        let begins = if text { Chord::of(key).is_letter() } else { Chord::of(key).begins_number() };
         if self.typing.is_none() && begins {
             if self.at_adding_row().is_some() {
                 self.edit();
                 return self.key(key);
             }
             if let Some(slot) = self.sheet.slot_mut(self.at) {
-                self.typing = Some(slot.draft.replace(Field::default()));
+                let empty = slot.draft.is_none() || !text;
+                self.typing = Some(slot.draft.clone());
+                if empty {
+                    slot.draft = Some(Field::default());
+                }
             }
         }
         if self.typing.is_some()
             && let Some(slot) = self.sheet.slot_mut(self.at)
             && let Some(field) = &mut slot.draft
         {
-            let taken = field.number_key(key);
+            let taken = if text {
+                {
+                    field.key(key);
+                    true
+                }
+            } else {
+                field.number_key(key)
+            };
             return if taken { self.check() } else { vec![Effect::Complain(ONLY_NUMBERS.to_owned())] };
         }
         Vec::new()
@@ -297,7 +324,8 @@ impl Form {
     pub fn paste(&mut self, text: &str) -> Vec<Effect> {
         if self.typing.is_none() && self.adding.is_none() {
             self.edit();
-            if let Some(slot) = self.sheet.slot_mut(self.at).filter(|_| self.typing.is_some()) {
+            let typing = self.typing.is_some() && !self.is_at_text();
+            if let Some(slot) = self.sheet.slot_mut(self.at).filter(|_| typing) {
                 slot.draft = Some(Field::default());
             }
         }

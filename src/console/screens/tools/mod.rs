@@ -289,6 +289,28 @@ mod tests {
     }
 
     #[test]
+    fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
+        let keys = [
+            "[", "[", "7", ",", "[", "[", "\"", "B", "\"", ",", "3", "0", "]", "]", "]", "]", "enter",
+            "ctrl-s",
+        ];
+        let (tools, effects) = typed("send_enterprise_deal", &keys);
+        let Some(Effect::ConfirmCall { tool, arguments, text }) = effects.first() else {
+            panic!("{effects:?}")
+        };
+        assert_eq!((*tool, arguments), ("send_enterprise_deal", &json!({"deals": [[7, [["B", 30]]]]})));
+        assert!(text.contains("cannot be taken back"), "{text}");
+        assert!(tools.holds_unsent_text());
+        let (_, effects) = typed("send_enterprise_deal", &["[", "7", "enter", "ctrl-s"]);
+        assert!(
+            matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: a list")),
+            "{effects:?}"
+        );
+        let (_, effects) = typed("reject_enterprise_deal", &["ctrl-s"]);
+        assert!(matches!(&effects[..], [Effect::Call { .. }]), "the tool says what is missing: {effects:?}");
+    }
+
+    #[test]
     fn escape_brings_back_what_was_there() {
         let (tools, _) = typed("set_prices", &["1", "2", "enter", "up", "9", "9", "esc"]);
         assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));

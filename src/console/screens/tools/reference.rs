@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::console::company::Company;
 use crate::console::text::number;
-use crate::notation::{dollars, grouped};
+use crate::notation::{cents, dollars, grouped};
 
 /// Lines beside a form, the first one a head; empty where nothing helps.
 pub fn reference(tool: &str, company: &Company) -> Vec<String> {
@@ -13,6 +13,7 @@ pub fn reference(tool: &str, company: &Company) -> Vec<String> {
         "set_capacity_tier" => capacities(company),
         "start_research_project" => projects(company),
         "set_prices" => prices(company),
+        "send_enterprise_deal" | "reject_enterprise_deal" => threads(company),
         _ => Vec::new(),
     }
 }
@@ -66,6 +67,21 @@ fn projects(company: &Company) -> Vec<String> {
             dollars(field(tier, "cost")),
             number(field(tier, "mean_days")),
             field(tier, "mean_quality_boost")
+        )
+    }));
+    lines
+}
+
+fn threads(company: &Company) -> Vec<String> {
+    if company.seen.waiting.is_empty() {
+        return Vec::new();
+    }
+    let mut lines = vec!["customer  group   seats  thread            asks         days left".to_owned()];
+    lines.extend(company.seen.waiting.iter().map(|thread| {
+        let asks = thread.asked.map_or("–".to_owned(), cents);
+        format!(
+            "{:>8}  {:<6} {:>6}  {:<16} {asks:>8}   {:>14}",
+            thread.customer, thread.group, thread.seats, thread.kind, thread.days_left
         )
     }));
     lines

@@ -7,7 +7,7 @@ use crate::console::text::number;
 use crate::console::widgets::Field;
 use crate::console::widgets::field::parse_number;
 use crate::notation::json_number;
-use crate::tools::{Argument, ArgumentKind, Key, Range, Spec};
+use crate::tools::{Argument, ArgumentKind, Key, Kind, Range, Spec};
 use crate::world::identifiers::{Channel, Plan};
 
 /// A value that can be typed.
@@ -70,7 +70,7 @@ pub struct Block {
 }
 
 impl Block {
-    fn of(argument: &'static Argument, current: Option<&Value>, company: &Company) -> Option<Block> {
+    fn of(argument: &'static Argument, current: Option<&Value>, company: &Company) -> Block {
         let keys = |key: Key, given: Option<&Value>| -> Vec<String> {
             match key {
                 Key::Group => company.seen.known_groups.iter().map(|group| group.id().to_owned()).collect(),
@@ -87,7 +87,9 @@ impl Block {
             }
             ArgumentKind::Map(key, _) => (keys(key, current), vec![String::new()]),
             ArgumentKind::Matrix(outer, inner, _) => (keys(outer, current), keys(inner, None)),
-            ArgumentKind::Text | ArgumentKind::Structure(_) => return None,
+            ArgumentKind::Text | ArgumentKind::Structure(_) => {
+                (vec![argument.name.to_owned()], vec![String::new()])
+            }
         };
         let slot = |row: &String, column: &String| match argument.kind {
             ArgumentKind::Map(..) => Slot::of(current.and_then(|map| map.get(row))),
@@ -97,7 +99,7 @@ impl Block {
             _ => Slot::of(current),
         };
         let slots = rows.iter().map(|row| columns.iter().map(|column| slot(row, column)).collect()).collect();
-        Some(Block { argument, rows, columns, slots })
+        Block { argument, rows, columns, slots }
     }
 
     /// Allowed numbers.
@@ -116,6 +118,11 @@ impl Block {
         matches!(self.argument.kind, ArgumentKind::Number(_) | ArgumentKind::Integer(_))
     }
 
+    /// Whether it is one line of text: words, or a list written as JSON.
+    pub fn is_text(&self) -> bool {
+        matches!(self.argument.kind, ArgumentKind::Text | ArgumentKind::Structure(_))
+    }
+
     /// Whether rows can be added: customers are too many to list.
     pub fn is_open(&self) -> bool {
         matches!(self.argument.kind, ArgumentKind::Map(Key::Customer, _))
@@ -123,7 +130,10 @@ impl Block {
 
     /// Whether something differs from what holds.
     pub fn is_changed(&self) -> bool {
-        self.slots.iter().flatten().any(Slot::is_changed)
+        match self.is_text() {
+            true => !self.slots[0][0].text().trim().is_empty(),
+            false => self.slots.iter().flatten().any(Slot::is_changed),
+        }
     }
 
     /// Sum of what would hold, as far as it can be read.
@@ -147,11 +157,33 @@ impl Block {
         }
     }
 
+    /// The value of a line of text: JSON where a list or object is asked for.
+    fn text_value(&self) -> Result<Option<Value>, Place> {
+        let text = self.slots[0][0].text();
+        match self.argument.kind {
+            _ if text.trim().is_empty() => Ok(None),
+            ArgumentKind::Text => Ok(Some(text.into())),
+            _ => serde_json::from_str(&text).map(Some).map_err(|_| Place::default()),
+        }
+    }
+
+    /// What a cell takes, for whoever typed something else.
+    pub fn expected(&self) -> &'static str {
+        if self.is_text() {
+            "a list or object written as JSON is expected here"
+        } else {
+            "a number is expected here"
+        }
+    }
+
     /// The value that would be sent.
     fn value(&self) -> Result<Option<Value>, Place> {
         let number = |row: usize, column: usize| {
             self.slots[row][column].value().map_err(|()| Place { block: 0, row, column })
         };
+        if self.is_text() {
+            return self.text_value();
+        }
         if self.is_scalar() {
             return Ok(number(0, 0)?.map(json_number));
         }
@@ -195,7 +227,7 @@ pub struct Place {
 pub struct Sheet {
     /// The tool.
     pub spec: &'static Spec,
-    /// One per argument that is a number or made of numbers.
+    /// One per argument; tools with a screen or dialog of their own have only those made of numbers.
     pub blocks: Vec<Block>,
 }
 
@@ -205,7 +237,9 @@ impl Sheet {
         let nothing = Map::new();
         let current = company.settings.get(spec.name).unwrap_or(&nothing);
         let block = |argument: &'static Argument| Block::of(argument, current.get(argument.name), company);
-        Sheet { spec, blocks: spec.arguments.iter().filter_map(block).collect() }
+        let blocks = spec.arguments.iter().map(block);
+        let elsewhere = |block: &Block| block.is_text() && (spec.kind == Kind::Time || spec.name == "query");
+        Sheet { spec, blocks: blocks.filter(|block| !elsewhere(block)).collect() }
     }
 
     /// The same over what holds now, with the drafts that still differ.
@@ -240,7 +274,7 @@ impl Sheet {
     /// Arguments of the call: what is required, and what differs.
     ///
     /// # Errors
-    /// The first cell that is no number.
+    /// The first cell that is no number, or no JSON where that is asked for.
     pub fn arguments(&self) -> Result<Value, Place> {
         let mut arguments = Map::new();
         for (at, block) in self.blocks.iter().enumerate() {
@@ -341,6 +375,22 @@ mod tests {
         assert_eq!(ads.arguments(), Ok(json!({"by_customer": {"17": 0.5}})));
         let renewed = ads.renewed(&company());
         assert_eq!(renewed.arguments(), ads.arguments());
+    }
+
+    #[test]
+    fn lists_are_typed_as_json() {
+        let mut deals = sheet("send_enterprise_deal");
+        assert!(!deals.is_changed());
+        assert_eq!(deals.arguments(), Ok(json!({})));
+        fill(&mut deals, "deals", "[[7, [[\"B\", 31.5]]]]");
+        assert_eq!(deals.arguments(), Ok(json!({"deals": [[7, [["B", 31.5]]]]})));
+        let renewed = deals.renewed(&company());
+        assert!(renewed.is_changed() && renewed.arguments() == deals.arguments());
+        fill(&mut deals, "deals", "[[7, ");
+        assert_eq!(deals.arguments(), Err(Place::default()));
+        assert!(deals.blocks[0].expected().contains("JSON"));
+        // What has a screen of its own is not typed here.
+        assert!(sheet("query").blocks.is_empty() && sheet("next_week").blocks.is_empty());
     }
 
     #[test]

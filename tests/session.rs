@@ -453,8 +453,8 @@ fn a_post_is_read_judged_answered_and_told_about() {
     assert!(complaint > 0.0, "customers were heard on the seventh day");
     // A real discount, said to those who look for one.
     call(&mut session, "set_promotion", json!({"by_group": {"S1": 2}}));
-    let content = "Student or freelancer? $2 off every plan from today, cancel anytime. We cut the price because you asked; \
-                   thanks for the feedback, your ideas are next.";
+    let content = "Every plan is $2 off from today: no tricks, cancel anytime. We cut the price because students asked for \
+                   it, and the discount stays free of small print. Tell the community forum what you think.";
     let made = call(&mut session, "post_social_media", json!({"content": content}));
     assert_eq!((&made["agent_post_id"], &made["day"]), (&json!(1), &json!(14)));
     let again = session.call("post_social_media", &json!({"content": "More."}), Via::Script);
@@ -475,7 +475,7 @@ fn a_post_is_read_judged_answered_and_told_about() {
     let views = number(&mut session, own);
     assert!(views >= 300.0, "six groups of at least 50: {views}");
     let notice = text(&mut session, "SELECT message FROM notifications WHERE type = 'social_media'");
-    assert!(notice.contains("Student or freelancer?") && notice.contains("S1 +"), "{notice}");
+    assert!(notice.contains("Every plan is $2 off") && notice.contains("S1 +"), "{notice}");
     let judged = session.xray().expect("a debug run").judgements(1).to_vec();
     assert_eq!(judged.len(), 6);
     assert!(

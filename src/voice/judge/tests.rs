@@ -297,3 +297,23 @@ fn any_text_gets_a_score() {
     }
     assert!(all(&post("Good morning!"), &usual()).iter().all(|own| own.effect == 0.0));
 }
+
+#[test]
+fn every_group_can_be_won_and_lost() {
+    #[derive(serde::Deserialize)]
+    struct Pair {
+        good: String,
+        bad: String,
+    }
+    let text = include_str!("../../../assets/voice/examples.toml");
+    let pairs: std::collections::BTreeMap<String, Pair> = toml::from_str(text).expect("the shipped examples");
+    assert_eq!(pairs.len(), Group::COUNT);
+    let kept = Circumstances { quota_up: true, price_cut: true, promotion: true, ..usual() };
+    let broken = Circumstances { quota_up: false, p95_ms: 500.0, ..with_outage() };
+    for (id, Pair { good, bad }) in pairs {
+        assert!(good.chars().count() <= 280 && bad.chars().count() <= 280, "{id}");
+        let (won, lost) = (effect(&all(&post(&good), &kept), &id), effect(&all(&post(&bad), &broken), &id));
+        assert!(won >= 0.6, "{id}: {won} for {good}");
+        assert!(lost < -0.3, "{id}: {lost} for {bad}");
+    }
+}

@@ -29,7 +29,7 @@ pub(super) fn draft(context: &Context, choose: Chooser<'_>) -> String {
 
 /// Whether an author writes without capitals; everybody keeps to their habit.
 pub(super) fn without_capitals(author: &PostAuthor) -> bool {
-    Register::of(Some(author.group)) == Register::Casual && author.n % WITHOUT_CAPITALS == 0
+    Register::of(Some(author.group)) == Register::Casual && author.n.is_multiple_of(WITHOUT_CAPITALS)
 }
 
 /// What the grammar is told about a post.

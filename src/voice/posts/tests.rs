@@ -2,6 +2,7 @@
 
 use super::customers::tests::{author, situations};
 use super::*;
+use crate::world::events::Cause;
 use crate::world::identifiers::Group;
 use crate::world::market::competitors::Severity;
 use crate::world::market::economy::Trend;
@@ -18,6 +19,15 @@ fn feed() -> Vec<(Post, String)> {
     let post = |sentiment, matter, author| Post { post: 0, author, sentiment, engagement: NOBODY, matter };
     for group in Group::all() {
         for (opinion, tone) in situations() {
+            let company = group.is_enterprise();
+            let possible = match opinion.cause {
+                Cause::Cancelled => !company,
+                Cause::Lost { .. } => company,
+                _ => true,
+            };
+            if !possible {
+                continue;
+            }
             posts.push(post(tone, Matter::Opinion(opinion), Some(author(group))));
         }
         for perspective in 0..11 {

@@ -237,7 +237,7 @@ fn market_and_engine_tools_are_commands() {
                  register_daily_calculation name=money code=\"SELECT sum(amount) AS cash FROM ledger\"\n\
                  register_script(name=\"one\", code=\"SELECT 1 AS x\")\nrun_script one\nrun_script two\n\
                  python_exec \"SELECT count(*) AS n FROM customers\"\npython_exec \"DROP TABLE ledger\"\n\
-                 list_scripts\ndescribe_tables table_names=predictions\nlist_all_tables\nget_tool_documentation tool_names=set_prices\n\
+                 list_scripts\ndescribe_tables predictions\nlist_all_tables\nget_tool_documentation tool_names=set_prices\n\
                  next naive\ndashboard\n";
     let (text, code) = play(runs.path(), &["--json", "--days", "28", "--seed", "7"], lines);
     assert_eq!(code, 0);

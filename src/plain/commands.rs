@@ -211,11 +211,16 @@ fn tool_called(word: &str) -> Option<&'static dyn Tool> {
         .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))
 }
 
-/// The argument of a tool that may be given without its name: the only required one, or the one that is the whole.
+/// The argument of a tool that may be given without its name: the only required one, the one that is the whole, or the
+/// only one at all.
 fn only_required(tool: &'static dyn Tool) -> Option<&'static str> {
     let mut required = tool.spec().arguments.iter().filter(|argument| argument.required);
     let only = required.next().filter(|_| required.next().is_none()).map(|argument| argument.name);
-    only.or(tool.spec().whole)
+    let sole = match tool.spec().arguments {
+        [argument] => Some(argument.name),
+        _ => None,
+    };
+    only.or(tool.spec().whole).or(sole)
 }
 
 fn unknown(word: &str, column: usize) -> Problem {

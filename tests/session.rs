@@ -4,7 +4,7 @@ use std::path::Path;
 
 use novamind::session::{
     Access, Cell, Configuration, Ended, Forecasts, Mode, NewRun, Session, Storage, Trajectory, Via, find_run,
-    list_runs, verify,
+    find_run_to_read, list_runs, verify,
 };
 use serde_json::{Value, json};
 
@@ -287,7 +287,7 @@ fn runs_are_listed_found_and_named() {
     assert!(list_runs(&folder.path().join("nothing")).expect("an empty list").is_empty());
     let mut first = create(new_run(runs(&folder)));
     week(&mut first);
-    let second = create(NewRun { days: Some(500), ..new_run(runs(&folder)) });
+    let mut second = create(NewRun { days: Some(500), ..new_run(runs(&folder)) });
     assert_eq!((first.manifest().earlier_runs, second.manifest().earlier_runs), (0, 1));
     let list = list_runs(folder.path()).expect("a list");
     assert_eq!(list.len(), 2);
@@ -296,6 +296,13 @@ fn runs_are_listed_found_and_named() {
     assert!(find_run(folder.path(), &second.manifest().id[..6]).is_ok());
     assert!(find_run(folder.path(), "latest").is_ok());
     assert!(find_run(folder.path(), "zz").is_err());
+    second.end().expect("given up");
+    let open = find_run(folder.path(), "latest").expect("the unfinished one");
+    assert!(open.ends_with(&first.manifest().id));
+    assert!(find_run_to_read(folder.path(), "latest").is_ok());
+    first.end().expect("given up");
+    assert!(find_run(folder.path(), "latest").is_err(), "nothing is left to play");
+    assert!(find_run_to_read(folder.path(), "latest").is_ok(), "something is left to read");
 }
 
 #[test]

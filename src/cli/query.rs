@@ -3,12 +3,12 @@
 use clap::{Args, ValueEnum};
 
 use super::{Context, Failure, print};
-use crate::session::{Access, Cell, Rows, Session, Trajectory, desk_of_file, find_run, rows_as_json};
+use crate::session::{Access, Cell, Rows, Session, Trajectory, desk_of_file, find_run_to_read, rows_as_json};
 
 /// Options of `query`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, or `latest`.
+    /// Run, or `latest`: the newest.
     run: String,
     /// One read-only statement.
     sql: String,
@@ -30,7 +30,7 @@ pub enum Format {
 
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let folder = find_run(&context.runs()?, &options.run)?;
+    let folder = find_run_to_read(&context.runs()?, &options.run)?;
     let rows = ask(&folder, &options.sql)?;
     match options.format {
         Format::Table => print(&crate::plain::table(&rows)),

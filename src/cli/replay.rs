@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{Context, Failure, print};
-use crate::session::{find_run, verify};
+use crate::session::{find_run_to_read, verify};
 
 /// Options of `replay`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, `latest`, or a run's folder or trajectory.
+    /// Run, `latest` (the newest), or a run's folder or trajectory.
     run: String,
     /// Simulate again and compare every recorded state.
     #[arg(long)]
@@ -28,7 +28,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     } else if path.is_file() {
         path.parent().map(PathBuf::from).unwrap_or_default()
     } else {
-        find_run(&context.runs()?, &options.run)?
+        find_run_to_read(&context.runs()?, &options.run)?
     };
     let found = verify(&folder)?;
     print(&format!(

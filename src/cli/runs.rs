@@ -4,7 +4,7 @@ use clap::{Args, Subcommand};
 
 use super::{Context, Failure, print};
 use crate::notation::dollars;
-use crate::session::{RunSummary, delete_run, end_run, find_run, list_runs};
+use crate::session::{RunSummary, delete_run, end_run, find_run, find_run_to_read, list_runs};
 
 /// Options of `runs`.
 #[derive(Debug, Args)]
@@ -20,17 +20,17 @@ pub struct Options {
 enum Choice {
     /// Show what a run is and how far it has come.
     Show {
-        /// Run, or `latest`.
+        /// Run, or `latest`: the newest.
         run: String,
     },
     /// Print the folder of a run.
     Path {
-        /// Run, or `latest`.
+        /// Run, or `latest`: the newest.
         run: String,
     },
     /// End an unfinished run for good.
     End {
-        /// Run, or `latest`.
+        /// Run, or `latest`: the newest unfinished one.
         run: String,
     },
     /// Delete a run with all its files.
@@ -61,7 +61,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             print(&list.iter().map(line).collect::<String>())
         }
         Some(Choice::Show { run }) => {
-            let folder = find_run(&runs, run)?;
+            let folder = find_run_to_read(&runs, run)?;
             let text = std::fs::read_to_string(folder.join("run.toml"))
                 .map_err(|error| Failure::unreadable(format!("{}: {error}", folder.display())))?;
             let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -71,7 +71,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             }
             print(&format!("{}\n{text}", summary.as_ref().map(line).unwrap_or_default()))
         }
-        Some(Choice::Path { run }) => print(&format!("{}\n", find_run(&runs, run)?.display())),
+        Some(Choice::Path { run }) => print(&format!("{}\n", find_run_to_read(&runs, run)?.display())),
         Some(Choice::End { run }) => {
             end_run(&runs, run)?;
             print(&format!("run {run} is ended; it can still be read\n"))

@@ -45,7 +45,7 @@ pub use manifest::{FORMAT, Manifest, Parent};
 pub use mode::Mode;
 pub use observe::{Observation, WaitingThread};
 pub use open::{Access, Verification, verify};
-pub use runs::{RunSummary, delete_run, end_run, find_run, list_runs, run_folder};
+pub use runs::{RunSummary, delete_run, end_run, find_run, find_run_to_read, list_runs, run_folder};
 pub use trajectory::{Line, Trajectory};
 pub use week::{Forecasts, WeekFigures, week_of};
 pub use xray::Xray;

@@ -137,15 +137,27 @@ fn tail(path: &Path, window: u64) -> Option<(String, bool)> {
     Some((String::from_utf8_lossy(&bytes).into_owned(), window >= length))
 }
 
-/// The folder of a run by its name, a unique beginning of it, or `latest`: the newest unfinished one.
+/// The folder of a run to play, by its name, a unique beginning of it, or `latest`: the newest unfinished one.
 ///
 /// # Errors
 /// There is none, or several begin like this.
 pub fn find_run(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
+    find(runs, id, |run| run.ended.is_none())
+}
+
+/// The folder of a run to read, by its name, a unique beginning of it, or `latest`: the newest one.
+///
+/// # Errors
+/// There is none, or several begin like this.
+pub fn find_run_to_read(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
+    find(runs, id, |_| true)
+}
+
+fn find(runs: &Path, id: &str, wanted: impl Fn(&RunSummary) -> bool) -> Result<PathBuf, RunError> {
     let missing = || RunError::NotFound { id: id.to_owned(), folder: runs.to_owned() };
     let list = list_runs(runs)?;
     if id == "latest" {
-        let newest = list.iter().find(|run| run.ended.is_none() && run.problem.is_none());
+        let newest = list.iter().find(|run| run.problem.is_none() && wanted(run));
         return newest.map(|run| runs.join(&run.id)).ok_or_else(missing);
     }
     let folder = runs.join(id);

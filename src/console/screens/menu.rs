@@ -76,7 +76,7 @@ impl Form {
             scenarios,
             scenario,
             mode: Mode::ALL.iter().position(|mode| *mode == Mode::Sandbox).unwrap_or(0),
-            seed: Field::of("42"),
+            seed: Field::to_replace("42"),
             days: Field::default(),
             cash: Field::default(),
             participant: Field::default(),

@@ -14,6 +14,8 @@ pub struct Field {
     text: String,
     /// Graphemes before the cursor.
     cursor: usize,
+    /// The first letter that is typed replaces the text.
+    selected: bool,
 }
 
 /// Longest text, in bytes: more is a mistake of the clipboard.
@@ -24,7 +26,12 @@ impl Field {
     pub fn of(text: impl Into<String>) -> Field {
         let text = text.into();
         let cursor = text.graphemes(true).count();
-        Field { text, cursor }
+        Field { text, cursor, selected: false }
+    }
+
+    /// A field whose text is replaced by the first letter that is typed, unless another key comes before.
+    pub fn to_replace(text: impl Into<String>) -> Field {
+        Field { selected: true, ..Field::of(text) }
     }
 
     /// What it holds.
@@ -40,10 +47,17 @@ impl Field {
     /// Takes a key; false if it means nothing here.
     pub fn key(&mut self, key: &KeyEvent) -> bool {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
+        let removes = matches!(key.code, KeyCode::Backspace | KeyCode::Delete);
+        let selected = std::mem::take(&mut self.selected);
+        if selected && removes {
+            *self = Field::default();
+            return true;
+        }
         match key.code {
             KeyCode::Char('u') if ctrl => *self = Field::default(),
             KeyCode::Char('w') if ctrl => self.delete_word(),
             KeyCode::Char(letter) if !ctrl && !key.modifiers.contains(KeyModifiers::ALT) => {
+                self.selected = selected;
                 self.insert(&letter.to_string());
             }
             KeyCode::Backspace if self.cursor > 0 => {
@@ -72,6 +86,9 @@ impl Field {
 
     /// Puts text at the cursor; line ends become blanks.
     pub fn insert(&mut self, text: &str) {
+        if std::mem::take(&mut self.selected) {
+            *self = Field::default();
+        }
         let clean: String =
             text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
         if self.text.len() + clean.len() > LONGEST {
@@ -115,12 +132,13 @@ impl Field {
         canvas.clear(Rect { height: 1, ..area }, Role::Field);
         canvas.text(area, "", Role::Field);
         let mut x = area.x;
+        let role = if self.selected { Role::Selection } else { Role::Field };
         for piece in &pieces[from..] {
             let width = piece.width() as u16;
             if x + width > area.right() {
                 break;
             }
-            canvas.text(Rect { x, width: width.max(1), ..area }, piece, Role::Field);
+            canvas.text(Rect { x, width: width.max(1), ..area }, piece, role);
             x += width;
         }
         let before = pieces[from..self.cursor].concat().width() as u16;
@@ -165,6 +183,27 @@ mod tests {
             field.key(&KeyEvent::new(*key, KeyModifiers::NONE));
         }
         field
+    }
+
+    #[test]
+    fn a_selected_text_is_replaced_by_what_is_typed_first() {
+        use KeyCode::{Backspace, Char, Left};
+        for (keys, text) in [
+            (&[Char('7')][..], "7"),
+            (&[Char('7'), Char('1')], "71"),
+            (&[Left, Char('7')], "172"),
+            (&[Backspace], ""),
+            (&[Backspace, Char('3')], "3"),
+        ] {
+            let mut field = Field::to_replace("12");
+            for key in keys {
+                field.key(&KeyEvent::new(*key, KeyModifiers::NONE));
+            }
+            assert_eq!(field.text(), text, "{keys:?}");
+        }
+        let mut pasted = Field::to_replace("12");
+        pasted.insert("9");
+        assert_eq!(pasted.text(), "9");
     }
 
     #[test]

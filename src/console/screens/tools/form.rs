@@ -158,7 +158,7 @@ impl Form {
             self.adding = Some((block, Field::default()));
         } else if let Some(slot) = self.sheet.slot_mut(self.at) {
             self.typing = Some(slot.draft.clone());
-            slot.draft = Some(Field::of(slot.text()));
+            slot.draft = Some(Field::to_replace(slot.text()));
         }
     }
 

@@ -45,8 +45,10 @@ impl Register {
     }
 }
 
-const NUMBERS: [&str; 13] =
-    ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
+const NUMBERS: [&str; 14] = [
+    "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+    "thirteen",
+];
 
 fn counted(count: u32, unit: &str) -> String {
     let number = NUMBERS.get(count as usize).map_or_else(|| count.to_string(), |word| (*word).to_owned());

@@ -434,3 +434,81 @@ fn the_journal_tells_the_run_and_scores_its_forecasts() {
     assert_eq!(again.forecast_scores(), scores);
     assert_eq!(again.memo().expect("readable"), "prices were a guess");
 }
+
+/// Text of the only cell.
+fn text(session: &mut Session, sql: &str) -> String {
+    match &session.query(sql).expect("an answer").rows[0][0] {
+        Cell::Text(text) => text.clone(),
+        other => panic!("{sql}: {other:?}"),
+    }
+}
+
+#[test]
+fn a_post_is_read_judged_answered_and_told_about() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = create(NewRun { mode: Mode::Debug, ..new_run(runs(&folder)) });
+    open_shop(&mut session);
+    (0..2).for_each(|_| week(&mut session));
+    let complaint = number(&mut session, "SELECT max(post_id) FROM social_media_posts WHERE day % 7 = 0");
+    assert!(complaint > 0.0, "customers were heard on the seventh day");
+    // A real discount, said to those who look for one.
+    call(&mut session, "set_promotion", json!({"by_group": {"S1": 2}}));
+    let content = "Student or freelancer? $2 off every plan from today, cancel anytime. We cut the price because you asked; \
+                   thanks for the feedback, your ideas are next.";
+    let made = call(&mut session, "post_social_media", json!({"content": content}));
+    assert_eq!((&made["agent_post_id"], &made["day"]), (&json!(1), &json!(14)));
+    let again = session.call("post_social_media", &json!({"content": "More."}), Via::Script);
+    assert_eq!(again.expect_err("one a day").code, "already_posted");
+    let own = "SELECT views FROM agent_social_media_posts";
+    assert_eq!(number(&mut session, own), 0.0);
+    let insult = |session: &mut Session| {
+        call(
+            session,
+            "post_social_media",
+            json!({"content": "Read the docs, you idiots. Shut up.", "reply_to_post_id": 1}),
+        )
+    };
+
+    week(&mut session);
+    assert!(session.dashboard().contains("--- Your posts ---\nDay 14: "), "{}", session.dashboard());
+    insult(&mut session);
+    let views = number(&mut session, own);
+    assert!(views >= 300.0, "six groups of at least 50: {views}");
+    let notice = text(&mut session, "SELECT message FROM notifications WHERE type = 'social_media'");
+    assert!(notice.contains("Student or freelancer?") && notice.contains("S1 +"), "{notice}");
+    let judged = session.xray().expect("a debug run").judgements(1).to_vec();
+    assert_eq!(judged.len(), 6);
+    assert!(
+        judged[0].effect >= 0.6 && !judged[0].reason().is_empty(),
+        "{}: {}",
+        judged[0].effect,
+        judged[0].reason()
+    );
+    let viral = judged.iter().filter(|own| own.effect.abs() >= 0.6).count() as f64;
+    let comments = "SELECT count(*) FROM social_media_posts WHERE reply_to_agent_post_id = 1";
+    assert_eq!(number(&mut session, comments), viral);
+    let listed =
+        text(&mut session, "SELECT comment_post_ids FROM agent_social_media_posts WHERE agent_post_id = 1");
+    let listed: Vec<u32> = serde_json::from_str(&listed).expect("a JSON list");
+    assert_eq!(listed.len() as f64, viral);
+
+    week(&mut session);
+    let answers = call(&mut session, "get_social_posts", json!({"limit": -1}));
+    let against = answers["posts"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .filter(|post| post["reply_to_agent_post_id"] == 2);
+    assert!(against.count() >= 1);
+    assert!(session.xray().expect("a debug run").judgements(2).iter().all(|own| own.effect < -0.3));
+    assert_eq!(session.posts().len() as f64, number(&mut session, "SELECT count(*) FROM social_media_posts"));
+
+    let place = session.folder().expect("a folder").to_owned();
+    let (hash, _) = session.state_hash();
+    let words: Vec<String> = session.posts().iter().map(|post| post.content.clone()).collect();
+    drop(session);
+    let again = Session::open(&place, Access::Read, false).expect("it opens");
+    assert_eq!(again.state_hash().0, hash);
+    assert_eq!(again.posts().iter().map(|post| post.content.clone()).collect::<Vec<_>>(), words);
+    verify(&place).expect("every state is reached again");
+}

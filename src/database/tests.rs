@@ -16,6 +16,7 @@ const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(20), steps
 fn entry(facts: Facts) -> Entry {
     Entry {
         notices: facts.notices.iter().map(crate::voice::notice).collect(),
+        turns: facts.turns.iter().map(|_| String::new()).collect(),
         readings: facts.readings.iter().map(crate::voice::reading).collect(),
         addresses: facts
             .arrivals

@@ -1,11 +1,14 @@
 //! Figures of a run, day by day, hidden ones included (chapter 70 §4, definitions: reference golden/README).
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 use crate::session::{DayReport, Xray};
-use crate::world::events::{Category, EndCause, Notice, Source, SubscriptionStatus};
+use crate::world::events::{
+    Category, DealClosed, EndCause, Notice, Post, Source, SubscriptionEnded, SubscriptionStatus, ThreadKind,
+};
 use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
 use crate::world::market::economy::Dimension;
+use crate::world::market::social::sentiment::Sentiment;
 
 /// One value.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +24,7 @@ pub struct Figure {
 }
 
 /// How daily values become a figure.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq)]
 enum Kind {
     /// The value at the end of the day.
     Now,
@@ -29,6 +32,11 @@ enum Kind {
     Sum,
     /// The mean over the last 30 days.
     Month,
+    /// The sum over all days so far per unit of a weight, for instance per deal.
+    Mean {
+        /// The weight of today.
+        weight: f64,
+    },
 }
 
 struct Daily {
@@ -45,9 +53,14 @@ pub struct Collector {
     /// Days whose figures are kept; none: all.
     wanted: Option<Vec<u32>>,
     sums: Vec<f64>,
+    weights: Vec<f64>,
     windows: Vec<VecDeque<f64>>,
     /// Counts that only exist as sums.
     open_issues: f64,
+    /// Cancellations of companies by the day on which their subscription ends, which may be still to come.
+    endings: BTreeMap<u32, ByGroup<f64>>,
+    /// Number of the next thread, a day before.
+    next_thread: u32,
     figures: Vec<Figure>,
     last_day: u32,
     bankrupt: Option<u32>,
@@ -71,8 +84,17 @@ impl Collector {
         self.last_day = report.figures.day;
         self.open_issues +=
             xray.facts().issues_opened.len() as f64 - xray.facts().issues_resolved.len() as f64;
-        let daily = Day { report, xray, open_issues: self.open_issues }.values();
+        for ending in xray.facts().endings.iter().filter(|ending| company_left(ending)) {
+            self.endings.entry(ending.day).or_default()[ending.group] += 1.0;
+        }
+        let companies_left = self.endings.remove(&self.last_day).unwrap_or_default();
+        let next_thread = xray.world().enterprise.next_thread;
+        let threads_opened = next_thread - self.next_thread.max(1);
+        self.next_thread = next_thread;
+        let day = Day { report, xray, open_issues: self.open_issues, companies_left, threads_opened };
+        let daily = day.values();
         self.sums.resize(daily.len(), 0.0);
+        self.weights.resize(daily.len(), 0.0);
         self.windows.resize(daily.len(), VecDeque::new());
         let keep = self.wanted.as_ref().is_none_or(|days| days.contains(&self.last_day));
         for (at, own) in daily.into_iter().enumerate() {
@@ -81,6 +103,11 @@ impl Collector {
                 (Kind::Sum, value) => {
                     self.sums[at] += value.unwrap_or(0.0);
                     Some(self.sums[at])
+                }
+                (Kind::Mean { weight }, value) => {
+                    self.sums[at] += value.unwrap_or(0.0);
+                    self.weights[at] += weight;
+                    (self.weights[at] > 0.0).then(|| self.sums[at] / self.weights[at])
                 }
                 (Kind::Month, value) => {
                     let window = &mut self.windows[at];
@@ -124,6 +151,14 @@ struct Day<'a> {
     report: &'a DayReport<'a>,
     xray: Xray<'a>,
     open_issues: f64,
+    /// Companies whose subscription ends today.
+    companies_left: ByGroup<f64>,
+    /// Threads of all kinds since the day before, the player's own included.
+    threads_opened: u32,
+}
+
+fn company_left(ending: &SubscriptionEnded) -> bool {
+    ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
 }
 
 impl Day<'_> {
@@ -139,6 +174,7 @@ impl Day<'_> {
         self.mood(&mut list);
         self.product(&mut list);
         self.market(&mut list);
+        self.posts(&mut list);
         self.notices(&mut list);
         self.enterprise(&mut list);
         list
@@ -329,15 +365,37 @@ impl Day<'_> {
         );
     }
 
+    fn posts(&self, list: &mut Vec<Daily>) {
+        let posts = || self.xray.facts().posts.iter();
+        let count = |customer: bool, tone: Sentiment| {
+            let fits = |post: &&Post| post.author.is_some() == customer && post.sentiment == tone;
+            posts().filter(fits).count() as f64
+        };
+        let tones = [
+            ("negative", Sentiment::Negative),
+            ("neutral", Sentiment::Neutral),
+            ("positive", Sentiment::Positive),
+        ];
+        sum(list, "posts_total_cum", posts().count() as f64);
+        for (figure, customer) in [("posts_customer_cum", true), ("posts_market_cum", false)] {
+            for (name, tone) in tones {
+                push(list, figure, name, Kind::Sum, Some(count(customer, tone)));
+            }
+        }
+    }
+
     fn notices(&self, list: &mut Vec<Daily>) {
         let count = |fits: fn(&Notice) -> bool| {
             Some(self.xray.notices().iter().filter(|notice| fits(notice)).count() as f64)
         };
         let timeout = count(|notice| matches!(notice, Notice::LeadLostByTimeout { .. }));
+        let silent = count(|notice| matches!(notice, Notice::LeadSilent));
         for (kind, value) in [
-            ("large_customer_message", count(|notice| matches!(notice, Notice::EnterpriseLead))),
-            ("lead_lost", timeout),
+            ("large_customer_message", count(|notice| notice.kind() == "large_customer_message")),
+            ("deal_won", count(|notice| matches!(notice, Notice::DealWon { .. }))),
+            ("lead_lost", count(|notice| notice.kind() == "lead_lost")),
             ("lead_lost_timeout", timeout),
+            ("lead_lost_ghost", silent),
             ("macro_economic_update", count(|notice| matches!(notice, Notice::EconomyUpdate(_)))),
             ("group_research_complete", count(|notice| matches!(notice, Notice::StudyComplete { .. }))),
             ("research_complete", count(|notice| matches!(notice, Notice::ResearchComplete { .. }))),
@@ -363,12 +421,53 @@ impl Day<'_> {
             leads.filter(|lead| of(lead.customer) == group).count() as f64
         };
         by_group(list, "ent_new_leads_cum", Kind::Sum, opened);
-        let threads = facts.turns.iter().filter(|turn| turn.number == 0).count() as f64;
-        push(list, "ent_threads_opened_cum", "new_lead", Kind::Sum, Some(threads));
+        for kind in ThreadKind::ALL {
+            let begun = facts.turns.iter().filter(|turn| turn.number == 0);
+            let opened = match kind {
+                // The player's own threads begin between two days and are counted with the next one.
+                ThreadKind::Renegotiation => f64::from(self.threads_opened) - begun.count() as f64,
+                _ => begun.filter(|turn| turn.kind == kind).count() as f64,
+            };
+            push(list, "ent_threads_opened_cum", kind.id(), Kind::Sum, Some(opened));
+        }
+        self.deals(list);
         by_group(list, "ent_lost_cum", Kind::Sum, |group| {
-            let lost = |cause: EndCause| cause == EndCause::LeadTimeout;
+            let lost = |cause: EndCause| matches!(cause, EndCause::LeadTimeout | EndCause::LeadSilent);
             facts.endings.iter().filter(|ending| ending.group == group && lost(ending.cause)).count() as f64
         });
+        by_group(list, "ent_cancel_cum", Kind::Sum, |group| self.companies_left[group]);
+    }
+
+    fn deals(&self, list: &mut Vec<Daily>) {
+        let deals: Vec<(Group, &DealClosed)> = self.deals_by_group();
+        let of = |group: Group| deals.iter().filter(move |(own, _)| *own == group).map(|(_, deal)| *deal);
+        by_group(list, "ent_accepted_cum", Kind::Sum, |group| of(group).count() as f64);
+        for kind in ThreadKind::ALL {
+            let count = deals.iter().filter(|(_, deal)| deal.kind == kind).count();
+            push(list, "ent_accepted_type_cum", kind.id(), Kind::Sum, Some(count as f64));
+        }
+        for plan in Plan::ALL {
+            let count = deals.iter().filter(|(_, deal)| deal.plan == plan).count();
+            push(list, "ent_accepted_plan_cum", plan.id(), Kind::Sum, Some(count as f64));
+        }
+        let means: [(&'static str, fn(&DealClosed) -> f64); 4] = [
+            ("ent_acc_agent_turns_mean", |deal| f64::from(deal.agent_turns)),
+            ("ent_acc_days_mean", |deal| f64::from(deal.days)),
+            ("ent_acc_price_mean", |deal| deal.price),
+            ("ent_acc_seats_mean", |deal| f64::from(deal.seats)),
+        ];
+        for (figure, value) in means {
+            for group in initial().filter(|group| group.is_enterprise()) {
+                let kind = Kind::Mean { weight: of(group).count() as f64 };
+                push(list, figure, group.id(), kind, Some(of(group).map(value).sum()));
+            }
+        }
+    }
+
+    fn deals_by_group(&self) -> Vec<(Group, &DealClosed)> {
+        let customers = &self.xray.world().customers;
+        let deals = self.xray.facts().deals.iter();
+        deals.filter_map(|deal| Some((customers.find(deal.customer)?.0, deal))).collect()
     }
 }
 

@@ -3,6 +3,7 @@
 //! A policy acts on what a player can see, except for the channel choice of the paper's baseline, which reads
 //! the starting yields from the parameters. Figures include hidden state, so policy runs are debug runs.
 
+mod answers;
 pub mod bench;
 mod golden;
 mod metrics;
@@ -12,6 +13,7 @@ mod runner;
 mod statistics;
 mod symbols;
 
+pub use answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
 pub use golden::{Comparison, GoldenError, Reference, compare, read_reference};
 pub use metrics::{Collector, Figure};
 pub use policy::{Policy, PolicyError, shipped_policies};

@@ -5,6 +5,7 @@ use std::fmt;
 use serde::Deserialize;
 use toml::Table;
 
+use super::answers::EnterpriseRule;
 use crate::session::Configuration;
 use crate::tools;
 use crate::world::identifiers::Plan;
@@ -23,6 +24,8 @@ pub struct Policy {
     pub rule_based: Option<RuleBased>,
     /// Calls of tools on given days.
     pub calls: Vec<ScheduledCall>,
+    /// Answers to companies.
+    pub enterprise: Option<EnterpriseRule>,
 }
 
 /// Start of the run.
@@ -282,6 +285,7 @@ struct PolicyFile {
     rule_based: Option<RuleBased>,
     #[serde(default)]
     call: Vec<toml::Spanned<CallEntry>>,
+    enterprise: Option<toml::Spanned<EnterpriseRule>>,
 }
 
 #[derive(Deserialize)]
@@ -333,7 +337,7 @@ macro_rules! shipped {
 
 /// Names and texts of the policies compiled into the program.
 pub fn shipped_policies() -> &'static [(&'static str, &'static str)] {
-    shipped!["baseline", "P0", "P1a", "P1b", "P1c", "P1s", "P2", "P4", "P6", "P8", "P9"]
+    shipped!["baseline", "P0", "P1a", "P1b", "P1c", "P1s", "P2", "P4", "P6", "P8", "P9", "P10"]
 }
 
 impl Policy {
@@ -384,11 +388,18 @@ impl Policy {
             let span = entry.span();
             calls.push(scheduled(entry.into_inner()).map_err(|problem| at(Some(span), problem))?);
         }
+        let enterprise = match file.enterprise {
+            None => None,
+            Some(entry) => {
+                let span = entry.span();
+                Some(entry.into_inner().checked().map_err(|problem| at(Some(span), problem))?)
+            }
+        };
         if let Some(cash) = file.start.cash.filter(|cash| !cash.is_finite() || *cash <= 0.0) {
             return Err(at(None, format!("start.cash must be above 0, not {cash}")));
         }
         let (name, description) = (file.name, file.description);
-        Ok(Policy { name, description, start: file.start, rule_based: file.rule_based, calls })
+        Ok(Policy { name, description, start: file.start, rule_based: file.rule_based, calls, enterprise })
     }
 }
 
@@ -474,6 +485,8 @@ mod tests {
                 "argument D",
             ),
             ("name = \"x\"\n[start]\ncash = -5.0\n", None, "above 0"),
+            ("name = \"x\"\n[enterprise]\nofferings = []\n", Some(2), "1 to 3"),
+            ("name = \"x\"\n[enterprise]\nofferings = [{ plan = \"D\", price = 1 }]\n", Some(3), "D"),
             ("description = \"nobody\"\n", Some(1), "name"),
         ] {
             let error = parse(text).expect_err(text);

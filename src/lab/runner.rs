@@ -201,6 +201,11 @@ pub(super) fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Resul
             }
         }
     }
+    if let Some(rule) = &policy.enterprise {
+        for (tool, arguments) in rule.calls(&session.observe().waiting) {
+            call(seed, session, tool, &arguments, false)?;
+        }
+    }
     Ok(())
 }
 

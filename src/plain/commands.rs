@@ -211,10 +211,11 @@ fn tool_called(word: &str) -> Option<&'static dyn Tool> {
         .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))
 }
 
-/// The only required argument of a tool, which may be given without its name.
+/// The argument of a tool that may be given without its name: the only required one, or the one that is the whole.
 fn only_required(tool: &'static dyn Tool) -> Option<&'static str> {
     let mut required = tool.spec().arguments.iter().filter(|argument| argument.required);
-    required.next().filter(|_| required.next().is_none()).map(|argument| argument.name)
+    let only = required.next().filter(|_| required.next().is_none()).map(|argument| argument.name);
+    only.or(tool.spec().whole)
 }
 
 fn unknown(word: &str, column: usize) -> Problem {

@@ -9,8 +9,11 @@ use super::changes::{Change, changes, daily_cost};
 use super::error::RunError;
 use super::trajectory::Durability;
 use super::{JournalEntry, Session, UndoStep};
+use crate::notation::cents;
 use crate::tools::{Arguments, Kind, Refusal, Task, Tool, View, find};
 use crate::world::effect::{Deed, Effect};
+use crate::world::enterprise::letters::Letter;
+use crate::world::events::Offering;
 use crate::world::settings::Settings;
 use crate::world::state::World;
 
@@ -73,6 +76,7 @@ impl Session {
                 preview.effect_day = Some(self.world.day + 1);
                 preview.changes = changes(now, &after);
             }
+            Effect::Post(_) => preview.effect_day = Some(self.world.day + 1),
             Effect::StartResearch(tier) => {
                 preview.cost_now = f64::from(self.params.research(tier).cost);
                 preview.effect_day = Some(self.world.day + self.params.development.rd_min_duration_days);
@@ -86,6 +90,10 @@ impl Session {
                 preview.cost_now = level.cost;
                 preview.effect_day = Some(self.world.day + level.delay_days);
             }
+            Effect::SendDeals(_) => {
+                preview.effect_day = Some(self.world.day + self.params.enterprise.reply_delay_min_days);
+            }
+            Effect::RejectDeals(_) => preview.effect_day = Some(self.world.day),
         }
         Ok(preview)
     }
@@ -158,6 +166,7 @@ impl Session {
             let (day, tool) = (self.world.day, spec.name.to_owned());
             self.journal.push(JournalEntry::Call { day, tool, args, undoes });
         }
+        self.this_week.done.extend(self.in_words(&deed));
         match &deed {
             Deed::None | Deed::ReadInsights(_) => return,
             Deed::Set(_) => {
@@ -165,27 +174,41 @@ impl Session {
                 let before = self.world.settings.clone();
                 self.this_week.undo.push(UndoStep { seq, tool: spec.name, before });
             }
-            Deed::StartResearch(project, _) => {
-                self.this_week.done.push(format!(
-                    "R&D project {} started, done on day {}",
-                    project.id(),
-                    project.due_day
-                ));
-            }
-            Deed::ResearchMarket(attempt) => self.this_week.done.push(match attempt.found {
-                Some(group) => format!("market research found group {group}"),
-                None => "market research found nothing".to_owned(),
-            }),
-            Deed::ResearchGroup(study, _) => {
-                let (group, level, day) = (study.group, study.target, study.due_day);
-                self.this_week
-                    .done
-                    .push(format!("study of {group} to level {level} ordered, done on day {day}"));
-            }
+            Deed::StartResearch(..)
+            | Deed::ResearchMarket(_)
+            | Deed::ResearchGroup(..)
+            | Deed::SendDeals(_)
+            | Deed::RejectDeals(_)
+            | Deed::Post(_) => {}
         }
         self.world.apply(deed, &self.params, &mut self.facts);
         self.called.extend_from_slice(&self.facts.ledger);
         self.after_call();
+    }
+
+    /// What cannot be taken back of a deed, in words.
+    fn in_words(&self, deed: &Deed) -> Vec<String> {
+        match deed {
+            Deed::None | Deed::Set(_) | Deed::ReadInsights(_) => Vec::new(),
+            Deed::Post(_) => vec!["post published, read tomorrow".to_owned()],
+            Deed::StartResearch(project, _) => {
+                vec![format!("R&D project {} started, done on day {}", project.id(), project.due_day)]
+            }
+            Deed::ResearchMarket(attempt) => vec![match attempt.found {
+                Some(group) => format!("market research found group {group}"),
+                None => "market research found nothing".to_owned(),
+            }],
+            Deed::ResearchGroup(study, _) => {
+                let (group, level, day) = (study.group, study.target, study.due_day);
+                vec![format!("study of {group} to level {level} ordered, done on day {day}")]
+            }
+            Deed::SendDeals(letters) => letters.iter().map(letter_in_words).collect(),
+            Deed::RejectDeals(threads) => {
+                let ended = self.world.enterprise.threads.iter();
+                let ended = ended.filter(|thread| threads.contains(&thread.number));
+                ended.map(|thread| format!("talks with customer {} ended", thread.customer)).collect()
+            }
+        }
     }
 
     /// What follows every applied deed, live or replayed.
@@ -239,6 +262,11 @@ impl Session {
         })
     }
 
+    /// What tools may look at.
+    fn view(&self) -> View<'_> {
+        View::new(&self.world, &self.params).within(&self.office).with_posts(&self.feed.posts)
+    }
+
     fn plan(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Effect), Refusal> {
         let arguments = Arguments::of(tool.spec(), arguments)?;
         let effect = tool.plan(&self.view(), &arguments)?;
@@ -246,10 +274,6 @@ impl Session {
     }
 
     /// What tools may look at.
-    fn view(&self) -> View<'_> {
-        View::new(&self.world, &self.params).within(&self.office)
-    }
-
     /// Refuses what acts once the run is over, and everything that would write a run that is only read.
     pub(super) fn refuse_if_over(&self, kind: Kind) -> Result<(), Refusal> {
         if !kind.acts() {
@@ -292,6 +316,12 @@ impl Session {
         let fields = CallFields { tool, arguments, via, took_ms: 0.0, undoes: None };
         let _ = self.record_call(fields.refused(refusal), Durability::Written);
     }
+}
+
+fn letter_in_words(letter: &Letter) -> String {
+    let offer = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
+    let offers: Vec<String> = letter.offerings.iter().map(offer).collect();
+    format!("customer {} offered {}", letter.customer, offers.join(", "))
 }
 
 /// The arguments that restore what a tool had set before.

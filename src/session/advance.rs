@@ -11,9 +11,8 @@ use super::{Ended, JournalEntry, Session};
 use crate::database::{Entry, ForecastRow};
 use crate::notation::json_number;
 use crate::tools::{self, Kind, Refusal};
-use crate::voice;
 use crate::world::day::step_day;
-use crate::world::events::{DayFigures, SubscriptionEnded, SubscriptionStatus};
+use crate::world::events::{DayFigures, Sender, SubscriptionEnded, SubscriptionStatus};
 use crate::world::market::surges::week_end;
 
 /// A day that was just simulated.
@@ -162,9 +161,13 @@ impl Session {
         while self.world.day < until && !self.world.is_over(&self.params) {
             let (figures, trace) = step_day(&mut self.world, &self.params, &self.streams, &mut self.facts);
             self.trace = trace;
+            self.judge_own_posts();
+            self.word_posts();
             self.cash_by_day.push(figures.cash);
             self.count_day(&figures);
-            self.notices.extend(self.facts.notices.iter().map(|notice| (figures.day, voice::notice(notice))));
+            let told = self.facts.notices.iter().map(|notice| (figures.day, self.notice_text(notice)));
+            let told: Vec<(u32, String)> = told.collect();
+            self.notices.extend(told);
             self.chain_facts();
             self.project_facts();
             let debug = self.manifest.mode == super::Mode::Debug;
@@ -181,6 +184,8 @@ impl Session {
             week.threads_opened += 1;
             week.thread_seats += turn.seats;
         }
+        let replies = self.facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+        week.replies += replies.filter(|turn| turn.number > 0).count() as u32;
         let left = |ending: &&SubscriptionEnded| {
             ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
         };

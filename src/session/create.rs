@@ -7,9 +7,10 @@ use serde_json::{Map, Value, json};
 
 use super::configuration::{Configuration, DEFAULT_SCENARIO};
 use super::error::RunError;
+use super::feed::Feed;
 use super::manifest::{FORMAT, Manifest, differences, sync_folder};
 use super::mode::Mode;
-use super::record::{FactsChain, entry_of};
+use super::record::FactsChain;
 use super::runs::{earlier_runs, lock_run};
 use super::scripts::Office;
 use super::trajectory::{Durability, TrajectoryWriter, now};
@@ -167,6 +168,7 @@ impl Session {
             weeks: Vec::new(),
             running_week: WeekFigures::default(),
             notices: Vec::new(),
+            feed: Feed::default(),
             this_week: ThisWeek { settings, undo: Vec::new(), done: Vec::new() },
             journal: Vec::new(),
             asked: Vec::new(),
@@ -183,7 +185,7 @@ impl Session {
     /// Hands the set-up of day 0 to the database.
     pub(super) fn project_opening(&self) {
         if let Some(projector) = &self.projector {
-            projector.write(entry_of(self.facts.clone(), &self.params));
+            projector.write(self.entry_of(self.facts.clone()));
             projector.commit(self.position.clone());
         }
     }

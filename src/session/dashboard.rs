@@ -6,6 +6,7 @@ use super::scripts::Calculated;
 use super::week::{WeekFigures, week_of};
 use crate::notation::{dollars, grouped, percent, signed_dollars};
 use crate::world::identifiers::{ByPlan, Group, Plan};
+use crate::world::market::social::own::OwnPost;
 use crate::world::params::Params;
 use crate::world::state::World;
 
@@ -63,6 +64,7 @@ pub fn build(
     settings_block(&mut text, world);
     quality_block(&mut text, world, params);
     calculations_block(&mut text, calculated);
+    posts_block(&mut text, world, params);
     inbox_block(&mut text, week, waiting);
     text
 }
@@ -162,12 +164,41 @@ fn calculations_block(text: &mut String, calculated: &[Calculated]) {
     }
 }
 
+/// What became of the posts of the week that just ran.
+fn posts_block(text: &mut String, world: &World, params: &Params) {
+    let week = params.run.days_per_week;
+    let own = world.market.social.own.iter();
+    let recent: Vec<&OwnPost> =
+        own.filter(|post| post.day < world.day && post.day + week >= world.day).collect();
+    if recent.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "\n--- Your posts ---");
+    for post in recent {
+        let shown = params.limits.dashboard_post_preview_chars as usize;
+        let preview: String = post.content.chars().take(shown).collect();
+        let comments: Vec<String> = post.comments.iter().map(u32::to_string).collect();
+        let numbers = if comments.is_empty() { String::new() } else { format!(" ({})", comments.join(", ")) };
+        let views = grouped(post.views as f64, 0);
+        let _ = writeln!(
+            text,
+            "Day {}: {views} views, {} comments{numbers} | {preview}",
+            post.day,
+            comments.len()
+        );
+    }
+}
+
 fn inbox_block(text: &mut String, week: Option<&WeekFigures>, waiting: Waiting) {
     let _ = writeln!(text, "\n--- Inbox ---");
     let mut lines = 0;
     if let Some(week) = week.filter(|week| week.threads_opened > 0) {
         let _ =
             writeln!(text, "- {} new enterprise leads ({} seats)", week.threads_opened, week.thread_seats);
+        lines += 1;
+    }
+    if let Some(week) = week.filter(|week| week.replies > 0) {
+        let _ = writeln!(text, "- {} new replies", week.replies);
         lines += 1;
     }
     if waiting.threads > 0 {
@@ -234,6 +265,21 @@ mod tests {
     }
 
     #[test]
+    fn posts_of_the_week_show_what_became_of_them() {
+        let (mut world, params) = world();
+        let own = &mut world.market.social.own;
+        own.push(OwnPost::new(0, "An old one.", None));
+        own.push(OwnPost { views: 1840, comments: vec![91, 92], ..OwnPost::new(7, "y".repeat(90), None) });
+        world.day = 14;
+        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
+        let line = format!("Day 7: 1,840 views, 2 comments (91, 92) | {}\n", "y".repeat(80));
+        assert!(text.contains(&line) && !text.contains("An old one"), "{text}");
+        world.day = 7;
+        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
+        assert!(text.contains("An old one.") && !text.contains("1,840"), "{text}");
+    }
+
+    #[test]
     fn a_week_shows_peaks_and_losses() {
         let (world, params) = world();
         let week = WeekFigures {
@@ -247,6 +293,7 @@ mod tests {
             seats_lost: 120,
             threads_opened: 2,
             thread_seats: 512,
+            replies: 3,
             ..WeekFigures::default()
         };
         let waiting = Waiting { threads: 2, days_left: 4 };
@@ -257,6 +304,7 @@ mod tests {
             "Cash Change: -$2,095",
             "Enterprise Lost: 1 companies, 120 seats",
             "- 2 new enterprise leads (512 seats)",
+            "- 3 new replies",
             "- 2 awaiting your response; the first is lost in 4 days",
         ] {
             assert!(text.contains(part), "{part} is missing in {text}");

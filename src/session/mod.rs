@@ -13,6 +13,7 @@ mod configuration;
 mod create;
 mod dashboard;
 mod error;
+mod feed;
 mod journal;
 mod manifest;
 mod mode;
@@ -52,7 +53,8 @@ pub use week::{Forecasts, WeekFigures, week_of};
 pub use xray::Xray;
 
 pub use crate::database::{Cell, Desk, Interrupt, QueryError, Rows};
-pub use crate::tools::Refusal;
+pub use crate::tools::{PublicPost, Refusal};
+pub use crate::voice::judge::Judgement;
 
 use crate::database::{Position, Projector};
 use crate::world::day::DayTrace;
@@ -61,6 +63,7 @@ use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::settings::Settings;
 use crate::world::state::World;
+use feed::Feed;
 use record::FactsChain;
 use scripts::Office;
 use trajectory::TrajectoryWriter;
@@ -121,6 +124,8 @@ pub struct Session {
     running_week: WeekFigures,
     /// What the last days put into the inbox: day and text.
     notices: Vec<(u32, String)>,
+    /// What people wrote in public, in words.
+    feed: Feed,
     /// What has been set since the last week.
     this_week: ThisWeek,
     /// Everything that was done, in order.

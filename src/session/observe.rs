@@ -62,7 +62,7 @@ pub struct Observation {
 }
 
 /// A thread that waits for an answer.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WaitingThread {
     /// Number of the thread.
     pub thread: u32,
@@ -76,6 +76,10 @@ pub struct WaitingThread {
     pub kind: &'static str,
     /// Number of its last turn.
     pub turn: u32,
+    /// Turns of the player in it.
+    pub own_turns: u32,
+    /// Price that the company named last, dollars a month and seat.
+    pub asked: Option<f64>,
     /// Days left before it is lost.
     pub days_left: u32,
 }
@@ -158,14 +162,22 @@ impl Session {
     /// Threads that wait for an answer, the first to be lost first.
     fn waiting(&self) -> Vec<WaitingThread> {
         let patience = self.params.enterprise.agent_response_timeout_days;
-        let waiting = self.world.enterprise.waiting.iter().map(|lead| WaitingThread {
-            thread: lead.thread,
-            customer: lead.customer,
-            group: lead.group.id(),
-            seats: lead.seats,
-            kind: "new_lead",
-            turn: 0,
-            days_left: (lead.day + patience).saturating_sub(self.world.day),
+        let enterprise = &self.world.enterprise;
+        let threads = enterprise.threads.iter().filter(|thread| thread.awaits_agent());
+        let waiting = threads.map(|thread| {
+            let company = enterprise.company(thread.customer);
+            let row = company.and_then(|company| company.row(&self.world.customers));
+            WaitingThread {
+                thread: thread.number,
+                customer: thread.customer,
+                group: thread.group.id(),
+                seats: row.map_or(1, |row| row.seats as u32),
+                kind: thread.kind.id(),
+                turn: thread.last().number,
+                own_turns: thread.agent_turns(),
+                asked: thread.asked(),
+                days_left: (thread.last().day + patience).saturating_sub(self.world.day),
+            }
         });
         let mut waiting: Vec<WaitingThread> = waiting.collect();
         waiting.sort_by_key(|thread| (thread.days_left, std::cmp::Reverse(thread.seats), thread.thread));

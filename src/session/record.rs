@@ -1,7 +1,6 @@
 //! What a session records besides its lines: rows for the database, and the state hash.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
@@ -11,23 +10,8 @@ use super::trajectory::Durability;
 use crate::database::Entry;
 use crate::voice;
 use crate::world::canonical::hash_of;
-use crate::world::events::Facts;
-use crate::world::params::Params;
+use crate::world::events::{Facts, Sender};
 use crate::world::state::{PartHash, World, combined_hash};
-
-/// Facts with the words that belong to them.
-pub(super) fn entry_of(facts: Facts, params: &Arc<Params>) -> Entry {
-    let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
-    Entry {
-        notices: facts.notices.iter().map(voice::notice).collect(),
-        readings: facts.readings.iter().map(voice::reading).collect(),
-        addresses: companies
-            .map(|arrival| (arrival.customer, voice::address(arrival.customer, &params.personas.email)))
-            .collect(),
-        facts,
-        ..Entry::default()
-    }
-}
 
 /// Hash of the state and of the week's facts, with the hash of each part.
 pub(super) fn state_hash(world: &World, facts: blake3::Hash) -> (String, BTreeMap<&'static str, String>) {
@@ -74,6 +58,23 @@ impl FactsChain {
 }
 
 impl Session {
+    /// Facts with the words that belong to them.
+    pub(super) fn entry_of(&self, facts: Facts) -> Entry {
+        let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
+        let writers = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+        let named = companies.map(|arrival| arrival.customer).chain(writers.map(|turn| turn.customer));
+        let personas = &self.params.personas;
+        Entry {
+            notices: facts.notices.iter().map(|notice| self.notice_text(notice)).collect(),
+            readings: facts.readings.iter().map(voice::reading).collect(),
+            turns: facts.turns.iter().map(|turn| voice::message(turn, personas)).collect(),
+            posts: self.words_of_posts(&facts),
+            addresses: named.map(|customer| (customer, voice::address(customer, &personas.email))).collect(),
+            facts,
+            ..Entry::default()
+        }
+    }
+
     /// Adds the facts of a day or call to this week's chain.
     pub(super) fn chain_facts(&mut self) {
         self.facts_chain.add(&self.facts);
@@ -83,7 +84,7 @@ impl Session {
     /// unless a debug run may still look at them.
     pub(super) fn project_facts(&mut self) {
         if let Some(projector) = &self.projector {
-            projector.write(entry_of(self.facts.clone(), &self.params));
+            projector.write(self.entry_of(self.facts.clone()));
         }
     }
 

@@ -64,6 +64,9 @@ pub struct WeekFigures {
     pub threads_opened: u32,
     /// Seats of the companies that opened threads.
     pub thread_seats: u32,
+    /// Messages of companies in their threads.
+    #[serde(default)]
+    pub replies: u32,
 }
 
 impl WeekFigures {

@@ -1,6 +1,7 @@
 //! The hidden state, for debug runs: what the player never sees.
 
 use super::Session;
+use crate::voice::judge::Judgement;
 use crate::world::customers::columns::Block;
 use crate::world::day::DayTrace;
 use crate::world::events::{Facts, LedgerEntry, Notice};
@@ -18,12 +19,13 @@ pub struct Xray<'a> {
     facts: &'a Facts,
     trace: &'a DayTrace,
     called: &'a [LedgerEntry],
+    judgements: &'a [Vec<Judgement>],
 }
 
 impl<'a> Xray<'a> {
     pub(super) fn new(session: &'a Session) -> Xray<'a> {
-        let Session { world, params, facts, trace, called, .. } = session;
-        Xray { world, params, facts, trace, called }
+        let Session { world, params, facts, trace, called, feed, .. } = session;
+        Xray { world, params, facts, trace, called, judgements: &feed.judgements }
     }
 
     /// Money that calls moved between the day before and the last day.
@@ -89,6 +91,13 @@ impl<'a> Xray<'a> {
     /// Blocks of a group.
     pub fn blocks(&self, group: Group) -> impl Iterator<Item = &'a Block> + Clone + use<'a> {
         self.world.customers.groups[group].blocks.iter()
+    }
+
+    /// Why the groups took a post of the player as they did, one judgement per group that was known; empty until the
+    /// post was judged.
+    pub fn judgements(&self, own_post: u32) -> &'a [Judgement] {
+        let at = (own_post as usize).checked_sub(1);
+        at.and_then(|at| self.judgements.get(at)).map_or(&[], Vec::as_slice)
     }
 
     /// Notices of the last day.

@@ -1,19 +1,22 @@
 //! The list of all tools.
 
 use super::Tool;
-use super::analytics::{SetTargetedDevSpend, SetTargetedOpsSpend};
+use super::analytics::{GetSocialPosts, SetTargetedDevSpend, SetTargetedOpsSpend};
 use super::calculations::{ListDailyCalculations, RegisterDailyCalculation, RemoveDailyCalculation};
 use super::documentation::{DescribeTables, GetToolDocumentation, ListAllTables};
+use super::enterprise::{RejectEnterpriseDeal, SendEnterpriseDeal};
 use super::infrastructure::{GetCostInfo, SetCapacityTier};
 use super::market::{GetGroupInsights, GetMarketOverview, ResearchGroup, ResearchMarket};
-use super::marketing::{SetAdsStrength, SetDailySpend, SetLeadPromotion, SetTargetedAdSpend};
+use super::marketing::{
+    PostSocialMedia, SetAdsStrength, SetDailySpend, SetLeadPromotion, SetTargetedAdSpend,
+};
 use super::pricing::{SetModelTiers, SetPrices, SetPromotion, SetUsageQuotas};
 use super::research::{ListResearchProjects, StartResearchProject};
 use super::scripts::{DeleteScript, ListScripts, PythonExec, RegisterScript, RunScript};
 use super::time::{GetVars, NextWeek, Query};
 
 /// All tools, in the order in which they are shown.
-pub static CATALOGUE: [&dyn Tool; 32] = [
+pub static CATALOGUE: [&dyn Tool; 36] = [
     &SetPrices,
     &SetModelTiers,
     &SetUsageQuotas,
@@ -22,6 +25,8 @@ pub static CATALOGUE: [&dyn Tool; 32] = [
     &SetTargetedAdSpend,
     &SetAdsStrength,
     &SetLeadPromotion,
+    &PostSocialMedia,
+    &GetSocialPosts,
     &SetTargetedOpsSpend,
     &SetTargetedDevSpend,
     &StartResearchProject,
@@ -32,6 +37,8 @@ pub static CATALOGUE: [&dyn Tool; 32] = [
     &GetGroupInsights,
     &SetCapacityTier,
     &GetCostInfo,
+    &SendEnterpriseDeal,
+    &RejectEnterpriseDeal,
     &NextWeek,
     &PythonExec,
     &RegisterDailyCalculation,

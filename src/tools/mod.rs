@@ -16,6 +16,7 @@ pub mod view;
 mod analytics;
 mod calculations;
 mod documentation;
+mod enterprise;
 mod infrastructure;
 mod market;
 mod marketing;
@@ -36,7 +37,7 @@ pub use refusal::Refusal;
 pub use spec::{Argument, ArgumentKind, Key, Kind, Module, Output, Range, Spec, When};
 pub use surroundings::{Surroundings, TableDocument};
 pub use time::{FORECAST_KEYS, Forecast, forecasts, rationale};
-pub use view::View;
+pub use view::{PublicPost, View};
 
 use crate::notation::plain_numbers;
 use crate::world::effect::{Deed, Effect};

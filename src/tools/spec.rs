@@ -49,19 +49,22 @@ pub enum Module {
     Market,
     /// Capacity and costs.
     Infrastructure,
+    /// Companies.
+    Enterprise,
     /// Time and data.
     Time,
 }
 
 impl Module {
     /// All modules in the order in which they are shown.
-    pub const ALL: [Module; 7] = [
+    pub const ALL: [Module; 8] = [
         Module::Pricing,
         Module::Marketing,
         Module::Analytics,
         Module::Research,
         Module::Market,
         Module::Infrastructure,
+        Module::Enterprise,
         Module::Time,
     ];
 
@@ -74,6 +77,7 @@ impl Module {
             Module::Research => "research",
             Module::Market => "market",
             Module::Infrastructure => "infrastructure",
+            Module::Enterprise => "enterprise",
             Module::Time => "time",
         }
     }
@@ -86,6 +90,8 @@ pub enum Kind {
     Setting,
     /// Spends money at once.
     Purchase,
+    /// Acts once and costs nothing.
+    OneShot,
     /// Reads.
     Read,
     /// Lets time pass.
@@ -105,6 +111,7 @@ impl Kind {
         match self {
             Kind::Setting => "setting",
             Kind::Purchase => "purchase",
+            Kind::OneShot => "one_shot",
             Kind::Read => "read",
             Kind::Time => "time",
             Kind::Engine => "engine",
@@ -123,6 +130,8 @@ pub enum When {
     Now,
     /// After a delay that the answer states.
     AtCompletion,
+    /// When the customer answers.
+    CustomerReply,
     /// It changes nothing.
     Never,
 }
@@ -135,6 +144,7 @@ impl When {
             When::NextBilling => "next bill of each customer",
             When::Now => "at once",
             When::AtCompletion => "at completion",
+            When::CustomerReply => "when the customer answers",
             When::Never => "changes nothing",
         }
     }

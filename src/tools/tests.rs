@@ -3,6 +3,7 @@
 mod engine;
 mod market;
 
+use crate::world::effect::Deed;
 use serde_json::{Value, json};
 
 use super::{Arguments, Refusal, View, find};
@@ -369,6 +370,157 @@ fn set_capacity_tier() {
     assert_eq!(data, json!({"tier": 2, "capacity_units": 800000, "cost_per_day": 530}));
 }
 
+/// A company with two leads (customers 2 and 3), a subscriber (4), an individual (5), a lost lead (6).
+fn with_companies() -> Company {
+    use crate::world::customers::columns::tests::subscriber;
+    use crate::world::enterprise::Standing;
+    use crate::world::enterprise::test_kit::company_of;
+    let mut company = Company::new();
+    let (e1, s1) = (Group::parse("E1").expect("a group"), Group::parse("S1").expect("a group"));
+    let world = &mut company.world;
+    let mut facts = Facts::default();
+    world.customers.arrive(0, e1, 3);
+    world.customers.arrive(0, s1, 1);
+    world.customers.arrive(0, e1, 1);
+    let row =
+        |customer: u32, n| crate::world::customers::columns::Subscriber { customer, n, ..subscriber(n) };
+    for (customer, n) in [(2, 1), (3, 2)] {
+        let lead = company_of(e1, n, customer, Standing::Lead(row(customer, n)));
+        world.enterprise.open_lead(0, lead, &mut facts);
+    }
+    world.customers.groups[e1].activate(row(4, 3));
+    world.enterprise.companies.push(company_of(e1, 3, 4, Standing::Subscriber));
+    company
+}
+
+#[test]
+fn send_enterprise_deal() {
+    let mut company = with_companies();
+    let deal = |deals: Value| json!({ "deals": deals });
+    company.assert_refused(
+        "send_enterprise_deal",
+        &[
+            (json!({}), "deals_missing", "deals"),
+            (deal(json!([])), "deals_missing", "deals"),
+            (deal(json!("")), "deals_missing", "deals"),
+            (deal(json!([5])), "deal_malformed", "deals.0"),
+            (deal(json!("2: B 30")), "deal_malformed", "deals.0"),
+            (deal(json!([[2]])), "deal_malformed", "deals.0"),
+            (deal(json!([[null, [["B", 5]]]])), "customer_missing", "deals.0.customer_id"),
+            (deal(json!({"offerings": [["B", 5]]})), "customer_missing", "deals.0.customer_id"),
+            (deal(json!([[2, []]])), "offerings_missing", "deals.0.offerings"),
+            (deal(json!([[2, "B 30"]])), "offerings_missing", "deals.0.offerings"),
+            (deal(json!([{"customer_id": 2}])), "offerings_missing", "deals.0.offerings"),
+            (deal(json!([[2, [["B", 5], ["B"]]]])), "offering_short", "deals.0.offerings.1"),
+            (deal(json!([[2, [{"plan": "B"}]]])), "offering_no_price", "deals.0.offerings.0"),
+            (deal(json!([[2, ["B"]]])), "offering_malformed", "deals.0.offerings.0"),
+            (deal(json!([[2, [["D", 5]]]])), "offering_malformed", "deals.0.offerings.0"),
+            (deal(json!([[2, [["B", -1]]]])), "offering_malformed", "deals.0.offerings.0"),
+            (deal(json!([[2, [[4, 5]]]])), "offering_malformed", "deals.0.offerings.0"),
+            (deal(json!([[99, [["B", 5]]]])), "customer_not_found", "deals.0.customer_id"),
+            (deal(json!([[-3, [["B", 5]]]])), "customer_not_found", "deals.0.customer_id"),
+            (deal(json!([[5, [["B", 5]]]])), "not_enterprise", "deals.0.customer_id"),
+            (deal(json!([[1, [["B", 5]]]])), "not_enterprise", "deals.0.customer_id"),
+            (deal(json!([[6, [["B", 5]]]])), "no_subscription", "deals.0.customer_id"),
+            // Numbers that are none stop the whole call, whatever else it holds.
+            (
+                deal(json!([[2, [["B", 5]]], [3, [["B", "abc"]]]])),
+                "wrong_type",
+                "deals.1.offerings.0.price_per_seat",
+            ),
+            (deal(json!([[2.5, [["B", 5]]]])), "wrong_type", "deals.0.customer_id"),
+            (deal(json!([["two", [["B", 5]]]])), "wrong_type", "deals.0.customer_id"),
+            (deal(json!([[true, [["B", 5]]]])), "wrong_type", "deals.0.customer_id"),
+            (deal(json!([[2, [["B", "inf"]]]])), "wrong_type", "deals.0.offerings.0.price_per_seat"),
+            // Of several that all fail, the first one speaks.
+            (deal(json!([[99, [["B", 5]]], [2, []]])), "customer_not_found", "deals.0.customer_id"),
+        ],
+    );
+}
+
+/// Offerings of the newest turn of a customer's open thread.
+fn offered(company: &Company, customer: u32) -> Vec<(&'static str, f64)> {
+    let thread = company.world.enterprise.open_thread_of(customer).expect("an open thread");
+    thread.offerings().iter().map(|offering| (offering.plan.id(), offering.price)).collect()
+}
+
+#[test]
+fn deals_may_be_written_in_many_ways() {
+    for deals in [
+        json!([[2, [["B", 31.5]]]]),
+        json!([["2", [["B", "31.5", 12]]]]),
+        json!([{"customer_id": 2.0, "offerings": [{"plan": "B", "price_per_seat": 31.5}]}]),
+        json!({"customer_id": 2, "offerings": [{"plan": "B", "price": 31.5, "price_per_seat": 7}]}),
+        json!([[2, [{"price": 31.5}], "more"]]),
+    ] {
+        let mut company = with_companies();
+        let data = company.call("send_enterprise_deal", json!({ "deals": deals }));
+        assert_eq!(data, json!({"results": [{"customer_id": 2, "success": true}]}), "{deals}");
+        assert_eq!(offered(&company, 2), [("B", 31.5)], "{deals}");
+    }
+    let mut company = with_companies();
+    let whole = json!({"customer_id": 2, "offerings": [["C", 0]]});
+    company.call("enterprise.send_enterprise_deal", whole);
+    assert_eq!(offered(&company, 2), [("C", 0.0)]);
+}
+
+/// Check 14 of chapter 50.
+#[test]
+fn one_bad_deal_does_not_stop_the_others() {
+    let mut company = with_companies();
+    let four = json!([[2, [["A", 1], ["B", 2], ["C", 3], ["A", 4]]]]);
+    company.call("send_enterprise_deal", json!({ "deals": four }));
+    assert_eq!(offered(&company, 2), [("A", 1.0), ("B", 2.0), ("C", 3.0)]);
+    let mixed = json!([[999_999, [["B", 5]]], [3, [["B", "7.5"]]], [4, []], 8]);
+    let data = company.call("send_enterprise_deal", json!({ "deals": mixed }));
+    let expected = json!({"results": [
+        {"customer_id": 4, "error": "offerings required"},
+        {"error": "invalid format"},
+        {"customer_id": 999_999, "error": "not found"},
+        {"customer_id": 3, "success": true},
+    ]});
+    assert_eq!(data, expected);
+    assert_eq!(offered(&company, 3), [("B", 7.5)]);
+    let data = company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
+    assert_eq!(data["results"][0]["success"], true);
+    let thread = company.world.enterprise.open_thread_of(4).expect("a renegotiation");
+    assert_eq!((thread.kind.id(), thread.last().number), ("renegotiation", 0));
+}
+
+#[test]
+fn reject_enterprise_deal() {
+    let mut company = with_companies();
+    let deal = |deals: Value| json!({ "deals": deals });
+    company.assert_refused(
+        "reject_enterprise_deal",
+        &[
+            (json!({}), "deals_missing", "deals"),
+            (deal(json!([])), "deals_missing", "deals"),
+            (deal(json!([[2, 3]])), "deal_malformed", "deals.0"),
+            (deal(json!([true])), "deal_malformed", "deals.0"),
+            (deal(json!([{"customer": 2}])), "customer_missing", "deals.0.customer_id"),
+            (deal(json!([[null]])), "customer_missing", "deals.0.customer_id"),
+            (deal(json!([4])), "no_active_thread", "deals.0.customer_id"),
+            (deal(json!([77])), "no_active_thread", "deals.0.customer_id"),
+            (deal(json!([2, "x"])), "wrong_type", "deals.1.customer_id"),
+        ],
+    );
+    company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
+    let data = company.call("reject_enterprise_deal", deal(json!([2, {"customer_id": "4"}, [2], 3])));
+    let expected = json!({"results": [
+        {"customer_id": 2, "success": true},
+        {"customer_id": 4, "success": true},
+        {"customer_id": 2, "error": "no active thread"},
+        {"customer_id": 3, "success": true},
+    ]});
+    assert_eq!(data, expected);
+    // A rejected lead never comes back; a subscriber stays one.
+    let again = company.refused("send_enterprise_deal", json!({"deals": [[2, [["B", 5]]]]}));
+    assert_eq!(again.0, "no_subscription");
+    company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
+    assert_eq!(company.call("reject_enterprise_deal", deal(json!(4)))["results"][0]["success"], true);
+}
+
 #[test]
 fn readings_tell_what_they_should() {
     let mut company = Company::new();
@@ -402,4 +554,91 @@ fn undiscovered_groups_become_known_by_discovery() {
     let group = Group::parse("D_S06").expect("a group");
     company.world.market.knowledge[group].level = 1;
     company.call("set_targeted_dev_spend", json!({"D_S06": 5}));
+}
+
+#[test]
+fn post_social_media() {
+    let mut company = Company::new();
+    for (arguments, code, field) in [
+        (json!({}), "argument_missing", Some("content")),
+        (json!({"content": 5}), "wrong_type", Some("content")),
+        (json!({"content": "x".repeat(281)}), "too_long", Some("content")),
+        (json!({"content": " \n "}), "blank", Some("content")),
+        (json!({"content": "Hi", "reply_to_post_id": 1}), "post_not_found", Some("reply_to_post_id")),
+        (json!({"content": "Hi", "reply_to_post_id": -4}), "post_not_found", Some("reply_to_post_id")),
+        (json!({"content": "Hi", "reply_to_post_id": "1"}), "wrong_type", Some("reply_to_post_id")),
+        (json!({"content": "Hi", "to": 1}), "unknown_argument", Some("to")),
+    ] {
+        let (own_code, own_field) = company.refused("post_social_media", arguments);
+        assert_eq!((own_code, own_field.as_deref()), (code, field));
+    }
+    let content = "\u{fc}".repeat(280);
+    assert_eq!(
+        company.call("post_social_media", json!({"content": content, "reply_to_post_id": null})),
+        json!({"agent_post_id": 1, "day": 0, "content": content, "reply_to_post_id": null})
+    );
+    assert_eq!(company.refused("post_social_media", json!({"content": "More."})), ("already_posted", None));
+    company.world.day = 7;
+    company.world.market.social.next_post = 12;
+    assert_eq!(
+        company.call("post_social_media", json!({"content": "Thanks.", "reply_to_post_id": 11.0}))["reply_to_post_id"],
+        json!(11)
+    );
+    assert_eq!(company.world.market.social.own.len(), 2);
+}
+
+#[test]
+fn get_social_posts() {
+    let mut company = Company::new();
+    company.assert_refused(
+        "get_social_posts",
+        &[(json!({"limit": "x"}), "wrong_type", "limit"), (json!({"days": 1.5}), "wrong_type", "days")],
+    );
+    assert_eq!(company.call("get_social_posts", json!({})), json!({"posts": []}));
+    company.call("post_social_media", json!({"content": "We are live."}));
+    let group = |id| Group::parse(id).expect("a group");
+    let post = |post, written_by| super::PublicPost {
+        post,
+        day: 7,
+        content: format!("post {post}"),
+        own_post: None,
+        source_group: None,
+        written_by,
+        profile: None,
+    };
+    let comment = super::PublicPost {
+        own_post: Some(1),
+        source_group: Some(group("E2")),
+        profile: Some("Castell & Byrne"),
+        ..post(3, Some(group("E2")))
+    };
+    let posts = [post(1, None), post(2, Some(group("D_S01"))), comment];
+    let view = View::new(&company.world, &company.params).with_posts(&posts);
+    let tool = find("get_social_posts").expect("the tool exists");
+    let read = |arguments: Value| {
+        let arguments = Arguments::of(tool.spec(), &arguments).expect("right arguments");
+        tool.answer(&view, &arguments, &Deed::None)
+    };
+    let all = read(json!({"days": 1}));
+    assert_eq!(all["total"], json!(3));
+    assert_eq!(
+        all["posts"][0],
+        json!({
+            "post_id": 3, "day": 7, "content": "post 3", "reply_to_agent_post_id": 1, "source_group_id": "E2",
+            "group_id": "E2", "customer_type": "large", "custom_name": null, "persona_name": "Castell & Byrne",
+            "replying_to_your_post": "We are live.",
+        })
+    );
+    assert_eq!(
+        (&all["posts"][1]["group_id"], &all["posts"][1]["customer_type"]),
+        (&json!("D_S01"), &json!("small"))
+    );
+    assert_eq!(
+        (&all["posts"][2]["group_id"], &all["posts"][2]["persona_name"]),
+        (&json!("S1"), &json!(null))
+    );
+    assert!(all["posts"][2].get("replying_to_your_post").is_none());
+    assert_eq!(read(json!({"limit": 1}))["posts"].as_array().map(Vec::len), Some(1));
+    assert_eq!(read(json!({"limit": 0})), json!({"posts": []}));
+    assert_eq!(read(json!({"limit": -1}))["total"], json!(3));
 }

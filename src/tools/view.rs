@@ -12,12 +12,35 @@ pub struct View<'a> {
     world: &'a World,
     params: &'a Params,
     surroundings: &'a dyn Surroundings,
+    posts: &'a [PublicPost],
+}
+
+/// A post of somebody else than the player, as tools show it.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct PublicPost {
+    /// Running number.
+    pub post: u32,
+    /// Day.
+    pub day: u32,
+    /// Text.
+    pub content: String,
+    /// Number of the player's post it comments on.
+    pub own_post: Option<u32>,
+    /// Group whose mood such a comment speaks for.
+    #[serde(skip)]
+    pub source_group: Option<Group>,
+    /// Group of its author; none for the press.
+    #[serde(skip)]
+    pub written_by: Option<Group>,
+    /// Name of the author's profile.
+    #[serde(skip)]
+    pub profile: Option<&'static str>,
 }
 
 impl<'a> View<'a> {
     /// A look at a world.
     pub fn new(world: &'a World, params: &'a Params) -> View<'a> {
-        View { world, params, surroundings: &Nothing }
+        View { world, params, surroundings: &Nothing, posts: &[] }
     }
 
     /// The same look, with what a session has besides the world.
@@ -28,6 +51,16 @@ impl<'a> View<'a> {
     /// Words, tables, and what is kept with the run.
     pub fn surroundings(&self) -> &'a dyn Surroundings {
         self.surroundings
+    }
+
+    /// The same look with the posts of others, in the order of their numbers.
+    pub fn with_posts(self, posts: &'a [PublicPost]) -> View<'a> {
+        View { posts, ..self }
+    }
+
+    /// Posts of others, in the order of their numbers.
+    pub fn posts(&self) -> &'a [PublicPost] {
+        self.posts
     }
 
     /// Decision day: the last simulated day.

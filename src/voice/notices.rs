@@ -1,6 +1,8 @@
 //! The inbox: one line per notice (chapter 60 §6).
 
-use crate::world::events::Notice;
+use crate::notation::grouped;
+use crate::world::events::{Notice, Reaction};
+use crate::world::params::CeoPosts;
 
 /// Text of a notice.
 pub fn notice(notice: &Notice) -> String {
@@ -11,6 +13,20 @@ pub fn notice(notice: &Notice) -> String {
         Notice::LeadLostByTimeout { days } => {
             format!("A company that asked for an offer got no answer for {days} days and has turned away.")
         }
+        Notice::LeadSilent => {
+            "A company that asked for an offer no longer answers; the talks are over.".to_owned()
+        }
+        Notice::CounterOffer { customer } => format!("Customer {customer} answers with a price of its own."),
+        Notice::ChurnThreat { customer } => format!(
+            "Customer {customer} threatens to leave and pays nothing until this is settled. It waits seven days for an answer."
+        ),
+        Notice::PlanWish { customer, upgrade } => {
+            let direction = if *upgrade { "higher" } else { "lower" };
+            format!(
+                "Customer {customer} asks for the price of a {direction} plan. It waits seven days for an answer."
+            )
+        }
+        Notice::DealWon { price } => format!("A deal was closed at ${price:.2} a seat and month."),
         Notice::ResearchComplete { tier, number } => format!("R&D complete: t{tier}_{number}"),
         Notice::EconomyUpdate(reading) => {
             let arrow = match reading.change {
@@ -32,7 +48,38 @@ pub fn notice(notice: &Notice) -> String {
                 "Study of group {group} complete: level {level}, \u{b1}{accuracy:.0}% (day {day}, {what})"
             )
         }
+        // Whoever knows the text of the post uses `reaction_to` instead.
+        Notice::OwnPostSeen(reaction) => format!("Your post was seen {} times", reaction.views),
     }
+}
+
+/// Text of the notice about a post of the player: views, its beginning, tone, strongest reactions.
+pub fn reaction_to(content: &str, reaction: &Reaction, law: &CeoPosts) -> String {
+    let shown = law.notification_preview_chars as usize;
+    let mut preview: String = content.chars().take(shown).collect();
+    if content.chars().count() > shown {
+        preview.push_str("...");
+    }
+    let tone = match reaction.mean {
+        mean if mean > law.notification_sentiment_threshold => "positive",
+        mean if mean < -law.notification_sentiment_threshold => "negative",
+        _ => "neutral",
+    };
+    let strongest: Vec<String> = reaction
+        .strongest
+        .iter()
+        .flatten()
+        .map(|(group, effect)| {
+            // A reaction that rounds to nothing carries no sign.
+            let effect = if effect.abs() < 0.05 { 0.0 } else { *effect };
+            format!("{group} {effect:+.1}")
+        })
+        .collect();
+    let views = grouped(reaction.views as f64, 0);
+    format!(
+        "Your post was seen {views} times: \"{preview}\". Reaction {tone}; strongest {}",
+        strongest.join(", ")
+    )
 }
 
 #[cfg(test)]
@@ -53,6 +100,19 @@ mod tests {
     }
 
     #[test]
+    fn negotiations_say_what_chapter_40_lets_them_say() {
+        let leave = notice(&Notice::ChurnThreat { customer: 7 });
+        assert!(leave.starts_with("Customer 7 threatens to leave"), "{leave}");
+        let up = notice(&Notice::PlanWish { customer: 9, upgrade: true });
+        let down = notice(&Notice::PlanWish { customer: 9, upgrade: false });
+        assert!(up.contains("Customer 9") && up.contains("higher") && down.contains("lower"));
+        assert!(notice(&Notice::CounterOffer { customer: 12 }).contains("Customer 12"));
+        assert_eq!(notice(&Notice::DealWon { price: 33.5 }), "A deal was closed at $33.50 a seat and month.");
+        assert!(notice(&Notice::LeadLostByTimeout { days: 7 }).contains("7 days"));
+        assert!(!notice(&Notice::LeadSilent).contains(char::is_numeric));
+    }
+
+    #[test]
     fn readings_show_value_direction_and_band() {
         let reading = Reading {
             measured_day: 1,
@@ -65,5 +125,20 @@ mod tests {
             notice(&Notice::EconomyUpdate(reading)),
             "Purchasing managers' index 48.3 \u{2193} (neutral)"
         );
+    }
+
+    #[test]
+    fn a_reaction_names_views_beginning_tone_and_groups() {
+        let law = crate::world::params::Params::shipped().ceo_posts;
+        let group = |id| crate::world::identifiers::Group::parse(id).expect("a group");
+        let strongest = [Some((group("S3"), 0.87)), Some((group("S1"), -0.45)), Some((group("E1"), 0.02))];
+        let mut reaction = Reaction { post: 1, views: 1840, mean: 0.2, strongest };
+        assert_eq!(
+            reaction_to("Quotas doubled.", &reaction, &law),
+            "Your post was seen 1,840 times: \"Quotas doubled.\". Reaction positive; strongest S3 +0.9, S1 -0.5, E1 +0.0"
+        );
+        reaction.mean = -0.11;
+        let long = reaction_to(&"ü".repeat(81), &reaction, &law);
+        assert!(long.contains(&format!("\"{}...\"", "ü".repeat(80))) && long.contains("negative"), "{long}");
     }
 }

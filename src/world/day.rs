@@ -1,14 +1,16 @@
 //! A day, as a list: read [`step_day`] from top to bottom (specification, chapter 20 §5).
 
-use std::collections::BTreeSet;
-
 use super::customers::Customers;
+use super::enterprise::Negotiation;
 use super::events::{Category, DayFigures, Facts, LedgerEntry, LedgerNote};
 use super::finance::{Finance, pay_running_costs};
 use super::identifiers::{ByGroup, ByPlan, Group, Plan};
 use super::market::drift::Expectation;
 use super::market::economy::Dimension;
 use super::market::leads::LeadFactors;
+use super::market::social::crowd;
+use super::market::social::opinions::Scene;
+use super::market::social::press;
 use super::market::{arrivals, competitors, drift, economy, reputation, studies, surges, yields};
 use super::params::Params;
 use super::product::ads::AdLoad;
@@ -37,6 +39,8 @@ pub struct Morning {
     pub multipliers: ByPlan<f64>,
     /// Product quality by group before the multiplier.
     pub product: ByGroup<f64>,
+    /// Product quality before the multiplier and without what was done for single groups.
+    pub shared_quality: f64,
     /// What the market adds to curves.
     pub expectations: ByGroup<Expectation>,
     /// Active subscriptions.
@@ -55,6 +59,7 @@ impl Morning {
             quotas: ByPlan::from_fn(|plan| core.quotas[plan] as f64),
             multipliers: ByPlan::from_fn(|plan| params.model(core.tiers[plan]).quality_multiplier),
             product: ByGroup::from_fn(|group| world.product.quality(group, params)),
+            shared_quality: params.quality.base_product_quality + world.product.shared_bonus,
             expectations: ByGroup::from_fn(|group| world.market.drift.expectation(group)),
             subscribers: world.customers.active(),
         }
@@ -106,6 +111,7 @@ pub fn step_day(
     yields::vary(day, &mut market.yields, params, streams);
     economy::step(day, &mut market.economy, params, streams, facts);
     competitors::react(day, total_days, &mut market.competitors, product, &mut market.drift, params, streams);
+    press::write_about_rivals(day, &market.competitors, &mut market.social, params, streams, facts);
     development::improve(day, product, settings, params, streams);
 
     // Subscribers call for help, feel, decide; companies wait for answers.
@@ -115,7 +121,17 @@ pub fn step_day(
     let calls = issues::read_calls(day, service.outage, customers, params, streams);
     let felt =
         satisfaction::Conditions { morning: &morning, service: &service, ads: &ads, tenure: &tenure, params };
+    let before = crowd::remember(day, customers, params);
     let moods = satisfaction::update(customers, &felt);
+    let scene = Scene {
+        morning: &morning,
+        service: &service,
+        ads: &ads,
+        tenure: &tenure,
+        chronicle: &market.social.chronicle,
+        params,
+    };
+    let mut crowd = crowd::listen(before, customers, &scene, streams);
     issues::settle(day, service.outage, calls, settings, customers, issue_desk, params, streams, facts);
     let judgement = renewal::Judgement {
         morning: &morning,
@@ -130,9 +146,27 @@ pub fn step_day(
         streams,
     };
     let renewals = renewal::decide(customers, &mut market.reputation, &judgement, facts);
-    enterprise.time_out(day, params, facts);
+    let talks = Negotiation {
+        morning: &morning,
+        settings,
+        product,
+        drift: &market.drift,
+        service_penalty: penalty,
+        ads: &ads,
+        tenure: &tenure,
+        params,
+        streams,
+    };
+    let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts);
     let knowledge = market.knowledge;
     reputation::contribute(&mut market.reputation, &moods, |group| knowledge[group].level >= 1, params);
+
+    // People and the press write.
+    if let Some(mut crowd) = crowd.take() {
+        crowd.join(&renewals.gave_up, &negotiated.lost, params);
+        crowd.publish(&mut market.social, params, streams, facts);
+    }
+    press::write_about_the_economy(day, &market.economy, &mut market.social, params, streams, facts);
 
     // New customers come.
     let coming =
@@ -142,12 +176,13 @@ pub fn step_day(
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;
 
     // Money changes hands.
-    let suspended = BTreeSet::new();
-    let bill = billing::Terms { morning: &morning, settings, suspended: &suspended, params, streams };
+    let suspended = &negotiated.suspended;
+    let bill = billing::Terms { morning: &morning, settings, suspended, params, streams };
     let received = billing::collect(customers, &bill, facts);
     finance.cash += received;
     let costs = pay_running_costs(finance, &metered, &morning, settings, params, facts);
     earn_from_ads(customers, &ads, finance, facts);
+    market.social.chronicle.write(day, &service, settings, product);
 
     let figures = DayFigures {
         day,
@@ -161,7 +196,7 @@ pub fn step_day(
         new_individual_leads: leads.individuals,
         new_enterprise_leads: leads.companies,
         new_individual_subscribers: leads.subscribed,
-        new_enterprise_seats: 0,
+        new_enterprise_seats: negotiated.new_seats,
         cancellations: renewals.cancellations,
         upgrades: renewals.upgrades,
         downgrades: renewals.downgrades,
@@ -225,6 +260,7 @@ pub(crate) mod tests {
             quotas: ByPlan([0.0; 3]),
             multipliers: ByPlan([0.6; 3]),
             product: ByGroup::from_fn(|_| 0.2),
+            shared_quality: 0.2,
             expectations: ByGroup::default(),
             subscribers: ByGroup::default(),
         }

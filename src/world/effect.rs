@@ -3,10 +3,14 @@
 //! The three steps are apart so that a tool call can be checked without consequence ([`Effect`]), recorded
 //! with its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
-use super::events::{Category, Facts, LedgerEntry, LedgerNote, Notice, ResearchChange, SettingsChange};
+use super::enterprise::letters::{Letter, Proposal};
+use super::events::{
+    Category, Facts, LedgerEntry, LedgerNote, Notice, OwnPostMade, ResearchChange, SettingsChange,
+};
 use super::identifiers::Group;
 use super::market::discovery::Attempt;
 use super::market::insights::{Insights, insights};
+use super::market::social::own::OwnPost;
 use super::market::studies::Study;
 use super::params::Params;
 use super::product::research::{self, Project};
@@ -29,6 +33,21 @@ pub enum Effect {
     ResearchGroup(Group, u8),
     /// Nothing changes, but the estimates of a group have errors that are drawn.
     ReadInsights(Group),
+    /// Offerings go out to companies.
+    SendDeals(Vec<Proposal>),
+    /// Threads with companies are ended, by number.
+    RejectDeals(Vec<u32>),
+    /// The player posts in public.
+    Post(Draft),
+}
+
+/// A post that the player is about to publish.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Draft {
+    /// Its text.
+    pub content: String,
+    /// Number of the post it answers.
+    pub reply_to: Option<u32>,
 }
 
 /// A decided change whose draws are known.
@@ -47,6 +66,12 @@ pub enum Deed {
     ResearchGroup(Study, f64),
     /// Nothing changes; the estimates of a group, none if it is not known.
     ReadInsights(Option<Box<Insights>>),
+    /// Letters to companies.
+    SendDeals(Vec<Letter>),
+    /// Threads that are ended, by number.
+    RejectDeals(Vec<u32>),
+    /// A post of the player.
+    Post(OwnPostMade),
 }
 
 impl Deed {
@@ -74,6 +99,18 @@ impl World {
             Effect::ReadInsights(group) => {
                 Deed::ReadInsights(insights(group, &self.market, params, streams).map(Box::new))
             }
+            Effect::SendDeals(proposals) => Deed::SendDeals(self.enterprise.address(
+                &proposals,
+                self.day,
+                &self.customers,
+                params,
+                streams,
+            )),
+            Effect::RejectDeals(threads) => Deed::RejectDeals(threads),
+            Effect::Post(Draft { content, reply_to }) => {
+                let post = self.market.social.own.len() as u32 + 1;
+                Deed::Post(OwnPostMade { post, content, reply_to })
+            }
         }
     }
 
@@ -99,6 +136,15 @@ impl World {
                 self.finance
                     .book(LedgerEntry { category: Category::GroupResearch, amount: -cost, note }, facts);
                 self.market.studies.push(study);
+            }
+            Deed::SendDeals(letters) => {
+                self.enterprise.send(&letters, self.day, &mut self.customers, facts);
+            }
+            Deed::RejectDeals(threads) => self.enterprise.reject(&threads, self.day, facts),
+            Deed::Post(made) => {
+                let own = OwnPost::new(self.day, made.content.clone(), made.reply_to);
+                self.market.social.own.push(own);
+                facts.own_posts.push(made);
             }
         }
     }

@@ -71,6 +71,26 @@ parts! {
     Macro = "macro",
     /// (day): test, size, feedback and drains of a competitor event.
     CompetitorEvent = "competitor_event",
+    /// (thread, turn): days until a company answers an offer.
+    ReplyDelay = "reply_delay",
+    /// (group, n): misjudged quality of a company in its first negotiation.
+    NegotiationNoise = "negotiation_noise",
+    /// (day, group, n): whether a company asks for another plan.
+    PlanChange = "plan_change",
+    /// (day): misjudged size, names, points of view and engagement of posts on rivals.
+    CompetitorPosts = "competitor_posts",
+    /// (day): rounds and engagement of posts on the economy; day 0: the first round.
+    MacroPosts = "macro_posts",
+    /// (day): who posts, then tone and engagement of each post.
+    CustomerPosts = "customer_posts",
+    /// (post, group): how often a post of the player is seen.
+    CeoViews = "ceo_views",
+    /// (post, group): who comments on it, and engagement of the comment.
+    CeoReply = "ceo_reply",
+    /// (post): the words of a post; never touches a number of the world.
+    Voice = "voice",
+    /// (group, n): which named profile a customer has.
+    PersonaTemplate = "persona_template",
 }
 
 /// The random streams of one run.

@@ -44,25 +44,6 @@ pub(super) fn research(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite
     Ok(())
 }
 
-pub(super) fn turns(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-    let mut insert = transaction.prepare_cached(
-        "INSERT INTO enterprise_turns (thread_id, customer_id, thread_type, turn_number, sender, day, seat_count) \
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
-    )?;
-    for turn in &facts.turns {
-        insert.execute(params![
-            turn.thread,
-            turn.customer,
-            turn.kind.id(),
-            turn.number,
-            turn.sender.id(),
-            facts.day,
-            turn.seats,
-        ])?;
-    }
-    Ok(())
-}
-
 pub(super) fn channel_leads(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare_cached(
         "INSERT INTO ad_channel_leads (day, channel_id, group_id, leads_generated, spend) VALUES (?1, ?2, ?3, ?4, ?5)",

@@ -2,6 +2,8 @@
 
 mod create;
 mod direct;
+mod posts;
+mod threads;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -28,6 +30,11 @@ pub struct Entry {
     pub notices: Vec<String>,
     /// Description of each published reading of the facts.
     pub readings: Vec<String>,
+    /// Text of each turn of the facts; empty where nothing is said in words.
+    pub turns: Vec<String>,
+    /// Address of each company that came or wrote, by customer number.
+    /// Text of each post of others among the facts.
+    pub posts: Vec<String>,
     /// Address of each company among the arrivals, by customer number.
     pub addresses: BTreeMap<u32, String>,
     /// Forecasts that were filed.
@@ -57,11 +64,21 @@ struct SubscriptionRow {
     plan: &'static str,
     listed_price: f64,
     promotion: f64,
+    opened_day: u32,
     start_day: u32,
     end_day: Option<u32>,
     status: SubscriptionStatus,
     seats: u32,
+    contract_end_day: Option<u32>,
     billed_once: bool,
+}
+
+/// What a deal changes of a subscription besides its terms.
+#[derive(Debug, Clone, Copy)]
+struct DealRow {
+    /// Day on which a lead became a subscriber by it.
+    activated: Option<u32>,
+    contract_end_day: u32,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -79,6 +96,7 @@ pub(super) struct RowWriter {
     shelf: SharedShelf,
     issue_clock: u32,
     new_subscriptions: BTreeMap<u32, SubscriptionRow>,
+    deals: BTreeMap<u32, DealRow>,
     changed_terms: BTreeMap<u32, TermsChanged>,
     endings: BTreeMap<u32, SubscriptionEnded>,
     new_issues: BTreeMap<u32, IssueRow>,
@@ -96,6 +114,7 @@ impl RowWriter {
             shelf,
             issue_clock,
             new_subscriptions: BTreeMap::new(),
+            deals: BTreeMap::new(),
             changed_terms: BTreeMap::new(),
             endings: BTreeMap::new(),
             new_issues: BTreeMap::new(),
@@ -128,11 +147,14 @@ impl RowWriter {
         }
         self.issues(facts);
         self.departures(facts);
-        direct::turns(transaction, facts)?;
+        threads::turns(transaction, entry)?;
+        self.deals(transaction, facts)?;
         direct::channel_leads(transaction, facts)?;
         self.arrivals(transaction, entry)?;
         self.ledger(transaction, facts)?;
         self.ads(transaction, facts)?;
+        posts::posts(transaction, facts, &entry.posts)?;
+        posts::own_posts(transaction, facts)?;
         direct::notices(transaction, facts, &entry.notices)?;
         direct::settings(transaction, facts)?;
         direct::forecasts(transaction, &entry.forecasts)?;
@@ -202,6 +224,29 @@ impl RowWriter {
                 }
             }
         }
+    }
+
+    /// Deals; the terms they agree on come as changed terms.
+    fn deals(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+        threads::contract_starts(transaction, facts)?;
+        for deal in &facts.deals {
+            let Some(contract_end_day) = deal.contract_end_day else { continue };
+            let activated = deal.activated.then_some(facts.day);
+            match self.new_subscriptions.get_mut(&deal.customer) {
+                Some(row) => {
+                    row.contract_end_day = Some(contract_end_day);
+                    if let Some(day) = activated {
+                        (row.start_day, row.status) = (day, SubscriptionStatus::Subscribed);
+                    }
+                }
+                None => {
+                    let before = self.deals.get(&deal.customer).and_then(|row| row.activated);
+                    let row = DealRow { activated: activated.or(before), contract_end_day };
+                    self.deals.insert(deal.customer, row);
+                }
+            }
+        }
+        Ok(())
     }
 
     fn arrivals(&mut self, transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
@@ -331,7 +376,7 @@ impl RowWriter {
 
     fn flush_subscriptions(&mut self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut insert = transaction.prepare_cached(
-            "INSERT INTO subscription_rows VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, NULL, ?11)",
+            "INSERT INTO subscription_rows VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
         )?;
         let period = self.params.billing.billing_period_days;
         for (customer, row) in std::mem::take(&mut self.new_subscriptions) {
@@ -344,10 +389,19 @@ impl RowWriter {
                 row.start_day,
                 row.end_day,
                 row.status as u8,
-                row.start_day % period,
+                row.opened_day % period,
                 row.seats,
+                row.contract_end_day,
                 row.billed_once,
             ])?;
+        }
+        let mut deal = transaction.prepare_cached(
+            "UPDATE subscription_rows SET contract_end_day = ?2, start_day = coalesce(?3, start_day), \
+             status = coalesce(?4, status) WHERE customer_id = ?1",
+        )?;
+        for (customer, row) in std::mem::take(&mut self.deals) {
+            let status = row.activated.map(|_| SubscriptionStatus::Subscribed as u8);
+            deal.execute(params![customer, row.contract_end_day, row.activated, status])?;
         }
         let mut change = transaction.prepare_cached(
             "UPDATE subscription_rows SET plan = ?2, listed_price = ?3, promotion = ?4, seats = ?5, billed_once = ?6 \
@@ -398,10 +452,12 @@ fn opened_row(opened: &SubscriptionOpened, day: u32) -> SubscriptionRow {
         plan: opened.plan.map_or("pending", Plan::id),
         listed_price: opened.listed_price,
         promotion: opened.promotion,
+        opened_day: day,
         start_day: day,
         end_day: None,
         status: opened.status,
         seats: opened.seats,
+        contract_end_day: None,
         billed_once: false,
     }
 }

@@ -1,7 +1,9 @@
-//! Targeted operations and development.
+//! What people write; targeted operations and development.
 
+mod get_social_posts;
 mod set_targeted_dev_spend;
 mod set_targeted_ops_spend;
 
+pub use get_social_posts::GetSocialPosts;
 pub use set_targeted_dev_spend::SetTargetedDevSpend;
 pub use set_targeted_ops_spend::SetTargetedOpsSpend;

@@ -1,10 +1,12 @@
 //! Spend, advertising, in-app ads, discounts for leads.
 
+mod post_social_media;
 mod set_ads_strength;
 mod set_daily_spend;
 mod set_lead_promotion;
 mod set_targeted_ad_spend;
 
+pub use post_social_media::PostSocialMedia;
 pub use set_ads_strength::SetAdsStrength;
 pub use set_daily_spend::SetDailySpend;
 pub use set_lead_promotion::SetLeadPromotion;

@@ -51,6 +51,12 @@ macro_rules! columns {
             }
         }
 
+        impl Canonical for $Row {
+            fn feed(&self, hasher: &mut CanonicalHasher) {
+                $(self.$column.feed(hasher);)*
+            }
+        }
+
         impl Canonical for $Block {
             fn feed(&self, hasher: &mut CanonicalHasher) {
                 $(self.$column.feed(hasher);)*

@@ -91,6 +91,26 @@ impl GroupCustomers {
             Ok(_) => debug_assert!(false, "customer {} is active already", row.customer),
         }
     }
+
+    /// Block and position of the active subscriber with this running number.
+    pub fn place(&self, n: u32) -> Option<(usize, usize)> {
+        let block = ((n - 1) / BLOCK) as usize;
+        let at = self.blocks.get(block)?.position(n)?;
+        Some((block, at))
+    }
+
+    /// The active subscriber with this running number.
+    pub fn row(&self, n: u32) -> Option<Subscriber> {
+        self.place(n).map(|(block, at)| self.blocks[block].row(at))
+    }
+
+    /// Takes an active subscriber out.
+    pub fn deactivate(&mut self, n: u32) -> Option<Subscriber> {
+        let (block, at) = self.place(n)?;
+        let row = self.blocks[block].row(at);
+        self.blocks[block].remove(&[at]);
+        Some(row)
+    }
 }
 
 impl Customers {
@@ -172,6 +192,10 @@ mod tests {
             group.activate(subscriber(n));
         }
         assert_eq!(group.active(), 5);
+        assert_eq!((group.place(1025), group.row(4), group.row(9000)), (Some((1, 0)), None, None));
+        assert_eq!(group.deactivate(5).map(|row| row.n), Some(5));
+        assert_eq!((group.deactivate(5), group.active()), (None, 4));
+        group.activate(subscriber(5));
         assert_eq!(group.blocks[0].n, [3, 5, 1024]);
         assert_eq!(group.blocks[1].n, [1025, 2000]);
         let mut customers = Customers::default();

@@ -1,111 +1,279 @@
-//! Companies: leads that ask for an offer, and what silence does to them (chapter 40 §4, §11, step 16).
+//! Companies: leads that ask for an offer, subscribers that threaten to leave or ask for another plan, and what
+//! becomes of the threads (chapter 40, step 16).
+//!
+//! Start with [`Enterprise::step`], the order of the enterprise part of a day. What the player writes between
+//! two weeks is in [`letters`].
+
+pub mod churn;
+mod company;
+mod evaluation;
+pub mod letters;
+mod outcomes;
+mod quality;
+mod replies;
+mod thread;
+mod triggers;
+
+#[cfg(test)]
+mod stories;
+#[cfg(test)]
+pub(crate) mod test_kit;
+
+use std::collections::BTreeSet;
+
+pub use churn::CompanyLost;
+pub use company::{Company, Standing};
+pub use thread::{Thread, Turn};
 
 use super::canonical::canonical;
-use super::events::{
-    EndCause, Facts, Notice, Sender, SubscriptionEnded, SubscriptionStatus, ThreadKind, ThreadTurn,
-};
-use super::identifiers::Group;
+use super::customers::Customers;
+use super::day::Morning;
+use super::events::{Facts, Notice, Sender, ThreadKind, ThreadTurn, TurnContent};
+use super::market::drift::DriftTotals;
+use super::market::reputation::ReputationBook;
 use super::params::Params;
+use super::product::Product;
+use super::product::ads::AdLoad;
+use super::product::quality::TenureTable;
+use super::random::Streams;
+use super::settings::Settings;
 
-/// Enterprise threads.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Negotiations with companies.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Enterprise {
     /// Number of the next thread.
     pub next_thread: u32,
-    /// Leads that wait for an answer, in the order of their threads.
-    pub waiting: Vec<WaitingLead>,
+    /// Number of the next turn, over all threads.
+    pub next_message: u32,
+    /// Threads that are open or still fire, in the order of their numbers.
+    pub threads: Vec<Thread>,
+    /// Leads and subscribers, and lost ones while a thread of theirs fires, in the order of their numbers.
+    pub companies: Vec<Company>,
 }
 
-/// A company that asked for an offer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct WaitingLead {
-    /// Number of its thread.
-    pub thread: u32,
-    /// Customer number.
-    pub customer: u32,
-    /// Its group.
-    pub group: Group,
-    /// Subscription number of the lead.
-    pub subscription: u32,
-    /// Whole seats.
-    pub seats: u32,
-    /// Day on which it asked.
-    pub day: u32,
-}
-
-canonical! {
-    Enterprise { next_thread, waiting }
-    WaitingLead { thread, customer, group, subscription, seats, day }
-}
+canonical! { Enterprise { next_thread, next_message, threads, companies } }
 
 impl Default for Enterprise {
     fn default() -> Self {
-        Enterprise { next_thread: 1, waiting: Vec::new() }
+        Enterprise { next_thread: 1, next_message: 1, threads: Vec::new(), companies: Vec::new() }
     }
+}
+
+/// What the negotiations of a day share.
+pub struct Negotiation<'a> {
+    /// Values frozen this morning.
+    pub morning: &'a Morning,
+    /// Settings of today.
+    pub settings: &'a Settings,
+    /// The product, with today's improvements.
+    pub product: &'a Product,
+    /// What the market has added to curves, with today's changes.
+    pub drift: &'a DriftTotals,
+    /// Quality lost to today's service, where fidelity makes it count here.
+    pub service_penalty: f64,
+    /// In-app ads.
+    pub ads: &'a AdLoad<'a>,
+    /// Tenure bonuses by days.
+    pub tenure: &'a TenureTable,
+    /// Parameters.
+    pub params: &'a Params,
+    /// Random streams.
+    pub streams: &'a Streams,
+}
+
+/// What the rest of the day has to know.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct EnterpriseDay {
+    /// Customers that pay nothing today: their threat to leave was open this morning.
+    pub suspended: BTreeSet<u32>,
+    /// Subscribers whose threads died, as candidates for posts.
+    pub lost: Vec<CompanyLost>,
+    /// Seats of companies that signed today.
+    pub new_seats: u32,
 }
 
 impl Enterprise {
     /// Opens the thread of a new lead: one turn of the market, and a notification that names nobody.
-    pub fn open_lead(
-        &mut self,
-        day: u32,
-        group: Group,
-        customer: u32,
-        subscription: u32,
-        seats: u32,
-        facts: &mut Facts,
-    ) {
-        let thread = self.next_thread;
-        self.next_thread += 1;
-        self.waiting.push(WaitingLead { thread, customer, group, subscription, seats, day });
-        let (kind, sender) = (ThreadKind::NewLead, Sender::System);
-        facts.turns.push(ThreadTurn { thread, customer, kind, number: 0, sender, seats });
+    pub fn open_lead(&mut self, day: u32, company: Company, facts: &mut Facts) {
+        let seats = match &company.standing {
+            Standing::Lead(row) | Standing::Gone(row) => row.seats as u32,
+            Standing::Subscriber => 1,
+        };
+        self.companies.push(company);
+        let at = self.companies.len() - 1;
+        self.open_thread(day, at, ThreadKind::NewLead, seats, Sender::System, TurnContent::Opening, facts);
         facts.notices.push(Notice::EnterpriseLead);
     }
 
-    /// Loses the leads that waited too long.
-    pub fn time_out(&mut self, day: u32, params: &Params, facts: &mut Facts) {
-        let patience = params.enterprise.agent_response_timeout_days;
-        self.waiting.retain(|lead| {
-            let days = day - lead.day;
-            if days < patience {
-                return true;
-            }
-            facts.endings.push(SubscriptionEnded {
-                subscription: lead.subscription,
-                customer: lead.customer,
-                group: lead.group,
-                seats: lead.seats,
-                day,
-                status: SubscriptionStatus::Lost,
-                cause: EndCause::LeadTimeout,
-            });
-            facts.notices.push(Notice::LeadLostByTimeout { days });
-            false
+    /// The negotiations of a day. Everything goes by the threads as they were this morning: silence of the player,
+    /// answers that are due, then what subscribers without a thread begin by themselves.
+    pub fn step(
+        &mut self,
+        customers: &mut Customers,
+        reputation: &mut ReputationBook,
+        day: &Negotiation<'_>,
+        facts: &mut Facts,
+    ) -> EnterpriseDay {
+        let view = self.live_view(day.params.fidelity.reappearing_threads);
+        let busy: BTreeSet<u32> = view.iter().map(|live| self.threads[live.thread].customer).collect();
+        let mut step =
+            Step { enterprise: self, customers, reputation, day, facts, result: EnterpriseDay::default() };
+        step.result.suspended = step.threatening(&view);
+        step.time_out(&view);
+        step.receive_replies(&view);
+        step.trigger(&busy);
+        let result = step.result;
+        let reappearing = day.params.fidelity.reappearing_threads;
+        self.forget(|thread| thread.is_over(day.morning.day, reappearing));
+        result
+    }
+
+    /// A company by its customer number.
+    pub fn company(&self, customer: u32) -> Option<&Company> {
+        self.position(customer).map(|at| &self.companies[at])
+    }
+
+    /// The open thread of a company; if there are several, the one with the newest turn.
+    pub fn open_thread_of(&self, customer: u32) -> Option<&Thread> {
+        let open = self.threads.iter().filter(|thread| thread.customer == customer && thread.is_open());
+        open.max_by_key(|thread| thread.last().message)
+    }
+
+    fn position(&self, customer: u32) -> Option<usize> {
+        self.companies.binary_search_by_key(&customer, |company| company.customer).ok()
+    }
+
+    /// The threads of this morning that are not closed, each with the turn it goes by.
+    fn live_view(&self, reappearing: bool) -> Vec<Live> {
+        let live = |(at, thread): (usize, &Thread)| {
+            let turn = thread.live(reappearing)?;
+            Some(Live { thread: at, sender: turn.sender, day: turn.day, reply_day: turn.reply_day })
+        };
+        self.threads.iter().enumerate().filter_map(live).collect()
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "the first turn of a thread says everything about it")]
+    fn open_thread(
+        &mut self,
+        day: u32,
+        company: usize,
+        kind: ThreadKind,
+        seats: u32,
+        sender: Sender,
+        content: TurnContent,
+        facts: &mut Facts,
+    ) -> usize {
+        let number = self.next_thread;
+        self.next_thread += 1;
+        let Company { customer, group, .. } = self.companies[company];
+        self.threads.push(Thread { number, customer, group, kind, turns: Vec::new(), closed: false });
+        let thread = self.threads.len() - 1;
+        self.say(thread, 0, day, seats, sender, content, facts);
+        thread
+    }
+
+    /// Appends a turn with this number to a thread.
+    #[expect(clippy::too_many_arguments, reason = "a turn has that many sides")]
+    fn say(
+        &mut self,
+        thread: usize,
+        number: u32,
+        day: u32,
+        seats: u32,
+        sender: Sender,
+        content: TurnContent,
+        facts: &mut Facts,
+    ) {
+        let message = self.next_message;
+        self.next_message += 1;
+        let own = &mut self.threads[thread];
+        let (offerings, asked) = match &content {
+            TurnContent::Offer(offerings) => (offerings.clone(), None),
+            TurnContent::Counter { asked, .. } => (Vec::new(), Some(asked.price)),
+            TurnContent::Acceptance(offering) => (Vec::new(), Some(offering.price)),
+            _ => (Vec::new(), None),
+        };
+        own.turns.push(Turn { message, number, sender, day, offerings, asked, reply_day: None, dead: false });
+        let (customer, group, kind, thread) = (own.customer, own.group, own.kind, own.number);
+        let persona = self.company(customer).map(|company| company.persona).unwrap_or_default();
+        facts.turns.push(ThreadTurn {
+            message,
+            thread,
+            customer,
+            group,
+            persona,
+            kind,
+            number,
+            sender,
+            seats,
+            content,
         });
+    }
+
+    /// Forgets threads that are over, and lost companies without a thread.
+    fn forget(&mut self, is_over: impl Fn(&Thread) -> bool) {
+        self.threads.retain(|thread| !is_over(thread));
+        let still: BTreeSet<u32> = self.threads.iter().map(|thread| thread.customer).collect();
+        let gone = |company: &Company| matches!(company.standing, Standing::Gone(_));
+        self.companies.retain(|company| !gone(company) || still.contains(&company.customer));
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// A thread of this morning and the turn it goes by.
+#[derive(Debug, Clone, Copy)]
+struct Live {
+    /// Position among the threads.
+    thread: usize,
+    sender: Sender,
+    day: u32,
+    reply_day: Option<u32>,
+}
 
-    /// First half of check 17 of chapter 40.
-    #[test]
-    fn an_unanswered_lead_is_lost_on_the_seventh_day() {
-        let params = Params::shipped();
-        let (mut enterprise, mut facts) = (Enterprise::default(), Facts::default());
-        enterprise.open_lead(0, Group::parse("E1").expect("a group"), 9, 3, 120, &mut facts);
-        assert_eq!((facts.turns.len(), facts.notices.as_slice()), (1, &[Notice::EnterpriseLead][..]));
-        facts.begin(6);
-        enterprise.time_out(6, &params, &mut facts);
-        assert!(facts.endings.is_empty());
-        facts.begin(7);
-        enterprise.time_out(7, &params, &mut facts);
-        assert_eq!((facts.endings[0].subscription, facts.endings[0].day), (3, 7));
-        assert_eq!(facts.notices, [Notice::LeadLostByTimeout { days: 7 }]);
-        facts.begin(8);
-        enterprise.time_out(8, &params, &mut facts);
-        assert!(facts.endings.is_empty() && facts.notices.is_empty());
+/// The negotiations of one day under way.
+struct Step<'a> {
+    enterprise: &'a mut Enterprise,
+    customers: &'a mut Customers,
+    reputation: &'a mut ReputationBook,
+    day: &'a Negotiation<'a>,
+    facts: &'a mut Facts,
+    result: EnterpriseDay,
+}
+
+impl Step<'_> {
+    fn today(&self) -> u32 {
+        self.day.morning.day
+    }
+
+    /// Customers whose threat to leave was open this morning.
+    fn threatening(&self, view: &[Live]) -> BTreeSet<u32> {
+        let threads = view.iter().map(|live| &self.enterprise.threads[live.thread]);
+        threads
+            .filter(|thread| thread.kind == ThreadKind::ChurnPrevention)
+            .map(|thread| thread.customer)
+            .collect()
+    }
+
+    /// Loses those whom the player did not answer for too long.
+    fn time_out(&mut self, view: &[Live]) {
+        let patience = self.day.params.enterprise.agent_response_timeout_days;
+        for live in view.iter().filter(|live| live.sender != Sender::Agent) {
+            let days = self.today() - live.day;
+            if days >= patience {
+                self.give_up(live.thread, days);
+            }
+        }
+    }
+
+    /// Whole seats of the company of a thread.
+    fn seats_of(&self, thread: usize) -> u32 {
+        let company = self.enterprise.company(self.enterprise.threads[thread].customer);
+        company.and_then(|company| company.row(self.customers)).map_or(1, |row| row.seats as u32)
+    }
+
+    /// A turn of today in a thread, numbered after the last one.
+    fn say(&mut self, thread: usize, sender: Sender, seats: u32, content: TurnContent) {
+        let number = self.enterprise.threads[thread].last().number + 1;
+        let today = self.today();
+        self.enterprise.say(thread, number, today, seats, sender, content, self.facts);
     }
 }

@@ -10,6 +10,7 @@ use crate::world::settings::{
 };
 
 canonical! {
+    Reaction { post, views, mean, strongest }
     ServiceDay { total_usage, overload, outage, downtime_minutes, p95_ms, error_rate, capacity_tier, capacity_units }
 }
 
@@ -128,6 +129,30 @@ pub enum Notice {
         /// Days since its last turn.
         days: u32,
     },
+    /// A company that asked for an offer fell silent.
+    LeadSilent,
+    /// A company names a price.
+    CounterOffer {
+        /// The company.
+        customer: u32,
+    },
+    /// A customer threatens to leave.
+    ChurnThreat {
+        /// The company.
+        customer: u32,
+    },
+    /// A customer asks for another plan.
+    PlanWish {
+        /// The company.
+        customer: u32,
+        /// For a higher one.
+        upgrade: bool,
+    },
+    /// A deal was closed at this price, dollars a month and seat.
+    DealWon {
+        /// Price.
+        price: f64,
+    },
     /// An R&D project is finished.
     ResearchComplete {
         /// Tier, 1..=20.
@@ -151,18 +176,38 @@ pub enum Notice {
         /// Largest relative error of its estimates.
         noise: f64,
     },
+    /// A post of the player was read.
+    OwnPostSeen(Reaction),
+}
+
+/// How the public took a post of the player.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reaction {
+    /// Number of the post.
+    pub post: u32,
+    /// How often it was seen.
+    pub views: u64,
+    /// Mean reaction of the groups that judged it, -1..=1.
+    pub mean: f64,
+    /// The strongest reactions, the strongest first.
+    pub strongest: [Option<(Group, f64)>; 3],
 }
 
 impl Notice {
     /// Type as the tables write it.
     pub fn kind(&self) -> &'static str {
         match self {
-            Notice::EnterpriseLead => "large_customer_message",
-            Notice::LeadLostByTimeout { .. } => "lead_lost",
+            Notice::EnterpriseLead
+            | Notice::CounterOffer { .. }
+            | Notice::ChurnThreat { .. }
+            | Notice::PlanWish { .. } => "large_customer_message",
+            Notice::LeadLostByTimeout { .. } | Notice::LeadSilent => "lead_lost",
+            Notice::DealWon { .. } => "deal_won",
             Notice::ResearchComplete { .. } => "research_complete",
             Notice::EconomyUpdate(_) => "macro_economic_update",
             Notice::GroupFound { .. } => "market_discovery",
             Notice::StudyComplete { .. } => "group_research_complete",
+            Notice::OwnPostSeen(_) => "social_media",
         }
     }
 }
@@ -176,6 +221,12 @@ impl Canonical for Notice {
             Notice::EconomyUpdate(reading) => (3u8, reading).feed(hasher),
             Notice::GroupFound { group, attempt } => (4u8, (group, attempt)).feed(hasher),
             Notice::StudyComplete { study, noise } => (5u8, (study, noise)).feed(hasher),
+            Notice::LeadSilent => 10u8.feed(hasher),
+            Notice::CounterOffer { customer } => (11u8, customer).feed(hasher),
+            Notice::ChurnThreat { customer } => (12u8, customer).feed(hasher),
+            Notice::PlanWish { customer, upgrade } => (13u8, (customer, upgrade)).feed(hasher),
+            Notice::DealWon { price } => (14u8, price).feed(hasher),
+            Notice::OwnPostSeen(reaction) => (20u8, reaction).feed(hasher),
         }
     }
 }

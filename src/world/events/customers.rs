@@ -177,6 +177,18 @@ pub enum EndCause {
     Price,
     /// A company's lead waited too long for an answer.
     LeadTimeout,
+    /// A company's lead fell silent.
+    LeadSilent,
+    /// A company's lead was turned away.
+    LeadRejected,
+    /// A company left: an issue stayed open for too long.
+    ExtendedIssue,
+    /// A company left: the product is not good enough.
+    QualityChange,
+    /// A company left: it needs more than its quota.
+    QuotaChange,
+    /// A company left: the price.
+    PriceSensitivity,
 }
 
 /// A subscription ended.

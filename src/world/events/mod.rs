@@ -8,16 +8,18 @@ mod company;
 mod customers;
 mod figures;
 mod money;
+mod posts;
 mod threads;
 
-pub use company::{Notice, ResearchChange, ServiceDay, SettingsChange};
+pub use company::{Notice, Reaction, ResearchChange, ServiceDay, SettingsChange};
 pub use customers::{
     AdsRevenueRow, Arrival, ChannelLeads, EndCause, IssueOpened, Source, SubscriptionEnded,
     SubscriptionOpened, SubscriptionStatus, TermsChanged, UsageRows,
 };
 pub use figures::DayFigures;
 pub use money::{Category, LedgerEntry, LedgerNote, Payment};
-pub use threads::{Sender, ThreadKind, ThreadTurn};
+pub use posts::{Cause, Matter, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, Theme, Troubles};
+pub use threads::{DealClosed, Offering, Sender, ThreadKind, ThreadTurn, TurnContent};
 
 use super::canonical::canonical;
 use super::identifiers::Group;
@@ -56,6 +58,8 @@ pub struct Facts {
     pub changes: Vec<TermsChanged>,
     /// Turns of enterprise threads.
     pub turns: Vec<ThreadTurn>,
+    /// Deals with companies.
+    pub deals: Vec<DealClosed>,
     /// Leads by paid channel and group.
     pub channel_leads: Vec<ChannelLeads>,
     /// New customers.
@@ -68,6 +72,12 @@ pub struct Facts {
     pub ledger: Vec<LedgerEntry>,
     /// Subscribers who earned ad revenue.
     pub ads_revenue: Vec<AdsRevenueRow>,
+    /// What others wrote on social media, in the order of their numbers.
+    pub posts: Vec<Post>,
+    /// What the player wrote there.
+    pub own_posts: Vec<OwnPostMade>,
+    /// Posts of the player that were read and judged.
+    pub own_posts_seen: Vec<OwnPostSeen>,
     /// Notifications.
     pub notices: Vec<Notice>,
 }
@@ -75,7 +85,8 @@ pub struct Facts {
 canonical! {
     Facts {
         day, settings, usage, service, research, attempts, knowledge, readings, issues_resolved, issues_aged, issues_opened, endings,
-        changes, turns, channel_leads, arrivals, openings, payments, ledger, ads_revenue, notices,
+        changes, turns, deals, channel_leads, arrivals, openings, payments, ledger, ads_revenue, posts,
+        own_posts, own_posts_seen, notices,
     }
 }
 
@@ -97,12 +108,16 @@ impl Facts {
             endings,
             changes,
             turns,
+            deals,
             channel_leads,
             arrivals,
             openings,
             payments,
             ledger,
             ads_revenue,
+            posts,
+            own_posts,
+            own_posts_seen,
             notices,
         } = self;
         *own_day = day;
@@ -118,12 +133,16 @@ impl Facts {
         endings.clear();
         changes.clear();
         turns.clear();
+        deals.clear();
         channel_leads.clear();
         arrivals.clear();
         openings.clear();
         payments.clear();
         ledger.clear();
         ads_revenue.clear();
+        posts.clear();
+        own_posts.clear();
+        own_posts_seen.clear();
         notices.clear();
     }
 }

@@ -9,9 +9,9 @@ use crate::world::customers::curve::Curve;
 use crate::world::customers::traits::{Traits, draw_traits};
 use crate::world::customers::{ArrivalRun, Customers};
 use crate::world::day::Morning;
-use crate::world::enterprise::Enterprise;
+use crate::world::enterprise::{Company, Enterprise, Standing};
 use crate::world::events::{Arrival, ChannelLeads, Facts, Source, SubscriptionOpened, SubscriptionStatus};
-use crate::world::identifiers::{ByGroup, ByPlan, Group};
+use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
 use crate::world::market::Market;
 use crate::world::market::economy::Dimension;
 use crate::world::params::{DriftCounted, Params, ServicePenalty};
@@ -272,6 +272,18 @@ fn subscriber(
     let &Arrivals { morning, settings, params, .. } = arrivals;
     let listed_price = morning.core.prices[choice.plan];
     let promotion = discount + ongoing_discount(customer, group, choice.plan, settings, params);
+    Subscriber {
+        plan: choice.plan,
+        listed_price,
+        promotion,
+        effective_price: (listed_price - promotion).max(params.billing.effective_price_min),
+        ..newcomer(arrivals, n, customer, subscription, lead)
+    }
+}
+
+/// The row of a lead before it has agreed on anything.
+fn newcomer(arrivals: &Arrivals<'_>, n: u32, customer: u32, subscription: u32, lead: &Lead) -> Subscriber {
+    let &Arrivals { morning, params, .. } = arrivals;
     // Drift that counts once is used for the decision but not stored.
     let stored = match params.fidelity.drift_counted {
         DriftCounted::EveryRead => lead.curve,
@@ -281,7 +293,7 @@ fn subscriber(
         n,
         customer,
         subscription,
-        plan: choice.plan,
+        plan: Plan::A,
         billing_day: (morning.day % params.billing.billing_period_days) as u8,
         billed_once: false,
         start_day: morning.day,
@@ -294,11 +306,11 @@ fn subscriber(
         ads_quality_sensitivity: lead.traits.ads_quality_sensitivity,
         ads_return_sensitivity: lead.traits.ads_return_sensitivity,
         seats: lead.traits.seats,
-        listed_price,
-        promotion,
-        effective_price: (listed_price - promotion).max(params.billing.effective_price_min),
+        listed_price: 0.0,
+        promotion: 0.0,
+        effective_price: 0.0,
         effective_c_max: stored.c_max,
-        // Drawn by the first bill, which comes later the same day.
+        // Drawn by the first bill or deal.
         usage_rate: 0.0,
         period_usage: 0,
         satisfaction: params.initial.customer_satisfaction,
@@ -336,8 +348,21 @@ fn open_prospects(
                 effective_price: 0.0,
                 seats: lead.traits.seats as u32,
             });
-            let seats = lead.traits.seats as u32;
-            enterprise.open_lead(arrivals.morning.day, run.group, customer, subscription, seats, facts);
+            let n = run.first_n + offset;
+            let row = newcomer(arrivals, n, customer, subscription, &lead);
+            if let Some(negotiator) = lead.traits.negotiator {
+                let company = Company {
+                    customer,
+                    group: run.group,
+                    n,
+                    subscription,
+                    negotiator,
+                    persona: lead.traits.persona,
+                    contract_end_day: 0,
+                    standing: Standing::Lead(row),
+                };
+                enterprise.open_lead(arrivals.morning.day, company, facts);
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Market;
 use super::economy::Dimension;
-use super::social::social_multiplier;
+use super::social::own::social_multiplier;
 use super::surges::surge_factor;
 use crate::world::events::Source;
 use crate::world::identifiers::{ByChannel, ByGroup, Channel, Group};
@@ -118,7 +118,7 @@ pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
         saturation: saturation(subscribers[group], cap, &params.leads),
         calendar,
         economy: market.economy.multiplier(group, Dimension::LeadGeneration, params),
-        social: social_multiplier(group, day, &market.own_posts, &params.ceo_posts),
+        social: social_multiplier(group, day, &market.social.own, &params.ceo_posts),
         surge: surge_factor(day, &market.surges, params.fidelity.surge_start),
         paid: ByChannel::from_fn(paid),
         network,
@@ -128,7 +128,7 @@ pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::market::social::OwnPost;
+    use crate::world::market::social::own::OwnPost;
     use crate::world::market::surges::Surge;
     use indexmap::IndexMap;
 
@@ -150,7 +150,7 @@ mod tests {
         market.reputation.set(group("S1"), 0.62);
         let mut effects = ByGroup::default();
         effects[group("S1")] = 0.9;
-        market.own_posts.push(OwnPost { day: 0, effects: Some(effects) });
+        market.social.own.push(OwnPost { effects: Some(effects), ..OwnPost::new(0, "a post", None) });
         market.surges.push(Surge { day: 1, end_day: 9, multiplier: 2.5 });
         let mut subscribers = ByGroup::default();
         for (id, count) in [("S1", 2000), ("S3", 300), ("E3", 2)] {

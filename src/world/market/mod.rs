@@ -7,7 +7,6 @@ pub mod drift;
 pub mod economy;
 pub mod insights;
 pub mod leads;
-pub mod posts;
 pub mod reputation;
 pub mod social;
 pub mod studies;
@@ -17,6 +16,7 @@ pub mod yields;
 use super::canonical::canonical;
 use super::identifiers::{ByChannel, ByGroup, Group};
 use super::params::Params;
+use super::settings::Settings;
 
 /// The hidden state of the market.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,8 +39,8 @@ pub struct Market {
     pub attempts: u32,
     /// Studies of groups that run, in the order in which they were ordered.
     pub studies: Vec<studies::Study>,
-    /// Reactions to the company's posts.
-    pub own_posts: Vec<social::OwnPost>,
+    /// Social media.
+    pub social: social::Social,
 }
 
 /// What the company knows about a group.
@@ -57,7 +57,7 @@ pub struct Knowledge {
 }
 
 canonical! {
-    Market { reputation, drift, yields, economy, competitors, surges, knowledge, attempts, studies, own_posts }
+    Market { reputation, drift, yields, economy, competitors, surges, knowledge, attempts, studies, social }
     Knowledge { level, discovered_day, last_research_day, snapshot }
 }
 
@@ -88,7 +88,7 @@ impl Market {
             knowledge: ByGroup::from_fn(knowledge),
             attempts: 0,
             studies: Vec::new(),
-            own_posts: Vec::new(),
+            social: social::Social::opening(&Settings::opening(params)),
         }
     }
 

@@ -154,6 +154,8 @@ pub struct Competitor {
     pub competitor_post_likes_ratio: f64,
     /// Shares per view.
     pub competitor_post_shares_ratio: f64,
+    /// Number of points of view such posts are written from.
+    pub post_perspective_count: u32,
     /// Names of the rivals.
     pub competitor_names: Vec<String>,
 }
@@ -242,4 +244,10 @@ pub struct MacroEconomy {
     pub macro_social_post_count_max: u32,
     /// Number of perspectives such posts are written from.
     pub post_perspective_count: u32,
+    /// Fewest views of such a post.
+    pub macro_post_views_base: f64,
+    /// Likes per view.
+    pub macro_post_likes_ratio: f64,
+    /// Shares per view.
+    pub macro_post_shares_ratio: f64,
 }

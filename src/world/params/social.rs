@@ -36,6 +36,8 @@ pub struct Social {
     pub enterprise_churn_weight_base: f64,
     /// Satisfaction recorded for a lost company.
     pub enterprise_churn_event_satisfaction: f64,
+    /// Days subscribed of a lost company where nobody knows.
+    pub enterprise_churn_event_fallback_days: u32,
     /// Lower edge of the best band.
     pub sentiment_band_very_positive_min: f64,
     /// Lower edge of the second band.
@@ -94,10 +96,38 @@ pub struct Social {
     pub sentiment: SentimentByBand,
 }
 
-/// Worth of the company's own posts (chapter 30 §6.8).
+/// Reach and worth of the company's own posts (chapter 30 §6.5-§6.8).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CeoPosts {
+    /// Reactions of at least this size bring comments.
+    pub viral_threshold: f64,
+    /// Views of a post in a group without subscribers,
+    pub views_base_min: f64,
+    /// or this share of the subscribers.
+    pub views_base_per_subscriber: f64,
+    /// Factor of the views at the threshold.
+    pub views_threshold_multiplier: f64,
+    /// Factor of the views at a reaction of 1.
+    pub views_max_multiplier: f64,
+    /// Location of the log-normal chance in views.
+    pub views_noise_lognormal_mu: f64,
+    /// Its spread.
+    pub views_noise_lognormal_sigma: f64,
+    /// Characters of the post that the inbox shows.
+    pub notification_preview_chars: u32,
+    /// Mean reactions beyond this are called positive or negative.
+    pub notification_sentiment_threshold: f64,
+    /// Groups that the inbox names, at most 3.
+    pub notification_top_groups: u32,
+    /// Fewest likes of a comment.
+    pub reply_likes_low: u32,
+    /// One above the most.
+    pub reply_likes_high_exclusive: u32,
+    /// Fewest shares of a comment.
+    pub reply_shares_low: u32,
+    /// One above the most.
+    pub reply_shares_high_exclusive: u32,
     /// Reactions below this bring no leads.
     pub multiplier_viral_threshold: f64,
     /// Largest effect of one post on leads.

@@ -57,7 +57,8 @@ fn bill_block(group: Group, block: &mut Block, bill: &Terms<'_>) -> (Vec<Payment
             let before = terms(block, at);
             payments.push(pay(group, block, at, bill));
             let after = terms(block, at);
-            if after != before {
+            // Seats of companies drift between two bills; the record follows with the bill.
+            if after != before || group.is_enterprise() {
                 changes.push(after);
             }
         }

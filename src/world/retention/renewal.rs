@@ -7,6 +7,7 @@ use crate::world::day::Morning;
 use crate::world::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
 use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
 use crate::world::market::reputation::{ReputationBook, cancel_damage};
+use crate::world::market::social::crowd::GaveUp;
 use crate::world::params::{DriftCounted, InvoluntaryChurn, Params, ServicePenalty};
 use crate::world::product::ads::AdLoad;
 use crate::world::product::quality::{
@@ -67,6 +68,8 @@ pub struct Renewals {
     pub upgrades: u32,
     /// Other switches.
     pub downgrades: u32,
+    /// Those who found no acceptable plan.
+    pub gave_up: Vec<GaveUp>,
 }
 
 /// What the decisions of a day share.
@@ -90,9 +93,8 @@ pub struct Judgement<'a> {
 }
 
 struct Departure {
-    n: u32,
     ending: SubscriptionEnded,
-    satisfaction: f64,
+    person: GaveUp,
 }
 
 #[derive(Default)]
@@ -136,7 +138,8 @@ pub fn decide(
         for departure in outcome.departures {
             renewals.cancellations += 1;
             if departure.ending.cause != EndCause::Involuntary {
-                harm(reputation, &departure, judgement);
+                harm(reputation, &departure.person, judgement);
+                renewals.gave_up.push(departure.person);
             }
             facts.endings.push(departure.ending);
         }
@@ -144,12 +147,12 @@ pub fn decide(
     renewals
 }
 
-fn harm(reputation: &mut ReputationBook, departure: &Departure, judgement: &Judgement<'_>) {
-    let (day, group) = (judgement.morning.day, departure.ending.group);
-    let keys = [u64::from(day), group.index() as u64, u64::from(departure.n), 0];
+fn harm(reputation: &mut ReputationBook, person: &GaveUp, judgement: &Judgement<'_>) {
+    let (day, group) = (judgement.morning.day, person.group);
+    let keys = [u64::from(day), group.index() as u64, u64::from(person.n), 0];
     let u = judgement.streams.open(Part::ReputationEvent, keys).uniform();
     let subscribers = judgement.morning.subscribers[group];
-    let damage = cancel_damage(departure.satisfaction, subscribers, u, &judgement.params.reputation);
+    let damage = cancel_damage(person.satisfaction, subscribers, u, &judgement.params.reputation);
     reputation.move_by(group, -damage, &judgement.params.reputation);
 }
 
@@ -206,7 +209,16 @@ fn departure(group: Group, block: &Block, at: usize, cause: EndCause, day: u32) 
         status: SubscriptionStatus::Cancelled,
         cause,
     };
-    Departure { n: block.n[at], ending, satisfaction: block.satisfaction[at] }
+    let person = GaveUp {
+        customer: block.customer[at],
+        group,
+        n: block.n[at],
+        satisfaction: block.satisfaction[at],
+        days_subscribed: day - block.start_day[at],
+        plan: block.plan[at],
+        price: block.effective_price[at],
+    };
+    Departure { ending, person }
 }
 
 fn chosen_plan(group: Group, block: &Block, at: usize, judgement: &Judgement<'_>) -> Option<Plan> {
@@ -417,7 +429,8 @@ mod tests {
             judgement.params = &params;
             decide(&mut customers, &mut reputation, &judgement, &mut facts)
         });
-        assert_eq!(renewals, Renewals { cancellations: 1, upgrades: 1, downgrades: 0 });
+        assert_eq!((renewals.cancellations, renewals.upgrades, renewals.downgrades), (1, 1, 0));
+        assert_eq!((renewals.gave_up.len(), renewals.gave_up[0].n), (1, 1));
         assert_eq!(facts.endings[0].cause, EndCause::Quality);
         assert!(reputation.of(group()) < 0.5);
         let block = &customers.groups[group()].blocks[0];

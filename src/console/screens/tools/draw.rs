@@ -149,6 +149,7 @@ fn when(spec: &Spec) -> &'static str {
         crate::tools::When::NextBilling => "acts on each next bill",
         crate::tools::When::Now => "acts at once",
         crate::tools::When::AtCompletion => "acts when it is done",
+        crate::tools::When::CustomerReply => "acts when the customer answers",
         crate::tools::When::Never => "reads",
     }
 }

@@ -114,6 +114,10 @@ impl Form {
                 }
                 _ => vec![Effect::Call { tool, arguments }],
             },
+            Kind::OneShot => {
+                let text = format!("{tool} {arguments} cannot be taken back.");
+                vec![Effect::ConfirmCall { tool, arguments, text }]
+            }
             _ => vec![Effect::Call { tool, arguments }],
         }
     }

@@ -1,19 +1,34 @@
-//! What reactions to the company's posts do to leads (chapter 30 §6.8).
+//! The player's posts, and what reactions to them do to leads (chapter 30 §6.1, §6.8).
 
 use crate::world::canonical::canonical;
 use crate::world::identifiers::{ByGroup, Group};
 use crate::world::params::CeoPosts;
 
-/// A post of the company, as far as leads depend on it.
+/// A post of the player.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnPost {
     /// Day of the post.
     pub day: u32,
-    /// Reactions in -1..=1 by group, once it was judged.
+    /// Its text: at most 280 code points, not blank.
+    pub content: String,
+    /// Number of the post it answers.
+    pub reply_to: Option<u32>,
+    /// Reactions in -1..=1 by group, once it was judged; 0 for groups that were not known.
     pub effects: Option<ByGroup<f64>>,
+    /// How often it was seen.
+    pub views: u64,
+    /// Numbers of the comments it got.
+    pub comments: Vec<u32>,
 }
 
-canonical! { OwnPost { day, effects } }
+canonical! { OwnPost { day, content, reply_to, effects, views, comments } }
+
+impl OwnPost {
+    /// A post that nobody has read yet.
+    pub fn new(day: u32, content: impl Into<String>, reply_to: Option<u32>) -> OwnPost {
+        OwnPost { day, content: content.into(), reply_to, effects: None, views: 0, comments: Vec::new() }
+    }
+}
 
 /// What one reaction adds to the factor on leads at an age in days; reactions below 0.6 add nothing.
 pub fn post_effect(effect: f64, age_days: u32, law: &CeoPosts) -> f64 {
@@ -45,7 +60,10 @@ mod tests {
         let group = Group::at(0).expect("S1");
         let posts: Vec<OwnPost> = posts
             .iter()
-            .map(|&(day, effect)| OwnPost { day, effects: Some(ByGroup::from_fn(|_| effect)) })
+            .map(|&(day, effect)| OwnPost {
+                effects: Some(ByGroup::from_fn(|_| effect)),
+                ..OwnPost::new(day, "a post", None)
+            })
             .collect();
         social_multiplier(group, day, &posts, &Params::shipped().ceo_posts)
     }

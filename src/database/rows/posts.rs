@@ -1,0 +1,39 @@
+//! Rows of what is written in public (chapter 60 §2.7, §2.8).
+
+use rusqlite::{Transaction, params};
+
+use crate::world::events::{Facts, Matter};
+
+/// Posts of others; `words` holds their texts.
+pub(super) fn posts(transaction: &Transaction<'_>, facts: &Facts, words: &[String]) -> rusqlite::Result<()> {
+    let mut insert =
+        transaction.prepare_cached("INSERT OR REPLACE INTO social_media_posts VALUES (?1, ?2, ?3, ?4)")?;
+    for (post, words) in facts.posts.iter().zip(words) {
+        let answered = match post.matter {
+            Matter::Comment { own_post, .. } => Some(own_post),
+            _ => None,
+        };
+        insert.execute(params![post.post, facts.day, words, answered])?;
+    }
+    Ok(())
+}
+
+/// Posts of the player, when they are made and when they were read.
+pub(super) fn own_posts(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    let mut insert = transaction.prepare_cached(
+        "INSERT OR REPLACE INTO agent_social_media_posts (agent_post_id, day, content, reply_to_post_id) \
+         VALUES (?1, ?2, ?3, ?4)",
+    )?;
+    for made in &facts.own_posts {
+        insert.execute(params![made.post, facts.day, made.content, made.reply_to])?;
+    }
+    let mut update = transaction.prepare_cached(
+        "UPDATE agent_social_media_posts SET views = ?2, comment_post_ids = ?3 WHERE agent_post_id = ?1",
+    )?;
+    for seen in &facts.own_posts_seen {
+        let comments: Vec<String> = seen.comments.iter().map(u32::to_string).collect();
+        let comments = format!("[{}]", comments.join(", "));
+        update.execute(params![seen.post, seen.views as i64, comments])?;
+    }
+    Ok(())
+}

@@ -1,0 +1,201 @@
+//! How a policy answers companies: the section `[enterprise]` (chapter 70 §3).
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::session::WaitingThread;
+use crate::world::events::ThreadKind;
+use crate::world::identifiers::Plan;
+
+/// Answers every waiting thread on every decision day.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EnterpriseRule {
+    /// What is offered, one to three, in this order.
+    pub offerings: Vec<OfferingRule>,
+    /// How prices change with the turns of the policy in a thread.
+    #[serde(default)]
+    pub factor: PriceFactor,
+    /// Turns after which a thread is rejected; none: never.
+    pub give_up_after: Option<u32>,
+    /// Kinds of threads that are answered.
+    #[serde(default)]
+    pub types: ThreadTypes,
+}
+
+/// A plan at its price before the factor.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OfferingRule {
+    /// Plan.
+    pub plan: Plan,
+    /// Dollars a month and seat.
+    pub price: f64,
+}
+
+/// Factor on prices: max(floor, start + step times own turns).
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PriceFactor {
+    /// Factor of the first offer.
+    pub start: f64,
+    /// Added with every further one.
+    pub step: f64,
+    /// Least factor.
+    pub floor: f64,
+}
+
+impl Default for PriceFactor {
+    fn default() -> Self {
+        PriceFactor { start: 1.0, step: 0.0, floor: 1.0 }
+    }
+}
+
+impl PriceFactor {
+    /// The factor after this many own turns.
+    pub fn after(&self, own_turns: u32) -> f64 {
+        (self.start + self.step * f64::from(own_turns)).max(self.floor)
+    }
+}
+
+/// Kinds of threads: `"all"`, or a list of them.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(untagged, expecting = "types must be \"all\" or a list of thread types")]
+pub enum ThreadTypes {
+    /// All kinds.
+    #[default]
+    #[serde(skip)]
+    All,
+    /// The word for all kinds, or another that is wrong.
+    Word(String),
+    /// These kinds.
+    List(Vec<String>),
+}
+
+impl ThreadTypes {
+    fn hold(&self, kind: &str) -> bool {
+        match self {
+            ThreadTypes::All | ThreadTypes::Word(_) => true,
+            ThreadTypes::List(list) => list.iter().any(|own| own == kind),
+        }
+    }
+}
+
+impl EnterpriseRule {
+    /// The rule, if it can be followed.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub(super) fn checked(self) -> Result<EnterpriseRule, String> {
+        if !(1..=3).contains(&self.offerings.len()) {
+            return Err(format!("offerings must be 1 to 3, not {}", self.offerings.len()));
+        }
+        let bad = |price: &f64| !price.is_finite() || *price < 0.0;
+        if let Some(price) = self.offerings.iter().map(|offering| offering.price).find(bad) {
+            return Err(format!("the price {price} of an offering is no price of at least 0"));
+        }
+        let wrong = |word: &&String| ThreadKind::parse(word).is_none();
+        let known = ThreadKind::ALL.map(ThreadKind::id).join(", ");
+        match &self.types {
+            ThreadTypes::Word(word) if word != "all" => {
+                Err(format!("types must be \"all\" or a list of {known}, not {word}"))
+            }
+            ThreadTypes::List(list) if list.iter().any(|word| wrong(&word)) => {
+                Err(format!("types must be a list of {known}"))
+            }
+            _ => Ok(self),
+        }
+    }
+
+    /// The calls that answer these threads: all offers, then all rejections; none where there is nothing to say.
+    pub fn calls(&self, waiting: &[WaitingThread]) -> Vec<(&'static str, Value)> {
+        let mut threads: Vec<&WaitingThread> =
+            waiting.iter().filter(|thread| self.types.hold(thread.kind)).collect();
+        threads.sort_by_key(|thread| thread.thread);
+        let given_up =
+            |thread: &&&WaitingThread| self.give_up_after.is_some_and(|turns| thread.own_turns >= turns);
+        let offers: Vec<Value> =
+            threads.iter().filter(|thread| !given_up(thread)).map(|thread| self.offer(thread)).collect();
+        let rejections: Vec<Value> =
+            threads.iter().filter(given_up).map(|thread| json!({ "customer_id": thread.customer })).collect();
+        let mut calls = Vec::new();
+        for (tool, deals) in [("send_enterprise_deal", offers), ("reject_enterprise_deal", rejections)] {
+            if !deals.is_empty() {
+                calls.push((tool, json!({ "deals": deals })));
+            }
+        }
+        calls
+    }
+
+    fn offer(&self, thread: &WaitingThread) -> Value {
+        let factor = self.factor.after(thread.own_turns);
+        let cents = |price: f64| (price * factor * 100.0).round() / 100.0;
+        let offerings: Vec<Value> =
+            self.offerings.iter().map(|own| json!([own.plan.id(), cents(own.price)])).collect();
+        json!([thread.customer, offerings])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rule(text: &str) -> Result<EnterpriseRule, String> {
+        toml::from_str::<EnterpriseRule>(text)
+            .map_err(|error| error.message().to_owned())
+            .and_then(EnterpriseRule::checked)
+    }
+
+    fn thread(number: u32, kind: &'static str, own_turns: u32) -> WaitingThread {
+        WaitingThread {
+            thread: number,
+            customer: 100 + number,
+            group: "E1",
+            seats: 60,
+            kind,
+            turn: 2 * own_turns,
+            own_turns,
+            asked: None,
+            days_left: 3,
+        }
+    }
+
+    const P10: &str = "offerings = [{ plan = \"C\", price = 48 }, { plan = \"A\", price = 12.0 }]\n\
+                       factor = { start = 1.0, step = -0.08, floor = 0.6 }\ngive_up_after = 4\n";
+
+    #[test]
+    fn offers_fall_with_the_turns_and_threads_are_answered_in_their_order() {
+        let rule = rule(P10).expect("a rule");
+        let waiting = [
+            thread(9, "churn_prevention", 1),
+            thread(3, "new_lead", 0),
+            thread(5, "new_lead", 4),
+            thread(7, "plan_change", 3),
+        ];
+        let calls = rule.calls(&waiting);
+        let expected = json!({"deals": [
+            [103, [["C", 48.0], ["A", 12.0]]],
+            [107, [["C", 36.48], ["A", 9.12]]],
+            [109, [["C", 44.16], ["A", 11.04]]],
+        ]});
+        assert_eq!(calls[0], ("send_enterprise_deal", expected));
+        assert_eq!(calls[1], ("reject_enterprise_deal", json!({"deals": [{"customer_id": 105}]})));
+        assert!(rule.calls(&[]).is_empty());
+        assert!((rule.factor.after(9) - 0.6).abs() < 1e-12);
+    }
+
+    #[test]
+    fn kinds_can_be_chosen() {
+        let own = rule(&format!("{P10}types = [\"new_lead\"]\n")).expect("a rule");
+        assert!(own.calls(&[thread(1, "plan_change", 0)]).is_empty());
+        assert_eq!(own.calls(&[thread(1, "new_lead", 0)]).len(), 1);
+        assert!(rule(&format!("{P10}types = \"all\"\n")).is_ok());
+        for wrong in ["types = \"some\"\n", "types = [\"renewed\"]\n", "types = 3\n"] {
+            let problem = rule(&format!("{P10}{wrong}")).expect_err(wrong);
+            assert!(problem.contains("types"), "{problem}");
+        }
+        let plain = rule("offerings = [{ plan = \"B\", price = 30 }]\n").expect("a rule");
+        assert_eq!((plain.factor.after(7), plain.give_up_after), (1.0, None));
+        assert!(rule("offerings = [{ plan = \"B\", price = -1 }]\n").is_err());
+    }
+}

@@ -1,0 +1,121 @@
+//! The public conversation as the session keeps it: every post in words, and how the player's posts were taken.
+//!
+//! Words belong to no state: they are made anew, the same, whenever a run is simulated again.
+
+use super::Session;
+use crate::tools::PublicPost;
+use crate::voice;
+use crate::voice::judge::{self, Circumstances, Judgement, Lexicon, Original, Submission};
+use crate::voice::posts::Writer;
+use crate::voice::posts::names::profile_name;
+use crate::world::events::{Facts, Matter, Notice, Post};
+use crate::world::identifiers::Group;
+use crate::world::market::social::reach::{self, Verdict};
+use crate::world::market::social::sentiment::Sentiment;
+use crate::world::params::PostJudge;
+
+/// Everything that was written so far, and why the player's posts were taken as they were.
+#[derive(Default)]
+pub(super) struct Feed {
+    writer: Writer,
+    /// Posts of others as the player sees them, in the order of their numbers.
+    pub posts: Vec<PublicPost>,
+    /// Whether each of them complains.
+    complains: Vec<bool>,
+    /// Judgements of the player's posts, by their position; empty until they were judged.
+    pub judgements: Vec<Vec<Judgement>>,
+}
+
+impl Feed {
+    fn judgement(&self, own_post: u32, group: Group) -> Option<&Judgement> {
+        let of_post = self.judgements.get(own_post as usize - 1)?;
+        of_post.iter().find(|judgement| judgement.group == group)
+    }
+
+    /// The post with this number, as one that is answered.
+    fn original(&self, post: u32) -> Option<Original<'_>> {
+        let at = (post as usize).checked_sub(1)?;
+        let own = self.posts.get(at)?;
+        Some(Original { content: &own.content, negative: self.complains[at], group: own.written_by })
+    }
+}
+
+impl Session {
+    /// Lets the readers judge what the player posted before today (chapter 30 §6.2).
+    pub(super) fn judge_own_posts(&mut self) {
+        if self.params.fidelity.post_judge == PostJudge::None {
+            return;
+        }
+        let own = &self.world.market.social.own;
+        if own.iter().all(|post| post.effects.is_some()) {
+            return;
+        }
+        let lexicon = Lexicon::shipped();
+        let circumstances = Circumstances::of(&self.world, &self.params, lexicon);
+        let known: Vec<Group> = Group::all().filter(|group| self.world.market.is_known(*group)).collect();
+        let mut verdicts = Vec::new();
+        self.feed.judgements.resize(own.len(), Vec::new());
+        for (at, post) in own.iter().enumerate().filter(|(_, post)| post.effects.is_none()) {
+            let submission = Submission {
+                content: &post.content,
+                day: post.day,
+                original: post.reply_to.and_then(|post| self.feed.original(post)),
+                earlier: own[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
+            };
+            let judgements = judge::judge(&submission, known.iter().copied(), &circumstances, lexicon);
+            let effects = judgements.iter().map(|own| (own.group, own.effect)).collect();
+            verdicts.push(Verdict { post: at as u32 + 1, effects });
+            self.feed.judgements[at] = judgements;
+        }
+        reach::receive(&mut self.world, &verdicts, &self.params, &self.streams, &mut self.facts);
+    }
+
+    /// Puts today's posts into words and keeps them.
+    pub(super) fn word_posts(&mut self) {
+        for post in &self.facts.posts {
+            let judgement = match post.matter {
+                Matter::Comment { own_post, group, .. } => self.feed.judgement(own_post, group).cloned(),
+                _ => None,
+            };
+            let content = self.feed.writer.write(post, judgement.as_ref(), &self.params, &self.streams);
+            let public = self.public_post(post, content);
+            self.feed.complains.push(post.sentiment == Sentiment::Negative);
+            self.feed.posts.push(public);
+        }
+    }
+
+    fn public_post(&self, post: &Post, content: String) -> PublicPost {
+        let (own_post, source_group) = match post.matter {
+            Matter::Comment { own_post, group, .. } => (Some(own_post), Some(group)),
+            _ => (None, None),
+        };
+        PublicPost {
+            post: post.post,
+            day: self.facts.day,
+            content,
+            own_post,
+            source_group,
+            written_by: post.author.map(|author| author.group),
+            profile: post.author.and_then(|author| profile_name(&author, &self.streams)),
+        }
+    }
+
+    /// Text of each post of these facts.
+    pub(super) fn words_of_posts(&self, facts: &Facts) -> Vec<String> {
+        let first = self.feed.posts.len().saturating_sub(facts.posts.len());
+        self.feed.posts[first..].iter().map(|post| post.content.clone()).collect()
+    }
+
+    /// Text of a notice.
+    pub(super) fn notice_text(&self, notice: &Notice) -> String {
+        let Notice::OwnPostSeen(reaction) = notice else { return voice::notice(notice) };
+        let own = self.world.market.social.own.get(reaction.post as usize - 1);
+        let content = own.map_or("", |post| post.content.as_str());
+        voice::notices::reaction_to(content, reaction, &self.params.ceo_posts)
+    }
+
+    /// Every post of others so far, in the order of their numbers.
+    pub fn posts(&self) -> &[PublicPost] {
+        &self.feed.posts
+    }
+}

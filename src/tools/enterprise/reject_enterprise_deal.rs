@@ -1,0 +1,91 @@
+use serde_json::Value;
+
+use super::super::arguments::Arguments;
+use super::super::{Argument, ArgumentKind, Kind, Module, Refusal, Spec, Tool, View, When};
+use super::reading::{Unreadable, customer, elements, malformed};
+use super::{Failure, Fate, RESULTS, results, unless_all_failed};
+use crate::world::effect::{Deed, Effect};
+
+/// Ends talks with companies.
+pub struct RejectEnterpriseDeal;
+
+static SPEC: Spec = Spec {
+    name: "reject_enterprise_deal",
+    module: Module::Enterprise,
+    kind: Kind::OneShot,
+    summary: "End open threads with companies without a deal",
+    arguments: &[Argument {
+        name: "deals",
+        alias: None,
+        kind: ArgumentKind::Structure("list of customer numbers, [customer_id] or {customer_id}"),
+        required: false,
+        unit: "",
+        doc: "the companies whose open threads are ended",
+    }],
+    own_unknown: false,
+    whole: Some("deals"),
+    when: When::Now,
+    effect: "A new lead is lost for good. The thread of a subscriber only closes: it stays on its terms, and may open \
+             another thread from the next day on.",
+    cost: "nothing",
+    writes: &["enterprise_turns", "subscriptions"],
+    refusals: &["deals_missing", "deal_malformed", "customer_missing", "no_active_thread"],
+    returns: RESULTS,
+    example: r#"{"deals": [{"customer_id": 207}]}"#,
+};
+
+impl Tool for RejectEnterpriseDeal {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+        let (fates, threads) = read(view, arguments)?;
+        unless_all_failed(&fates)?;
+        Ok(Effect::RejectDeals(threads))
+    }
+
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+        read(view, arguments).map_or(Value::Null, |(fates, _)| results(&fates))
+    }
+}
+
+/// What becomes of each element, and the threads that are ended.
+fn read(view: &View<'_>, arguments: &Arguments) -> Result<(Vec<Fate>, Vec<u32>), Refusal> {
+    let (mut fates, mut threads) = (Vec::new(), Vec::new());
+    for (at, element) in elements(arguments.get("deals"), "[{\"customer_id\": 207}]")?.iter().enumerate() {
+        let path = format!("deals.{at}");
+        let given = match named(element, &path) {
+            Err(Unreadable::Call(refusal)) => return Err(refusal),
+            Err(Unreadable::Element(failure)) => {
+                fates.push(Fate::Failed(failure));
+                continue;
+            }
+            Ok(given) => given,
+        };
+        let number = u32::try_from(given).ok();
+        let thread = number.and_then(|customer| view.world().enterprise.rejectable(customer, &threads));
+        fates.push(match (number, thread) {
+            (Some(customer), Some(thread)) => {
+                threads.push(thread.number);
+                Fate::Done(customer)
+            }
+            _ => {
+                let message = format!("customer {given} has no open thread that could be ended");
+                let refusal = Refusal::at(format!("{path}.customer_id"), "no_active_thread", message);
+                Fate::Failed(Failure::of(given, "no active thread", refusal))
+            }
+        });
+    }
+    Ok((fates, threads))
+}
+
+/// The customer that an element names.
+fn named(element: &Value, path: &str) -> Result<i64, Unreadable> {
+    match element {
+        Value::Object(map) => customer(map.get("customer_id"), path),
+        Value::Array(single) if single.len() == 1 => customer(single.first(), path),
+        Value::Number(_) | Value::String(_) => customer(Some(element), path),
+        _ => Err(malformed(path, "it is written {\"customer_id\": 207}, [207] or 207")),
+    }
+}

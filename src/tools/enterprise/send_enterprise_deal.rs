@@ -1,0 +1,144 @@
+use serde_json::Value;
+
+use super::super::arguments::Arguments;
+use super::super::{Argument, ArgumentKind, Kind, Module, Refusal, Spec, Tool, View, When};
+use super::reading::{Unreadable, customer, elements, malformed, offerings};
+use super::{Failure, Fate, RESULTS, results, unless_all_failed};
+use crate::world::customers::FIRST_CUSTOMER;
+use crate::world::effect::{Deed, Effect};
+use crate::world::enterprise::letters::Proposal;
+
+/// Offers companies plans at prices.
+pub struct SendEnterpriseDeal;
+
+const EXAMPLE: &str = r#"[[207, [["B", 31.5], ["C", 54]]]]"#;
+
+static SPEC: Spec = Spec {
+    name: "send_enterprise_deal",
+    module: Module::Enterprise,
+    kind: Kind::OneShot,
+    summary: "Offer companies plans at prices per seat; answers a thread that is open, opens one otherwise",
+    arguments: &[Argument {
+        name: "deals",
+        alias: None,
+        kind: ArgumentKind::Structure(
+            "list of [customer_id, [[plan, price_per_seat], …]] or {customer_id, offerings: [{plan, price_per_seat}, …]}",
+        ),
+        required: false,
+        unit: "$/seat and month",
+        doc: "who is offered what: one to three offerings per company, of which it takes at most one; contracts last \
+              a month and go on at the agreed price",
+    }],
+    own_unknown: false,
+    whole: Some("deals"),
+    when: When::CustomerReply,
+    effect: "The company answers at least a day later, by its own pace: it takes its best offering, names a price of \
+             its own, or falls silent for good once its patience with turns is used up or no price would do. Every \
+             offer uses up a turn, and only the newest one is answered. A message of a customer that waits for more \
+             than a day before it is answered costs goodwill; after seven days without an answer it is lost. A \
+             subscriber without an open thread is offered new terms: silence then loses it.",
+    cost: "nothing",
+    writes: &["enterprise_turns"],
+    refusals: &[
+        "deals_missing",
+        "deal_malformed",
+        "customer_missing",
+        "offerings_missing",
+        "offering_short",
+        "offering_no_price",
+        "offering_malformed",
+        "customer_not_found",
+        "not_enterprise",
+        "no_subscription",
+    ],
+    returns: RESULTS,
+    example: r#"{"deals": [[207, [["B", 31.5], ["C", 54]]], [9, [["A", 8]]]]}"#,
+};
+
+impl Tool for SendEnterpriseDeal {
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+        let (fates, proposals) = read(view, arguments)?;
+        unless_all_failed(&fates)?;
+        Ok(Effect::SendDeals(proposals))
+    }
+
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+        read(view, arguments).map_or(Value::Null, |(fates, _)| results(&fates))
+    }
+}
+
+/// What becomes of each deal, and those that are sent.
+fn read(view: &View<'_>, arguments: &Arguments) -> Result<(Vec<Fate>, Vec<Proposal>), Refusal> {
+    let (mut fates, mut proposals) = (Vec::new(), Vec::new());
+    for (at, element) in elements(arguments.get("deals"), EXAMPLE)?.iter().enumerate() {
+        let path = format!("deals.{at}");
+        let fate = match deal(element, &path, view).map(|proposal| reachable(proposal, &path, view)) {
+            Err(Unreadable::Call(refusal)) => return Err(refusal),
+            Err(Unreadable::Element(failure)) | Ok(Err(failure)) => Fate::Failed(failure),
+            Ok(Ok(proposal)) => {
+                let customer = proposal.customer;
+                proposals.push(proposal);
+                Fate::Done(customer)
+            }
+        };
+        fates.push(fate);
+    }
+    Ok((fates, proposals))
+}
+
+/// Customer and offerings of an element.
+fn deal(
+    element: &Value,
+    path: &str,
+    view: &View<'_>,
+) -> Result<(i64, Vec<crate::world::events::Offering>), Unreadable> {
+    let (who, what) = match element {
+        Value::Array(pair) if pair.len() >= 2 => (pair.first(), pair.get(1)),
+        Value::Object(map) => (map.get("customer_id"), map.get("offerings")),
+        _ => return Err(malformed(path, "it is written [customer_id, [[plan, price_per_seat], …]]")),
+    };
+    let most = view.params().enterprise.enterprise_max_offerings_per_turn as usize;
+    let customer = customer(who, path)?;
+    Ok((customer, offerings(what, customer, most, path)?))
+}
+
+/// The proposal, if the customer is a company in an open thread or with a subscription.
+fn reachable(
+    (given, offerings): (i64, Vec<crate::world::events::Offering>),
+    path: &str,
+    view: &View<'_>,
+) -> Result<Proposal, Failure> {
+    let world = view.world();
+    let failed = |code: &'static str, error: &str, message: String| {
+        Failure::of(given, error, Refusal::at(format!("{path}.customer_id"), code, message))
+    };
+    let number = u32::try_from(given).ok();
+    if let Some(customer) = number.filter(|customer| world.enterprise.open_thread_of(*customer).is_some()) {
+        return Ok(Proposal { customer, offerings });
+    }
+    // The observer of the market stands in the table of customers too.
+    let observer = number.is_some_and(|customer| customer > 0 && customer < FIRST_CUSTOMER);
+    match number.and_then(|customer| world.customers.find(customer).map(|(group, _)| (customer, group))) {
+        None if !observer => {
+            let message = format!("there is no customer {given}; enterprise_turns and customers list them");
+            Err(failed("customer_not_found", "not found", message))
+        }
+        Some((customer, group)) if group.is_enterprise() => {
+            if world.enterprise.company(customer).is_some_and(|company| company.is_subscriber()) {
+                return Ok(Proposal { customer, offerings });
+            }
+            let message = format!(
+                "customer {given} has neither an open thread nor a subscription: it was lost or never asked"
+            );
+            Err(failed("no_subscription", "no subscription", message))
+        }
+        _ => {
+            let message = format!("customer {given} is an individual; offers go to companies only");
+            Err(failed("not_enterprise", "not enterprise", message))
+        }
+    }
+}

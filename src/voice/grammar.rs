@@ -1,0 +1,307 @@
+//! A small grammar that writes sentences: rules with alternatives, filled from a context (chapter 30 §14).
+//!
+//! A grammar is a TOML file. `given` lists the values every context has, `maybe` those that may be missing, `tags`
+//! the conditions that may hold; `[rules]` holds the rules, nested tables making dotted names. In an alternative
+//!
+//! | writing | means |
+//! |---|---|
+//! | `(new, !company) text` | only while the tag `new` holds and `company` does not |
+//! | `{praise}` | the rule or the value of that name |
+//! | `{work:group}` | the rule `work.S1` if the value `group` is `S1` and there is such a rule, else `work` |
+//! | `[one\|two\|]` | one of these, here possibly nothing; `[one]` is short for `[one\|]` |
+//! | `a/an` | the article that fits the next word |
+//!
+//! An alternative that names a missing value is passed over. Reading a grammar checks that every symbol is known,
+//! that no rule contains itself, and that every rule can be filled whatever is missing.
+
+mod count;
+mod parse;
+mod polish;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+pub use polish::polish;
+
+/// What a text is about: values for its slots and the conditions that hold.
+#[derive(Debug, Clone, Default)]
+pub struct Context {
+    values: BTreeMap<&'static str, String>,
+    tags: BTreeSet<&'static str>,
+}
+
+impl Context {
+    /// Adds a value.
+    pub fn with(mut self, name: &'static str, value: impl Into<String>) -> Context {
+        self.values.insert(name, value.into());
+        self
+    }
+
+    /// Adds a value if there is one.
+    pub fn maybe(self, name: &'static str, value: Option<impl Into<String>>) -> Context {
+        match value {
+            Some(value) => self.with(name, value),
+            None => self,
+        }
+    }
+
+    /// Adds a condition if it holds.
+    pub fn tag(mut self, name: &'static str, holds: bool) -> Context {
+        if holds {
+            self.tags.insert(name);
+        }
+        self
+    }
+
+    /// The value of this name.
+    pub fn value(&self, name: &str) -> Option<&str> {
+        self.values.get(name).map(String::as_str)
+    }
+
+    /// Names of its values and conditions.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.values.keys().chain(&self.tags).copied()
+    }
+
+    /// Whether a condition holds.
+    pub fn holds(&self, tag: &str) -> bool {
+        self.tags.contains(tag)
+    }
+}
+
+/// Rules that were read and checked.
+#[derive(Debug, Clone)]
+pub struct Grammar {
+    rules: BTreeMap<String, Vec<Alternative>>,
+    /// Names a context may use, for a check of the caller.
+    known: BTreeSet<String>,
+}
+
+/// Why a grammar cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GrammarError(String);
+
+impl fmt::Display for GrammarError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for GrammarError {}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Alternative {
+    /// Tags and whether they have to hold or not.
+    needs: Vec<(String, bool)>,
+    parts: Vec<Part>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Part {
+    Text(String),
+    /// A rule.
+    Rule(String),
+    /// A value of the context.
+    Value(String),
+    /// A rule whose last name is a value of the context.
+    Split {
+        rule: String,
+        by: String,
+    },
+    Choice(Vec<Vec<Part>>),
+}
+
+/// Chooses among alternatives: gets their number, which is never 0, and returns an index below it.
+pub type Chooser<'a> = &'a mut dyn FnMut(usize) -> usize;
+
+impl Grammar {
+    /// Reads a grammar.
+    ///
+    /// # Errors
+    /// It is no TOML of this form, a symbol is unknown, a rule contains itself or cannot always be filled.
+    pub fn read(source: &str) -> Result<Grammar, GrammarError> {
+        parse::read(&[source])
+    }
+
+    /// Reads a grammar that stands in several files, which share their names and rules.
+    ///
+    /// # Errors
+    /// As [`Grammar::read`], or two files define one rule.
+    pub fn read_all(sources: &[&str]) -> Result<Grammar, GrammarError> {
+        parse::read(sources)
+    }
+
+    /// Whether there is a rule of this name.
+    pub fn has(&self, rule: &str) -> bool {
+        self.rules.contains_key(rule)
+    }
+
+    /// Names of all rules.
+    pub fn rules(&self) -> impl Iterator<Item = &str> {
+        self.rules.keys().map(String::as_str)
+    }
+
+    /// Whether a value or tag of this name is declared.
+    pub fn knows(&self, name: &str) -> bool {
+        self.known.contains(name)
+    }
+
+    /// Number of different ways to fill a rule in a context.
+    pub fn phrasings(&self, rule: &str, context: &Context) -> u64 {
+        count::phrasings(self, rule, context)
+    }
+
+    /// Fills a rule. Within one text an alternative comes a second time only when all others are used up. An
+    /// unknown rule gives an empty text; reading the grammar made sure that no rule names one.
+    pub fn write(&self, rule: &str, context: &Context, choose: Chooser<'_>) -> String {
+        let mut writer =
+            Writer { grammar: self, context, choose, used: BTreeSet::new(), text: String::new() };
+        writer.rule(rule);
+        polish(&writer.text)
+    }
+
+    fn split<'a>(&self, rule: &'a str, by: &str, context: &Context) -> std::borrow::Cow<'a, str> {
+        let special = context.value(by).map(|value| format!("{rule}.{value}"));
+        match special.filter(|name| self.has(name)) {
+            Some(name) => name.into(),
+            None => rule.into(),
+        }
+    }
+}
+
+impl Alternative {
+    fn fits(&self, context: &Context) -> bool {
+        self.needs.iter().all(|(tag, wanted)| context.holds(tag) == *wanted)
+            && values_given(&self.parts, context)
+    }
+}
+
+/// Whether all values that are named outside of choices are there.
+fn values_given(parts: &[Part], context: &Context) -> bool {
+    parts.iter().all(|part| match part {
+        Part::Value(name) => context.value(name).is_some(),
+        _ => true,
+    })
+}
+
+struct Writer<'a> {
+    grammar: &'a Grammar,
+    context: &'a Context,
+    choose: Chooser<'a>,
+    used: BTreeSet<(&'a str, usize)>,
+    text: String,
+}
+
+impl<'a> Writer<'a> {
+    fn rule(&mut self, name: &str) {
+        let Some((name, alternatives)) = self.grammar.rules.get_key_value(name) else { return };
+        let fitting =
+            || alternatives.iter().enumerate().filter(|(_, alternative)| alternative.fits(self.context));
+        let mut open: Vec<usize> =
+            fitting().map(|(at, _)| at).filter(|at| !self.used.contains(&(name.as_str(), *at))).collect();
+        if open.is_empty() {
+            open = fitting().map(|(at, _)| at).collect();
+        }
+        let Some(at) = self.pick(&open) else { return };
+        self.used.insert((name, at));
+        self.parts(&alternatives[at].parts);
+    }
+
+    fn pick(&mut self, open: &[usize]) -> Option<usize> {
+        (!open.is_empty()).then(|| open[(self.choose)(open.len()).min(open.len() - 1)])
+    }
+
+    fn parts(&mut self, parts: &[Part]) {
+        for part in parts {
+            match part {
+                Part::Text(text) => self.text.push_str(text),
+                Part::Rule(name) => self.rule(name),
+                Part::Value(name) => self.text.push_str(self.context.value(name).unwrap_or_default()),
+                Part::Split { rule, by } => {
+                    let name = self.grammar.split(rule, by, self.context);
+                    self.rule(&name);
+                }
+                Part::Choice(branches) => {
+                    let fits = |branch: &&Vec<Part>| values_given(branch, self.context);
+                    let open: Vec<&Vec<Part>> = branches.iter().filter(fits).collect();
+                    let indices: Vec<usize> = (0..open.len()).collect();
+                    if let Some(at) = self.pick(&indices) {
+                        self.parts(open[at]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SAMPLE: &str = r#"
+        given = ["name", "group"]
+        maybe = ["price"]
+        tags = ["new"]
+        [rules]
+        post = ["{greeting} {name} [likes|loves] it.", "(new) {name} is new here.", "{price} is too much."]
+        greeting = ["hello,", "well,"]
+        job = ["{name} does {work:group}."]
+        work = ["reports"]
+        pair = ["{greeting} {greeting}"]
+        [rules.works]
+        work = ["x"]
+        "#;
+
+    fn sample() -> Grammar {
+        Grammar::read(SAMPLE).expect("a grammar")
+    }
+
+    fn all(rule: &str, context: &Context) -> BTreeSet<String> {
+        let mut state = 1u64;
+        let mut choose = |count: usize| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % count
+        };
+        (0..300).map(|_| sample().write(rule, context, &mut choose)).collect()
+    }
+
+    fn ada() -> Context {
+        Context::default().with("name", "Ada").with("group", "S1")
+    }
+
+    #[test]
+    fn rules_are_filled_in_every_way_that_fits_and_counted() {
+        let plain = all("post", &ada());
+        assert_eq!(plain.len() as u64, sample().phrasings("post", &ada()));
+        assert!(plain.contains("Hello, Ada loves it.") && plain.len() == 4, "{plain:?}");
+        let rich = ada().with("price", "$9").tag("new", true);
+        let texts = all("post", &rich);
+        assert!(texts.contains("Ada is new here.") && texts.contains("$9 is too much."), "{texts:?}");
+        assert_eq!((texts.len() as u64, sample().phrasings("post", &rich)), (6, 6));
+    }
+
+    #[test]
+    fn a_special_rule_goes_before_the_common_one() {
+        let special = SAMPLE
+            .replace("[rules.works]", "[rules.work_of]")
+            .replace("work = [\"reports\"]", "work = [\"reports\"]\n\"work.S1\" = [\"sketches\"]");
+        let grammar = Grammar::read(&special).expect("a grammar");
+        let write = |group: &str| {
+            let context = Context::default().with("name", "Ada").with("group", group);
+            grammar.write("job", &context, &mut |_| 0)
+        };
+        assert_eq!((write("S1"), write("E1")), ("Ada does sketches.".into(), "Ada does reports.".into()));
+    }
+
+    #[test]
+    fn nothing_is_said_twice_in_one_text() {
+        assert_eq!(all("pair", &ada()).len(), 2);
+        assert!(all("pair", &ada()).contains("Hello, well,"));
+    }
+
+    #[test]
+    fn unknown_rules_are_silent() {
+        assert_eq!(sample().write("nowhere", &ada(), &mut |_| 0), "");
+        assert_eq!(sample().phrasings("nowhere", &ada()), 0);
+    }
+}

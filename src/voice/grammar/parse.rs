@@ -1,0 +1,260 @@
+//! Reading a grammar and checking that it can always be filled.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use toml::{Table, Value};
+
+use super::{Alternative, Grammar, GrammarError, Part};
+
+/// Names that the files declare.
+#[derive(Default)]
+struct Names {
+    given: BTreeSet<String>,
+    maybe: BTreeSet<String>,
+    tags: BTreeSet<String>,
+    rules: BTreeSet<String>,
+}
+
+pub(super) fn read(sources: &[&str]) -> Result<Grammar, GrammarError> {
+    let mut texts = BTreeMap::new();
+    let mut names = Names::default();
+    for source in sources {
+        let table: Table =
+            source.parse().map_err(|error: toml::de::Error| GrammarError(error.to_string()))?;
+        if let Some(Value::Table(rules)) = table.get("rules") {
+            flatten("", rules, &mut texts)?;
+        }
+        names.given.append(&mut list(&table, "given")?);
+        names.maybe.append(&mut list(&table, "maybe")?);
+        names.tags.append(&mut list(&table, "tags")?);
+    }
+    names.rules = texts.keys().cloned().collect();
+    let mut rules = BTreeMap::new();
+    for (name, texts) in &texts {
+        let alternatives: Result<Vec<Alternative>, GrammarError> =
+            texts.iter().map(|text| alternative(name, text, &names)).collect();
+        rules.insert(name.clone(), alternatives?);
+    }
+    check_total(&rules, &names)?;
+    let known = names.given.union(&names.maybe).chain(&names.tags).cloned().collect();
+    Ok(Grammar { rules, known })
+}
+
+fn list(table: &Table, key: &str) -> Result<BTreeSet<String>, GrammarError> {
+    let Some(value) = table.get(key) else { return Ok(BTreeSet::new()) };
+    let texts = value.as_array().and_then(|texts| {
+        texts.iter().map(|text| text.as_str().map(str::to_owned)).collect::<Option<BTreeSet<String>>>()
+    });
+    texts.ok_or_else(|| GrammarError(format!("{key} is no list of names")))
+}
+
+/// Nested tables become dotted names.
+fn flatten(
+    before: &str,
+    table: &Table,
+    rules: &mut BTreeMap<String, Vec<String>>,
+) -> Result<(), GrammarError> {
+    for (key, value) in table {
+        let name = if before.is_empty() { key.clone() } else { format!("{before}.{key}") };
+        match value {
+            Value::Table(inner) => flatten(&name, inner, rules)?,
+            Value::Array(texts) if !texts.is_empty() => {
+                let texts: Option<Vec<String>> =
+                    texts.iter().map(|text| text.as_str().map(str::to_owned)).collect();
+                let texts = texts.ok_or_else(|| GrammarError(format!("rule {name}: not only texts")))?;
+                if rules.insert(name.clone(), texts).is_some() {
+                    return Err(GrammarError(format!("rule {name} stands there twice")));
+                }
+            }
+            _ => return Err(GrammarError(format!("rule {name} is no list of texts"))),
+        }
+    }
+    Ok(())
+}
+
+fn alternative(rule: &str, text: &str, names: &Names) -> Result<Alternative, GrammarError> {
+    let wrong = |problem: String| GrammarError(format!("rule {rule}, \"{text}\": {problem}"));
+    let (needs, rest) = match text.strip_prefix('(').and_then(|rest| rest.split_once(") ")) {
+        Some((needs, rest)) => (conditions(needs, names).map_err(wrong)?, rest),
+        None => (Vec::new(), text),
+    };
+    let mut reader = Reader { rest, names };
+    let parts = reader.parts(false).map_err(wrong)?;
+    Ok(Alternative { needs, parts })
+}
+
+fn conditions(text: &str, names: &Names) -> Result<Vec<(String, bool)>, String> {
+    let one = |need: &str| {
+        let (tag, wanted) = match need.trim().strip_prefix('!') {
+            Some(tag) => (tag, false),
+            None => (need.trim(), true),
+        };
+        if names.tags.contains(tag) {
+            Ok((tag.to_owned(), wanted))
+        } else {
+            Err(format!("tag {tag} is not declared"))
+        }
+    };
+    text.split(',').map(one).collect()
+}
+
+struct Reader<'a> {
+    rest: &'a str,
+    names: &'a Names,
+}
+
+impl Reader<'_> {
+    /// Reads up to the end, or within a choice up to `|` or `]`, which stay.
+    fn parts(&mut self, within_choice: bool) -> Result<Vec<Part>, String> {
+        let mut parts = Vec::new();
+        loop {
+            let end = self.rest.find(['{', '}', '[', ']', '|']).unwrap_or(self.rest.len());
+            let (text, rest) = self.rest.split_at(end);
+            if !text.is_empty() {
+                parts.push(Part::Text(text.to_owned()));
+            }
+            self.rest = rest;
+            match rest.chars().next() {
+                Some('{') => parts.push(self.symbol()?),
+                Some('[') => parts.push(self.choice()?),
+                Some('|' | ']') if within_choice => return Ok(parts),
+                None if !within_choice => return Ok(parts),
+                None => return Err("a choice is not closed".to_owned()),
+                Some(other) => return Err(format!("{other} stands alone")),
+            }
+        }
+    }
+
+    fn symbol(&mut self) -> Result<Part, String> {
+        let (symbol, rest) = self.rest[1..].split_once('}').ok_or("a symbol is not closed")?;
+        self.rest = rest;
+        if let Some((rule, by)) = symbol.split_once(':') {
+            if !self.names.rules.contains(rule) {
+                return Err(format!("there is no rule {rule} for the case that no special one fits"));
+            }
+            if !self.names.given.contains(by) && !self.names.maybe.contains(by) {
+                return Err(format!("value {by} is not declared"));
+            }
+            return Ok(Part::Split { rule: rule.to_owned(), by: by.to_owned() });
+        }
+        if self.names.rules.contains(symbol) {
+            Ok(Part::Rule(symbol.to_owned()))
+        } else if self.names.given.contains(symbol) || self.names.maybe.contains(symbol) {
+            Ok(Part::Value(symbol.to_owned()))
+        } else {
+            Err(format!("{symbol} is neither a rule nor a declared value"))
+        }
+    }
+
+    fn choice(&mut self) -> Result<Part, String> {
+        self.rest = &self.rest[1..];
+        let mut branches = vec![self.parts(true)?];
+        while self.rest.starts_with('|') {
+            self.rest = &self.rest[1..];
+            branches.push(self.parts(true)?);
+        }
+        self.rest = &self.rest[1..];
+        if branches.len() == 1 {
+            branches.push(Vec::new());
+        }
+        Ok(Part::Choice(branches))
+    }
+}
+
+/// Every rule has an alternative that needs no tag and no value that may be missing; and no rule contains itself.
+fn check_total(rules: &BTreeMap<String, Vec<Alternative>>, names: &Names) -> Result<(), GrammarError> {
+    let always = |alternative: &Alternative| {
+        alternative.needs.is_empty() && always_filled(&alternative.parts, &names.given)
+    };
+    for (name, alternatives) in rules {
+        if !alternatives.iter().any(always) {
+            return Err(GrammarError(format!(
+                "rule {name}: every alternative needs a tag or a value that may be missing"
+            )));
+        }
+    }
+    let mut done = BTreeSet::new();
+    for name in rules.keys() {
+        visit(name, rules, &mut Vec::new(), &mut done)?;
+    }
+    Ok(())
+}
+
+fn always_filled(parts: &[Part], given: &BTreeSet<String>) -> bool {
+    parts.iter().all(|part| match part {
+        Part::Value(name) => given.contains(name),
+        Part::Choice(branches) => branches.iter().any(|branch| always_filled(branch, given)),
+        Part::Text(_) | Part::Rule(_) | Part::Split { .. } => true,
+    })
+}
+
+fn visit(
+    name: &str,
+    rules: &BTreeMap<String, Vec<Alternative>>,
+    path: &mut Vec<String>,
+    done: &mut BTreeSet<String>,
+) -> Result<(), GrammarError> {
+    if done.contains(name) {
+        return Ok(());
+    }
+    if path.iter().any(|above| above == name) {
+        return Err(GrammarError(format!("rule {name} contains itself")));
+    }
+    path.push(name.to_owned());
+    for alternative in &rules[name] {
+        for inner in rules_in(&alternative.parts, rules) {
+            visit(&inner, rules, path, done)?;
+        }
+    }
+    path.pop();
+    done.insert(name.to_owned());
+    Ok(())
+}
+
+fn rules_in(parts: &[Part], rules: &BTreeMap<String, Vec<Alternative>>) -> Vec<String> {
+    let mut found = Vec::new();
+    for part in parts {
+        match part {
+            Part::Rule(name) => found.push(name.clone()),
+            Part::Split { rule, .. } => {
+                found.push(rule.clone());
+                let special = format!("{rule}.");
+                found.extend(rules.keys().filter(|name| name.starts_with(&special)).cloned());
+            }
+            Part::Choice(branches) => {
+                found.extend(branches.iter().flat_map(|branch| rules_in(branch, rules)))
+            }
+            Part::Text(_) | Part::Value(_) => {}
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem(source: &str) -> String {
+        read(&[source]).expect_err("it has to be refused").to_string()
+    }
+
+    #[test]
+    fn mistakes_are_named_with_their_rule() {
+        for (source, words) in [
+            ("[rules]\na = [\"{b}\"]", "b is neither"),
+            ("[rules]\na = [\"(old) x\", \"y\"]", "tag old"),
+            ("[rules]\na = [\"x [y\"]", "not closed"),
+            ("[rules]\na = [\"x ] y\"]", "stands alone"),
+            ("[rules]\na = [\"{b}\"]\nb = [\"{a}\"]", "contains itself"),
+            ("maybe = [\"p\"]\n[rules]\na = [\"{p}\"]", "may be missing"),
+            ("tags = [\"t\"]\n[rules]\na = [\"(t) x\"]", "needs a tag"),
+            ("given = [\"g\"]\n[rules]\na = [\"{b:g}\"]", "no rule b"),
+            ("[rules]\na = []", "rule a is no list"),
+        ] {
+            assert!(problem(source).contains(words), "{source}: {}", problem(source));
+        }
+        let twice =
+            read(&["[rules]\na = [\"x\"]", "[rules]\na = [\"y\"]"]).expect_err("it has to be refused");
+        assert!(twice.to_string().contains("twice"));
+    }
+}

@@ -1,0 +1,119 @@
+//! What makes filled rules read as written by hand: articles, spaces, capitals.
+
+/// Puts the fitting article, single spaces, no space before a mark, and capitals at the beginning of sentences.
+pub fn polish(text: &str) -> String {
+    capitals(&spaces(&articles(text)))
+}
+
+/// Replaces `a/an` and `A/an` by the article that fits the next word.
+fn articles(text: &str) -> String {
+    let mut polished = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find("a/an ").or_else(|| rest.find("A/an ")) {
+        let (before, found) = rest.split_at(at);
+        let (article, after) = found.split_at("a/an".len());
+        polished.push_str(before);
+        polished.push_str(&article[..1]);
+        if vowel_sound(after.trim_start()) {
+            polished.push('n');
+        }
+        rest = after;
+    }
+    polished.push_str(rest);
+    polished
+}
+
+/// Whether a word begins with the sound of a vowel: letters that are read out one by one count by their name.
+fn vowel_sound(word: &str) -> bool {
+    let word: String = word.chars().take_while(|c| c.is_alphanumeric()).collect();
+    let spelt = word.len() >= 2 && word.chars().take(2).all(|c| c.is_ascii_uppercase());
+    let first = word.chars().next().unwrap_or(' ').to_ascii_lowercase();
+    let lower = word.to_ascii_lowercase();
+    if spelt && !["NASA", "NGO"].contains(&word.as_str()) {
+        return "aefhilmnorsx".contains(first);
+    }
+    match lower.as_str() {
+        _ if ["hour", "honest"].iter().any(|start| lower.starts_with(start)) => true,
+        _ if ["uni", "use", "usu", "uti", "one", "once", "euro", "ux"]
+            .iter()
+            .any(|start| lower.starts_with(start)) =>
+        {
+            lower.starts_with("unin") || lower.starts_with("unim")
+        }
+        _ if word.starts_with("8") || word.starts_with("11") || word.starts_with("18") => true,
+        "ngo" => true,
+        _ => "aeiou".contains(first),
+    }
+}
+
+fn spaces(text: &str) -> String {
+    let mut polished = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            ' ' if polished.is_empty() || polished.ends_with([' ', '\n']) => {}
+            '.' | ',' | '!' | '?' | ';' | ':' | ')' if polished.ends_with(' ') => {
+                polished.pop();
+                polished.push(character);
+            }
+            _ => polished.push(character),
+        }
+    }
+    polished.trim_end().to_owned()
+}
+
+fn capitals(text: &str) -> String {
+    let mut polished = String::with_capacity(text.len());
+    let mut begins = true;
+    let mut ended = false;
+    for character in text.chars() {
+        if begins && character.is_alphabetic() {
+            polished.extend(character.to_uppercase());
+            begins = false;
+        } else {
+            // A word that begins with a digit or a sign needs no capital further on.
+            begins &= !character.is_alphanumeric() && !matches!(character, '@' | '#');
+            polished.push(character);
+        }
+        match character {
+            '.' | '!' | '?' => ended = true,
+            ' ' | '\n' if ended => (begins, ended) = (true, false),
+            '"' | ')' | '\'' => {}
+            _ => ended = false,
+        }
+    }
+    polished
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn articles_follow_the_sound() {
+        for (word, article) in [
+            ("editor", "an"),
+            ("user", "a"),
+            ("unhappy user", "an"),
+            ("API", "an"),
+            ("UX-designer", "a"),
+            ("SQL query", "an"),
+            ("hour", "an"),
+            ("CTO", "a"),
+            ("MVNO", "an"),
+            ("one-off", "a"),
+            ("university", "a"),
+            ("uninspired tool", "an"),
+            ("8-person team", "an"),
+            ("Operations Manager", "an"),
+        ] {
+            assert_eq!(polish(&format!("it is a/an {word}")), format!("It is {article} {word}"));
+        }
+    }
+
+    #[test]
+    fn sentences_get_capitals_and_marks_no_space() {
+        assert_eq!(polish(" well ,  it works .  fine! 3 weeks in. "), "Well, it works. Fine! 3 weeks in.");
+        assert_eq!(polish("v2.5 is out. #tools rock"), "V2.5 is out. #tools rock");
+        assert_eq!(polish("\"great\" they said. ok"), "\"Great\" they said. Ok");
+    }
+}

@@ -1,0 +1,248 @@
+//! What readers know when they judge a post: what they have lived through, and what is on their minds
+//! (chapter 30 §16.5). The judge never sees more.
+
+use super::lexicon::Lexicon;
+use crate::world::identifiers::{ByGroup, Group, Plan};
+use crate::world::market::competitors::{Severity, severity};
+use crate::world::market::economy::Trend;
+use crate::world::market::social::chronicle::Page;
+use crate::world::params::Params;
+use crate::world::product::quality::{quota_demand, quota_factor};
+use crate::world::state::World;
+
+/// The facts behind a judgement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Circumstances {
+    /// By group.
+    pub groups: ByGroup<Readers>,
+    /// Active subscriptions together.
+    pub subscribers: u32,
+    /// Own research was finished in the last four weeks.
+    pub research_done: bool,
+    /// A list price is below that of four weeks ago, or a discount is new.
+    pub price_cut: bool,
+    /// A discount is on offer.
+    pub promotion: bool,
+    /// A quota is above that of four weeks ago.
+    pub quota_up: bool,
+    /// Days with an outage in the last two weeks.
+    pub outage_days: u32,
+    /// Largest overload of the last two weeks.
+    pub overload: f64,
+    /// Mean latency of the last seven days, ms.
+    pub p95_ms: f64,
+    /// Open issues per subscriber.
+    pub issue_rate: f64,
+    /// Mean days they have been open.
+    pub issue_age: f64,
+    /// What is on everybody's mind, with its age in days.
+    pub live: Vec<(LiveEvent, u32)>,
+}
+
+/// A group of readers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Readers {
+    /// Active subscriptions.
+    pub subscribers: u32,
+    /// Mean satisfaction, 0 without subscribers.
+    pub satisfaction: f64,
+    /// Quality gained in four weeks.
+    pub progress: f64,
+}
+
+/// What may be on everybody's mind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LiveEvent {
+    /// The service was down.
+    Outage,
+    /// A list price was raised.
+    PriceUp,
+    /// Support does not keep up.
+    Issues,
+    /// Many are short of quota.
+    Quota,
+    /// A rival has made a leap.
+    Rival,
+    /// The economy is reported to shrink.
+    MacroDown,
+    /// The economy is reported to grow.
+    MacroUp,
+    /// Own research was finished.
+    Research,
+}
+
+impl LiveEvent {
+    /// Word for reasons.
+    pub fn id(self) -> &'static str {
+        match self {
+            LiveEvent::Outage => "outage",
+            LiveEvent::PriceUp => "price raised",
+            LiveEvent::Issues => "open issues",
+            LiveEvent::Quota => "quota",
+            LiveEvent::Rival => "rival",
+            LiveEvent::MacroDown => "weak economy",
+            LiveEvent::MacroUp => "strong economy",
+            LiveEvent::Research => "research done",
+        }
+    }
+}
+
+const FOUR_WEEKS: u32 = 28;
+const TWO_WEEKS: usize = 14;
+const WEEK: usize = 7;
+
+impl Circumstances {
+    /// The circumstances at the end of the world's last day.
+    pub fn of(world: &World, params: &Params, lexicon: &Lexicon) -> Circumstances {
+        let chronicle = &world.market.social.chronicle;
+        let (today, before) = (chronicle.today(), chronicle.oldest());
+        let (issue_rate, issue_age, short) = strains(world, params);
+        let latencies: Vec<f64> = chronicle.last(WEEK).filter_map(|page| page.p95_ms).collect();
+        // A price of 0 is none: nothing was on sale.
+        let cheaper = |plan: &Plan| today.prices[*plan] < before.prices[*plan];
+        let mut own = Circumstances {
+            groups: ByGroup::from_fn(|group| readers(group, world)),
+            subscribers: world.customers.active().0.iter().sum(),
+            research_done: research_ages(world).any(|age| age <= FOUR_WEEKS),
+            price_cut: Plan::ALL.iter().any(cheaper) || today.discount > before.discount,
+            promotion: today.discount > 0.0,
+            quota_up: Plan::ALL.iter().any(|plan| today.quotas[*plan] > before.quotas[*plan]),
+            outage_days: chronicle.last(TWO_WEEKS).filter(|page| page.outage).count() as u32,
+            overload: chronicle.last(TWO_WEEKS).map(|page| page.overload).fold(0.0, f64::max),
+            p95_ms: latencies.iter().sum::<f64>() / latencies.len().max(1) as f64,
+            issue_rate,
+            issue_age,
+            live: Vec::new(),
+        };
+        own.live = live(world, params, lexicon, &own, short);
+        own
+    }
+
+    /// Age of a live event; none when it is not on anybody's mind.
+    pub fn age(&self, event: LiveEvent) -> Option<u32> {
+        self.live.iter().find(|(live, _)| *live == event).map(|(_, age)| *age)
+    }
+}
+
+fn readers(group: Group, world: &World) -> Readers {
+    let own = &world.customers.groups[group];
+    let count = own.active();
+    let sum: f64 = own.blocks.iter().flat_map(|block| &block.satisfaction).sum();
+    let satisfaction = if count == 0 { 0.0 } else { sum / f64::from(count) };
+    Readers { subscribers: count, satisfaction, progress: world.market.social.chronicle.progress(group) }
+}
+
+/// Open issues per subscriber, their mean age in days, and the share of subscribers short of quota.
+fn strains(world: &World, params: &Params) -> (f64, f64, f64) {
+    let core = &world.settings.core;
+    let weekday = params.calendar.weekly[(world.day % 7) as usize];
+    let (mut count, mut open, mut days, mut short) = (0u32, 0u32, 0u32, 0u32);
+    for (_, block) in world.customers.blocks() {
+        for at in 0..block.len() {
+            count += 1;
+            open += u32::from(block.open_issue_days[at] > 0);
+            days += block.open_issue_days[at];
+            let rate = block.usage_rate[at];
+            let quota = core.quotas[block.plan[at]] as f64;
+            let factor = quota_factor(quota, quota_demand(rate * weekday, rate, params), &params.quality);
+            short += u32::from(factor < 1.0);
+        }
+    }
+    let of = |part: u32, whole: u32| if whole == 0 { 0.0 } else { f64::from(part) / f64::from(whole) };
+    (of(open, count), of(days, open), of(short, count))
+}
+
+fn research_ages(world: &World) -> impl Iterator<Item = u32> {
+    world.product.research.iter().filter_map(|project| project.completed_day).map(|day| world.day - day)
+}
+
+fn live(
+    world: &World,
+    params: &Params,
+    lexicon: &Lexicon,
+    own: &Circumstances,
+    short: f64,
+) -> Vec<(LiveEvent, u32)> {
+    let (day, law) = (world.day, &lexicon.events);
+    let chronicle = &world.market.social.chronicle;
+    let age = |page: &Page| day - page.day;
+    let raised = |(before, after): &(&Page, &Page)| {
+        let rise = |plan: &Plan| {
+            before.prices[*plan] > 0.0 && after.prices[*plan] >= before.prices[*plan] * law.price_rise
+        };
+        Plan::ALL.iter().any(rise)
+    };
+    let outage = chronicle.last(TWO_WEEKS + 1).find(|page| page.outage).map(age);
+    let price_up = chronicle.steps().find(raised).map(|(_, after)| age(after));
+    let issues = own.issue_rate > law.issue_rate || own.issue_age > law.issue_age;
+    let rivals = world.market.competitors.iter().rev();
+    let rival = rivals
+        .filter(|event| severity(event.boost, &params.competitor) >= Severity::Moderate)
+        .map(|event| day - event.day)
+        .next();
+    let published = world.market.economy.published.as_ref();
+    let news = published.map(|reading| {
+        let published_day = reading.measured_day + params.economy.macro_pmi_publication_delay_days;
+        let event = match reading.trend {
+            Trend::Contraction | Trend::SevereContraction => Some(LiveEvent::MacroDown),
+            Trend::Expansion | Trend::StrongExpansion => Some(LiveEvent::MacroUp),
+            Trend::Neutral => None,
+        };
+        (event, day.saturating_sub(published_day))
+    });
+    let economy = |wanted| news.filter(|(event, _)| *event == Some(wanted)).map(|(_, age)| age);
+    [
+        (LiveEvent::Outage, outage),
+        (LiveEvent::PriceUp, price_up),
+        (LiveEvent::Issues, issues.then_some(0)),
+        (LiveEvent::Quota, (short > law.quota_share).then_some(0)),
+        (LiveEvent::Rival, rival),
+        (LiveEvent::MacroDown, economy(LiveEvent::MacroDown)),
+        (LiveEvent::MacroUp, economy(LiveEvent::MacroUp)),
+        (LiveEvent::Research, research_ages(world).min()),
+    ]
+    .into_iter()
+    .filter_map(|(event, age)| age.filter(|age| *age <= law.kept_days).map(|age| (event, age)))
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::day::step_day;
+    use crate::world::events::Facts;
+    use crate::world::random::Streams;
+
+    #[test]
+    fn a_company_that_changes_its_prices_is_remembered() {
+        let (params, streams) = (Params::shipped(), Streams::new(2));
+        let mut facts = Facts::default();
+        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        crate::world::day::tests::policy_p(&mut world);
+        let (mut at_day, mut latencies) = (Vec::new(), Vec::new());
+        for day in 1..=60 {
+            match day {
+                20 => world.settings.core.prices.0[1] *= 1.2,
+                40 => world.settings.core.quotas.0[0] *= 2,
+                50 => world.settings.promotion.global = 2.0,
+                _ => {}
+            }
+            latencies.push(step_day(&mut world, &params, &streams, &mut facts).0.p95_ms);
+            at_day.push(Circumstances::of(&world, &params, Lexicon::shipped()));
+        }
+        let on = |day: usize| &at_day[day - 1];
+        assert_eq!(on(19).age(LiveEvent::PriceUp), None, "the first prices are no rise");
+        assert_eq!((on(20).age(LiveEvent::PriceUp), on(34).age(LiveEvent::PriceUp)), (Some(0), Some(14)));
+        assert_eq!(on(35).age(LiveEvent::PriceUp), None);
+        assert!(!on(39).quota_up && on(40).quota_up && on(60).quota_up);
+        assert!(!on(49).price_cut && on(50).price_cut && on(50).promotion);
+        assert_eq!((on(31).age(LiveEvent::MacroDown), on(31).age(LiveEvent::MacroUp)), (None, None));
+        assert_eq!(on(60).subscribers, world.customers.active().0.iter().sum::<u32>());
+        let s1 = Group::at(0).expect("S1");
+        assert!(on(60).groups[s1].progress > 0.0 && on(60).groups[s1].satisfaction != 0.0);
+        let last_week = latencies[53..].iter().sum::<f64>() / 7.0;
+        assert!((on(60).p95_ms / last_week - 1.0).abs() < 1e-12);
+        let outages = on(60).outage_days;
+        assert_eq!(outages > 0, on(60).age(LiveEvent::Outage).is_some_and(|age| age < 14));
+    }
+}

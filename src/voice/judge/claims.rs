@@ -1,0 +1,109 @@
+//! Claims of a post, and whether readers have lived them (chapter 30 §16.6).
+
+use super::circumstances::{Circumstances, Readers};
+use super::features::Features;
+use super::lexicon::Lexicon;
+
+/// A claim and what a group makes of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Claim {
+    /// Its name.
+    pub name: &'static str,
+    /// True, false, or not for these readers to say.
+    pub verdict: Option<bool>,
+}
+
+const NAMES: [&str; 6] = ["price_down", "quality_up", "reliability", "speed", "support", "limits"];
+
+/// The claims of a post in the eyes of a group.
+pub fn claims(
+    features: &Features,
+    readers: &Readers,
+    circumstances: &Circumstances,
+    lexicon: &Lexicon,
+) -> Vec<Claim> {
+    let reading = &features.reading;
+    let mut found = Vec::new();
+    for name in NAMES {
+        let Some(pattern) = lexicon.claims.get(name) else { continue };
+        let near = reading.near(&pattern.near, &pattern.to, lexicon.verdicts.near_positions);
+        if near || reading.any(&pattern.says) {
+            let unlimited = name == "limits" && reading.any(&pattern.says);
+            let verdict =
+                if unlimited { Some(false) } else { verdict(name, readers, circumstances, lexicon) };
+            found.push(Claim { name, verdict });
+        }
+    }
+    if let Some(count) = audience(reading.normal()) {
+        let most = lexicon.verdicts.scale_slack * f64::from(circumstances.subscribers);
+        found.push(Claim { name: "scale", verdict: Some(count <= most) });
+    }
+    found
+}
+
+fn verdict(name: &str, readers: &Readers, own: &Circumstances, lexicon: &Lexicon) -> Option<bool> {
+    let law = &lexicon.verdicts;
+    match name {
+        "price_down" => Some(own.price_cut),
+        "quality_up" => {
+            let happy = readers.satisfaction >= law.quality_satisfaction;
+            if (readers.progress >= law.quality_progress || own.research_done) && happy {
+                Some(true)
+            } else {
+                (readers.progress < 0.0 || !happy).then_some(false)
+            }
+        }
+        "reliability" if own.outage_days >= 1 => Some(false),
+        "reliability" => (own.overload < law.reliability_overload).then_some(true),
+        "speed" if own.p95_ms <= law.speed_true_ms => Some(true),
+        "speed" => (own.p95_ms > law.speed_false_ms).then_some(false),
+        "support" if own.issue_age <= law.support_true_age && own.issue_rate <= law.support_true_rate => {
+            Some(true)
+        }
+        "support" => (own.issue_age > law.support_false_age || own.issue_rate > law.support_false_rate)
+            .then_some(false),
+        "limits" => Some(own.quota_up),
+        _ => None,
+    }
+}
+
+/// The largest number that stands before customers, users or subscribers; `k` is a thousand, `m` a million.
+fn audience(normal: &str) -> Option<f64> {
+    let words = ["customer", "user", "subscriber"];
+    let ends = words.iter().flat_map(|word| normal.match_indices(word)).map(|(at, _)| at);
+    ends.filter_map(|end| number_before(&normal[..end])).reduce(f64::max)
+}
+
+fn number_before(text: &str) -> Option<f64> {
+    let text = text.strip_suffix(' ')?.trim_end_matches([' ', '+']);
+    let (text, unit) = match text.as_bytes().last()? {
+        b'k' => (&text[..text.len() - 1], 1e3),
+        b'm' => (&text[..text.len() - 1], 1e6),
+        _ => (text, 1.0),
+    };
+    let start = text.rfind(|c: char| !(c.is_ascii_digit() || c == ',' || c == '.'));
+    let digits = text[start.map_or(0, |at| at + text[at..].chars().next().map_or(1, char::len_utf8))..]
+        .replace(',', "");
+    digits.parse::<f64>().ok().map(|number| number * unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn audiences_are_read_in_every_form() {
+        for (text, expected) in [
+            ("join 12,000 users today", Some(12_000.0)),
+            ("over 10k customers", Some(10_000.0)),
+            ("1.5m subscribers love us", Some(1.5e6)),
+            ("500+ customers and 900 users", Some(900.0)),
+            ("our users are great", None),
+            ("ü 5 users", Some(5.0)),
+            ("users", None),
+            ("k users", None),
+        ] {
+            assert_eq!(audience(text), expected, "{text}");
+        }
+    }
+}

@@ -1,0 +1,383 @@
+//! Word lists and weights of the judge: `assets/voice/judge.toml`.
+
+use std::sync::LazyLock;
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Deserializer};
+
+use super::text::Entry;
+use crate::world::identifiers::{ByGroup, Group};
+
+/// A list of entries.
+pub type List = Vec<Entry>;
+
+/// Everything the judge goes by.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lexicon {
+    /// The fixed order of the topics: of equally strong ones the first leads.
+    topic_order: Vec<String>,
+    /// Topics in their fixed order.
+    #[serde(deserialize_with = "lists")]
+    pub topics: IndexMap<String, List>,
+    /// Other lists.
+    pub words: Words,
+    /// Patterns of claims.
+    pub claims: IndexMap<String, ClaimPattern>,
+    /// Where claims turn true or false.
+    pub verdicts: Verdicts,
+    /// What may be on everybody's mind.
+    pub events: Events,
+    /// How much.
+    pub salience: Salience,
+    /// From words to features.
+    pub features: Features,
+    /// From features to a score.
+    pub terms: Terms,
+    /// What each group cares about.
+    profiles: IndexMap<String, Profile>,
+}
+
+impl Lexicon {
+    /// The shipped one.
+    pub fn shipped() -> &'static Lexicon {
+        static SHIPPED: LazyLock<Lexicon> = LazyLock::new(|| {
+            let text = include_str!("../../../assets/voice/judge.toml");
+            let mut read: Lexicon = toml::from_str(text).expect("the shipped word lists are tested");
+            let Lexicon { topic_order, topics, .. } = &mut read;
+            topics.sort_by_cached_key(|name, _| topic_order.iter().position(|other| other == name));
+            read
+        });
+        &SHIPPED
+    }
+
+    /// Profile of a group.
+    pub fn profile(&self, group: Group) -> &Profile {
+        &self.profiles[group.id()]
+    }
+
+    /// Profiles of all groups.
+    pub fn profiles(&self) -> ByGroup<&Profile> {
+        ByGroup::from_fn(|group| self.profile(group))
+    }
+
+    /// Position of a topic in the fixed order.
+    pub fn topic(&self, name: &str) -> usize {
+        self.topics.get_index_of(name).expect("the shipped word lists are tested")
+    }
+
+    /// Name of a topic.
+    pub fn topic_name(&self, topic: usize) -> &str {
+        self.topics.get_index(topic).map_or("", |(name, _)| name)
+    }
+}
+
+fn lists<'de, D: Deserializer<'de>>(from: D) -> Result<IndexMap<String, List>, D::Error> {
+    let texts = IndexMap::<String, Vec<String>>::deserialize(from)?;
+    Ok(texts.into_iter().map(|(name, texts)| (name, read(&texts))).collect())
+}
+
+fn list<'de, D: Deserializer<'de>>(from: D) -> Result<List, D::Error> {
+    Ok(read(&Vec::<String>::deserialize(from)?))
+}
+
+fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<List, D::Error> {
+    let texts = Vec::<String>::deserialize(from)?;
+    // Quoted entries of chapter 30 §16.6 with a space or a slash; single words are matched as words.
+    Ok(texts
+        .iter()
+        .map(|text| if text.contains('/') { Entry::anywhere(text) } else { Entry::read(text) })
+        .collect())
+}
+
+fn read(texts: &[String]) -> List {
+    texts.iter().map(|text| Entry::read(text)).collect()
+}
+
+macro_rules! words {
+    ($($(#[$doc:meta])* $field:ident,)*) => {
+        /// Lists that are no topics (chapter 30 §16.3).
+        #[derive(Debug, Clone, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct Words { $($(#[$doc])* #[serde(deserialize_with = "list")] pub $field: List,)* }
+
+        impl Words {
+            /// All lists, for tests that draw from them.
+            pub fn all(&self) -> Vec<&List> {
+                vec![$(&self.$field),*]
+            }
+        }
+    };
+}
+
+words! {
+    /// Promises without measure.
+    absolutes,
+    /// Words of advertising.
+    buzzwords,
+    /// Casual words.
+    slang,
+    /// Terms of engineers.
+    tech,
+    /// What was done.
+    actions,
+    /// When.
+    times,
+    /// Taking the blame.
+    apology,
+    /// Naming the cause.
+    cause,
+    /// Naming the remedy.
+    remedy,
+    /// Pushing to buy.
+    hard_sell,
+    /// Blaming the reader.
+    defensive,
+    /// What a company never says.
+    conduct,
+    /// Names of rivals.
+    rivals,
+    /// Running others down.
+    negative,
+    /// Speaking to the reader.
+    you,
+    /// Words that make sentences.
+    function,
+}
+
+/// How a claim is made.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ClaimPattern {
+    /// One of these, or
+    #[serde(deserialize_with = "anywhere")]
+    pub says: List,
+    /// one of these close to
+    #[serde(deserialize_with = "list")]
+    pub near: List,
+    /// one of these.
+    #[serde(deserialize_with = "list")]
+    pub to: List,
+}
+
+/// Taste of a group (chapter 30 §16.7).
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Profile {
+    /// Formality, 0..=1.
+    pub f: f64,
+    /// Technical taste, 0..=1.
+    pub t: f64,
+    /// Aversion to hype, 0..=1.
+    pub a: f64,
+    /// Tolerance of casual style, 0..=1.
+    pub m: f64,
+    /// Gain.
+    pub k: f64,
+    /// Weights of topics, others 0.
+    w: IndexMap<String, f64>,
+}
+
+impl Profile {
+    /// Weight of a topic.
+    pub fn weight(&self, topic: &str) -> f64 {
+        self.w.get(topic).copied().unwrap_or(0.0)
+    }
+
+    /// Topics with a weight.
+    pub fn topics(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.w.iter().map(|(topic, weight)| (topic.as_str(), *weight))
+    }
+}
+
+macro_rules! numbers {
+    ($(#[$doc:meta])* $Name:ident { $($(#[$field_doc:meta])* $field:ident: $kind:ty,)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        #[allow(missing_docs, reason = "the shipped file documents its numbers")]
+        pub struct $Name { $($(#[$field_doc])* pub $field: $kind,)* }
+    };
+}
+
+numbers! {
+    /// Where claims turn true or false (chapter 30 §16.6).
+    Verdicts {
+        near_positions: usize,
+        quality_progress: f64,
+        quality_satisfaction: f64,
+        reliability_overload: f64,
+        speed_true_ms: f64,
+        speed_false_ms: f64,
+        support_true_age: f64,
+        support_true_rate: f64,
+        support_false_age: f64,
+        support_false_rate: f64,
+        scale_slack: f64,
+    }
+}
+
+numbers! {
+    /// Live events and the topics that address them (chapter 30 §16.5).
+    Events {
+        kept_days: u32,
+        fresh_days: u32,
+        stale_share: f64,
+        price_rise: f64,
+        issue_rate: f64,
+        issue_age: f64,
+        quota_share: f64,
+        outage: Vec<String>,
+        price_up: Vec<String>,
+        issues: Vec<String>,
+        quota: Vec<String>,
+        rival: Vec<String>,
+        macro_down: Vec<String>,
+        macro_up: Vec<String>,
+        research: Vec<String>,
+    }
+}
+
+numbers! {
+    /// How much a live event is on a group's mind (chapter 30 §16.5).
+    Salience {
+        outage_minded: f64,
+        outage: f64,
+        minded: f64,
+        price_up: f64,
+        price_up_least: f64,
+        issues: f64,
+        quota: f64,
+        rival: f64,
+        macro_down: f64,
+        macro_up: f64,
+        research: f64,
+    }
+}
+
+numbers! {
+    /// From words to features (chapter 30 §16.4).
+    Features {
+        topic_first: f64,
+        topic_more: f64,
+        number: f64,
+        numbers_counted: u32,
+        action: f64,
+        time: f64,
+        topic_hit: f64,
+        topics_counted: u32,
+        absolute: f64,
+        buzzword: f64,
+        emoji: f64,
+        hash: f64,
+        exclamation: f64,
+        signs_counted: u32,
+        slang: f64,
+        capitals: f64,
+        capitals_counted: u32,
+        capitals_letters: usize,
+        tech_term: f64,
+        tech_unit: f64,
+        units: Vec<String>,
+        sell_counted: u32,
+        stuffing_from: f64,
+        stuffing: f64,
+        stuffing_no_sentence: f64,
+        function_share: f64,
+        sentence_tokens: usize,
+        least_tokens: usize,
+    }
+}
+
+numbers! {
+    /// From features to a score (chapter 30 §16.8).
+    Terms {
+        receptive: f64,
+        topics: f64,
+        ranks: [f64; 3],
+        repeated_recipe: f64,
+        repeated_counted: u32,
+        recipe_days: u32,
+        specific: f64,
+        tone: f64,
+        casual: f64,
+        casual_neutral: f64,
+        formal: f64,
+        tech_liked: f64,
+        tech_disliked: f64,
+        timing: f64,
+        tone_deaf_customers: f64,
+        tone_deaf_others: f64,
+        accountable: f64,
+        account_step: f64,
+        needless_apology: f64,
+        claims_true: f64,
+        claims_false: f64,
+        false_for_others: f64,
+        hype: f64,
+        hype_if_true: f64,
+        hard_sell: f64,
+        conduct: f64,
+        conduct_formal: f64,
+        bashing: f64,
+        bashing_formal: f64,
+        bashing_with_numbers: f64,
+        technical_taste: f64,
+        likes_deals: f64,
+        stuffing: f64,
+        repetition: f64,
+        repetition_from: f64,
+        repetition_days: u32,
+        spoil: f64,
+        reply_overlap: f64,
+        reply_you: f64,
+        reply_misses: f64,
+        defensive: f64,
+        elsewhere: f64,
+        knee: f64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_group_has_a_profile_of_known_topics() {
+        let lexicon = Lexicon::shipped();
+        let topics: Vec<&String> = lexicon.topics.keys().collect();
+        assert_eq!(topics, lexicon.topic_order.iter().collect::<Vec<_>>());
+        assert_eq!((topics.len(), topics[0].as_str(), topics[23].as_str()), (24, "price", "access"));
+        for group in Group::all() {
+            let profile = lexicon.profile(group);
+            assert!(profile.topics().count() >= 4, "{group}");
+            for (topic, weight) in profile.topics() {
+                assert!(lexicon.topics.contains_key(topic), "{group}: {topic}");
+                assert!((-1.0..=1.0).contains(&weight));
+            }
+            assert!(
+                [profile.f, profile.t, profile.a, profile.m].iter().all(|taste| (0.0..=1.0).contains(taste))
+            );
+        }
+        assert_eq!(lexicon.profiles.len(), Group::COUNT);
+    }
+
+    #[test]
+    fn events_are_addressed_by_known_topics_and_claims_are_all_there() {
+        let lexicon = Lexicon::shipped();
+        let events = &lexicon.events;
+        let lists = [
+            &events.outage,
+            &events.price_up,
+            &events.issues,
+            &events.quota,
+            &events.rival,
+            &events.macro_down,
+            &events.macro_up,
+            &events.research,
+        ];
+        assert!(lists.into_iter().flatten().all(|topic| lexicon.topics.contains_key(topic)));
+        let claims: Vec<&str> = lexicon.claims.keys().map(String::as_str).collect();
+        assert_eq!(claims, ["limits", "price_down", "quality_up", "reliability", "speed", "support"]);
+    }
+}

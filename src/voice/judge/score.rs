@@ -1,0 +1,303 @@
+//! The score of one group (chapter 30 §16.8).
+
+use super::circumstances::LiveEvent;
+use super::claims::{Claim, claims};
+use super::features::{Features, flag};
+use super::lexicon::Profile;
+use super::{Case, Judgement, Term};
+use crate::world::identifiers::Group;
+
+/// A post in the eyes of one group.
+struct Eyes<'a> {
+    group: Group,
+    case: &'a Case<'a>,
+    profile: &'a Profile,
+    claims: Vec<Claim>,
+}
+
+pub(super) fn judge_group(group: Group, case: &Case<'_>) -> Judgement {
+    let lexicon = case.lexicon;
+    if case.features.empty {
+        return Judgement { group, effect: 0.0, terms: Vec::new() };
+    }
+    let readers = &case.circumstances.groups[group];
+    let claims = claims(&case.features, readers, case.circumstances, lexicon);
+    let eyes = Eyes { group, case, profile: lexicon.profile(group), claims };
+    let terms = eyes.terms();
+    let mut raw = eyes.profile.k * terms.iter().map(|term| term.value).sum::<f64>();
+    if let Some((_, original)) = &case.original
+        && original.group != Some(group)
+    {
+        raw *= lexicon.terms.elsewhere;
+    }
+    Judgement { group, effect: compressed(raw, lexicon.terms.knee), terms }
+}
+
+/// Keeps a score within -1..=1 without a hard edge, in hundredths: above the knee it bends towards 1.
+fn compressed(raw: f64, knee: f64) -> f64 {
+    let size = raw.abs();
+    let rest = 1.0 - knee;
+    let bent = if size > knee { knee + rest * libm::tanh((size - knee) / rest) } else { size };
+    let rounded = (100.0 * bent + 0.5).floor() / 100.0;
+    if rounded == 0.0 { 0.0 } else { rounded.copysign(raw) }
+}
+
+impl Eyes<'_> {
+    fn terms(&self) -> Vec<Term> {
+        let law = &self.case.lexicon.terms;
+        let features = &self.case.features;
+        let profile = self.profile;
+        let (fit, topics) = self.fit();
+        let (timing, event) = self.timing();
+        let technical = self.speaks_numbers();
+        let contradicted = self.names_of(Some(false));
+        let supported = if contradicted.is_empty() { self.names_of(Some(true)) } else { Vec::new() };
+        let spoilt = !contradicted.is_empty()
+            || features.defensive
+            || features.conduct
+            || (features.bash && !technical);
+        let (unbelieved, hype) = (self.unbelieved(&contradicted), self.hype(!supported.is_empty()));
+        let bashing =
+            if technical { law.bashing_with_numbers } else { law.bashing + law.bashing_formal * profile.f };
+        let repeated = (self.case.overlap - law.repetition_from) / (1.0 - law.repetition_from);
+        let mut terms = vec![
+            term("receptive", law.receptive, Vec::new()),
+            spoilable("topics", law.topics * fit, spoilt, topics, law.spoil),
+            spoilable(
+                "specific",
+                law.specific * features.specific * fit.max(0.0),
+                spoilt,
+                Vec::new(),
+                law.spoil,
+            ),
+            spoilable("tone", law.tone * self.tone(), spoilt, Vec::new(), law.spoil),
+            spoilable("timing", law.timing * timing, spoilt, event, law.spoil),
+            spoilable("accountable", law.accountable * self.account(), spoilt, Vec::new(), law.spoil),
+            term("claims_true", law.claims_true * flag(!supported.is_empty()), supported),
+            term("claims_false", law.claims_false * unbelieved, contradicted),
+            term("hype", hype, Vec::new()),
+            term("hard_sell", self.hard_sell(), Vec::new()),
+            term(
+                "conduct",
+                (law.conduct + law.conduct_formal * profile.f) * flag(features.conduct),
+                Vec::new(),
+            ),
+            term("bashing", bashing * flag(features.bash), Vec::new()),
+            term("stuffing", law.stuffing * features.stuffing, Vec::new()),
+            term("repetition", law.repetition * repeated.max(0.0), Vec::new()),
+        ];
+        terms.extend(self.reply());
+        terms.push(term("defensive", law.defensive * flag(features.defensive), Vec::new()));
+        terms.retain(|term| term.value != 0.0);
+        terms
+    }
+
+    fn weight(&self, topic: usize) -> f64 {
+        self.profile.weight(self.case.lexicon.topic_name(topic))
+    }
+
+    /// R: how well the topics fit, -1..=1, and the topics behind it.
+    fn fit(&self) -> (f64, Vec<String>) {
+        let (lexicon, law) = (self.case.lexicon, &self.case.lexicon.terms);
+        let mut best = self.weighted(&self.case.features);
+        best.sort_by(|(_, one), (_, other)| other.abs().total_cmp(&one.abs()));
+        best.truncate(law.ranks.len());
+        best.retain(|(_, value)| *value != 0.0);
+        let sum: f64 = best.iter().zip(law.ranks).map(|((_, value), rank)| value * rank).sum();
+        let mut fit = sum.clamp(-1.0, 1.0);
+        if fit > 0.0 {
+            let lead = self.leading_topic(&self.case.features);
+            let same = |earlier: &&Features| lead.is_some() && self.leading_topic(earlier) == lead;
+            let repeats = self.case.recent.iter().filter(same).count() as u32;
+            fit *= 1.0 - law.repeated_recipe * f64::from(repeats.min(law.repeated_counted));
+        }
+        (fit, best.iter().map(|(topic, _)| lexicon.topic_name(*topic).to_owned()).collect())
+    }
+
+    /// Topics of a post with weight times strength.
+    fn weighted(&self, features: &Features) -> Vec<(usize, f64)> {
+        let strengths = features.topics.iter().enumerate();
+        strengths.map(|(topic, strength)| (topic, self.weight(topic) * strength)).collect()
+    }
+
+    /// The topic with the largest weight times strength; of equal ones the first.
+    fn leading_topic(&self, features: &Features) -> Option<usize> {
+        let mut lead: Option<(usize, f64)> = None;
+        for (topic, value) in self.weighted(features) {
+            if value != 0.0 && lead.is_none_or(|(_, most)| value.abs() > most) {
+                lead = Some((topic, value.abs()));
+            }
+        }
+        lead.map(|(topic, _)| topic)
+    }
+
+    /// T: how the tone suits the group, -1..=1.
+    fn tone(&self) -> f64 {
+        let (law, features, own) = (&self.case.lexicon.terms, &self.case.features, self.profile);
+        let casual = law.casual * (own.m - law.casual_neutral) * features.casual;
+        let formal = law.formal * own.f * (1.0 - features.casual);
+        let technical = (law.tech_liked * own.t - law.tech_disliked * (1.0 - own.t)) * features.technical;
+        (casual + formal + technical - own.a * features.buzzwords).clamp(-1.0, 1.0)
+    }
+
+    /// E: whether it speaks to what is on everybody's mind, -0.6..=1, and the event behind it.
+    fn timing(&self) -> (f64, Vec<String>) {
+        let (features, law) = (&self.case.features, &self.case.lexicon.terms);
+        if let Some(event) = self.deaf_to() {
+            let readers = self.case.circumstances.groups[self.group].subscribers;
+            let value = if readers > 0 { law.tone_deaf_customers } else { law.tone_deaf_others };
+            return (value, vec![event.id().to_owned()]);
+        }
+        let mut best: Option<(LiveEvent, f64)> = None;
+        for &(event, age) in &self.case.circumstances.live {
+            if features.bash || !self.addressing(event).any(|topic| features.hits(topic)) {
+                continue;
+            }
+            let events = &self.case.lexicon.events;
+            let share = if age <= events.fresh_days { 1.0 } else { events.stale_share };
+            let value = self.salience(event) * share;
+            if best.is_none_or(|(_, most)| value > most) {
+                best = Some((event, value));
+            }
+        }
+        best.map_or((0.0, Vec::new()), |(event, value)| (value, vec![event.id().to_owned()]))
+    }
+
+    /// The outage or price rise that a cheerful post passes over.
+    fn deaf_to(&self) -> Option<LiveEvent> {
+        let (features, lexicon) = (&self.case.features, self.case.lexicon);
+        let cheerful = ["release", "deal", "price"].iter().any(|topic| features.hits(lexicon.topic(topic)));
+        if !cheerful || features.apology {
+            return None;
+        }
+        let answers = [lexicon.topic("reliability"), lexicon.topic("transparency")];
+        let fresh = |event: &LiveEvent| match (event, self.case.circumstances.age(*event)) {
+            (LiveEvent::Outage, Some(age)) => age <= lexicon.events.fresh_days,
+            (_, age) => age.is_some(),
+        };
+        [LiveEvent::Outage, LiveEvent::PriceUp].into_iter().filter(fresh).find(|event| {
+            !self.addressing(*event).any(|topic| answers.contains(&topic) && features.hits(topic))
+        })
+    }
+
+    fn addressing(&self, event: LiveEvent) -> impl Iterator<Item = usize> {
+        let (lexicon, events) = (self.case.lexicon, &self.case.lexicon.events);
+        let topics = match event {
+            LiveEvent::Outage => &events.outage,
+            LiveEvent::PriceUp => &events.price_up,
+            LiveEvent::Issues => &events.issues,
+            LiveEvent::Quota => &events.quota,
+            LiveEvent::Rival => &events.rival,
+            LiveEvent::MacroDown => &events.macro_down,
+            LiveEvent::MacroUp => &events.macro_up,
+            LiveEvent::Research => &events.research,
+        };
+        topics.iter().map(|topic| lexicon.topic(topic))
+    }
+
+    fn salience(&self, event: LiveEvent) -> f64 {
+        let law = &self.case.lexicon.salience;
+        let weight = |topic: &str| self.profile.weight(topic);
+        match event {
+            LiveEvent::Outage if weight("reliability") >= law.minded => law.outage_minded,
+            LiveEvent::Outage => law.outage,
+            LiveEvent::PriceUp => law.price_up * weight("price").max(weight("deal")).max(law.price_up_least),
+            LiveEvent::Issues => law.issues,
+            LiveEvent::Quota => law.quota,
+            LiveEvent::Rival => law.rival,
+            LiveEvent::MacroDown => law.macro_down,
+            LiveEvent::MacroUp => law.macro_up,
+            LiveEvent::Research => law.research,
+        }
+    }
+
+    /// A: taking responsibility where there is something to answer for.
+    fn account(&self) -> f64 {
+        let (features, law) = (&self.case.features, &self.case.lexicon.terms);
+        let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];
+        let trouble = to_answer.into_iter().any(|event| self.case.circumstances.age(event).is_some());
+        if trouble && (features.apology || features.cause) {
+            let said = [features.apology, features.cause, features.remedy, features.when];
+            law.account_step * said.into_iter().map(flag).sum::<f64>()
+        } else if features.apology && !trouble {
+            law.needless_apology
+        } else {
+            0.0
+        }
+    }
+
+    fn names_of(&self, verdict: Option<bool>) -> Vec<String> {
+        let fitting = self.claims.iter().filter(|claim| claim.verdict == verdict);
+        fitting.map(|claim| claim.name.to_owned()).collect()
+    }
+
+    /// C-: how much a false claim hurts.
+    fn unbelieved(&self, contradicted: &[String]) -> f64 {
+        let readers = self.case.circumstances.groups[self.group].subscribers;
+        match (contradicted.is_empty(), readers > 0) {
+            (true, _) => 0.0,
+            (false, true) => 1.0,
+            (false, false) => self.case.lexicon.terms.false_for_others,
+        }
+    }
+
+    fn hype(&self, supported: bool) -> f64 {
+        let law = &self.case.lexicon.terms;
+        let share = if supported { law.hype_if_true } else { 1.0 };
+        law.hype * self.profile.a * self.case.features.absolutes * share
+    }
+
+    fn hard_sell(&self) -> f64 {
+        let law = &self.case.lexicon.terms;
+        let welcome = self.profile.weight("deal") >= law.likes_deals && self.case.circumstances.promotion;
+        law.hard_sell * self.case.features.sell * if welcome { 0.5 } else { 1.0 }
+    }
+
+    /// Whether a comparison with rivals is one of numbers, for readers who like them.
+    fn speaks_numbers(&self) -> bool {
+        self.profile.t >= self.case.lexicon.terms.technical_taste && self.case.features.numbers > 0
+    }
+
+    /// What an answer owes the post it answers.
+    fn reply(&self) -> Vec<Term> {
+        let (features, law) = (&self.case.features, &self.case.lexicon.terms);
+        let Some((original, own)) = &self.case.original else { return Vec::new() };
+        let asked: Vec<usize> = (0..original.topics.len()).filter(|topic| original.hits(*topic)).collect();
+        let met = asked.iter().filter(|topic| features.hits(**topic)).count() as f64;
+        let share = if asked.is_empty() { 0.0 } else { met / asked.len() as f64 };
+        let missed = share == 0.0 && own.negative;
+        vec![
+            term("reply", law.reply_overlap * share + law.reply_you * flag(features.you), Vec::new()),
+            term("reply_misses", law.reply_misses * flag(missed), Vec::new()),
+        ]
+    }
+}
+
+fn term(name: &'static str, value: f64, because: Vec<String>) -> Term {
+    Term { name, value, because }
+}
+
+/// A term whose good side a dishonest or ugly post loses.
+fn spoilable(name: &'static str, value: f64, spoilt: bool, because: Vec<String>, share: f64) -> Term {
+    term(name, if spoilt && value > 0.0 { value * share } else { value }, because)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scores_bend_before_they_end() {
+        for (raw, expected) in [
+            (0.8992, 0.87),
+            (-0.34, -0.34),
+            (0.7226, 0.72),
+            (5.0, 1.0),
+            (-5.0, -1.0),
+            (0.004, 0.0),
+            (-0.004, 0.0),
+        ] {
+            assert_eq!(compressed(raw, 0.7), expected, "{raw}");
+        }
+    }
+}

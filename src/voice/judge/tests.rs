@@ -1,0 +1,299 @@
+//! Worked examples and what must hold of every judgement (chapter 30 §16.9, §16.10).
+
+use super::circumstances::{LiveEvent, Readers};
+use super::text::Entry;
+use super::*;
+use crate::world::identifiers::ByGroup;
+use crate::world::random::{Part, Streams};
+
+const D: &str = "API update: quotas doubled to 200k tokens/day on plan B, batch endpoint p95 at 190 ms. Benchmarks and docs \
+                 published today.";
+const ASKED: &str = "Hit rate limits again, my automation broke. Need higher quotas.";
+
+fn group(id: &str) -> Group {
+    Group::parse(id).expect("a group")
+}
+
+/// The facts of the worked examples before anything is changed.
+fn usual() -> Circumstances {
+    let count = |id: &str| match id {
+        "S1" => 4000,
+        "S2" => 900,
+        "S3" => 600,
+        "E1" => 12,
+        "E2" => 6,
+        "E3" => 2,
+        _ => 0,
+    };
+    let readers = |own: Group| Readers { subscribers: count(own.id()), satisfaction: 0.0, progress: 0.012 };
+    Circumstances {
+        groups: ByGroup::from_fn(readers),
+        subscribers: 5520,
+        research_done: false,
+        price_cut: false,
+        promotion: false,
+        quota_up: false,
+        outage_days: 0,
+        overload: 0.0,
+        p95_ms: 190.0,
+        issue_rate: 0.03,
+        issue_age: 1.5,
+        live: Vec::new(),
+    }
+}
+
+fn with_outage() -> Circumstances {
+    Circumstances { outage_days: 1, live: vec![(LiveEvent::Outage, 2)], ..usual() }
+}
+
+fn complaint() -> Option<Original<'static>> {
+    Some(Original { content: ASKED, negative: true, group: Some(group("S3")) })
+}
+
+fn all(submission: &Submission<'_>, facts: &Circumstances) -> Vec<Judgement> {
+    judge(submission, Group::all(), facts, Lexicon::shipped())
+}
+
+fn effect(judgements: &[Judgement], id: &str) -> f64 {
+    judgements[group(id).index()].effect
+}
+
+fn post(content: &str) -> Submission<'_> {
+    Submission { content, day: 100, ..Submission::default() }
+}
+
+struct Example {
+    name: &'static str,
+    submission: Submission<'static>,
+    facts: Circumstances,
+    expected: [f64; 9],
+}
+
+const SHOWN: [&str; 9] = ["S1", "S2", "S3", "E1", "E2", "E3", "D_S07", "D_S08", "D_E03"];
+
+fn examples() -> Vec<Example> {
+    let quota_up = || Circumstances { quota_up: true, ..usual() };
+    let example =
+        |name, content, facts, expected| Example { name, submission: post(content), facts, expected };
+    let mut list = vec![
+        example(
+            "a",
+            "NovaMind is live. An AI assistant for documents, email and data. Try it and tell us what you think.",
+            usual(),
+            [0.06, 0.09, 0.18, 0.09, 0.13, 0.10, 0.29, 0.06, 0.09],
+        ),
+        example(
+            "b",
+            "The BEST AI tool ever!!! Revolutionary, game-changing, 100% perfect. Sign up now! \u{1F680}\u{1F680}",
+            usual(),
+            [-0.03, -0.34, -0.47, -0.33, -0.39, -0.33, -0.43, 0.01, -0.39],
+        ),
+        example(
+            "c",
+            "Student or freelancer? 30% discount on plan A this month, and month-to-month, cancel anytime. No tricks.",
+            Circumstances { promotion: true, ..usual() },
+            [0.34, 0.07, 0.10, 0.33, 0.04, 0.04, 0.08, 0.14, 0.04],
+        ),
+        example("d", D, quota_up(), [0.45, 0.34, 0.87, 0.17, 0.24, 0.51, 0.80, 0.40, 0.30]),
+        example("e", D, usual(), [-0.43, -0.45, -0.34, -0.44, -0.42, -0.41, -0.07, -0.18, -0.15]),
+        example(
+            "f",
+            "We were down 3 hours on Tuesday. Root cause: an overloaded queue. Fixed, capacity doubled, credits go out \
+             Friday. Sorry.",
+            with_outage(),
+            [0.62, 0.72, 0.75, 0.60, 0.58, 0.60, 0.32, 0.38, 0.23],
+        ),
+        example(
+            "g",
+            "New feature launch: brainstorm boards are here. Rock-solid uptime, as always!",
+            with_outage(),
+            [-0.48, -0.46, -0.53, -0.46, -0.46, -0.49, -0.27, -0.18, -0.25],
+        ),
+        example(
+            "h",
+            "Budgets are tight. Plan A price cut by 20% from Monday, annual volume discounts for teams, no lock-in.",
+            Circumstances { price_cut: true, live: vec![(LiveEvent::MacroDown, 6)], ..usual() },
+            [0.71, 0.32, 0.28, 0.63, 0.20, 0.21, 0.26, 0.32, 0.18],
+        ),
+        example(
+            "i",
+            "RivalTech just launched garbage. Overpriced and terrible. Everyone is switching to us.",
+            Circumstances { live: vec![(LiveEvent::Rival, 3)], ..usual() },
+            [-0.23, -0.34, -0.34, -0.33, -0.38, -0.35, -0.35, -0.22, -0.36],
+        ),
+        example(
+            "j",
+            "Sorry you hit the quota wall. We raised plan B limits by 50% today and credited your account. Does that cover \
+             your batch jobs?",
+            Circumstances { live: vec![(LiveEvent::Quota, 0)], ..quota_up() },
+            [0.57, 0.43, 0.97, 0.36, 0.36, 0.40, 0.46, 0.40, 0.28],
+        ),
+        example(
+            "k",
+            "Read the docs. Limits are listed there, works for everyone else.",
+            Circumstances { live: vec![(LiveEvent::Quota, 0)], ..usual() },
+            [-0.18, -0.21, -0.33, -0.19, -0.20, -0.19, -0.21, -0.20, -0.19],
+        ),
+        example(
+            "l",
+            "API SDK webhooks limits quota latency p95 tokens batch docs benchmarks 200k tokens today shipped",
+            usual(),
+            [-0.27, -0.36, 0.12, -0.47, -0.40, -0.23, 0.02, -0.32, -0.31],
+        ),
+        example("m", D, quota_up(), [0.33, 0.31, 0.77, 0.17, 0.24, 0.39, 0.59, 0.35, 0.25]),
+    ];
+    for example in &mut list {
+        match example.name {
+            "j" | "k" => example.submission.original = complaint(),
+            "m" => {
+                example.submission.earlier = vec![
+                    (79, "API news: bigger quotas on plan C from Monday, batch jobs run twice as fast now."),
+                    (86, "Higher limits for the API are live, docs are updated."),
+                ]
+            }
+            _ => {}
+        }
+    }
+    list
+}
+
+#[test]
+fn the_worked_examples_of_chapter_30() {
+    let mut wrong = Vec::new();
+    for example in examples() {
+        let judgements = all(&example.submission, &example.facts);
+        for (id, expected) in SHOWN.into_iter().zip(example.expected) {
+            let own = &judgements[group(id).index()];
+            if (own.effect - expected).abs() > 1e-9 {
+                wrong.push(format!(
+                    "{} {id}: {} instead of {expected}: {:?}",
+                    example.name, own.effect, own.terms
+                ));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_contributions_of_chapter_30() {
+    let of = |name: &str, id: &str| {
+        let example = examples().into_iter().find(|example| example.name == name).expect("an example");
+        let judgements = all(&example.submission, &example.facts);
+        judgements[group(id).index()].clone()
+    };
+    for (name, id, expected) in [
+        ("d", "S3", &[("topics", 0.40), ("specific", 0.20), ("tone", 0.1064), ("claims_true", 0.10)][..]),
+        ("e", "S3", &[("claims_false", -0.55), ("topics", 0.10), ("specific", 0.05), ("tone", 0.0266)]),
+        (
+            "f",
+            "S2",
+            &[
+                ("topics", 0.248),
+                ("timing", 0.14),
+                ("accountable", 0.14),
+                ("specific", 0.1054),
+                ("tone", 0.0392),
+            ],
+        ),
+        ("b", "S3", &[("hype", -0.27), ("tone", -0.1316), ("hard_sell", -0.10)]),
+        (
+            "h",
+            "S1",
+            &[
+                ("topics", 0.3392),
+                ("specific", 0.1442),
+                ("claims_true", 0.10),
+                ("timing", 0.07),
+                ("tone", 0.0056),
+            ],
+        ),
+    ] {
+        let own = of(name, id);
+        for (term, value) in expected {
+            let found = own.terms.iter().find(|own| own.name == *term).map(|own| own.value);
+            assert!(found.is_some_and(|found| (found - value).abs() < 5e-5), "{name} {id} {term}: {found:?}");
+        }
+    }
+    assert_eq!(of("d", "S3").reason(), "topics +0.40 (api, limits, speed), specific +0.20, tone +0.11");
+    assert!(of("e", "S3").reason().starts_with("claims_false -0.55 (limits)"));
+}
+
+#[test]
+fn a_true_claim_beats_a_false_one_wherever_the_topic_counts() {
+    let lexicon = Lexicon::shipped();
+    let [truth, lie] = [true, false].map(|quota_up| all(&post(D), &Circumstances { quota_up, ..usual() }));
+    for own in Group::all().filter(|own| lexicon.profile(*own).weight("limits") > 0.0) {
+        assert!(truth[own.index()].effect > lie[own.index()].effect, "{own}");
+    }
+}
+
+#[test]
+fn an_insult_never_helps() {
+    for example in examples() {
+        let before = all(&example.submission, &example.facts);
+        for insult in ["You idiots.", "Shut up.", "Losers."] {
+            let content = format!("{} {insult}", example.submission.content);
+            let after = all(&Submission { content: &content, ..example.submission.clone() }, &example.facts);
+            for (before, after) in before.iter().zip(&after) {
+                assert!(after.effect <= before.effect, "{} {} {insult}", example.name, before.group);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_order_of_groups_does_not_matter() {
+    for example in examples() {
+        let forwards = all(&example.submission, &example.facts);
+        let mut backwards =
+            judge(&example.submission, Group::all().rev(), &example.facts, Lexicon::shipped());
+        backwards.reverse();
+        assert_eq!(forwards, backwards);
+    }
+}
+
+#[test]
+fn repeating_one_recipe_wears_out() {
+    let facts = Circumstances { quota_up: true, ..usual() };
+    let recipe = [
+        "API news: quotas doubled to 300k tokens/day on plan C, webhooks p95 at 180 ms. Docs published today.",
+        "For developers: we raised batch limits by 40% today, the SDK endpoint answers at 170 ms p95, docs inside.",
+        "More API tokens from Monday: 400k on plan B, throttling cut, endpoint latency down to 160 ms. Benchmarks attached.",
+    ];
+    let first = effect(&all(&post(recipe[2]), &facts), "S3");
+    let earlier = vec![(86, recipe[0]), (93, recipe[1])];
+    let third = effect(&all(&Submission { earlier, ..post(recipe[2]) }, &facts), "S3");
+    assert!(third <= 0.9 * first, "{third} after {first}");
+}
+
+#[test]
+fn heaps_of_words_go_nowhere() {
+    let lexicon = Lexicon::shipped();
+    let mut stream = Streams::new(16).open(Part::Voice, [0]);
+    let lists: Vec<&Vec<Entry>> = lexicon.topics.values().chain(lexicon.words.all()).collect();
+    let facts = Circumstances { quota_up: true, ..usual() };
+    let (mut viral, mut judged) = (0, 0);
+    for _ in 0..800 {
+        let words: Vec<&str> = (0..stream.integer(4, 24))
+            .map(|_| {
+                let list = lists[stream.index(lists.len())];
+                list[stream.index(list.len())].text()
+            })
+            .collect();
+        let judgements = all(&post(&words.join(" ")), &facts);
+        assert!(judgements.iter().all(|own| (-1.0..=1.0).contains(&own.effect)));
+        viral += judgements.iter().filter(|own| own.effect >= 0.6).count();
+        judged += judgements.len();
+    }
+    assert!((viral as f64) < 0.001 * judged as f64, "{viral} of {judged}");
+}
+
+#[test]
+fn any_text_gets_a_score() {
+    for content in ["", " ", "\u{1F680}", "ok", "\u{0}\u{ffff}", "$", "#", "%%%", "ÄÖÜ ß İ", "a'b-c"] {
+        let judgements = all(&post(content), &usual());
+        assert!(judgements.iter().all(|own| (-1.0..=1.0).contains(&own.effect)), "{content}");
+    }
+    assert!(all(&post("Good morning!"), &usual()).iter().all(|own| own.effect == 0.0));
+}

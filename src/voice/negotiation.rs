@@ -1,0 +1,279 @@
+//! What companies write: openers, prices of their own, agreement; and what the market records of a deal
+//! (chapter 40 §16.3).
+//!
+//! A message is an opening, a core with the facts, and an ending in the manner of the company. Opening and core
+//! go by the running number of the message with a stride that is coprime to the number of their pairs, so that no
+//! two messages of a situation are equal until all pairs have been used; there are more than sixty of each.
+//! A message says only what the offers and the profile of the company show anyway.
+
+mod phrases;
+
+use phrases::{ACCEPTANCE, APART, DOWNGRADE, ENDINGS, FAR, LATE, NEAR, Phrases, THREAT, UPGRADE};
+
+use crate::notation::grouped;
+use crate::world::events::{ThreadTurn, TurnContent};
+use crate::world::identifiers::Group;
+use crate::world::params::Personas;
+
+/// Step from one message to the next through the pairs of opening and core.
+const STRIDE: u32 = 31;
+
+/// A price of the company's own below the offered one by less than this share is near, by more than the second
+/// far.
+const GAPS: (f64, f64) = (0.10, 0.35);
+
+/// From this turn on a company may say that it takes long.
+const LONG_TALKS: u32 = 6;
+
+/// Text of a turn; empty where nothing is said in words.
+pub fn message(turn: &ThreadTurn, personas: &Personas) -> String {
+    match &turn.content {
+        TurnContent::Opening | TurnContent::Offer(_) | TurnContent::Rejection => String::new(),
+        TurnContent::Closing(offering) => format!(
+            "Deal closed with customer {}: plan {} at {} per seat and month, {} seats.",
+            turn.customer,
+            offering.plan,
+            money(offering.price),
+            grouped(f64::from(turn.seats), 0)
+        ),
+        TurnContent::Threat => written(turn, &THREAT, &[], personas),
+        TurnContent::PlanWish { from, to } => {
+            let seats = grouped(f64::from(turn.seats), 0);
+            let facts = [("{from}", from.to_string()), ("{plan}", to.to_string()), ("{seats}", seats)];
+            written(turn, if to > from { &UPGRADE } else { &DOWNGRADE }, &facts, personas)
+        }
+        TurnContent::Counter { asked, offered } => {
+            let facts = [("{plan}", asked.plan.to_string()), ("{price}", money(asked.price))];
+            written(turn, by_gap(asked.price, *offered), &facts, personas)
+        }
+        TurnContent::Acceptance(offering) => {
+            let facts = [("{plan}", offering.plan.to_string()), ("{price}", money(offering.price))];
+            written(turn, &ACCEPTANCE, &facts, personas)
+        }
+    }
+}
+
+fn money(price: f64) -> String {
+    format!("${}", grouped(price, 2))
+}
+
+/// Words that fit the distance between the two sides.
+fn by_gap(asked: f64, offered: f64) -> &'static Phrases {
+    let gap = if offered > 0.0 { (offered - asked) / offered } else { 0.0 };
+    match gap {
+        _ if gap < GAPS.0 => &NEAR,
+        _ if gap <= GAPS.1 => &APART,
+        _ => &FAR,
+    }
+}
+
+fn written(turn: &ThreadTurn, phrases: &Phrases, facts: &[(&str, String)], personas: &Personas) -> String {
+    let pairs = (phrases.openings.len() * phrases.cores.len()) as u32;
+    let pair = (u64::from(turn.message) * u64::from(STRIDE) % u64::from(pairs)) as usize;
+    let (opening, core) = (pair / phrases.cores.len(), pair % phrases.cores.len());
+    let mut said = phrases.cores[core].to_owned();
+    for (name, value) in facts {
+        said = said.replace(name, value);
+    }
+    format!("{} {said} {}", phrases.openings[opening], ending(turn, personas))
+}
+
+/// The last sentence: how the company decides, what it worries about, and that talks take long.
+fn ending(turn: &ThreadTurn, personas: &Personas) -> String {
+    let profile = Profile::of(turn, personas);
+    let settled = matches!(turn.content, TurnContent::Acceptance(_));
+    let choice = (turn.message / 3 + turn.customer) as usize;
+    if !settled && turn.number >= LONG_TALKS && choice.is_multiple_of(2) {
+        return LATE[choice / 2 % LATE.len()].to_owned();
+    }
+    let endings = &ENDINGS[Manner::of(profile.decision) as usize];
+    let pool = if settled { &endings.settled } else { &endings.open };
+    pool[choice % pool.len()]
+        .replace("{concern}", &profile.concern.replace('-', " "))
+        .replace("{culture}", &with_article(profile.culture))
+}
+
+fn with_article(word: &str) -> String {
+    let vowel = word.chars().next().is_some_and(|letter| "aeiouAEIOU".contains(letter));
+    format!("{} {word}", if vowel { "an" } else { "a" })
+}
+
+/// Words of a company's profile, as the table of customers shows them.
+struct Profile<'a> {
+    culture: &'a str,
+    decision: &'a str,
+    concern: &'a str,
+}
+
+impl<'a> Profile<'a> {
+    fn of(turn: &ThreadTurn, personas: &'a Personas) -> Profile<'a> {
+        let own = &personas.group[Group::index(turn.group)];
+        let [.., culture, decision, concern] = turn.persona.0;
+        let word = |list: &'a [String], at: u8, otherwise: &'a str| {
+            list.get(usize::from(at)).map_or(otherwise, String::as_str)
+        };
+        Profile {
+            culture: word(&own.culture, culture, "practical"),
+            decision: word(&own.decision_style, decision, "pragmatic"),
+            concern: word(&own.primary_concern, concern, "value"),
+        }
+    }
+}
+
+/// How a company comes to decisions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(usize)]
+enum Manner {
+    Quick,
+    Numbers,
+    Committee,
+    Careful,
+    Partner,
+}
+
+impl Manner {
+    /// The manner behind the words of a profile.
+    fn of(decision: &str) -> Manner {
+        let has = |words: &[&str]| words.iter().any(|word| decision.contains(word));
+        if has(&["committee-light", "fast", "quick", "pragmatic", "field-tested"]) {
+            Manner::Quick
+        } else if has(&["committee", "board", "senate", "consensus", "panel", "RFP"]) {
+            Manner::Committee
+        } else if has(&["ROI", "cost", "budget", "benchmark", "actuarial", "bid", "justified", "bakeoff"]) {
+            Manner::Numbers
+        } else if has(&["strategic", "relationship", "executive", "long-cycle", "champion", "partner"]) {
+            Manner::Partner
+        } else {
+            Manner::Careful
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::{BTreeSet, VecDeque};
+
+    use super::*;
+    use crate::world::customers::persona::PersonaPicks;
+    use crate::world::events::{Offering, Sender, ThreadKind};
+    use crate::world::identifiers::Plan;
+    use crate::world::params::Params;
+
+    fn turn(message: u32, content: TurnContent) -> ThreadTurn {
+        ThreadTurn {
+            message,
+            thread: 1,
+            customer: 40 + message % 7,
+            group: Group::parse("E2").expect("a group"),
+            persona: PersonaPicks([0, 0, 0, 0, (message % 5) as u8, (message / 5 % 5) as u8, 2]),
+            kind: ThreadKind::NewLead,
+            number: 2 + message % 9,
+            sender: Sender::Customer,
+            seats: 1200,
+            content,
+        }
+    }
+
+    fn situations() -> Vec<TurnContent> {
+        let offering = Offering { plan: Plan::B, price: 31.5 };
+        vec![
+            TurnContent::Threat,
+            TurnContent::PlanWish { from: Plan::A, to: Plan::C },
+            TurnContent::PlanWish { from: Plan::C, to: Plan::B },
+            TurnContent::Counter { asked: offering, offered: 33.0 },
+            TurnContent::Counter { asked: offering, offered: 40.0 },
+            TurnContent::Counter { asked: offering, offered: 90.0 },
+            TurnContent::Acceptance(offering),
+        ]
+    }
+
+    #[test]
+    fn no_two_of_sixty_messages_are_equal() {
+        let personas = Params::shipped().personas;
+        for content in situations() {
+            // All messages of one situation: the hardest case.
+            let mut recent: VecDeque<String> = VecDeque::new();
+            let mut all = BTreeSet::new();
+            for number in 0..500 {
+                let text = message(&turn(number, content.clone()), &personas);
+                assert!(!recent.contains(&text), "{text}");
+                all.insert(text.clone());
+                recent.push_back(text);
+                if recent.len() > 60 {
+                    recent.pop_front();
+                }
+            }
+            assert!(all.len() >= 150, "{content:?}: {} texts", all.len());
+        }
+    }
+
+    #[test]
+    fn pairs_are_many_and_the_stride_visits_all_of_them() {
+        for phrases in [&THREAT, &UPGRADE, &DOWNGRADE, &NEAR, &APART, &FAR, &ACCEPTANCE] {
+            let pairs = (phrases.openings.len() * phrases.cores.len()) as u32;
+            assert!(pairs > 60);
+            let visited: BTreeSet<u32> = (0..pairs).map(|message| message * STRIDE % pairs).collect();
+            assert_eq!(visited.len(), pairs as usize);
+            let sentences: BTreeSet<&str> = phrases.openings.iter().chain(phrases.cores).copied().collect();
+            assert_eq!(
+                sentences.len(),
+                phrases.openings.len() + phrases.cores.len(),
+                "a phrase stands twice"
+            );
+        }
+    }
+
+    #[test]
+    fn messages_hold_their_facts_and_no_gaps() {
+        let personas = Params::shipped().personas;
+        for (content, facts) in situations().into_iter().zip([
+            &[][..],
+            &["plan c", "1,200"],
+            &["plan c", "plan b", "1,200"],
+            &["plan b", "$31.50"],
+            &["plan b", "$31.50"],
+            &["plan b", "$31.50"],
+            &["plan b", "$31.50"],
+        ]) {
+            for number in 0..400 {
+                let text = message(&turn(number, content.clone()), &personas);
+                assert!(!text.contains(['{', '}']) && !text.contains("  "), "{text}");
+                let said = text.to_lowercase();
+                assert!(facts.iter().all(|fact| said.contains(fact)), "{facts:?} in {text}");
+                assert_eq!(text, text.trim());
+                assert!(text.ends_with(['.', '?', '!']), "{text}");
+                if facts.is_empty() {
+                    assert!(!text.contains(char::is_numeric), "{text}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_player_and_openings_say_nothing_and_deals_are_recorded() {
+        let personas = Params::shipped().personas;
+        let offering = Offering { plan: Plan::A, price: 28.0 };
+        for content in [TurnContent::Opening, TurnContent::Rejection, TurnContent::Offer(vec![offering])] {
+            assert_eq!(message(&turn(3, content), &personas), "");
+        }
+        assert_eq!(
+            message(&turn(3, TurnContent::Closing(offering)), &personas),
+            "Deal closed with customer 43: plan A at $28.00 per seat and month, 1,200 seats."
+        );
+    }
+
+    #[test]
+    fn every_profile_has_a_manner_and_all_manners_occur() {
+        let personas = Params::shipped().personas;
+        let styles = personas.group.iter().flat_map(|group| &group.decision_style);
+        let manners: BTreeSet<usize> = styles.map(|style| Manner::of(style) as usize).collect();
+        assert_eq!(manners.len(), ENDINGS.len());
+        assert_eq!(Manner::of("committee-heavy"), Manner::Committee);
+        assert_eq!(Manner::of("ROI-focused"), Manner::Numbers);
+        assert_eq!(Manner::of("HIPAA-gated"), Manner::Careful);
+        assert_eq!(
+            (with_article("audit-ready"), with_article("lean")),
+            ("an audit-ready".into(), "a lean".into())
+        );
+    }
+}

@@ -1,0 +1,116 @@
+//! Comments on the player's posts: a sentence or two in the tone of a group, for the reason the judge found.
+
+use std::sync::LazyLock;
+
+use super::words::Register;
+use crate::voice::grammar::{Chooser, Context, Grammar};
+use crate::voice::judge::Judgement;
+use crate::world::identifiers::Group;
+
+static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
+    Grammar::read(include_str!("../../../assets/voice/comments.toml"))
+        .expect("the shipped grammars are tested")
+});
+
+/// A comment of a group; `judgement` says why, where it is known.
+pub(super) fn about_own_post(
+    group: Group,
+    effect: f64,
+    judgement: Option<&Judgement>,
+    choose: Chooser<'_>,
+) -> String {
+    GRAMMAR.write("comment", &context(group, effect, judgement), choose)
+}
+
+fn context(group: Group, effect: f64, judgement: Option<&Judgement>) -> Context {
+    let side = if effect > 0.0 { "for" } else { "against" };
+    let person = |individual: &'static str, company: &'static str| {
+        if group.is_enterprise() { company } else { individual }
+    };
+    let (reason, subject) = reason(effect, judgement);
+    Context::default()
+        .with("side", side)
+        .with("reason", format!("{side}_{reason}"))
+        .with("subject", subject)
+        .with("register", Register::of(Some(group)).id())
+        .with("I", person("I", "we"))
+        .with("me", person("me", "us"))
+        .with("my", person("my", "our"))
+}
+
+/// The leading term that pulls the way of the reaction, and what the post was about.
+fn reason(effect: f64, judgement: Option<&Judgement>) -> (&'static str, String) {
+    let leading = judgement.map(Judgement::leading).unwrap_or_default();
+    let of_kind = |name: &str| leading.iter().find(|term| term.name == name);
+    let topic = of_kind("topics").and_then(|term| term.because.first()).cloned();
+    let pulls = leading.iter().find(|term| term.value * effect > 0.0 && term.name != "receptive");
+    let Some(term) = pulls else { return ("topics", topic.unwrap_or_default()) };
+    let subject = match term.name {
+        "claims_true" | "claims_false" => term.because.first().cloned(),
+        _ => topic,
+    };
+    (term.name, subject.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::voice::judge::{Lexicon, Term};
+
+    #[test]
+    fn every_reason_has_its_words() {
+        let good = ["topics", "specific", "tone", "timing", "accountable", "claims_true", "reply"];
+        let bad = [
+            "topics",
+            "tone",
+            "timing",
+            "accountable",
+            "claims_false",
+            "hype",
+            "hard_sell",
+            "conduct",
+            "bashing",
+            "stuffing",
+            "repetition",
+            "reply_misses",
+            "defensive",
+        ];
+        for (side, sign, names) in [("for", 1.0, &good[..]), ("against", -1.0, &bad[..])] {
+            for name in names {
+                assert!(GRAMMAR.has(&format!("opinion.{side}_{name}")), "{side} {name}");
+                for group in Group::all() {
+                    let term = Term { name, value: 0.4 * sign, because: vec!["api".to_owned()] };
+                    let judgement = Judgement { group, effect: 0.7 * sign, terms: vec![term] };
+                    let context = context(group, 0.7 * sign, Some(&judgement));
+                    let phrasings = GRAMMAR.phrasings("comment", &context);
+                    assert!(phrasings >= 30, "{side} {name} {group}: {phrasings}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_topic_and_claim_can_be_named() {
+        let lexicon = Lexicon::shipped();
+        for name in lexicon.topics.keys().chain(lexicon.claims.keys()) {
+            assert!(GRAMMAR.has(&format!("about.{name}")), "{name}");
+        }
+        assert!(GRAMMAR.has("about.scale"));
+    }
+
+    #[test]
+    fn a_comment_names_what_the_post_was_about() {
+        let group = Group::parse("S3").expect("a group");
+        let term = |name, value, because: &str| Term { name, value, because: vec![because.to_owned()] };
+        let judgement = Judgement {
+            group,
+            effect: -0.7,
+            terms: vec![term("topics", 0.1, "limits"), term("claims_false", -0.55, "speed")],
+        };
+        assert_eq!(reason(-0.7, Some(&judgement)), ("claims_false", "speed".to_owned()));
+        assert_eq!(reason(0.7, Some(&judgement)), ("topics", "limits".to_owned()));
+        assert_eq!(reason(0.7, None), ("topics", String::new()));
+        let text = about_own_post(group, 0.7, Some(&judgement), &mut |_| 0);
+        assert!(text.contains("quotas"), "{text}");
+    }
+}

@@ -1,0 +1,66 @@
+//! The words of posts and comments (chapter 30 §14).
+//!
+//! Facts say why somebody writes; these grammars say it. What a post says is true for its author, and no more than a
+//! reader could learn from a person: causes and moods, prices and plans, never a hidden number. The words of a post
+//! come from a stream of their own, so they touch nothing of the world.
+
+mod comments;
+mod customers;
+mod fresh;
+pub mod names;
+mod press;
+mod words;
+
+use fresh::Recent;
+
+use super::judge::Judgement;
+use crate::world::events::{Matter, Post};
+use crate::world::params::Params;
+use crate::world::random::{Part, Streams};
+
+/// Puts posts into words, one after the other: it remembers the last ones so as not to repeat them.
+#[derive(Debug, Clone, Default)]
+pub struct Writer {
+    recent: Recent,
+}
+
+impl Writer {
+    /// The text of a post; `judgement` is how the group that a comment speaks for took the player's post.
+    pub fn write(
+        &mut self,
+        post: &Post,
+        judgement: Option<&Judgement>,
+        params: &Params,
+        streams: &Streams,
+    ) -> String {
+        let mut stream = streams.open(Part::Voice, [u64::from(post.post)]);
+        let mut choose = |count: usize| stream.index(count);
+        match (post.matter, post.author) {
+            (Matter::Opinion(opinion), Some(author)) => {
+                let context = customers::context(&author, &opinion, post.sentiment, params);
+                let text = self.recent.freshest(|| customers::draft(&context, &mut choose));
+                if customers::without_capitals(&author) { text.to_lowercase() } else { text }
+            }
+            (Matter::Reading(reading), _) => {
+                self.recent.freshest(|| press::about_reading(&reading, &mut choose))
+            }
+            (Matter::Economy { trend, pmi, perspective }, _) => {
+                self.recent.freshest(|| press::about_economy(trend, pmi, perspective, &mut choose))
+            }
+            (Matter::Rival { name, perspective, severity, estimate }, _) => {
+                let names = &params.competitor.competitor_names;
+                let name = names.get(usize::from(name)).map_or("A rival", String::as_str);
+                self.recent
+                    .freshest(|| press::about_rival(name, perspective, severity, estimate, &mut choose))
+            }
+            (Matter::Comment { group, effect, .. }, _) => {
+                self.recent.freshest(|| comments::about_own_post(group, effect, judgement, &mut choose))
+            }
+            // An opinion always has an author.
+            (Matter::Opinion(_), None) => String::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,166 @@
+//! Posts of the market observer: readings of the economy, its mood, and moves of rivals.
+
+use std::sync::LazyLock;
+
+use crate::voice::grammar::{Chooser, Context, Grammar};
+use crate::world::market::competitors::Severity;
+use crate::world::market::economy::{Reading, Trend};
+
+static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
+    Grammar::read(include_str!("../../../assets/voice/press.toml")).expect("the shipped grammars are tested")
+});
+
+/// Points of view on the economy, in the order of their numbers.
+const ECONOMY_VIEWS: [&str; 11] = [
+    "startup_chief",
+    "sales",
+    "analyst",
+    "shop_owner",
+    "buyer",
+    "freelancer",
+    "finance_chief",
+    "marketing",
+    "supply",
+    "adviser",
+    "journalist",
+];
+
+/// Points of view on rivals, in the order of their numbers.
+const RIVAL_VIEWS: [&str; 7] =
+    ["analyst", "journalist", "watcher", "insider", "investor", "reviewer", "evaluator"];
+
+/// What every post of the press is told; most of it is empty.
+fn context(way: &str, view: &str) -> Context {
+    let empty = ["trend", "seen", "pmi", "change", "name", "severity", "estimate"];
+    let context = Context::default().with("way", way).with("view", view);
+    empty.into_iter().fold(context, |context, name| context.with(name, ""))
+}
+
+fn way(trend: Trend) -> &'static str {
+    match trend {
+        Trend::StrongExpansion | Trend::Expansion => "up",
+        Trend::Neutral => "flat",
+        Trend::Contraction | Trend::SevereContraction => "down",
+    }
+}
+
+/// A published reading: value and change with one decimal.
+pub(super) fn about_reading(reading: &Reading, choose: Chooser<'_>) -> String {
+    let change = match reading.change {
+        up if up > 0.0 => format!("up {up:.1} points"),
+        down if down < 0.0 => format!("down {:.1} points", down.abs()),
+        _ => "a change of 0.0 points".to_owned(),
+    };
+    let context = context(way(reading.trend), "")
+        .with("trend", reading.trend.id())
+        .with("pmi", format!("{:.1}", reading.value))
+        .with("change", change);
+    GRAMMAR.write("reading", &context, choose)
+}
+
+/// The mood of the economy; every second post names today's index.
+pub(super) fn about_economy(trend: Trend, pmi: f64, view: u8, choose: Chooser<'_>) -> String {
+    let view = ECONOMY_VIEWS[usize::from(view) % ECONOMY_VIEWS.len()];
+    let with_number = choose(2) == 0;
+    let seen = format!("{view}.{}", way(trend));
+    let context = context(way(trend), view)
+        .with("seen", seen)
+        .with("pmi", format!("{pmi:.1}"))
+        .tag("number", with_number)
+        .tag("no_number", !with_number);
+    GRAMMAR.write("economy", &context, choose)
+}
+
+/// A rival has moved: its name, and the author's estimate with four decimals.
+pub(super) fn about_rival(
+    name: &str,
+    view: u8,
+    severity: Severity,
+    estimate: f64,
+    choose: Chooser<'_>,
+) -> String {
+    let severity = match severity {
+        Severity::Minor => "minor",
+        Severity::Moderate => "moderate",
+        Severity::Major => "major",
+        Severity::Transformative => "transformative",
+    };
+    let context = context("", RIVAL_VIEWS[usize::from(view) % RIVAL_VIEWS.len()])
+        .with("name", name)
+        .with("severity", severity)
+        .with("estimate", format!("{estimate:.4}"));
+    GRAMMAR.write("rival", &context, choose)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_view_and_band_has_its_words() {
+        for view in ECONOMY_VIEWS {
+            assert!(GRAMMAR.has(&format!("voice.{view}")));
+            for way in ["up", "flat", "down"] {
+                assert!(GRAMMAR.has(&format!("scene.{view}.{way}")), "{view} {way}");
+                let context = context(way, view).with("seen", format!("{view}.{way}"));
+                for number in [true, false] {
+                    let context = context.clone().tag("number", number).tag("no_number", !number);
+                    let phrasings = GRAMMAR.phrasings("economy", &context);
+                    assert!(phrasings >= 30, "{view} {way} {number}: {phrasings}");
+                }
+            }
+        }
+        for view in RIVAL_VIEWS {
+            assert!(GRAMMAR.has(&format!("look.{view}")) && GRAMMAR.has(&format!("number.{view}")));
+            for severity in ["minor", "moderate", "major", "transformative"] {
+                assert!(
+                    GRAMMAR.has(&format!("news.{severity}")) && GRAMMAR.has(&format!("verdict.{severity}"))
+                );
+                let phrasings = GRAMMAR.phrasings("rival", &context("", view).with("severity", severity));
+                assert!(phrasings >= 30, "{view} {severity}: {phrasings}");
+            }
+        }
+        for trend in ["strong_expansion", "expansion", "neutral", "contraction", "severe_contraction"] {
+            assert!(GRAMMAR.has(&format!("headline.{trend}")) && GRAMMAR.has(&format!("comment.{trend}")));
+            assert!(GRAMMAR.phrasings("reading", &context("up", "").with("trend", trend)) >= 30, "{trend}");
+        }
+    }
+
+    #[test]
+    fn posts_say_what_the_chapter_asks_for() {
+        let mut state = 3u64;
+        let mut choose = |count: usize| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % count
+        };
+        let law = crate::world::params::Params::shipped().economy;
+        let mut with_number = 0;
+        for round in 0..400u32 {
+            let estimate = 0.0131 + f64::from(round) / 3000.0;
+            let text = about_rival("CloudPeak", (round % 7) as u8, Severity::Major, estimate, &mut choose);
+            assert!(text.contains(&format!("{estimate:.4}")) && text.contains("CloudPeak"), "{text}");
+            assert!(
+                text.contains("estimate")
+                    || text.contains("suggest")
+                    || text.contains("guess")
+                    || text.contains("model")
+                    || text.contains("scale"),
+                "{text}"
+            );
+            let pmi = 36.0 + f64::from(round % 28);
+            let text = about_economy(Trend::of(pmi, &law), pmi, (round % 11) as u8, &mut choose);
+            with_number += u32::from(text.contains(&format!("{pmi:.1}")));
+            let reading = Reading {
+                measured_day: 1,
+                value: pmi,
+                change: f64::from(round % 5) - 2.0,
+                trend: Trend::of(pmi, &law),
+                phase: crate::world::market::economy::Phase::Peak,
+            };
+            let text = about_reading(&reading, &mut choose);
+            let change = format!("{:.1}", reading.change.abs());
+            assert!(text.contains(&format!("{pmi:.1}")) && text.contains(&change), "{text}");
+        }
+        assert!((150..=250).contains(&with_number), "{with_number}");
+    }
+}

@@ -1,0 +1,154 @@
+//! Numbers and profiles as people say them.
+
+use crate::notation::{cents, dollars};
+use crate::world::events::PostAuthor;
+use crate::world::identifiers::Group;
+use crate::world::params::Params;
+
+/// How people of a group talk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Register {
+    /// Among friends.
+    Casual,
+    /// Plainly.
+    Plain,
+    /// As one whose word is checked.
+    Expert,
+    /// Among engineers.
+    Technical,
+    /// For a company.
+    Corporate,
+}
+
+impl Register {
+    /// The register of a group; the press and strangers talk plainly.
+    pub fn of(group: Option<Group>) -> Register {
+        let Some(group) = group else { return Register::Plain };
+        match group.id() {
+            "S1" | "D_S01" | "D_S05" | "D_S08" | "D_S10" => Register::Casual,
+            "S2" | "D_S02" => Register::Expert,
+            "S3" | "D_S07" => Register::Technical,
+            _ if group.is_enterprise() => Register::Corporate,
+            _ => Register::Plain,
+        }
+    }
+
+    /// Word in the grammars.
+    pub fn id(self) -> &'static str {
+        match self {
+            Register::Casual => "casual",
+            Register::Plain => "plain",
+            Register::Expert => "expert",
+            Register::Technical => "technical",
+            Register::Corporate => "corporate",
+        }
+    }
+}
+
+const NUMBERS: [&str; 13] =
+    ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
+
+fn counted(count: u32, unit: &str) -> String {
+    let number = NUMBERS.get(count as usize).map_or_else(|| count.to_string(), |word| (*word).to_owned());
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{number} {unit}{plural}")
+}
+
+/// A time in days, weeks or months, as one says it: `three weeks`.
+pub fn time_span(days: u32) -> String {
+    match days {
+        0 | 1 => "one day".to_owned(),
+        2..=13 => counted(days, "day"),
+        14..=59 => counted(days / 7, "week"),
+        60..=364 => counted(days / 30, "month"),
+        _ => "more than a year".to_owned(),
+    }
+}
+
+/// The length of an outage; none where there was none.
+pub fn outage_span(minutes: u32) -> Option<String> {
+    match minutes {
+        0 => None,
+        30 => Some("half an hour".to_owned()),
+        60 => Some("an hour".to_owned()),
+        90 => Some("an hour and a half".to_owned()),
+        _ => Some(counted(minutes, "minute")),
+    }
+}
+
+/// How many seats, roughly: a company does not count itself in public.
+pub fn seats_roughly(seats: u32) -> &'static str {
+    match seats {
+        0..60 => "a few dozen seats",
+        60..150 => "around a hundred seats",
+        150..350 => "a few hundred seats",
+        350..800 => "several hundred seats",
+        800..1300 => "about a thousand seats",
+        _ => "well over a thousand seats",
+    }
+}
+
+/// A price without needless cents; none for nothing.
+pub fn price(amount: f64) -> Option<String> {
+    match amount {
+        _ if amount < 0.005 => None,
+        _ if amount.fract() == 0.0 => Some(dollars(amount)),
+        _ => Some(cents(amount)),
+    }
+}
+
+/// Role of an author, in words.
+pub fn role(author: &PostAuthor, params: &Params) -> String {
+    pick(&params.personas.group[author.group.index()].role, author.persona.0[1])
+}
+
+/// Trade of an author, in words.
+pub fn trade(author: &PostAuthor, params: &Params) -> String {
+    pick(&params.personas.group[author.group.index()].industry, author.persona.0[0])
+}
+
+/// Whether an author is at home with technology.
+pub fn skilled(author: &PostAuthor, params: &Params) -> bool {
+    let axis = if author.group.is_enterprise() {
+        (&params.personas.enterprise.tech_savvy, author.persona.0[2])
+    } else {
+        (&params.personas.individual.tech_savvy, author.persona.0[4])
+    };
+    ["advanced", "expert"].contains(&pick(axis.0, axis.1).as_str())
+}
+
+/// Whether an individual has long been in the trade.
+pub fn senior(author: &PostAuthor, params: &Params) -> bool {
+    let levels = &params.personas.individual.experience_levels;
+    !author.group.is_enterprise()
+        && ["experienced", "veteran"].contains(&pick(levels, author.persona.0[2]).as_str())
+}
+
+/// A label without its hyphens.
+fn pick(labels: &[String], at: u8) -> String {
+    labels.get(usize::from(at)).map_or(String::new(), |label| label.replace('-', " "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spans_are_said_as_people_say_them() {
+        for (days, words) in [
+            (0, "one day"),
+            (9, "nine days"),
+            (20, "two weeks"),
+            (59, "eight weeks"),
+            (75, "two months"),
+            (500, "more than a year"),
+        ] {
+            assert_eq!(time_span(days), words);
+        }
+        assert_eq!(outage_span(0), None);
+        assert_eq!(outage_span(10).as_deref(), Some("ten minutes"));
+        assert_eq!(outage_span(90).as_deref(), Some("an hour and a half"));
+        assert_eq!((price(12.0), price(9.5), price(0.0)), (Some("$12".into()), Some("$9.50".into()), None));
+        assert_eq!(seats_roughly(120), "around a hundred seats");
+    }
+}

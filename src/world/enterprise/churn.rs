@@ -1,0 +1,189 @@
+//! Subscribers that leave: why, what it costs in reputation, and who may talk about it (chapter 40 §14).
+
+use super::company::moved_relationship;
+use super::{Standing, Step};
+use crate::world::customers::columns::Subscriber;
+use crate::world::events::{EndCause, SubscriptionEnded, SubscriptionStatus, ThreadKind};
+use crate::world::identifiers::Group;
+use crate::world::market::reputation::event_damage;
+use crate::world::params::Params;
+use crate::world::product::quality::{quota_demand, relationship_as_read, relationship_bonus};
+use crate::world::random::Part;
+
+/// A subscriber whose thread died today; companies like to talk about that (chapter 40 §14.3).
+///
+/// Threads that reappear tell it again every day.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CompanyLost {
+    /// The company.
+    pub customer: u32,
+    /// Its group.
+    pub group: Group,
+    /// Running number within its group.
+    pub n: u32,
+    /// Whole seats.
+    pub seats: u32,
+    /// Days it had been a subscriber; none if it has been gone for longer.
+    pub days_subscribed: Option<u32>,
+    /// How the thread began.
+    pub kind: ThreadKind,
+    /// How the thread died.
+    pub blame: Blame,
+}
+
+/// Whose silence ended a thread.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Blame {
+    /// The company's.
+    Silence,
+    /// The player's.
+    Timeout,
+}
+
+/// What decides why a company left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grounds {
+    /// Days its issue has been open, 0 without one.
+    pub issue_days: u32,
+    /// Shared quality of its plan, without what was done for its group: of today if it fell silent, of this
+    /// morning if nobody answered.
+    pub shared_quality: f64,
+    /// Bonus of its relationship.
+    pub relationship_bonus: f64,
+    /// What its quota is compared with, units.
+    pub demand: f64,
+    /// Quota of its plan, units.
+    pub quota: f64,
+}
+
+/// Why a company left; the first reason that holds.
+pub fn churn_reason(blame: Blame, grounds: &Grounds, params: &Params) -> EndCause {
+    let sales = &params.enterprise;
+    let poor = match blame {
+        Blame::Silence => {
+            let quality = (grounds.shared_quality + grounds.relationship_bonus)
+                .clamp(params.quality.negotiation_quality_min, params.quality.negotiation_quality_max);
+            quality - sales.churn_reason_quality_reference < sales.churn_reason_quality_gap
+        }
+        Blame::Timeout => grounds.shared_quality < sales.timeout_quality_reason_threshold,
+    };
+    if grounds.issue_days >= sales.extended_issue_days {
+        EndCause::ExtendedIssue
+    } else if poor {
+        EndCause::QualityChange
+    } else if blame == Blame::Silence && grounds.demand > grounds.quota {
+        EndCause::QuotaChange
+    } else {
+        EndCause::PriceSensitivity
+    }
+}
+
+impl Step<'_> {
+    /// Loses the subscriber of a thread. The damage to the reputation is done whether or not it still is one, so
+    /// threads that reappear do it every day.
+    pub(super) fn lose_subscriber(&mut self, thread: usize, blame: Blame, relationship_delta: f64) {
+        let own = &self.enterprise.threads[thread];
+        let (customer, group, kind, number) = (own.customer, own.group, own.kind, own.number);
+        let Some(at) = self.enterprise.position(customer) else { return };
+        let n = self.enterprise.companies[at].n;
+        let left = self.customers.groups[group].deactivate(n);
+        if let Some(row) = left {
+            let ending = self.ending(at, &row, blame);
+            self.facts.endings.push(ending);
+            self.enterprise.companies[at].standing = Standing::Gone(row);
+        }
+        let sales = &self.day.params.enterprise;
+        let company = &mut self.enterprise.companies[at];
+        let Some(row) = company.row(self.customers) else { return };
+        let relationship = moved_relationship(row.relationship, relationship_delta, sales);
+        company.set_relationship(relationship, self.customers);
+        self.damage_reputation(group, n, number);
+        self.result.lost.push(CompanyLost {
+            customer,
+            group,
+            n: row.n,
+            seats: row.seats as u32,
+            days_subscribed: left.map(|row| self.today() - row.start_day),
+            kind,
+            blame,
+        });
+    }
+
+    fn ending(&self, company: usize, row: &Subscriber, blame: Blame) -> SubscriptionEnded {
+        let company = &self.enterprise.companies[company];
+        let today = self.today();
+        SubscriptionEnded {
+            subscription: company.subscription,
+            customer: company.customer,
+            group: company.group,
+            seats: row.seats as u32,
+            // Who got no answer is gone at once, on paper at the end of the month that was agreed on.
+            day: match blame {
+                Blame::Silence => today,
+                Blame::Timeout => company.contract_end_day.max(today),
+            },
+            status: SubscriptionStatus::Cancelled,
+            cause: churn_reason(blame, &self.grounds(row, blame), self.day.params),
+        }
+    }
+
+    fn grounds(&self, row: &Subscriber, blame: Blame) -> Grounds {
+        let (morning, params) = (self.day.morning, self.day.params);
+        let quality = &params.quality;
+        let shared = match blame {
+            Blame::Silence => quality.base_product_quality + self.day.product.shared_bonus,
+            Blame::Timeout => morning.shared_quality,
+        };
+        let relationship = relationship_as_read(row.relationship, quality);
+        Grounds {
+            issue_days: row.open_issue_days.saturating_sub(params.issues.new_issue_open_days),
+            shared_quality: shared * morning.multipliers[row.plan],
+            relationship_bonus: relationship_bonus(relationship, quality),
+            demand: quota_demand(row.usage_rate, row.usage_rate, params),
+            quota: morning.quotas[row.plan],
+        }
+    }
+
+    fn damage_reputation(&mut self, group: Group, n: u32, thread: u32) {
+        let keys = [u64::from(self.today()), group.index() as u64, u64::from(n), u64::from(thread)];
+        let u = self.day.streams.open(Part::ReputationEvent, keys).uniform();
+        let law = &self.day.params.reputation;
+        let damage = event_damage(self.day.morning.subscribers[group], u, law);
+        self.reputation.move_by(group, -damage, law);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Second half of check 20 of chapter 40.
+    #[test]
+    fn check_20_of_chapter_40_reasons() {
+        let params = Params::shipped();
+        let quality = &params.quality;
+        let grounds = |issue_days, shared: f64, relationship, demand| Grounds {
+            issue_days,
+            shared_quality: quality.base_product_quality + shared,
+            relationship_bonus: relationship_bonus(relationship, quality),
+            demand,
+            quota: 1000.0,
+        };
+        for (grounds, reason) in [
+            (grounds(14, 0.6, 0.5, 0.0), EndCause::ExtendedIssue),
+            (grounds(13, 0.6, 0.5, 0.0), EndCause::PriceSensitivity),
+            (grounds(0, 0.14, 0.5, 0.0), EndCause::QualityChange),
+            (grounds(0, 0.15, 0.5, 0.0), EndCause::QualityChange),
+            (grounds(0, 0.0, 0.8, 0.0), EndCause::PriceSensitivity),
+            (grounds(0, 0.6, 0.5, 1001.0), EndCause::QuotaChange),
+            (grounds(0, 0.6, 0.5, 1000.0), EndCause::PriceSensitivity),
+        ] {
+            assert_eq!(churn_reason(Blame::Silence, &grounds, &params), reason, "{grounds:?}");
+        }
+        for (shared, reason) in [(0.1499, EndCause::QualityChange), (0.16, EndCause::PriceSensitivity)] {
+            // Neither relationship nor quota count when nobody answered.
+            let grounds = grounds(0, shared, 0.0, 5000.0);
+            assert_eq!(churn_reason(Blame::Timeout, &grounds, &params), reason, "{grounds:?}");
+        }
+    }
+}

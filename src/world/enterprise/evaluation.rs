@@ -1,0 +1,231 @@
+//! How a company judges offerings: take the best, name a price, or fall silent (chapter 40 §9.3, §9.4).
+
+use crate::world::customers::curve::{Curve, required_quality};
+use crate::world::events::Offering;
+use crate::world::identifiers::ByPlan;
+use crate::world::market::economy::round_to;
+use crate::world::params::Params;
+
+/// What a company answers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Answer {
+    /// It takes the offering at this position.
+    Accept(usize),
+    /// It names a price for the plan of the offering at this position, dollars a month and seat.
+    Counter(usize, f64),
+    /// It never answers again.
+    Silence,
+}
+
+/// The side that judges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judge {
+    /// Its curve, with everything the market added to it.
+    pub curve: Curve,
+    /// Quality it perceives on each plan.
+    pub quality: ByPlan<f64>,
+    /// First bid as a share of the most it would pay.
+    pub initial_offer_factor: f64,
+    /// Turns it takes part in.
+    pub max_turns: u32,
+}
+
+/// Quality beyond what the price requires.
+pub fn surplus(quality: f64, price: f64, curve: &Curve, params: &Params) -> f64 {
+    quality - required_quality(price, curve, params)
+}
+
+/// The highest price that a quality is enough for, by halving 0..=c_max; 0 if it is not enough for nothing.
+pub fn highest_price(quality: f64, curve: &Curve, params: &Params) -> f64 {
+    if quality < required_quality(0.0, curve, params) {
+        return 0.0;
+    }
+    let (mut low, mut high) = (0.0, curve.c_max);
+    for _ in 0..params.enterprise.max_price_search_iterations {
+        let middle = (low + high) / 2.0;
+        if required_quality(middle, curve, params) <= quality {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
+/// The price a company names after this many turns: it starts at its first bid and closes a share of the gap to
+/// the highest price with every turn; rounded to cents.
+pub fn counter_price(highest: f64, initial_offer_factor: f64, turns: u32, params: &Params) -> f64 {
+    let sales = &params.enterprise;
+    let mut bid = initial_offer_factor * highest;
+    for _ in 0..turns {
+        bid += sales.enterprise_negotiation_alpha * (highest - bid);
+    }
+    round_to(bid, sales.counter_offer_decimals)
+}
+
+impl Judge {
+    /// The answer to offerings when the last turn of the thread has this number.
+    pub fn answer(&self, offerings: &[Offering], turn: u32, params: &Params) -> Answer {
+        if turn >= self.max_turns {
+            return Answer::Silence;
+        }
+        let affordable =
+            |offering: &Offering| !params.fidelity.deal_price_ceiling || offering.price <= self.curve.c_max;
+        let best = self.best(offerings, affordable, params);
+        if let Some((at, surplus)) = best
+            && surplus > params.enterprise.accept_min_satisfaction_exclusive
+        {
+            return Answer::Accept(at);
+        }
+        let Some((at, _)) = best.or_else(|| self.best(offerings, |_| true, params)) else {
+            return Answer::Silence;
+        };
+        let highest = highest_price(self.quality[offerings[at].plan], &self.curve, params);
+        let price = counter_price(highest, self.initial_offer_factor, turn, params);
+        if price > 0.0 { Answer::Counter(at, price) } else { Answer::Silence }
+    }
+
+    /// Position and surplus of the best of those that fit, the first one on ties.
+    fn best(
+        &self,
+        offerings: &[Offering],
+        fits: impl Fn(&Offering) -> bool,
+        params: &Params,
+    ) -> Option<(usize, f64)> {
+        let mut best: Option<(usize, f64)> = None;
+        for (at, offering) in offerings.iter().enumerate().filter(|(_, offering)| fits(offering)) {
+            let surplus = surplus(self.quality[offering.plan], offering.price, &self.curve, params);
+            if best.is_none_or(|(_, most)| surplus > most) {
+                best = Some((at, surplus));
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::world::identifiers::Plan;
+
+    /// Base customer K of chapter 40 §20.
+    pub(in crate::world::enterprise) const K: Curve =
+        Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
+
+    fn near(actual: f64, expected: f64) {
+        assert!((actual - expected).abs() < 1e-9, "{actual} instead of {expected}");
+    }
+
+    fn offers(list: &[(Plan, f64)]) -> Vec<Offering> {
+        list.iter().map(|&(plan, price)| Offering { plan, price }).collect()
+    }
+
+    fn judge(a: f64, b: f64, c: f64) -> Judge {
+        Judge { curve: K, quality: ByPlan([a, b, c]), initial_offer_factor: 0.75, max_turns: 6 }
+    }
+
+    #[test]
+    fn check_1_of_chapter_40() {
+        let params = Params::shipped();
+        for (price, required) in [
+            (0.0, 0.5170680905),
+            (15.0, 0.6125),
+            (29.999999, 0.7079319069),
+            (30.0, 0.7265058915),
+            (45.0, 0.8375),
+            (60.0, 0.9484941085),
+            (60.01, 0.95),
+            (1e6, 0.95),
+            (-10.0, 0.5034351096),
+        ] {
+            assert!((required_quality(price, &K, &params) - required).abs() < 1e-10, "price {price}");
+        }
+    }
+
+    #[test]
+    fn check_2_of_chapter_40() {
+        let params = Params::shipped();
+        for (quality, highest) in [
+            (0.517, 0.0),
+            (0.52, 1.0363337665),
+            (0.6, 13.6611386921),
+            (0.7, 27.4766492501),
+            (0.75, 38.7616753750),
+            (0.8, 42.9205584583),
+            (0.94, 54.2041588054),
+            (1.0, 60.0),
+        ] {
+            near(highest_price(quality, &K, &params), highest);
+        }
+        let below_the_jump = highest_price(0.725, &K, &params);
+        assert!(below_the_jump < 30.0 && below_the_jump > 29.9999);
+    }
+
+    #[test]
+    fn check_3_of_chapter_40() {
+        let params = Params::shipped();
+        let highest = highest_price(0.8, &K, &params);
+        let bids: Vec<f64> = (0..8).map(|turns| counter_price(highest, 0.75, turns, &params)).collect();
+        assert_eq!(bids, [32.19, 35.41, 37.66, 39.24, 40.34, 41.12, 41.66, 42.04]);
+        let highest = highest_price(0.7, &K, &params);
+        let bids = [1, 2, 3, 5].map(|turns| counter_price(highest, 0.6, turns, &params));
+        assert_eq!(bids, [19.78, 22.09, 23.71, 25.63]);
+    }
+
+    #[test]
+    fn check_4_of_chapter_40() {
+        let params = Params::shipped();
+        let own = judge(0.72, 0.80, 0.88);
+        let three = offers(&[(Plan::A, 30.0), (Plan::B, 35.0), (Plan::C, 50.0)]);
+        assert_eq!(own.answer(&three, 1, &params), Answer::Accept(1));
+        near(surplus(0.80, 35.0, &K, &params), 0.067249831);
+        for (price, missing) in [(44.0, -0.018921704), (50.0, -0.114254451)] {
+            assert_eq!(own.answer(&offers(&[(Plan::B, price)]), 1, &params), Answer::Counter(0, 35.41));
+            near(surplus(0.80, price, &K, &params), missing);
+        }
+        let gift = offers(&[(Plan::B, 1.0)]);
+        assert_eq!(own.answer(&gift, 6, &params), Answer::Silence);
+        near(surplus(0.80, 1.0, &K, &params), 0.280110073);
+        assert_eq!(own.answer(&gift, 5, &params), Answer::Accept(0));
+        assert_eq!(own.answer(&offers(&[(Plan::B, 35.0), (Plan::B, 35.0)]), 1, &params), Answer::Accept(0));
+        assert_eq!(own.answer(&offers(&[(Plan::B, -5.0)]), 1, &params), Answer::Accept(0));
+        assert_eq!(own.answer(&[], 1, &params), Answer::Silence);
+    }
+
+    #[test]
+    fn check_5_of_chapter_40() {
+        let params = Params::shipped();
+        let dear = offers(&[(Plan::B, 100_000.0)]);
+        assert_eq!(judge(0.9, 0.96, 1.0).answer(&dear, 1, &params), Answer::Accept(0));
+        near(surplus(0.96, 100_000.0, &K, &params), 0.01);
+        assert_eq!(judge(0.9, 0.95, 1.0).answer(&dear, 1, &params), Answer::Counter(0, 49.50));
+        let weak = judge(0.5, 0.6, 0.7);
+        assert_eq!(weak.answer(&offers(&[(Plan::A, 1.0)]), 1, &params), Answer::Silence);
+        near(surplus(0.5, 1.0, &K, &params), -0.019889927);
+    }
+
+    #[test]
+    fn check_6_of_chapter_40() {
+        let params = Params::shipped();
+        for (noise, price) in [(0.8, 14.85), (0.9, 24.75), (1.0, 35.41), (1.1, 39.09)] {
+            let own = judge(0.0, 0.8 * noise, 0.0);
+            assert_eq!(own.answer(&offers(&[(Plan::B, 59.0)]), 1, &params), Answer::Counter(0, price));
+        }
+    }
+
+    #[test]
+    fn a_ceiling_keeps_prices_within_the_budget() {
+        let mut params = Params::shipped();
+        params.fidelity.deal_price_ceiling = true;
+        let own = judge(0.9, 0.96, 1.1);
+        // The dear offering has the greatest surplus, the affordable one is taken.
+        let mixed = offers(&[(Plan::C, 61.0), (Plan::B, 58.0)]);
+        assert_eq!(own.answer(&mixed, 1, &params), Answer::Accept(1));
+        // Nothing is affordable: the best of all decides the plan of the counter-offer.
+        let dear = offers(&[(Plan::B, 61.0), (Plan::C, 70.0)]);
+        let Answer::Counter(1, price) = own.answer(&dear, 1, &params) else { panic!("a counter-offer") };
+        near(price, counter_price(60.0, 0.75, 1, &params));
+        params.fidelity.deal_price_ceiling = false;
+        assert_eq!(own.answer(&dear, 1, &params), Answer::Accept(1));
+    }
+}

@@ -1,0 +1,200 @@
+//! What the player writes to companies between two weeks (chapter 40 §6, §7).
+//!
+//! A letter is decided and its draws are made ([`Enterprise::address`]) before anything changes
+//! ([`Enterprise::send`], [`Enterprise::reject`]).
+
+use std::collections::BTreeMap;
+
+use super::Enterprise;
+use super::company::moved_relationship;
+use super::thread::Thread;
+use crate::world::customers::Customers;
+use crate::world::events::{EndCause, Facts, Offering, Sender, ThreadKind, TurnContent};
+use crate::world::params::{Enterprise as Sales, Params};
+use crate::world::random::{Part, Streams};
+
+/// Offerings for one company.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Proposal {
+    /// Customer number.
+    pub customer: u32,
+    /// One to three offerings.
+    pub offerings: Vec<Offering>,
+}
+
+/// A proposal on its way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Letter {
+    /// Customer number.
+    pub customer: u32,
+    /// Number of the thread; a new one unless it is open.
+    pub thread: u32,
+    /// Whether the letter begins the thread.
+    pub begins: bool,
+    /// Number of its turn.
+    pub turn: u32,
+    /// What it offers.
+    pub offerings: Vec<Offering>,
+    /// Relationship after a late answer; none if nothing changes.
+    pub relationship: Option<f64>,
+    /// Day on which the company answers.
+    pub reply_day: u32,
+}
+
+/// Days until a company answers: its mean and spread with a standard normal draw, rounded half to even, at least
+/// one.
+pub fn reply_delay(mean: f64, std: f64, z: f64, sales: &Sales) -> u32 {
+    (mean + std * z).round_ties_even().max(f64::from(sales.reply_delay_min_days)) as u32
+}
+
+/// What an answer after this many days adds to the relationship; not positive.
+pub fn late_penalty(days: u32, sales: &Sales) -> f64 {
+    sales.late_reply_relationship_delta_per_day * f64::from(days.saturating_sub(sales.late_reply_free_days))
+}
+
+impl Enterprise {
+    /// Finds the thread of each proposal as things stand now, and draws when the company answers. Proposals to
+    /// companies that are neither in an open thread nor subscribers are left out.
+    pub fn address(
+        &self,
+        proposals: &[Proposal],
+        day: u32,
+        customers: &Customers,
+        params: &Params,
+        streams: &Streams,
+    ) -> Vec<Letter> {
+        let mut next_thread = self.next_thread;
+        let mut relationships: BTreeMap<u32, f64> = BTreeMap::new();
+        let mut letters = Vec::new();
+        for proposal in proposals {
+            let Some(company) = self.company(proposal.customer) else { continue };
+            let thread = self.open_thread_of(proposal.customer);
+            let (number, turn) = match thread {
+                Some(thread) => (thread.number, thread.last().number + 1),
+                None if company.is_subscriber() => {
+                    next_thread += 1;
+                    (next_thread - 1, 0)
+                }
+                None => continue,
+            };
+            let relationship = thread.and_then(|thread| {
+                let penalty = late_penalty(late_days(thread, day)?, &params.enterprise);
+                let stored = company.row(customers)?.relationship;
+                let before = relationships.get(&proposal.customer).copied().unwrap_or(stored);
+                (penalty != 0.0).then(|| moved_relationship(before, penalty, &params.enterprise))
+            });
+            if let Some(relationship) = relationship {
+                relationships.insert(proposal.customer, relationship);
+            }
+            let z = streams.open(Part::ReplyDelay, [u64::from(number), u64::from(turn)]).standard_normal();
+            let manner = &company.negotiator;
+            let delay = reply_delay(manner.reply_delay_mean, manner.reply_delay_std, z, &params.enterprise);
+            letters.push(Letter {
+                customer: proposal.customer,
+                thread: number,
+                begins: thread.is_none(),
+                turn,
+                offerings: proposal.offerings.clone(),
+                relationship,
+                reply_day: day + delay,
+            });
+        }
+        letters
+    }
+
+    /// Sends letters that were addressed to this state. Only the newest turn of a thread is answered.
+    pub fn send(&mut self, letters: &[Letter], day: u32, customers: &mut Customers, facts: &mut Facts) {
+        for letter in letters {
+            let Some(at) = self.position(letter.customer) else { continue };
+            if let Some(relationship) = letter.relationship {
+                self.companies[at].set_relationship(relationship, customers);
+            }
+            let content = TurnContent::Offer(letter.offerings.clone());
+            if letter.begins {
+                let seats = self.companies[at].row(customers).map_or(1, |row| row.seats as u32);
+                let kind = ThreadKind::Renegotiation;
+                self.open_thread(day, at, kind, seats, Sender::Agent, content, facts);
+            } else if let Some(thread) = self.index_of(letter.thread) {
+                self.say(thread, letter.turn, day, 1, Sender::Agent, content, facts);
+            }
+        }
+        for letter in letters {
+            if let Some(thread) = self.index_of(letter.thread) {
+                self.threads[thread].last_mut().reply_day = Some(letter.reply_day);
+            }
+        }
+    }
+
+    /// Ends open threads by their numbers. A lead is lost by it; subscribers stay.
+    pub fn reject(&mut self, threads: &[u32], day: u32, facts: &mut Facts) {
+        for number in threads {
+            let Some(thread) = self.index_of(*number).filter(|at| self.threads[*at].is_open()) else {
+                continue;
+            };
+            let turn = self.threads[thread].last().number + 1;
+            self.say(thread, turn, day, 1, Sender::Agent, TurnContent::Rejection, facts);
+            let own = &mut self.threads[thread];
+            own.closed = true;
+            let customer = own.customer;
+            if own.kind == ThreadKind::NewLead {
+                facts.endings.extend(self.lose_lead(customer, day, EndCause::LeadRejected));
+            }
+        }
+        self.forget(|thread| thread.closed);
+    }
+
+    /// The thread that a rejection of a customer would end, after these were ended.
+    pub fn rejectable(&self, customer: u32, ended: &[u32]) -> Option<&Thread> {
+        let open = self.threads.iter().filter(|thread| thread.customer == customer && thread.is_open());
+        open.filter(|thread| !ended.contains(&thread.number)).max_by_key(|thread| thread.last().message)
+    }
+
+    fn index_of(&self, number: u32) -> Option<usize> {
+        self.threads.binary_search_by_key(&number, |thread| thread.number).ok()
+    }
+}
+
+/// Days since the customer's newest turn; none where lateness does not count: the player wrote last, or the
+/// customer has not written yet.
+fn late_days(thread: &Thread, day: u32) -> Option<u32> {
+    if thread.last().sender == Sender::Agent {
+        return None;
+    }
+    thread.customer_day().map(|customer| day.saturating_sub(customer))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn check_7_of_chapter_40() {
+        let sales = Params::shipped().enterprise;
+        for (mean, std, z, days) in [
+            (5.0, 2.0, 0.0, 5),
+            (5.0, 2.0, -0.25, 4),
+            (5.0, 2.0, 0.25, 6),
+            (5.0, 2.0, 0.75, 6),
+            (5.0, 2.0, -3.0, 1),
+            (10.3, 4.1, 1.2, 15),
+            (0.5, 0.1, 0.0, 1),
+            (2.5, 1.0, 0.0, 2),
+            (3.5, 1.0, 0.0, 4),
+        ] {
+            assert_eq!(reply_delay(mean, std, z, &sales), days, "{mean} {std} {z}");
+        }
+    }
+
+    /// Check 8 of chapter 40, check 13 of chapter 50.
+    #[test]
+    fn late_answers_cost_two_hundredths_a_day() {
+        let sales = Params::shipped().enterprise;
+        let after = |days| moved_relationship(0.5, late_penalty(days, &sales), &sales);
+        for (days, relationship) in
+            [(0, 0.5), (1, 0.5), (2, 0.48), (3, 0.46), (4, 0.44), (5, 0.42), (6, 0.40)]
+        {
+            assert!((after(days) - relationship).abs() < 1e-12, "{days} days: {}", after(days));
+        }
+        assert_eq!(moved_relationship(0.05, late_penalty(6, &sales), &sales), 0.0);
+    }
+}

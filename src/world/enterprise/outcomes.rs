@@ -1,0 +1,177 @@
+//! How threads end: with a deal, in silence, or because nobody answered (chapter 40 §10, §11).
+
+use super::churn::Blame;
+use super::company::moved_relationship;
+use super::{Standing, Step};
+use crate::world::customers::columns::Subscriber;
+use crate::world::events::{
+    DealClosed, EndCause, Notice, Offering, Sender, SubscriptionEnded, SubscriptionStatus, TermsChanged,
+    ThreadKind, TurnContent,
+};
+use crate::world::product::usage::usage_rate;
+use crate::world::random::Part;
+use crate::world::retention::refresh_required;
+use crate::world::retention::renewal::{ongoing_discount, terms};
+
+impl Step<'_> {
+    /// A company takes an offering: the deal holds from today on.
+    pub(super) fn accept(&mut self, thread: usize, offering: Offering) {
+        let seats = self.seats_of(thread);
+        self.say(thread, Sender::Customer, seats, TurnContent::Acceptance(offering));
+        self.close_deal(thread, offering, seats);
+        self.say(thread, Sender::System, seats, TurnContent::Closing(offering));
+        self.enterprise.threads[thread].closed = true;
+        self.facts.notices.push(Notice::DealWon { price: offering.price });
+    }
+
+    /// Puts a deal into force, as far as there is anybody left to keep it.
+    fn close_deal(&mut self, thread: usize, offering: Offering, seats: u32) {
+        let own = &self.enterprise.threads[thread];
+        let (customer, kind) = (own.customer, own.kind);
+        let (agent_turns, days) = (own.agent_turns(), self.today() - own.turns[0].day);
+        let standing = self.enterprise.company(customer).map(|company| company.standing.clone());
+        let new_lead = kind == ThreadKind::NewLead;
+        let (changed, activated) = match standing {
+            Some(Standing::Lead(row)) if new_lead => (self.activate(customer, row, offering), true),
+            Some(Standing::Subscriber) if !new_lead => (self.change_terms(customer, offering), false),
+            _ => (None, false),
+        };
+        let end = self.today() + self.day.params.enterprise.contract_month_days;
+        let contract_end_day = changed.is_some().then_some(end);
+        if let (Some(end), Some(at)) = (contract_end_day, self.enterprise.position(customer)) {
+            self.enterprise.companies[at].contract_end_day = end;
+        }
+        self.result.new_seats += if activated { seats } else { 0 };
+        let (plan, price) = (offering.plan, offering.price);
+        self.facts.deals.push(DealClosed {
+            customer,
+            kind,
+            activated,
+            plan,
+            price,
+            agent_turns,
+            days,
+            seats,
+            contract_end_day,
+        });
+        self.facts.changes.extend(changed);
+    }
+
+    /// A lead becomes a subscriber. It is billed on the day of the month on which it came.
+    fn activate(&mut self, customer: u32, lead: Subscriber, offering: Offering) -> Option<TermsChanged> {
+        let (params, group) = (self.day.params, self.group_of(customer));
+        let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);
+        let keys = [group.index() as u64, u64::from(lead.n), u64::from(self.today())];
+        let z = self.day.streams.open(Part::UsageRate, keys).standard_normal();
+        let sales = &params.enterprise;
+        let row = Subscriber {
+            plan: offering.plan,
+            listed_price: offering.price,
+            promotion,
+            effective_price: (offering.price - promotion).max(params.billing.effective_price_min),
+            effective_c_max: lead.c_max,
+            start_day: self.today(),
+            usage_rate: usage_rate(lead.usage_demand, lead.seats.trunc(), z, &params.customer_generation),
+            relationship: moved_relationship(lead.relationship, sales.deal_relationship_delta, sales),
+            ..lead
+        };
+        self.customers.groups[group].activate(row);
+        if let Some(at) = self.enterprise.position(customer) {
+            self.enterprise.companies[at].standing = Standing::Subscriber;
+        }
+        self.renewed_terms(customer)
+    }
+
+    /// A subscriber gets new terms; budget, tenure and billing day stay.
+    fn change_terms(&mut self, customer: u32, offering: Offering) -> Option<TermsChanged> {
+        let (params, group) = (self.day.params, self.group_of(customer));
+        let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);
+        let n = self.enterprise.company(customer)?.n;
+        let own = &mut self.customers.groups[group];
+        let (block, at) = own.place(n)?;
+        let block = &mut own.blocks[block];
+        block.plan[at] = offering.plan;
+        block.listed_price[at] = offering.price;
+        block.promotion[at] = promotion;
+        block.effective_price[at] = (offering.price - promotion).max(params.billing.effective_price_min);
+        self.renewed_terms(customer)
+    }
+
+    /// Refreshes what follows from the terms of a subscriber, and returns them.
+    fn renewed_terms(&mut self, customer: u32) -> Option<TermsChanged> {
+        let group = self.group_of(customer);
+        let n = self.enterprise.company(customer)?.n;
+        let own = &mut self.customers.groups[group];
+        let (block, at) = own.place(n)?;
+        let block = &mut own.blocks[block];
+        refresh_required(block, at, self.day.morning.expectations[group].c_max, self.day.params);
+        Some(terms(block, at))
+    }
+
+    fn group_of(&self, customer: u32) -> crate::world::identifiers::Group {
+        self.enterprise.company(customer).expect("a company with a thread is not forgotten").group
+    }
+
+    /// A company never answers again: no turn shows it, and the newest one is marked.
+    pub(super) fn fall_silent(&mut self, thread: usize) {
+        let own = &mut self.enterprise.threads[thread];
+        own.last_mut().dead = true;
+        let kind = own.kind;
+        let sales = &self.day.params.enterprise;
+        if kind == ThreadKind::NewLead {
+            self.lose_lead(thread, EndCause::LeadSilent);
+            self.facts.notices.push(Notice::LeadSilent);
+            return;
+        }
+        let delta = match kind {
+            ThreadKind::Renegotiation => sales.renegotiation_ghost_relationship_delta,
+            _ => sales.ghost_relationship_delta,
+        };
+        self.lose_subscriber(thread, Blame::Silence, delta);
+    }
+
+    /// The player did not answer for too long.
+    pub(super) fn give_up(&mut self, thread: usize, days: u32) {
+        let own = &mut self.enterprise.threads[thread];
+        own.last_mut().dead = true;
+        if own.kind == ThreadKind::NewLead {
+            self.lose_lead(thread, EndCause::LeadTimeout);
+            self.facts.notices.push(Notice::LeadLostByTimeout { days });
+        } else {
+            let delta = self.day.params.enterprise.timeout_relationship_delta;
+            self.lose_subscriber(thread, Blame::Timeout, delta);
+        }
+    }
+
+    /// Loses the lead of a thread, unless it is lost already.
+    fn lose_lead(&mut self, thread: usize, cause: EndCause) {
+        let (today, customer) = (self.today(), self.enterprise.threads[thread].customer);
+        if let Some(ending) = self.enterprise.lose_lead(customer, today, cause) {
+            self.facts.endings.push(ending);
+        }
+    }
+}
+
+impl super::Enterprise {
+    /// Loses a lead, for good; none if it is none any more.
+    pub(super) fn lose_lead(
+        &mut self,
+        customer: u32,
+        day: u32,
+        cause: EndCause,
+    ) -> Option<SubscriptionEnded> {
+        let at = self.position(customer)?;
+        let company = &mut self.companies[at];
+        let Standing::Lead(row) = company.standing else { return None };
+        company.standing = Standing::Gone(row);
+        Some(SubscriptionEnded {
+            subscription: company.subscription,
+            customer,
+            group: company.group,
+            seats: row.seats as u32,
+            day,
+            status: SubscriptionStatus::Lost,
+            cause,
+        })
+    }
+}

@@ -1,0 +1,138 @@
+//! Quality as companies perceive it: in a negotiation, and every day (chapter 40 §9.2, §13.1).
+
+use super::Negotiation;
+use crate::world::customers::columns::Subscriber;
+use crate::world::customers::curve::Curve;
+use crate::world::identifiers::{ByPlan, Group};
+use crate::world::params::ServicePenalty;
+use crate::world::product::quality::{
+    Experience, delivered_quality, perceived_quality, quota_demand, quota_factor, relationship_as_read,
+    relationship_bonus,
+};
+
+impl Negotiation<'_> {
+    /// Quality of each plan in a negotiation, before the first impression of a lead: today's product, no tenure,
+    /// no weekday; quotas count only where there is an active subscription.
+    pub(super) fn offered_quality(&self, group: Group, row: &Subscriber, active: bool) -> ByPlan<f64> {
+        let product = self.product.quality(group, self.params);
+        let quality = &self.params.quality;
+        ByPlan::from_fn(|plan| {
+            let demand = quota_demand(row.usage_rate, row.usage_rate, self.params);
+            let quota = if active { quota_factor(self.morning.quotas[plan], demand, quality) } else { 1.0 };
+            let delivered = delivered_quality(product, 0.0, 0.0, self.morning.multipliers[plan]);
+            self.perceived(group, row, delivered, 0.0, quota)
+                .clamp(quality.negotiation_quality_min, quality.negotiation_quality_max)
+        })
+    }
+
+    /// Quality of each plan as a subscriber lives with it: this morning's product, tenure, weekday; no bounds.
+    pub(super) fn lived_quality(&self, group: Group, row: &Subscriber) -> ByPlan<f64> {
+        let demand = quota_demand(row.usage_rate * self.morning.weekday, row.usage_rate, self.params);
+        let tenure = self.tenure.bonus(self.morning.day.saturating_sub(row.start_day));
+        ByPlan::from_fn(|plan| {
+            let quota = quota_factor(self.morning.quotas[plan], demand, &self.params.quality);
+            self.perceived(group, row, self.morning.delivered(group, plan), tenure, quota)
+        })
+    }
+
+    fn perceived(&self, group: Group, row: &Subscriber, delivered: f64, tenure: f64, quota: f64) -> f64 {
+        let quality = &self.params.quality;
+        let penalty = match self.params.fidelity.service_penalty {
+            ServicePenalty::Satisfaction => 0.0,
+            ServicePenalty::Everywhere => self.service_penalty,
+        };
+        let experience = Experience {
+            delivered: delivered - penalty,
+            relationship: relationship_bonus(relationship_as_read(row.relationship, quality), quality),
+            tenure,
+            quota,
+            issues: quality.issue_penalty_per_open_day * f64::from(row.open_issue_days),
+            ads: row.ads_quality_sensitivity * self.ads.for_group(group),
+        };
+        perceived_quality(experience, self.params.fidelity.perceived_quality)
+    }
+
+    /// Curve in a negotiation, with everything the market has added to it by now.
+    pub(super) fn offered_curve(&self, group: Group, row: &Subscriber) -> Curve {
+        let expectation = self.drift.expectation(group);
+        let floor = self.params.quality.read_time_c_max_min;
+        curve_of(row).drifted(expectation.quality, expectation.c_max, floor)
+    }
+
+    /// Curve of every day, with what the market had added this morning.
+    pub(super) fn lived_curve(&self, group: Group, row: &Subscriber) -> Curve {
+        let expectation = self.morning.expectations[group];
+        let floor = self.params.quality.read_time_c_max_min;
+        curve_of(row).drifted(expectation.quality, expectation.c_max, floor)
+    }
+}
+
+fn curve_of(row: &Subscriber) -> Curve {
+    Curve {
+        steepness_left: row.steepness_left,
+        steepness_right: row.steepness_right,
+        c_max: row.c_max,
+        q_min: row.q_min,
+        q_max: row.q_max,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_kit::Kit;
+    use super::*;
+
+    fn assert_near(actual: ByPlan<f64>, expected: [f64; 3]) {
+        for (own, expected) in actual.iter().zip(expected) {
+            assert!((own - expected).abs() < 1e-10, "{actual:?} instead of {expected:?}");
+        }
+    }
+
+    /// Check 9 of chapter 40: quality in a negotiation.
+    #[test]
+    fn check_9_of_chapter_40() {
+        let mut kit = Kit::new(91);
+        kit.product.shared_bonus = 0.6;
+        kit.product.group_bonus[kit.group] = 0.05;
+        let quality = |kit: &Kit, change: &dyn Fn(&mut Subscriber), active: bool| {
+            let mut row = kit.row();
+            change(&mut row);
+            kit.with(|day| day.offered_quality(kit.group, &row, active))
+        };
+        let waiting = |row: &mut Subscriber| (row.relationship, row.open_issue_days) = (0.4, 2);
+        assert_near(quality(&kit, &waiting, false), [0.615, 0.700, 0.785]);
+        assert_near(quality(&kit, &|_| {}, false), [0.765, 0.850, 0.935]);
+        let worst = |row: &mut Subscriber| (row.relationship, row.open_issue_days) = (0.0, 2);
+        assert_near(quality(&kit, &worst, false), [0.705, 0.790, 0.875]);
+        assert_near(quality(&kit, &|row| row.relationship = 1.0, false), [1.0; 3]);
+        kit.settings.ads_strength.global = 0.5;
+        assert_near(quality(&kit, &|_| {}, false), [0.7057709848, 0.7907709848, 0.8757709848]);
+        kit.settings.ads_strength.global = 0.0;
+        kit.morning.quotas = ByPlan([3000.0, 4000.0, 10_000.0]);
+        let using = |row: &mut Subscriber| (row.usage_rate, row.start_day) = (5000.0, 1);
+        assert_near(quality(&kit, &using, true), [0.459, 0.680, 0.935]);
+    }
+
+    /// Check 7 of chapter 20, enterprise-offer form.
+    #[test]
+    fn the_form_of_an_offer_of_check_7_of_chapter_20() {
+        let mut kit = Kit::new(31);
+        kit.product.shared_bonus = 0.15;
+        kit.product.group_bonus[kit.group] = 0.05;
+        kit.morning.multipliers = ByPlan([0.6, 0.9, 1.1]);
+        kit.morning.quotas = ByPlan([60.0, 70.0, 1200.0]);
+        kit.settings.ads_strength.global = 0.2;
+        kit.settings.ads_strength.by_group.insert(kit.group, 0.1);
+        let row = Subscriber {
+            relationship: 0.7,
+            open_issue_days: 3,
+            usage_rate: 80.0,
+            ads_quality_sensitivity: 0.12,
+            ..kit.row()
+        };
+        let own = kit.with(|day| day.offered_quality(kit.group, &row, true));
+        for (own, expected) in own.iter().zip([0.156815793, 0.314315793, 0.461815793]) {
+            assert!((own - expected).abs() < 1e-9, "{own} instead of {expected}");
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Answers that are due today (chapter 40 §8).
+
+use super::evaluation::{Answer, Judge};
+use super::{Live, Step};
+use crate::world::events::{Notice, Offering, Sender, ThreadKind, TurnContent};
+
+/// An answer that was decided and is still to be given.
+struct Due {
+    thread: usize,
+    answer: Answer,
+    offerings: Vec<Offering>,
+}
+
+impl Step<'_> {
+    /// Lets the companies answer whose day has come. All judge by the state before the first of them answers.
+    pub(super) fn receive_replies(&mut self, view: &[Live]) {
+        let today = self.today();
+        let due = view.iter().filter(|live| live.sender == Sender::Agent && live.reply_day == Some(today));
+        let answers: Vec<Due> = due.filter_map(|live| self.decide(live.thread)).collect();
+        for Due { thread, answer, offerings } in answers {
+            match answer {
+                Answer::Accept(at) => self.accept(thread, offerings[at]),
+                Answer::Counter(at, price) => self.counter(thread, offerings[at], price),
+                Answer::Silence => self.fall_silent(thread),
+            }
+        }
+    }
+
+    fn decide(&self, thread: usize) -> Option<Due> {
+        let own = &self.enterprise.threads[thread];
+        let company = self.enterprise.company(own.customer)?;
+        let row = company.row(self.customers)?;
+        let mut quality = self.day.offered_quality(own.group, &row, company.is_subscriber());
+        if own.kind == ThreadKind::NewLead {
+            let impression = company.first_impression(self.day.params, self.day.streams);
+            quality.0.iter_mut().for_each(|quality| *quality *= impression);
+        }
+        let judge = Judge {
+            curve: self.day.offered_curve(own.group, &row),
+            quality,
+            initial_offer_factor: company.negotiator.initial_offer_factor,
+            max_turns: company.negotiator.max_negotiation_turns,
+        };
+        let offerings = own.offerings().to_vec();
+        let answer = judge.answer(&offerings, own.last().number, self.day.params);
+        Some(Due { thread, answer, offerings })
+    }
+
+    fn counter(&mut self, thread: usize, offering: Offering, price: f64) {
+        let seats = self.seats_of(thread);
+        let asked = Offering { plan: offering.plan, price };
+        self.say(thread, Sender::Customer, seats, TurnContent::Counter { asked, offered: offering.price });
+        let customer = self.enterprise.threads[thread].customer;
+        self.facts.notices.push(Notice::CounterOffer { customer });
+    }
+}

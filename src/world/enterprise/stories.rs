@@ -1,0 +1,305 @@
+//! Threads from their first turn to their end (checks 16 to 20 of chapter 40).
+
+use super::test_kit::Kit;
+use super::{EnterpriseDay, Standing};
+use crate::world::customers::columns::Subscriber;
+use crate::world::events::{EndCause, Notice, Offering, Sender, SubscriptionStatus, ThreadKind, TurnContent};
+use crate::world::identifiers::Plan;
+
+/// A lead of day 0 that answers after `delay` days and takes part in `turns` turns.
+fn lead(delay: f64, turns: u32) -> Kit {
+    let mut kit = Kit::new(0);
+    // No first impression: quality is what it is.
+    kit.params.quality.initial_decision_noise_min = 1.0;
+    kit.params.quality.initial_decision_noise_max = 1.0;
+    let company = kit.company(delay, turns);
+    kit.enterprise.open_lead(0, company, &mut kit.facts);
+    kit
+}
+
+fn days(kit: &mut Kit, days: std::ops::RangeInclusive<u32>) -> Vec<EnterpriseDay> {
+    days.map(|day| kit.day(day)).collect()
+}
+
+/// Sender and number of the turns of the last day.
+fn turns(kit: &Kit) -> Vec<(Sender, u32)> {
+    kit.facts.turns.iter().map(|turn| (turn.sender, turn.number)).collect()
+}
+
+#[test]
+fn check_16_of_chapter_40_a_deal() {
+    let mut kit = lead(3.0, 6);
+    assert_eq!(turns(&kit), [(Sender::System, 0)]);
+    let letters = kit.send(&[(Plan::B, 35.0)]);
+    assert_eq!((letters[0].reply_day, letters[0].turn, letters[0].relationship), (3, 1, None));
+    assert_eq!(turns(&kit), [(Sender::Agent, 1)]);
+    assert_eq!(kit.facts.turns[0].seats, 1);
+    assert!(days(&mut kit, 1..=2).iter().all(|day| day.new_seats == 0));
+    assert!(kit.facts.turns.is_empty());
+    assert_eq!(kit.day(3).new_seats, 100);
+    assert_eq!(turns(&kit), [(Sender::Customer, 2), (Sender::System, 3)]);
+    let offering = Offering { plan: Plan::B, price: 35.0 };
+    assert_eq!(kit.facts.turns[0].content, TurnContent::Acceptance(offering));
+    assert_eq!(kit.facts.notices, [Notice::DealWon { price: 35.0 }]);
+    let deal = kit.facts.deals[0];
+    assert_eq!((deal.activated, deal.contract_end_day), (true, Some(33)));
+    assert_eq!((deal.agent_turns, deal.days, deal.seats), (1, 3, 100));
+    let row = kit.customers.groups[kit.group].row(1).expect("a subscriber");
+    assert_eq!((row.start_day, row.billing_day, row.billed_once), (3, 0, false));
+    assert_eq!((row.listed_price, row.promotion, row.effective_price), (35.0, 0.0, 35.0));
+    assert!((row.relationship - 0.6).abs() < 1e-12 && row.usage_rate > 0.0 && row.required > 0.0);
+    assert!(kit.enterprise.threads.is_empty());
+    assert_eq!(kit.enterprise.companies[0].standing, Standing::Subscriber);
+}
+
+#[test]
+fn check_17_of_chapter_40_silence_of_both_sides() {
+    let mut kit = lead(3.0, 6);
+    days(&mut kit, 1..=6);
+    assert!(kit.facts.endings.is_empty());
+    kit.day(7);
+    let ending = kit.facts.endings[0];
+    assert_eq!(
+        (ending.day, ending.status, ending.cause),
+        (7, SubscriptionStatus::Lost, EndCause::LeadTimeout)
+    );
+    assert_eq!(kit.facts.notices, [Notice::LeadLostByTimeout { days: 7 }]);
+    kit.day(8);
+    assert!(kit.facts.notices.is_empty() && kit.enterprise.threads.is_empty());
+    assert!(kit.enterprise.companies.is_empty());
+
+    let mut kit = lead(3.0, 2);
+    kit.send(&[(Plan::B, 59.0)]);
+    days(&mut kit, 1..=3);
+    assert_eq!(kit.facts.notices, [Notice::CounterOffer { customer: 2 }]);
+    kit.day(4);
+    kit.send(&[(Plan::B, 59.0)]);
+    days(&mut kit, 5..=7);
+    assert_eq!(kit.facts.notices, [Notice::LeadSilent]);
+    assert_eq!((kit.facts.endings[0].day, kit.facts.endings[0].cause), (7, EndCause::LeadSilent));
+    for day in 8..=14 {
+        kit.day(day);
+        // The counter-offer of day 3 is the newest turn that did not die.
+        let expected = if day < 10 { vec![] } else { vec![Notice::LeadLostByTimeout { days: day - 3 }] };
+        assert_eq!(kit.facts.notices, expected, "day {day}");
+        assert!(kit.facts.endings.is_empty() && kit.facts.turns.is_empty());
+    }
+    assert!(kit.enterprise.open_thread_of(2).is_none());
+}
+
+#[test]
+fn dead_threads_stay_dead_where_they_should() {
+    let mut kit = lead(3.0, 2);
+    kit.params.fidelity.reappearing_threads = false;
+    kit.send(&[(Plan::B, 59.0)]);
+    days(&mut kit, 1..=4);
+    kit.send(&[(Plan::B, 59.0)]);
+    days(&mut kit, 5..=7);
+    assert_eq!(kit.facts.notices, [Notice::LeadSilent]);
+    assert!(kit.enterprise.threads.is_empty() && kit.enterprise.companies.is_empty());
+    days(&mut kit, 8..=12);
+    assert!(kit.facts.notices.is_empty());
+}
+
+/// A subscriber that finds its price too high from day 4 on.
+fn unhappy() -> Kit {
+    let mut kit = Kit::new(3);
+    kit.subscribe(6, |row| (row.listed_price, row.relationship) = (59.0, 0.6));
+    kit.product.shared_bonus = 0.4;
+    kit
+}
+
+#[test]
+fn check_18_of_chapter_40_a_threat_that_nobody_answers() {
+    let mut kit = unhappy();
+    kit.day(4);
+    assert_eq!(turns(&kit), [(Sender::System, 0), (Sender::Customer, 1)]);
+    assert_eq!(kit.facts.turns[1].content, TurnContent::Threat);
+    assert_eq!(kit.facts.notices, [Notice::ChurnThreat { customer: 2 }]);
+    let thread = kit.enterprise.open_thread_of(2).expect("an open thread").number;
+    kit.facts.begin(4);
+    kit.enterprise.reject(&[thread], 4, &mut kit.facts);
+    assert_eq!(turns(&kit), [(Sender::Agent, 2)]);
+    assert!(kit.facts.endings.is_empty() && kit.enterprise.open_thread_of(2).is_none());
+    // The next day it begins again, and this time nobody answers.
+    let opened = kit.day(5);
+    assert!(opened.suspended.is_empty(), "a thread suspends from the day after");
+    assert_eq!(kit.enterprise.threads[0].kind, ThreadKind::ChurnPrevention);
+    for run in days(&mut kit, 6..=11) {
+        assert_eq!(run.suspended.iter().copied().collect::<Vec<u32>>(), [2]);
+    }
+    assert_eq!(kit.customers.groups[kit.group].active(), 1);
+    let reputation = kit.reputation.of(kit.group);
+    let lost = kit.day(12);
+    let ending = kit.facts.endings[0];
+    assert_eq!((ending.day, ending.status), (33, SubscriptionStatus::Cancelled));
+    assert_eq!(ending.cause, EndCause::PriceSensitivity);
+    assert_eq!(kit.customers.groups[kit.group].active(), 0);
+    let company = kit.enterprise.company(2).expect("its thread still fires").clone();
+    let relationship = company.row(&kit.customers).expect("a row").relationship;
+    assert!((relationship - 0.3).abs() < 1e-12, "{relationship}");
+    assert_eq!((lost.lost[0].days_subscribed, lost.lost[0].seats), (Some(9), 100));
+    // Nobody but the reputation notices that the thread fires every day.
+    let mut before = kit.reputation.of(kit.group);
+    assert!(before < reputation);
+    for day in 13..=16 {
+        let again = kit.day(day);
+        assert_eq!((again.lost.len(), again.lost[0].days_subscribed), (1, None));
+        assert!(kit.facts.endings.is_empty() && kit.facts.notices.is_empty());
+        let damage = before - kit.reputation.of(kit.group);
+        assert!((9.375e-5..2.8125e-4).contains(&damage), "{damage}");
+        before = kit.reputation.of(kit.group);
+    }
+}
+
+#[test]
+fn check_19_of_chapter_40_a_settled_threat() {
+    let mut kit = unhappy();
+    kit.day(29);
+    let suspended = |run: &EnterpriseDay| run.suspended.contains(&2);
+    assert!(suspended(&kit.day(30)));
+    kit.product.shared_bonus = 0.6;
+    kit.send(&[(Plan::B, 30.0)]);
+    let runs = days(&mut kit, 31..=33);
+    assert!(runs.iter().all(suspended), "also on the day it is settled");
+    assert_eq!(kit.facts.notices, [Notice::DealWon { price: 30.0 }]);
+    let deal = kit.facts.deals[0];
+    assert_eq!(
+        (deal.activated, deal.contract_end_day, deal.kind),
+        (false, Some(63), ThreadKind::ChurnPrevention)
+    );
+    let row = kit.customers.groups[kit.group].row(1).expect("a subscriber");
+    assert_eq!((row.listed_price, row.effective_price, row.start_day), (30.0, 30.0, 3));
+    assert!((row.relationship - 0.6).abs() < 1e-12, "only new deals please");
+    assert!(!suspended(&kit.day(34)));
+}
+
+#[test]
+fn check_20_of_chapter_40_promotions_lower_the_price_of_a_deal() {
+    let mut kit = lead(2.0, 6);
+    kit.settings.promotion.global = 4.0;
+    kit.send(&[(Plan::B, 35.0)]);
+    days(&mut kit, 1..=2);
+    let row = kit.customers.groups[kit.group].row(1).expect("a subscriber");
+    assert_eq!((row.listed_price, row.promotion, row.effective_price), (35.0, 4.0, 31.0));
+    assert_eq!(row.effective_price * row.seats, 3100.0);
+}
+
+#[test]
+fn a_bad_renegotiation_loses_the_customer() {
+    let mut kit = Kit::new(3);
+    kit.subscribe(6, |row| row.relationship = 0.5);
+    kit.day(4);
+    assert!(kit.facts.turns.is_empty(), "it is content");
+    let letters = kit.send(&[(Plan::A, 58.0)]);
+    assert_eq!((letters[0].begins, letters[0].turn, letters[0].reply_day), (true, 0, 7));
+    assert_eq!((kit.facts.turns[0].seats, kit.facts.turns[0].kind), (100, ThreadKind::Renegotiation));
+    // A product that is below the minimum for every price.
+    kit.product.shared_bonus = 0.1;
+    kit.morning.product.0.iter_mut().for_each(|product| *product = 0.3);
+    let runs = days(&mut kit, 5..=7);
+    assert!(runs[2].lost[0].kind == ThreadKind::Renegotiation);
+    assert_eq!(kit.facts.endings[0].cause, EndCause::QualityChange);
+    assert_eq!(kit.facts.endings[0].day, 7);
+    // Its first offer was its last turn: nothing of it comes back.
+    assert!(kit.enterprise.threads.is_empty() && kit.enterprise.companies.is_empty());
+    assert!(kit.day(20).lost.is_empty());
+}
+
+#[test]
+fn repeated_offers_waste_turns_and_only_the_newest_counts() {
+    let mut kit = lead(3.0, 3);
+    kit.send(&[(Plan::B, 59.0)]);
+    let again = kit.send(&[(Plan::B, 20.0)]);
+    assert_eq!((again[0].turn, again[0].relationship), (2, None));
+    days(&mut kit, 1..=3);
+    assert_eq!(turns(&kit), [(Sender::Customer, 3), (Sender::System, 4)]);
+    let mut kit = lead(3.0, 2);
+    kit.send(&[(Plan::B, 59.0)]);
+    kit.send(&[(Plan::B, 20.0)]);
+    days(&mut kit, 1..=3);
+    // Turn 2 of 2: silence, whatever is offered. The first letter's own day is still to come, and is silent too.
+    assert_eq!(kit.facts.notices.first(), Some(&Notice::LeadSilent));
+}
+
+#[test]
+fn a_late_answer_costs_relationship_once() {
+    let mut kit = lead(3.0, 9);
+    kit.send(&[(Plan::B, 59.0)]);
+    days(&mut kit, 1..=7);
+    let letters = kit.send(&[(Plan::B, 44.0)]);
+    // The counter-offer came on day 3: four days, three of them late.
+    let relationship = letters[0].relationship.expect("a late answer");
+    assert!((relationship - 0.44).abs() < 1e-12, "{relationship}");
+    assert_eq!(kit.send(&[(Plan::B, 44.0)])[0].relationship, None, "a second letter costs nothing more");
+    let row = kit.enterprise.company(2).and_then(|own| own.row(&kit.customers)).expect("a row");
+    assert!((row.relationship - 0.44).abs() < 1e-12);
+}
+
+#[test]
+fn parallel_renegotiations_are_answered_one_by_one() {
+    let mut kit = Kit::new(3);
+    kit.subscribe(6, |row| row.relationship = 0.6);
+    kit.day(4);
+    let proposal =
+        super::letters::Proposal { customer: 2, offerings: vec![Offering { plan: Plan::B, price: 20.0 }] };
+    let twice = [proposal.clone(), proposal];
+    let letters = kit.enterprise.address(&twice, 4, &kit.customers, &kit.params, &kit.streams);
+    assert_eq!((letters[0].thread + 1, letters[1].begins), (letters[1].thread, true));
+    kit.facts.begin(4);
+    kit.enterprise.send(&letters, 4, &mut kit.customers, &mut kit.facts);
+    days(&mut kit, 5..=7);
+    assert_eq!(kit.facts.deals.len(), 2);
+    assert_eq!(kit.customers.groups[kit.group].active(), 1);
+    assert!(kit.enterprise.threads.is_empty());
+}
+
+#[test]
+fn twice_the_same_open_thread_makes_two_turns_with_one_number() {
+    let mut kit = lead(3.0, 9);
+    let proposal =
+        super::letters::Proposal { customer: 2, offerings: vec![Offering { plan: Plan::B, price: 59.0 }] };
+    kit.send(&[(Plan::B, 59.0)]);
+    days(&mut kit, 1..=7);
+    let letters =
+        kit.enterprise.address(&[proposal.clone(), proposal], 7, &kit.customers, &kit.params, &kit.streams);
+    let relationship: Vec<f64> = letters.iter().filter_map(|letter| letter.relationship).collect();
+    assert!((relationship[0] - 0.44).abs() < 1e-12 && (relationship[1] - 0.38).abs() < 1e-12);
+    kit.facts.begin(7);
+    kit.enterprise.send(&letters, 7, &mut kit.customers, &mut kit.facts);
+    assert_eq!(turns(&kit), [(Sender::Agent, 3), (Sender::Agent, 3)]);
+    let replies: Vec<Option<u32>> =
+        kit.enterprise.threads[0].turns[3..].iter().map(|t| t.reply_day).collect();
+    assert_eq!(replies, [None, Some(10)]);
+}
+
+#[test]
+fn a_rejected_lead_is_lost_for_good() {
+    let mut kit = lead(3.0, 9);
+    kit.facts.begin(0);
+    let thread = kit.enterprise.open_thread_of(2).expect("the lead's thread").number;
+    kit.enterprise.reject(&[thread, thread, 77], 0, &mut kit.facts);
+    assert_eq!((turns(&kit), kit.facts.endings.len()), (vec![(Sender::Agent, 1)], 1));
+    assert_eq!(kit.facts.endings[0].cause, EndCause::LeadRejected);
+    assert!(kit.enterprise.threads.is_empty() && kit.enterprise.companies.is_empty());
+}
+
+#[test]
+fn a_customer_with_two_turns_can_never_be_kept_once_it_threatens() {
+    let mut kit = unhappy();
+    kit.enterprise.companies[0].negotiator.max_negotiation_turns = 2;
+    kit.day(4);
+    kit.send(&[(Plan::B, 1.0)]);
+    let runs = days(&mut kit, 5..=7);
+    assert_eq!(runs[2].lost.len(), 1);
+    assert_eq!(kit.facts.endings[0].day, 7);
+}
+
+#[test]
+fn free_and_negative_prices_are_taken() {
+    let mut kit = lead(2.0, 6);
+    kit.send(&[(Plan::B, -5.0)]);
+    days(&mut kit, 1..=2);
+    let row: Subscriber = kit.customers.groups[kit.group].row(1).expect("a subscriber");
+    assert_eq!((row.listed_price, row.effective_price), (-5.0, 0.0));
+}

@@ -1,0 +1,186 @@
+//! A day of negotiations with plain values; tests change what matters to them.
+
+use super::evaluation::tests::K;
+use super::{Company, Enterprise, EnterpriseDay, Negotiation, Standing};
+use crate::world::customers::Customers;
+use crate::world::customers::columns::Subscriber;
+use crate::world::customers::columns::tests::subscriber;
+use crate::world::customers::persona::PersonaPicks;
+use crate::world::customers::traits::Negotiator;
+use crate::world::day::Morning;
+use crate::world::day::tests::morning;
+use crate::world::events::Facts;
+use crate::world::identifiers::{ByPlan, Group};
+use crate::world::market::drift::DriftTotals;
+use crate::world::market::reputation::ReputationBook;
+use crate::world::params::Params;
+use crate::world::product::Product;
+use crate::world::product::ads::AdLoad;
+use crate::world::product::quality::TenureTable;
+use crate::world::random::Streams;
+use crate::world::settings::Settings;
+
+/// A company with plain values.
+pub(crate) fn company_of(group: Group, n: u32, customer: u32, standing: Standing) -> Company {
+    Company {
+        customer,
+        group,
+        n,
+        subscription: customer - 1,
+        negotiator: Negotiator {
+            reply_delay_mean: 3.0,
+            reply_delay_std: 0.0,
+            initial_offer_factor: 0.75,
+            max_negotiation_turns: 6,
+        },
+        persona: PersonaPicks::default(),
+        contract_end_day: 0,
+        standing,
+    }
+}
+
+/// Tiers 3, 4, 5, wide quotas, product quality 0.8 for everybody, nobody else in the world.
+pub(super) struct Kit {
+    pub params: Params,
+    pub streams: Streams,
+    pub morning: Morning,
+    pub settings: Settings,
+    pub product: Product,
+    pub drift: DriftTotals,
+    pub group: Group,
+    pub customers: Customers,
+    pub reputation: ReputationBook,
+    pub enterprise: Enterprise,
+    pub facts: Facts,
+}
+
+impl Kit {
+    pub fn new(day: u32) -> Kit {
+        let params = Params::shipped();
+        let mut product = Product::opening(&params);
+        product.shared_bonus = 0.6;
+        let mut kit = Kit {
+            streams: Streams::new(1),
+            morning: morning(day),
+            settings: Settings::opening(&params),
+            product,
+            drift: DriftTotals::default(),
+            group: Group::parse("E1").expect("a group"),
+            customers: Customers::default(),
+            reputation: ReputationBook::opening(&params),
+            enterprise: Enterprise::default(),
+            facts: Facts::default(),
+            params,
+        };
+        kit.wake(day);
+        kit
+    }
+
+    /// Begins a day: the morning takes over the product.
+    pub fn wake(&mut self, day: u32) {
+        let quality = self.product.quality(self.group, &self.params);
+        let prices = ByPlan([1e6; 3]);
+        self.morning = Morning {
+            multipliers: ByPlan([0.9, 1.0, 1.1]),
+            quotas: ByPlan([1e9; 3]),
+            shared_quality: self.params.quality.base_product_quality + self.product.shared_bonus,
+            ..morning(day)
+        };
+        self.morning.core.prices = prices;
+        self.morning.product.0.iter_mut().for_each(|product| *product = quality);
+        self.facts.begin(day);
+    }
+
+    /// Customer K of chapter 40, number 2, first of its group, 100 seats.
+    pub fn row(&self) -> Subscriber {
+        Subscriber {
+            customer: 2,
+            steepness_left: K.steepness_left,
+            steepness_right: K.steepness_right,
+            c_max: K.c_max,
+            q_min: K.q_min,
+            q_max: K.q_max,
+            usage_demand: 50.0,
+            usage_rate: 0.0,
+            ads_quality_sensitivity: 0.08,
+            seats: 100.0,
+            billing_day: 0,
+            billed_once: false,
+            listed_price: 0.0,
+            effective_price: 0.0,
+            ..subscriber(1)
+        }
+    }
+
+    /// The company of K; `delay` days pass before it answers.
+    pub fn company(&self, delay: f64, max_turns: u32) -> Company {
+        let negotiator = Negotiator {
+            reply_delay_mean: delay,
+            max_negotiation_turns: max_turns,
+            ..company_of(self.group, 1, 2, Standing::Subscriber).negotiator
+        };
+        Company { negotiator, ..company_of(self.group, 1, 2, Standing::Lead(self.row())) }
+    }
+
+    /// Makes K a subscriber since day 3 at these terms, with a contract to day 33.
+    pub fn subscribe(&mut self, max_turns: u32, change: impl Fn(&mut Subscriber)) {
+        let mut row = Subscriber {
+            start_day: 3,
+            billed_once: true,
+            listed_price: 35.0,
+            effective_price: 35.0,
+            plan: crate::world::identifiers::Plan::B,
+            ..self.row()
+        };
+        change(&mut row);
+        self.customers.groups[self.group].activate(row);
+        let company =
+            Company { standing: Standing::Subscriber, contract_end_day: 33, ..self.company(3.0, max_turns) };
+        self.enterprise.companies.push(company);
+    }
+
+    /// Runs `check` with the negotiations of the day.
+    pub fn with<R>(&self, check: impl FnOnce(&Negotiation<'_>) -> R) -> R {
+        let ads = AdLoad::of(&self.settings.ads_strength, &self.params);
+        let tenure = TenureTable::up_to(600, &self.params.quality);
+        check(&Negotiation {
+            morning: &self.morning,
+            settings: &self.settings,
+            product: &self.product,
+            drift: &self.drift,
+            service_penalty: 0.0,
+            ads: &ads,
+            tenure: &tenure,
+            params: &self.params,
+            streams: &self.streams,
+        })
+    }
+
+    /// The enterprise part of a day; afterwards the facts are those of that day alone.
+    pub fn day(&mut self, day: u32) -> EnterpriseDay {
+        self.wake(day);
+        let mut enterprise = std::mem::take(&mut self.enterprise);
+        let mut customers = std::mem::take(&mut self.customers);
+        let mut reputation = self.reputation.clone();
+        let mut facts = std::mem::take(&mut self.facts);
+        let result = self.with(|day| enterprise.step(&mut customers, &mut reputation, day, &mut facts));
+        (self.enterprise, self.customers, self.facts) = (enterprise, customers, facts);
+        self.reputation = reputation;
+        result
+    }
+
+    /// Sends one proposal to K on the day that just ran.
+    pub fn send(
+        &mut self,
+        offerings: &[(crate::world::identifiers::Plan, f64)],
+    ) -> Vec<super::letters::Letter> {
+        let day = self.morning.day;
+        let offerings =
+            offerings.iter().map(|&(plan, price)| crate::world::events::Offering { plan, price }).collect();
+        let proposals = [super::letters::Proposal { customer: 2, offerings }];
+        let letters = self.enterprise.address(&proposals, day, &self.customers, &self.params, &self.streams);
+        self.facts.begin(day);
+        self.enterprise.send(&letters, day, &mut self.customers, &mut self.facts);
+        letters
+    }
+}

@@ -1,0 +1,202 @@
+//! What subscribers begin by themselves: a threat to leave, or the wish for another plan (chapter 40 §13).
+
+use std::collections::BTreeSet;
+
+use super::evaluation::surplus;
+use super::{Negotiation, Step};
+use crate::world::customers::columns::Subscriber;
+use crate::world::events::{Notice, Sender, ThreadKind, TurnContent};
+use crate::world::identifiers::{Group, Plan};
+use crate::world::params::Enterprise as Sales;
+use crate::world::random::Part;
+
+/// A thread that a subscriber begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Wish {
+    /// It threatens to leave.
+    Leave,
+    /// It asks for another plan.
+    Switch { from: Plan, to: Plan },
+}
+
+/// Gain in surplus as a share of the present one.
+pub fn improvement(best: f64, present: f64, sales: &Sales) -> f64 {
+    (best - present) / present.abs().max(sales.plan_change_improvement_denominator_min)
+}
+
+impl Step<'_> {
+    /// Lets every subscriber without a thread this morning look at what it pays.
+    pub(super) fn trigger(&mut self, busy: &BTreeSet<u32>) {
+        let mut wishes: Vec<(u32, u32, Wish)> = Vec::new();
+        for (group, block) in self.customers.blocks().filter(|(group, _)| group.is_enterprise()) {
+            for at in (0..block.len()).filter(|at| !busy.contains(&block.customer[*at])) {
+                let row = block.row(at);
+                if let Some(wish) = self.day.wish(group, &row) {
+                    wishes.push((row.customer, row.seats as u32, wish));
+                }
+            }
+        }
+        wishes.sort_by_key(|(customer, ..)| *customer);
+        for (customer, seats, wish) in wishes {
+            self.begin(customer, seats, wish);
+        }
+    }
+
+    fn begin(&mut self, customer: u32, seats: u32, wish: Wish) {
+        let Some(company) = self.enterprise.position(customer) else { return };
+        let (kind, content, notice) = match wish {
+            Wish::Leave => {
+                (ThreadKind::ChurnPrevention, TurnContent::Threat, Notice::ChurnThreat { customer })
+            }
+            Wish::Switch { from, to } => {
+                let notice = Notice::PlanWish { customer, upgrade: to > from };
+                (ThreadKind::PlanChange, TurnContent::PlanWish { from, to }, notice)
+            }
+        };
+        let today = self.today();
+        let opening = TurnContent::Opening;
+        let thread =
+            self.enterprise.open_thread(today, company, kind, seats, Sender::System, opening, self.facts);
+        self.say(thread, Sender::Customer, seats, content);
+        self.facts.notices.push(notice);
+    }
+}
+
+impl Negotiation<'_> {
+    /// What a subscriber wants today, if anything.
+    fn wish(&self, group: Group, row: &Subscriber) -> Option<Wish> {
+        let sales = &self.params.enterprise;
+        let (quality, curve) = (self.lived_quality(group, row), self.lived_curve(group, row));
+        let present = surplus(quality[row.plan], row.listed_price, &curve, self.params);
+        if present < sales.churn_trigger_satisfaction_below {
+            return Some(Wish::Leave);
+        }
+        let mut best: Option<(f64, Plan)> = None;
+        for plan in Plan::ALL.into_iter().filter(|plan| *plan != row.plan) {
+            let price = self.morning.core.prices[plan];
+            if price > curve.c_max {
+                continue;
+            }
+            let own = surplus(quality[plan], price, &curve, self.params);
+            if own > 0.0 && own > best.map_or(present, |(most, _)| most) {
+                best = Some((own, plan));
+            }
+        }
+        let (most, to) = best?;
+        if improvement(most, present, sales) <= sales.plan_change_min_relative_improvement {
+            return None;
+        }
+        let keys = [u64::from(self.morning.day), group.index() as u64, u64::from(row.n)];
+        let asks = self.streams.open(Part::PlanChange, keys).bernoulli(sales.plan_change_probability);
+        asks.then_some(Wish::Switch { from: row.plan, to })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::evaluation::tests::K;
+    use super::super::test_kit::Kit;
+    use super::*;
+    use crate::world::identifiers::ByPlan;
+
+    /// Quality and surplus of the plan a subscriber is on; K on day `day`.
+    fn present(kit: &Kit, row: &Subscriber) -> (f64, f64) {
+        kit.with(|day| {
+            let (quality, curve) = (day.lived_quality(kit.group, row), day.lived_curve(kit.group, row));
+            let quality = quality[row.plan];
+            (quality, surplus(quality, row.listed_price, &curve, &kit.params))
+        })
+    }
+
+    fn kit(day: u32) -> Kit {
+        let mut kit = Kit::new(day);
+        kit.morning.product.0.iter_mut().for_each(|product| *product = 0.8);
+        kit.morning.quotas = ByPlan([4000.0, 5000.0, 10_000.0]);
+        kit
+    }
+
+    fn subscriber(
+        kit: &Kit,
+        plan: Plan,
+        listed_price: f64,
+        relationship: f64,
+        usage_rate: f64,
+    ) -> Subscriber {
+        Subscriber {
+            plan,
+            listed_price,
+            effective_price: listed_price,
+            relationship,
+            usage_rate,
+            start_day: 2,
+            ..kit.row()
+        }
+    }
+
+    #[test]
+    fn check_10_of_chapter_40() {
+        let near = |(quality, surplus): (f64, f64), expected: (f64, f64)| {
+            assert!((quality - expected.0).abs() < 1e-10, "{quality} instead of {}", expected.0);
+            assert!((surplus - expected.1).abs() < 1e-10, "{surplus} instead of {}", expected.1);
+        };
+        let day4 = kit(4);
+        let content = subscriber(&day4, Plan::B, 35.0, 0.6, 4500.0);
+        near(present(&day4, &content), (0.8932269261, 0.1604767570));
+        let strained = subscriber(&day4, Plan::B, 45.0, 0.6, 5500.0);
+        near(present(&day4, &strained), (0.8120244782, -0.0254755218));
+        assert_eq!(day4.with(|day| day.wish(day4.group, &strained)), Some(Wish::Leave));
+
+        let mut day32 = kit(32);
+        day32.morning.product[day32.group] = 0.85;
+        let waiting = Subscriber { open_issue_days: 3, ..subscriber(&day32, Plan::B, 35.0, 0.5, 5000.0) };
+        near(present(&day32, &waiting), (0.7946573590, 0.0619071900));
+
+        let mut day61 = kit(61);
+        day61.settings.ads_strength.global = 0.5;
+        near(present(&day61, &subscriber(&day61, Plan::C, 35.0, 0.8, 9000.0)), (1.1451429342, 0.4123927652));
+        let day9 = kit(9);
+        near(present(&day9, &subscriber(&day9, Plan::B, 35.0, 0.0, 5000.0)), (0.7047704579, -0.0279797112));
+    }
+
+    #[test]
+    fn check_11_of_chapter_40() {
+        let mut kit = kit(3);
+        kit.morning.quotas = ByPlan([1e9; 3]);
+        let on_b = |kit: &Kit, price| subscriber(kit, Plan::B, price, 0.5, 4000.0);
+        let surplus_on = |kit: &Kit, row: &Subscriber, plan: Plan, price: f64| {
+            kit.with(|day| {
+                let (quality, curve) = (day.lived_quality(kit.group, row), day.lived_curve(kit.group, row));
+                surplus(quality[plan], price, &curve, &kit.params)
+            })
+        };
+        let sales = kit.params.enterprise.clone();
+        for (deal, list, here, there, gain) in [
+            (42.0, 25.0, 0.0161276713, 0.0323850397, 1.0080418971),
+            (36.0, 19.0, 0.0659686697, 0.0729693082, 0.1061206559),
+        ] {
+            let row = on_b(&kit, deal);
+            let (own_here, own_there) = (present(&kit, &row).1, surplus_on(&kit, &row, Plan::A, list));
+            assert!((own_here - here).abs() < 1e-10 && (own_there - there).abs() < 1e-10);
+            assert!((improvement(own_there, own_here, &sales) - gain).abs() < 1e-8);
+        }
+        // A list price that gains too little draws nothing, however often.
+        kit.morning.core.prices = ByPlan([22.0, 500.0, 500.0]);
+        let row = on_b(&kit, 36.0);
+        assert!((surplus_on(&kit, &row, Plan::A, 22.0) - 0.0500675475).abs() < 1e-10);
+        assert_eq!(kit.with(|day| day.wish(kit.group, &row)), None);
+    }
+
+    #[test]
+    fn three_in_ten_ask_on_a_day() {
+        let mut kit = kit(3);
+        kit.morning.quotas = ByPlan([1e9; 3]);
+        kit.morning.core.prices = ByPlan([25.0, 500.0, 500.0]);
+        let asks = |n: &u32| {
+            let row = Subscriber { n: *n, ..subscriber(&kit, Plan::B, 42.0, 0.5, 4000.0) };
+            kit.with(|day| day.wish(kit.group, &row)) == Some(Wish::Switch { from: Plan::B, to: Plan::A })
+        };
+        let asked = (1..=10_000).filter(asks).count();
+        assert!((2_850..3_150).contains(&asked), "{asked}");
+        assert_eq!(kit.row().c_max, K.c_max);
+    }
+}

@@ -1,0 +1,239 @@
+//! Social media: what is written in public. Codes and numbers only; `voice` finds the words.
+
+use crate::world::canonical::{Canonical, CanonicalHasher, canonical, canonical_codes};
+use crate::world::customers::persona::PersonaPicks;
+use crate::world::events::ThreadKind;
+use crate::world::identifiers::{Group, Plan};
+use crate::world::market::competitors::Severity;
+use crate::world::market::economy::{Reading, Trend};
+use crate::world::market::social::engagement::Engagement;
+use crate::world::market::social::sentiment::Sentiment;
+
+canonical! {
+    Post { post, author, sentiment, engagement, matter }
+    PostAuthor { customer, group, n, persona, company }
+    Opinion { cause, troubles, theme, days_subscribed, plan, price, seats, waiting_days, downtime_minutes }
+    Troubles { overload, outage, issue, quota }
+    OwnPostMade { post, content, reply_to }
+    OwnPostSeen { post, views, comments }
+}
+canonical_codes!(Theme, Severity);
+
+/// A post of somebody else than the player.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Post {
+    /// Running number.
+    pub post: u32,
+    /// Who wrote it; the market observer where nobody is named.
+    pub author: Option<PostAuthor>,
+    /// Its tone.
+    pub sentiment: Sentiment,
+    /// How far it carries, hidden.
+    pub engagement: Engagement,
+    /// What it is about.
+    pub matter: Matter,
+}
+
+/// A customer who writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PostAuthor {
+    /// Customer number.
+    pub customer: u32,
+    /// Group.
+    pub group: Group,
+    /// Running number within the group.
+    pub n: u32,
+    /// Picks of the profile.
+    pub persona: PersonaPicks,
+    /// Whole seats of a company, 0 for individuals.
+    pub company: u32,
+}
+
+/// What a post is about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Matter {
+    /// A customer's life with the product.
+    Opinion(Opinion),
+    /// A reading of the economy was published.
+    Reading(Reading),
+    /// The mood of the economy.
+    Economy {
+        /// Label of today's index.
+        trend: Trend,
+        /// Today's index.
+        pmi: f64,
+        /// From whose point of view.
+        perspective: u8,
+    },
+    /// A rival has moved.
+    Rival {
+        /// Which one.
+        name: u8,
+        /// From whose point of view.
+        perspective: u8,
+        /// How large the author thinks it is.
+        severity: Severity,
+        /// The author's estimate of the gain in quality.
+        estimate: f64,
+    },
+    /// A comment on a post of the player.
+    Comment {
+        /// The player's post.
+        own_post: u32,
+        /// Group whose mood it speaks for.
+        group: Group,
+        /// How that group took the post, -1..=1.
+        effect: f64,
+    },
+}
+
+impl Canonical for Matter {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        match *self {
+            Matter::Opinion(opinion) => (0u8, opinion).feed(hasher),
+            Matter::Reading(reading) => (1u8, reading).feed(hasher),
+            Matter::Economy { trend, pmi, perspective } => (2u8, ((trend, pmi), perspective)).feed(hasher),
+            Matter::Rival { name, perspective, severity, estimate } => {
+                (3u8, ((name, perspective), (severity, estimate))).feed(hasher)
+            }
+            Matter::Comment { own_post, group, effect } => (4u8, ((own_post, group), effect)).feed(hasher),
+        }
+    }
+}
+
+/// What a customer has in mind when writing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Opinion {
+    /// Why the post is written.
+    pub cause: Cause,
+    /// What went wrong today for this customer.
+    pub troubles: Troubles,
+    /// What weighs most in the customer's mind besides.
+    pub theme: Theme,
+    /// Days subscribed.
+    pub days_subscribed: u32,
+    /// Plan; none once a company is lost.
+    pub plan: Option<Plan>,
+    /// Price in force, dollars a month and seat.
+    pub price: f64,
+    /// Whole seats.
+    pub seats: u32,
+    /// Days an issue of this customer has been open.
+    pub waiting_days: u32,
+    /// Minutes the service was down today.
+    pub downtime_minutes: u32,
+}
+
+/// Why a customer writes (chapter 30 §5.3), the first that holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cause {
+    /// The service was slow.
+    Overload,
+    /// The service was down.
+    Outage,
+    /// A support issue is open.
+    Issue,
+    /// The quota did not cover what was needed.
+    Quota,
+    /// Satisfaction rose.
+    Improved,
+    /// Satisfaction fell.
+    Declined,
+    /// Nothing in particular.
+    General,
+    /// No plan was worth its price any more.
+    Cancelled,
+    /// A company left after a negotiation.
+    Lost {
+        /// How the negotiation began.
+        thread: ThreadKind,
+        /// Nobody answered the company; otherwise it fell silent itself.
+        unanswered: bool,
+    },
+}
+
+impl Canonical for Cause {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        let code = match self {
+            Cause::Overload => 0u8,
+            Cause::Outage => 1,
+            Cause::Issue => 2,
+            Cause::Quota => 3,
+            Cause::Improved => 4,
+            Cause::Declined => 5,
+            Cause::General => 6,
+            Cause::Cancelled => 7,
+            Cause::Lost { .. } => 8,
+        };
+        code.feed(hasher);
+        if let Cause::Lost { thread, unanswered } = self {
+            (*thread, *unanswered).feed(hasher);
+        }
+    }
+}
+
+/// What went wrong for a customer today.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Troubles {
+    /// The service was slow.
+    pub overload: bool,
+    /// The service was down.
+    pub outage: bool,
+    /// A support issue is open.
+    pub issue: bool,
+    /// The quota did not cover the demand.
+    pub quota: bool,
+}
+
+impl Troubles {
+    /// How many there are.
+    pub fn count(&self) -> u32 {
+        [self.overload, self.outage, self.issue, self.quota].into_iter().map(u32::from).sum()
+    }
+}
+
+/// What weighs in a customer's mind: for the unhappy what they lack, for the happy what they value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Theme {
+    /// What it costs, and what one gets for it.
+    Price,
+    /// How good the answers are.
+    Quality,
+    /// What rivals offer by now.
+    Rivals,
+    /// Whether it runs, and how fast.
+    Service,
+    /// How support treats them.
+    Support,
+    /// The quota.
+    Limits,
+    /// Ads inside the product.
+    Ads,
+    /// That it has become better lately.
+    Progress,
+    /// Being used to it.
+    Habit,
+}
+
+/// A post of the player.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnPostMade {
+    /// Running number.
+    pub post: u32,
+    /// Its text.
+    pub content: String,
+    /// The post it answers.
+    pub reply_to: Option<u32>,
+}
+
+/// A post of the player was read and judged.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnPostSeen {
+    /// Its number.
+    pub post: u32,
+    /// How often it was seen.
+    pub views: u64,
+    /// Numbers of the comments.
+    pub comments: Vec<u32>,
+}

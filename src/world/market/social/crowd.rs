@@ -1,0 +1,356 @@
+//! Customers' posts: who is picked among everybody who may post (chapter 30 §5.2, §5.3, steps 17 and 22).
+//!
+//! Drawing one after the other without replacement, each by its weight among those left, is the order of arrival
+//! in a race of exponential clocks with these weights as their rates. So the first of the subscribers are drawn
+//! while all of them are still there, and those who leave later in the day join the race with clocks of their own.
+
+use rayon::prelude::*;
+
+use super::Social;
+use super::engagement::draw_engagement;
+use super::opinions::Scene;
+use super::sentiment::{Sentiment, sentiment};
+use super::weights::{cancelled_weight, lost_company_weight, post_weight};
+use crate::world::customers::Customers;
+use crate::world::customers::columns::Block;
+use crate::world::customers::traits::draw_traits;
+use crate::world::enterprise::churn::{Blame, CompanyLost};
+use crate::world::events::{Cause, Facts, Matter, Opinion, PostAuthor, Theme, Troubles};
+use crate::world::identifiers::{Group, Plan};
+use crate::world::params::{CustomerPosts, Params};
+use crate::world::random::{Part, Stream, Streams};
+
+/// An individual who gave up today because no plan was acceptable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GaveUp {
+    /// Customer number.
+    pub customer: u32,
+    /// Group.
+    pub group: Group,
+    /// Running number within the group.
+    pub n: u32,
+    /// Satisfaction after today's update.
+    pub satisfaction: f64,
+    /// Days subscribed.
+    pub days_subscribed: u32,
+    /// Plan it leaves.
+    pub plan: Plan,
+    /// Price it paid, dollars a month.
+    pub price: f64,
+}
+
+/// Satisfaction before today's update, block by block; none on a day without customers' posts.
+pub struct Before(Vec<Vec<f64>>);
+
+/// Whether customers are heard on a day.
+pub fn is_posting_day(day: u32, params: &Params) -> bool {
+    match params.fidelity.customer_posts {
+        CustomerPosts::Weekly => day.is_multiple_of(params.run.days_per_week),
+        CustomerPosts::Daily => true,
+    }
+}
+
+/// Remembers moods before they move, if customers are heard today.
+pub fn remember(day: u32, customers: &Customers, params: &Params) -> Option<Before> {
+    let moods = || customers.blocks().map(|(_, block)| block.satisfaction.clone()).collect();
+    is_posting_day(day, params).then(|| Before(moods()))
+}
+
+/// Somebody who wants to post.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    /// When its clock rings.
+    time: f64,
+    customer: u32,
+    group: Group,
+    n: u32,
+    /// Satisfaction that decides the tone; none: always a complaint.
+    satisfaction: Option<f64>,
+    opinion: Opinion,
+}
+
+/// The race for the posts of a day.
+pub struct Crowd {
+    stream: Stream,
+    candidates: Vec<Candidate>,
+    places: usize,
+}
+
+/// Starts the race among all subscribers, right after their moods have moved.
+pub fn listen(
+    before: Option<Before>,
+    customers: &Customers,
+    scene: &Scene<'_>,
+    streams: &Streams,
+) -> Option<Crowd> {
+    let Before(before) = before?;
+    let mut stream = streams.open(Part::CustomerPosts, [u64::from(scene.morning.day)]);
+    let places = scene.params.social.max_posts_per_day as usize;
+    let blocks: Vec<(Group, &Block)> = customers.blocks().collect();
+    let weigh = |(group, block): &(Group, &Block), moods: &Vec<f64>| -> f64 {
+        (0..block.len()).map(|at| weight(scene, *group, block, at, moods[at])).sum()
+    };
+    let jobs = blocks.par_iter().zip(&before).with_min_len(4);
+    let mut sums: Vec<f64> = jobs.map(|(block, moods)| weigh(block, moods)).collect();
+    let mut picked: Vec<(usize, usize)> = Vec::new();
+    let (mut candidates, mut time) = (Vec::new(), 0.0);
+    while candidates.len() < places {
+        let total: f64 = sums.iter().sum();
+        if total <= 0.0 {
+            break;
+        }
+        time += stream.exponential(1.0 / total);
+        let target = stream.uniform() * total;
+        let taken = |number: usize, at: usize| picked.contains(&(number, at));
+        let Some((number, at)) = find(&blocks, &before, &sums, target, scene, taken) else { break };
+        picked.push((number, at));
+        let (group, block) = blocks[number];
+        let mood = before[number][at];
+        sums[number] = (sums[number] - weight(scene, group, block, at, mood)).max(0.0);
+        candidates.push(Candidate {
+            time,
+            customer: block.customer[at],
+            group,
+            n: block.n[at],
+            satisfaction: Some(block.satisfaction[at]),
+            opinion: scene.opinion(group, block, at, mood, stream.uniform()),
+        });
+    }
+    Some(Crowd { stream, candidates, places })
+}
+
+fn weight(scene: &Scene<'_>, group: Group, block: &Block, at: usize, before: f64) -> f64 {
+    post_weight(&scene.loudness(group, block, at, before), &scene.params.social)
+}
+
+/// The row at which the running sum of the weights of those not yet taken passes the target; the last one where
+/// rounding lets the target pass them all.
+fn find(
+    blocks: &[(Group, &Block)],
+    before: &[Vec<f64>],
+    sums: &[f64],
+    mut target: f64,
+    scene: &Scene<'_>,
+    taken: impl Fn(usize, usize) -> bool,
+) -> Option<(usize, usize)> {
+    let mut last = None;
+    for (number, (group, block)) in blocks.iter().enumerate() {
+        if sums[number] <= 0.0 {
+            continue;
+        }
+        let rows = (0..block.len()).filter(|at| !taken(number, *at));
+        if target >= sums[number] {
+            target -= sums[number];
+            last = rows.last().map(|at| (number, at)).or(last);
+            continue;
+        }
+        for at in rows {
+            last = Some((number, at));
+            target -= weight(scene, *group, block, at, before[number][at]);
+            if target < 0.0 {
+                return last;
+            }
+        }
+    }
+    last
+}
+
+impl Crowd {
+    /// Those who gave up and the companies that were lost join the race.
+    pub fn join(&mut self, gave_up: &[GaveUp], lost: &[CompanyLost], params: &Params) {
+        let law = &params.social;
+        for own in gave_up {
+            let weight = cancelled_weight(own.satisfaction, 1.0, law);
+            let theme = if own.satisfaction < 0.0 { Theme::Quality } else { Theme::Price };
+            let opinion = Opinion {
+                cause: Cause::Cancelled,
+                troubles: Troubles::default(),
+                theme,
+                days_subscribed: own.days_subscribed,
+                plan: Some(own.plan),
+                price: own.price,
+                seats: 1,
+                waiting_days: 0,
+                downtime_minutes: 0,
+            };
+            self.enter(weight, own.customer, own.group, own.n, opinion);
+        }
+        for own in lost {
+            let weight = lost_company_weight(f64::from(own.seats), law);
+            let opinion = Opinion {
+                cause: Cause::Lost { thread: own.kind, unanswered: own.blame == Blame::Timeout },
+                troubles: Troubles::default(),
+                theme: Theme::Support,
+                days_subscribed: own.days_subscribed.unwrap_or(law.enterprise_churn_event_fallback_days),
+                plan: None,
+                price: 0.0,
+                seats: own.seats,
+                waiting_days: 0,
+                downtime_minutes: 0,
+            };
+            self.enter(weight, own.customer, own.group, own.n, opinion);
+        }
+    }
+
+    fn enter(&mut self, weight: f64, customer: u32, group: Group, n: u32, opinion: Opinion) {
+        let time = self.stream.exponential(1.0 / weight);
+        self.candidates.push(Candidate { time, customer, group, n, satisfaction: None, opinion });
+    }
+
+    /// The first ones post.
+    pub fn publish(mut self, social: &mut Social, params: &Params, streams: &Streams, facts: &mut Facts) {
+        self.candidates.sort_by(|one, other| one.time.total_cmp(&other.time));
+        self.candidates.truncate(self.places);
+        for own in self.candidates {
+            let u = self.stream.uniform();
+            // Those who have left always complain.
+            let tone =
+                own.satisfaction.map_or(Sentiment::Negative, |mood| sentiment(mood, u, &params.social));
+            let engagement = draw_engagement(tone, own.group.id(), params, &mut self.stream);
+            let author = author_of(own.customer, own.group, own.n, own.opinion.seats, params, streams);
+            social.publish(Some(author), tone, engagement, Matter::Opinion(own.opinion), facts);
+        }
+    }
+}
+
+/// A customer as an author, with the profile that was drawn at its arrival.
+pub fn author_of(
+    customer: u32,
+    group: Group,
+    n: u32,
+    seats: u32,
+    params: &Params,
+    streams: &Streams,
+) -> PostAuthor {
+    // Nothing of the profile depends on the speed of deals.
+    let persona = draw_traits(group, n, 1.0, params, streams).persona;
+    PostAuthor { customer, group, n, persona, company: if group.is_enterprise() { seats } else { 0 } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::customers::columns::Subscriber;
+    use crate::world::customers::columns::tests::subscriber;
+    use crate::world::day::tests::morning;
+    use crate::world::events::{Post, ServiceDay, ThreadKind};
+    use crate::world::product::ads::AdLoad;
+    use crate::world::product::quality::TenureTable;
+    use crate::world::settings::Settings;
+
+    fn group() -> Group {
+        Group::parse("S1").expect("a group")
+    }
+
+    /// The posts of a seventh day on which these subscribers are there and these have left.
+    fn posts(rows: &[Subscriber], gave_up: &[GaveUp], lost: &[CompanyLost], seed: u64) -> Vec<Post> {
+        let (params, streams) = (Params::shipped(), Streams::new(seed));
+        let settings = Settings::opening(&params);
+        let mut social = Social::opening(&settings);
+        let mut customers = Customers::default();
+        rows.iter().for_each(|row| customers.groups[group()].activate(*row));
+        let day = morning(70);
+        let before = remember(70, &customers, &params);
+        let ads = AdLoad::of(&settings.ads_strength, &params);
+        let chronicle = social.chronicle.clone();
+        let scene = Scene {
+            morning: &day,
+            service: &ServiceDay::quiet(),
+            ads: &ads,
+            tenure: &TenureTable::up_to(100, &params.quality),
+            chronicle: &chronicle,
+            params: &params,
+        };
+        let mut crowd = listen(before, &customers, &scene, &streams).expect("a posting day");
+        crowd.join(gave_up, lost, &params);
+        let mut facts = Facts::default();
+        facts.begin(70);
+        crowd.publish(&mut social, &params, &streams, &mut facts);
+        facts.posts
+    }
+
+    fn content(n: u32, satisfaction: f64) -> Subscriber {
+        Subscriber { satisfaction, usage_rate: 0.0, ..subscriber(n) }
+    }
+
+    fn quitter() -> GaveUp {
+        GaveUp {
+            customer: 900,
+            group: group(),
+            n: 900,
+            satisfaction: -0.2,
+            days_subscribed: 30,
+            plan: Plan::A,
+            price: 12.0,
+        }
+    }
+
+    fn lost_company() -> CompanyLost {
+        CompanyLost {
+            customer: 800,
+            group: Group::parse("E1").expect("a group"),
+            n: 7,
+            seats: 120,
+            days_subscribed: None,
+            kind: ThreadKind::NewLead,
+            blame: Blame::Timeout,
+        }
+    }
+
+    #[test]
+    fn five_different_subscribers_post_or_all_there_are() {
+        let rows: Vec<Subscriber> = (1..=40).map(|n| content(n, 0.1)).collect();
+        let mut authors: Vec<u32> =
+            posts(&rows, &[], &[], 1).iter().filter_map(|post| post.author).map(|own| own.customer).collect();
+        authors.sort_unstable();
+        authors.dedup();
+        assert_eq!(authors.len(), 5);
+        assert_eq!(posts(&rows[..3], &[], &[], 1).len(), 3);
+        assert_eq!(posts(&[], &[], &[], 1).len(), 0);
+        assert_eq!(posts(&[], &[quitter()], &[], 1).len(), 1);
+        assert_eq!(posts(&rows, &[], &[], 1), posts(&rows, &[], &[], 1));
+    }
+
+    #[test]
+    fn the_first_post_falls_by_weight() {
+        // Weights 1 + 10 |S|: 1, 2, 3 and 15 for somebody who gave up at -0.2.
+        let rows = [content(1, 0.0), content(2, 0.1), content(3, 0.2)];
+        let runs = 4000;
+        let mut first = [0.0; 4];
+        for seed in 0..runs {
+            let posts = posts(&rows, &[quitter()], &[], seed);
+            let author = posts[0].author.expect("a customer").n;
+            first[if author == 900 { 3 } else { author as usize - 1 }] += 1.0 / runs as f64;
+        }
+        for (share, weight) in first.into_iter().zip([1.0, 2.0, 3.0, 15.0]) {
+            let expected: f64 = weight / 21.0;
+            let error = (expected * (1.0 - expected) / runs as f64).sqrt();
+            assert!((share - expected).abs() < 4.0 * error, "{first:?}");
+        }
+    }
+
+    #[test]
+    fn those_who_left_complain_and_say_why() {
+        let found = posts(&[], &[quitter()], &[lost_company()], 3);
+        assert_eq!(found[0].author.map(|author| author.company), Some(120), "960 against 15");
+        assert!(found.iter().all(|post| post.sentiment == Sentiment::Negative));
+        let causes: Vec<Cause> = found
+            .iter()
+            .map(|post| match post.matter {
+                Matter::Opinion(opinion) => opinion.cause,
+                _ => panic!("an opinion"),
+            })
+            .collect();
+        assert!(causes.contains(&Cause::Cancelled));
+        assert!(causes.contains(&Cause::Lost { thread: ThreadKind::NewLead, unanswered: true }));
+    }
+
+    #[test]
+    fn customers_are_heard_on_the_seventh_day() {
+        let mut params = Params::shipped();
+        let days: Vec<u32> = (1..=21).filter(|day| is_posting_day(*day, &params)).collect();
+        assert_eq!(days, [7, 14, 21]);
+        params.fidelity.customer_posts = CustomerPosts::Daily;
+        assert!((1..=21).all(|day| is_posting_day(day, &params)));
+    }
+}

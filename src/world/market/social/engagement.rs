@@ -1,0 +1,143 @@
+//! How far a customer's post carries (chapter 30 §5.5).
+
+use super::sentiment::Sentiment;
+use crate::world::canonical::canonical;
+use crate::world::params::{Params, Social};
+use crate::world::random::Stream;
+
+canonical! { Engagement { likes, shares, virality } }
+
+/// How far a post carries; hidden, and without effect on the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Engagement {
+    /// Likes.
+    pub likes: u32,
+    /// Shares.
+    pub shares: u32,
+    /// 0..=1.
+    pub virality: f64,
+}
+
+/// Draws behind a post's engagement: base likes and shares, then uniform numbers in order.
+#[derive(Debug, Clone, Copy)]
+pub struct EngagementDraws {
+    /// Base likes.
+    pub likes: u32,
+    /// Base shares.
+    pub shares: u32,
+    /// Uniform part of the factor.
+    pub factor: f64,
+    /// Decides whether the post explodes.
+    pub spike: f64,
+    /// Uniform parts of an explosion: score, likes, shares.
+    pub explosion: [f64; 3],
+}
+
+/// Engagement of a customer's post.
+pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, law: &Social) -> Engagement {
+    let factor = match sentiment {
+        Sentiment::Negative => law.virality_negative_base + draws.factor,
+        Sentiment::Positive => law.virality_positive_base + law.virality_positive_range * draws.factor,
+        Sentiment::Neutral => law.virality_neutral_base + law.virality_neutral_range * draws.factor,
+    };
+    let mut likes = (f64::from(draws.likes) * factor).trunc();
+    let mut shares = (f64::from(draws.shares) * factor).trunc();
+    let reach = (likes + law.virality_share_weight * shares) / law.virality_score_divisor * factor;
+    let mut virality = reach.min(law.virality_score_max);
+    if draws.spike < law.viral_spike_probability {
+        let [score, more_likes, more_shares] = draws.explosion;
+        virality = (virality * (law.viral_spike_score_base + law.viral_spike_score_range * score))
+            .min(law.virality_score_max);
+        likes *= (law.viral_spike_likes_base + law.viral_spike_likes_range * more_likes).trunc();
+        shares *= (law.viral_spike_shares_base + law.viral_spike_shares_range * more_shares).trunc();
+    }
+    Engagement { likes: likes as u32, shares: shares as u32, virality }
+}
+
+/// Range of base likes and shares, both ends included; every group whose name begins with E is a company here,
+/// discoverable ones are not (chapter 30 §5.5).
+pub fn engagement_ranges(group_id: &str, params: &Params) -> [(u32, u32); 2] {
+    let law = &params.social;
+    if group_id.starts_with('E') {
+        [
+            (law.enterprise_likes_low, law.enterprise_likes_high_exclusive - 1),
+            (law.enterprise_shares_low, law.enterprise_shares_high_exclusive - 1),
+        ]
+    } else {
+        [
+            (law.individual_likes_low, law.individual_likes_high_exclusive - 1),
+            (law.individual_shares_low, law.individual_shares_high_exclusive - 1),
+        ]
+    }
+}
+
+/// Draws the engagement of a post of a group's customer.
+pub fn draw_engagement(
+    sentiment: Sentiment,
+    group_id: &str,
+    params: &Params,
+    stream: &mut Stream,
+) -> Engagement {
+    let [likes, shares] = engagement_ranges(group_id, params);
+    let (likes, shares) = (stream.integer(likes.0, likes.1), stream.integer(shares.0, shares.1));
+    let (factor, spike) = (stream.uniform(), stream.uniform());
+    let explosion = [stream.uniform(), stream.uniform(), stream.uniform()];
+    let draws = EngagementDraws { likes, shares, factor, spike, explosion };
+    engagement(sentiment, &draws, &params.social)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn check_14_of_chapter_30() {
+        let law = Params::shipped().social;
+        for (tone, likes, shares, [factor, spike, a, b, c], expected) in [
+            (Sentiment::Negative, 40, 10, [0.4, 0.5, 0.0, 0.0, 0.0], (76, 19, 1.0)),
+            (Sentiment::Positive, 40, 9, [0.4, 0.5, 0.0, 0.0, 0.0], (48, 10, 0.468)),
+            (Sentiment::Negative, 99, 29, [0.9, 0.5, 0.0, 0.0, 0.0], (237, 69, 1.0)),
+            (Sentiment::Neutral, 80, 20, [0.5, 0.005, 0.5, 0.5, 0.5], (420, 60, 1.0)),
+            (Sentiment::Negative, 80, 20, [0.5, 0.005, 0.99, 0.2, 0.2], (960, 120, 1.0)),
+        ] {
+            let draws = EngagementDraws { likes, shares, factor, spike, explosion: [a, b, c] };
+            let own = engagement(tone, &draws, &law);
+            assert_eq!((own.likes, own.shares), (expected.0, expected.1), "{tone:?} {likes} {shares}");
+            assert!((own.virality - expected.2).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn discoverable_companies_count_as_individuals() {
+        let params = Params::shipped();
+        assert_eq!(engagement_ranges("E1", &params), [(5, 49), (0, 9)]);
+        assert_eq!(engagement_ranges("D_E01", &params), [(1, 99), (0, 29)]);
+    }
+
+    #[test]
+    fn means_are_those_that_chapter_30_measured() {
+        let params = Params::shipped();
+        let mut stream =
+            crate::world::random::Streams::new(5).open(crate::world::random::Part::CustomerPosts, [1]);
+        for (sentiment, id, likes, shares) in [
+            (Sentiment::Positive, "S1", 65.9, Some(18.2)),
+            (Sentiment::Neutral, "S1", 39.3, Some(10.7)),
+            (Sentiment::Negative, "S1", 105.7, Some(29.4)),
+            (Sentiment::Positive, "E1", 35.3, None),
+            (Sentiment::Negative, "E1", 56.8, None),
+        ] {
+            let draws = 20_000;
+            let (mut sum, mut shared) = (0.0, 0.0);
+            for _ in 0..draws {
+                let own = draw_engagement(sentiment, id, &params, &mut stream);
+                (sum, shared) = (sum + f64::from(own.likes), shared + f64::from(own.shares));
+            }
+            let (mean, mean_shares) = (sum / f64::from(draws), shared / f64::from(draws));
+            assert!((mean / likes - 1.0).abs() < 0.03, "{id} {sentiment:?}: {mean} likes");
+            assert!(
+                shares.is_none_or(|shares| (mean_shares / shares - 1.0).abs() < 0.04),
+                "{mean_shares} shares"
+            );
+        }
+    }
+}

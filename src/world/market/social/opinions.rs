@@ -1,0 +1,206 @@
+//! What a subscriber has in mind: how loud they are, what happened to them, what weighs most (chapter 30 §5.3).
+
+use super::chronicle::Chronicle;
+use super::weights::Loudness;
+use crate::world::customers::columns::Block;
+use crate::world::day::Morning;
+use crate::world::events::{Cause, Opinion, ServiceDay, Theme, Troubles};
+use crate::world::identifiers::Group;
+use crate::world::params::{Params, Social};
+use crate::world::product::ads::AdLoad;
+use crate::world::product::quality::{
+    TenureTable, quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty,
+};
+
+/// What everybody who may post has in common today.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// Values frozen this morning.
+    pub morning: &'a Morning,
+    /// Service of today.
+    pub service: &'a ServiceDay,
+    /// In-app ads.
+    pub ads: &'a AdLoad<'a>,
+    /// Tenure bonuses by days.
+    pub tenure: &'a TenureTable,
+    /// The last four weeks.
+    pub chronicle: &'a Chronicle,
+    /// Parameters.
+    pub params: &'a Params,
+}
+
+impl Scene<'_> {
+    /// Share of a row's demand that its quota covers today.
+    fn quota_factor(&self, block: &Block, at: usize) -> f64 {
+        let rate = block.usage_rate[at];
+        let demand = quota_demand(rate * self.morning.weekday, rate, self.params);
+        quota_factor(self.morning.quotas[block.plan[at]], demand, &self.params.quality)
+    }
+
+    /// What went wrong for a row today.
+    pub fn troubles(&self, block: &Block, at: usize) -> Troubles {
+        Troubles {
+            overload: self.service.overload > 0.0,
+            outage: self.service.outage,
+            issue: block.open_issue_days[at] > 0,
+            quota: self.quota_factor(block, at) < 1.0,
+        }
+    }
+
+    /// What makes a row loud; `before` is its satisfaction before today's update.
+    pub fn loudness(&self, group: Group, block: &Block, at: usize, before: f64) -> Loudness {
+        let satisfaction = block.satisfaction[at];
+        Loudness {
+            satisfaction,
+            change: satisfaction - before,
+            influencer: self.params.group(group).influencer,
+            days_subscribed: self.morning.day - block.start_day[at],
+            events: self.troubles(block, at).count(),
+            // Contracts last a month, so nobody is bound for long.
+            contract_locked: false,
+            seats: if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 },
+        }
+    }
+
+    /// What a row would write about; `u` is a uniform draw.
+    pub fn opinion(&self, group: Group, block: &Block, at: usize, before: f64, u: f64) -> Opinion {
+        let troubles = self.troubles(block, at);
+        let change = block.satisfaction[at] - before;
+        let worths = if block.satisfaction[at] < 0.0 {
+            self.complaints(group, block, at)
+        } else {
+            self.praises(group, block, at)
+        };
+        Opinion {
+            cause: cause(troubles, change, &self.params.social),
+            troubles,
+            theme: theme(&worths, u),
+            days_subscribed: self.morning.day - block.start_day[at],
+            plan: Some(block.plan[at]),
+            price: block.effective_price[at],
+            seats: block.seats[at] as u32,
+            waiting_days: block.open_issue_days[at],
+            downtime_minutes: self.service.downtime_minutes,
+        }
+    }
+
+    /// What a row lacks, each in quality it costs.
+    fn complaints(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
+        let quality = &self.params.quality;
+        let delivered = self.morning.delivered(group, block.plan[at]);
+        let (needed, share) = self.price_of_quality(block, at);
+        let shortage = (block.q_min[at] - delivered).max(0.0);
+        let relationship = self.relationship(block, at);
+        let issues = quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]);
+        let effect = self.ads.for_customer(group, block.customer[at]);
+        vec![
+            (Theme::Price, needed * share),
+            (Theme::Quality, needed * (1.0 - share) + shortage),
+            (Theme::Rivals, self.morning.expectations[group].quality),
+            (Theme::Service, self.mean_penalty()),
+            (Theme::Support, (-relationship).max(0.0) + issues),
+            (Theme::Limits, (1.0 - self.quota_factor(block, at)) * delivered),
+            (Theme::Ads, block.ads_quality_sensitivity[at] * effect),
+        ]
+    }
+
+    /// What a row values, each in quality it brings.
+    fn praises(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
+        let quality = &self.params.quality;
+        let delivered = self.morning.delivered(group, block.plan[at]);
+        let surplus = (delivered - block.q_min[at]).max(0.0);
+        let (_, share) = self.price_of_quality(block, at);
+        // What a bad day would have cost and these weeks did not.
+        let calm = (quality.service_overload_weight - self.mean_penalty()).max(0.0);
+        vec![
+            (Theme::Price, surplus * (1.0 - share)),
+            (Theme::Quality, surplus * share),
+            (Theme::Service, calm),
+            (Theme::Support, self.relationship(block, at).max(0.0)),
+            (Theme::Progress, self.chronicle.progress(group).max(0.0)),
+            (Theme::Habit, self.tenure.bonus(self.morning.day - block.start_day[at])),
+        ]
+    }
+
+    /// How much quality the price of a row asks for, and how much of its budget the price takes, 0..=1.
+    fn price_of_quality(&self, block: &Block, at: usize) -> (f64, f64) {
+        let needed = (block.required[at] - block.q_min[at]).max(0.0);
+        let budget = block.effective_c_max[at];
+        let share = if budget > 0.0 { block.effective_price[at] / budget } else { 1.0 };
+        (needed, share.clamp(0.0, 1.0))
+    }
+
+    fn relationship(&self, block: &Block, at: usize) -> f64 {
+        let quality = &self.params.quality;
+        relationship_bonus(relationship_as_read(block.relationship[at], quality), quality)
+    }
+
+    /// Mean quality lost to bad service over the last two weeks.
+    fn mean_penalty(&self) -> f64 {
+        const DAYS: usize = 14;
+        let penalty = |overload, outage| service_penalty(overload, outage, &self.params.quality);
+        let pages = self.chronicle.last(DAYS);
+        let (sum, count) = pages
+            .fold((0.0, 0.0), |(sum, count), page| (sum + penalty(page.overload, page.outage), count + 1.0));
+        sum / count
+    }
+}
+
+/// Why somebody writes: the first trouble, else a change of mood, else nothing in particular.
+pub fn cause(troubles: Troubles, change: f64, law: &Social) -> Cause {
+    match troubles {
+        Troubles { overload: true, .. } => Cause::Overload,
+        Troubles { outage: true, .. } => Cause::Outage,
+        Troubles { issue: true, .. } => Cause::Issue,
+        Troubles { quota: true, .. } => Cause::Quota,
+        _ if change.abs() < law.satisfaction_change_threshold => Cause::General,
+        _ if change > 0.0 => Cause::Improved,
+        _ => Cause::Declined,
+    }
+}
+
+/// A theme drawn by what each is worth; quality where nothing is.
+pub fn theme(worths: &[(Theme, f64)], u: f64) -> Theme {
+    let total: f64 = worths.iter().map(|(_, worth)| worth).sum();
+    let mut left = u * total;
+    for (theme, worth) in worths {
+        if left < *worth {
+            return *theme;
+        }
+        left -= worth;
+    }
+    Theme::Quality
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn troubles_come_before_moods_in_the_order_of_the_chapter() {
+        let law = Params::shipped().social;
+        let none = Troubles::default();
+        let all = Troubles { overload: true, outage: true, issue: true, quota: true };
+        for (troubles, change, expected) in [
+            (all, 0.5, Cause::Overload),
+            (Troubles { overload: false, ..all }, 0.5, Cause::Outage),
+            (Troubles { issue: true, quota: true, ..none }, 0.0, Cause::Issue),
+            (Troubles { quota: true, ..none }, -0.5, Cause::Quota),
+            (none, 0.02, Cause::Improved),
+            (none, -0.02, Cause::Declined),
+            (none, 0.019, Cause::General),
+        ] {
+            assert_eq!(cause(troubles, change, &law), expected, "{troubles:?} {change}");
+        }
+        assert_eq!(all.count(), 4);
+    }
+
+    #[test]
+    fn themes_are_drawn_by_their_worth() {
+        let worths = [(Theme::Price, 0.1), (Theme::Rivals, 0.0), (Theme::Quality, 0.3)];
+        assert_eq!(theme(&worths, 0.0), Theme::Price);
+        assert_eq!(theme(&worths, 0.24), Theme::Price);
+        assert_eq!(theme(&worths, 0.26), Theme::Quality);
+        assert_eq!(theme(&[(Theme::Ads, 0.0)], 0.5), Theme::Quality);
+    }
+}

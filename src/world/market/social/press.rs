@@ -1,0 +1,205 @@
+//! What the press writes about rivals and the economy (chapter 30 §5.8, §5.9, steps 11, 18 and 22).
+
+use super::Social;
+use super::engagement::Engagement;
+use super::sentiment::Sentiment;
+use crate::world::events::{Facts, Matter};
+use crate::world::market::competitors::{Event, Severity, severity};
+use crate::world::market::economy::{Economy, Reading, Trend};
+use crate::world::params::{Competitor, MacroEconomy, Params};
+use crate::world::random::{Part, Stream, Streams};
+
+/// The event the press writes about: the oldest one that is not over.
+pub fn topic<'a>(day: u32, events: &'a [Event], law: &Competitor) -> Option<&'a Event> {
+    events.iter().find(|event| event.day + law.competitor_event_post_days >= day)
+}
+
+/// The size of an event as the press sees it; `u` is uniform within the range of misjudgement.
+pub fn estimated_boost(boost: f64, u: f64) -> f64 {
+    (boost + u * boost).max(0.0)
+}
+
+/// Views, likes and shares of a post on a rival: int(base (1 + U)), int(views ratio (1 + U)).
+pub fn rival_engagement(
+    severity: Severity,
+    [views, likes, shares]: [f64; 3],
+    law: &Competitor,
+) -> Engagement {
+    let base = match severity {
+        Severity::Minor => law.competitor_post_base_views_minor,
+        Severity::Moderate => law.competitor_post_base_views_moderate,
+        Severity::Major => law.competitor_post_base_views_major,
+        Severity::Transformative => law.competitor_post_base_views_transformative,
+    };
+    let views = (f64::from(base) * (1.0 + views)).trunc();
+    let of_views = |ratio: f64, u: f64| (views * ratio * (1.0 + u)).trunc() as u32;
+    Engagement {
+        likes: of_views(law.competitor_post_likes_ratio, likes),
+        shares: of_views(law.competitor_post_shares_ratio, shares),
+        virality: 0.0,
+    }
+}
+
+/// The posts on rivals of a day.
+pub fn write_about_rivals(
+    day: u32,
+    events: &[Event],
+    social: &mut Social,
+    params: &Params,
+    streams: &Streams,
+    facts: &mut Facts,
+) {
+    let law = &params.competitor;
+    let Some(event) = topic(day, events, law) else { return };
+    let mut stream = streams.open(Part::CompetitorPosts, [u64::from(day)]);
+    let u = stream.between(law.competitor_post_boost_noise_min, law.competitor_post_boost_noise_max);
+    let estimate = estimated_boost(event.boost, u);
+    let severity = severity(estimate, law);
+    for _ in 0..law.competitor_event_posts_per_day {
+        let name = stream.index(law.competitor_names.len()) as u8;
+        let perspective = stream.index(law.post_perspective_count as usize) as u8;
+        let draws = [stream.uniform(), stream.uniform(), stream.uniform()];
+        let engagement = rival_engagement(severity, draws, law);
+        let matter = Matter::Rival { name, perspective, severity, estimate };
+        social.publish(None, Sentiment::Neutral, engagement, matter, facts);
+    }
+}
+
+/// Tone of posts on the economy.
+pub fn economy_tone(trend: Trend) -> Sentiment {
+    match trend {
+        Trend::StrongExpansion | Trend::Expansion => Sentiment::Positive,
+        Trend::Neutral => Sentiment::Neutral,
+        Trend::Contraction | Trend::SevereContraction => Sentiment::Negative,
+    }
+}
+
+/// Views, likes and shares of a post on the economy.
+pub fn economy_engagement([views, likes, shares]: [f64; 3], law: &MacroEconomy) -> Engagement {
+    let views = (law.macro_post_views_base * (1.0 + views)).trunc();
+    let of_views = |ratio: f64, u: f64| (views * ratio * (1.0 + u)).trunc() as u32;
+    Engagement {
+        likes: of_views(law.macro_post_likes_ratio, likes),
+        shares: of_views(law.macro_post_shares_ratio, shares),
+        virality: 0.0,
+    }
+}
+
+/// The posts on the economy of a day: one for each published reading, and now and then a round of voices who
+/// feel the economy as it is today.
+pub fn write_about_the_economy(
+    day: u32,
+    economy: &Economy,
+    social: &mut Social,
+    params: &Params,
+    streams: &Streams,
+    facts: &mut Facts,
+) {
+    let law = &params.economy;
+    let mut stream = streams.open(Part::MacroPosts, [u64::from(day)]);
+    let mut write = |social: &mut Social, stream: &mut Stream, trend, matter| {
+        let draws = [stream.uniform(), stream.uniform(), stream.uniform()];
+        social.publish(None, economy_tone(trend), economy_engagement(draws, law), matter, facts);
+    };
+    let news = |reading: &&Reading| reading.measured_day + law.macro_pmi_publication_delay_days == day;
+    if let Some(reading) = economy.published.as_ref().filter(news) {
+        write(social, &mut stream, reading.trend, Matter::Reading(*reading));
+    }
+    let next = *social.next_round.get_or_insert_with(|| {
+        let mut first = streams.open(Part::MacroPosts, [0]);
+        first.integer(law.macro_social_post_interval_min, law.macro_social_post_interval_max)
+    });
+    if day < next {
+        return;
+    }
+    let pause = stream.integer(law.macro_social_post_interval_min, law.macro_social_post_interval_max);
+    social.next_round = Some(day + pause);
+    let trend = Trend::of(economy.pmi, law);
+    for _ in 0..stream.integer(law.macro_social_post_count_min, law.macro_social_post_count_max) {
+        let perspective = stream.index(law.post_perspective_count as usize) as u8;
+        write(social, &mut stream, trend, Matter::Economy { trend, pmi: economy.pmi, perspective });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::settings::Settings;
+
+    fn event(day: u32, boost: f64) -> Event {
+        Event { day, boost, sampled: boost, u: 0.0, by_feedback: false }
+    }
+
+    /// Estimate, likes and shares of two posts for given draws.
+    fn posts(events: &[Event], day: u32, u: f64) -> (f64, Vec<(u32, u32)>) {
+        let law = Params::shipped().competitor;
+        let event = topic(day, events, &law).expect("a topic");
+        let estimate = estimated_boost(event.boost, u);
+        let engagement = |draws| {
+            let own = rival_engagement(severity(estimate, &law), draws, &law);
+            (own.likes, own.shares)
+        };
+        (estimate, vec![engagement([0.5, 0.5, 0.5]), engagement([0.25, 0.75, 0.1])])
+    }
+
+    #[test]
+    fn check_18_of_chapter_30() {
+        assert_eq!(posts(&[event(100, 0.09)], 100, 0.0), (0.09, vec![(22, 9), (21, 5)]));
+        let (estimate, engagement) = posts(&[event(100, 0.09)], 100, 0.25);
+        assert!((estimate - 0.1125).abs() < 1e-12);
+        assert_eq!(engagement, [(56, 22), (54, 13)]);
+        let over = [event(96, 0.02), event(100, 0.25)];
+        assert_eq!(posts(&over, 100, 0.0), (0.25, vec![(112, 45), (109, 27)]));
+        let older = [event(98, 0.02), event(100, 0.25)];
+        assert_eq!(posts(&older, 100, 0.0), (0.02, vec![(5, 2), (5, 1)]));
+        assert_eq!(topic(104, &[event(100, 0.1)], &Params::shipped().competitor), None);
+    }
+
+    #[test]
+    fn rounds_come_at_intervals_and_readings_on_their_day() {
+        let params = Params::shipped();
+        let streams = Streams::new(9);
+        let mut social = Social::opening(&Settings::opening(&params));
+        let mut economy = Economy::opening(&params);
+        let (mut rounds, mut readings) = (Vec::new(), 0);
+        for day in 1..=500 {
+            let mut facts = Facts::default();
+            facts.begin(day);
+            crate::world::market::economy::step(day, &mut economy, &params, &streams, &mut facts);
+            write_about_the_economy(day, &economy, &mut social, &params, &streams, &mut facts);
+            let published =
+                facts.posts.iter().filter(|post| matches!(post.matter, Matter::Reading(_))).count();
+            assert_eq!(published, facts.readings.len());
+            readings += published;
+            let voices = facts.posts.len() - published;
+            if voices > 0 {
+                assert!((2..=8).contains(&voices));
+                rounds.push(day);
+            }
+        }
+        assert_eq!(readings, 16);
+        assert!((5..=20).contains(&rounds[0]));
+        assert!(rounds.windows(2).all(|pair| (5..=20).contains(&(pair[1] - pair[0]))), "{rounds:?}");
+        assert!((150..=310).contains(&(social.next_post - 1)), "{}", social.next_post - 1);
+    }
+
+    /// Renewal theory: by day 60 there are 60/12.5 - 0.39 rounds of 5 posts, and one reading.
+    #[test]
+    fn the_first_sixty_days_bring_23_posts_on_average() {
+        let params = Params::shipped();
+        let seeds = 300;
+        let mut count = 0.0;
+        for seed in 0..seeds {
+            let (streams, mut facts) = (Streams::new(seed), Facts::default());
+            let mut social = Social::opening(&Settings::opening(&params));
+            let mut economy = Economy::opening(&params);
+            for day in 1..=60 {
+                crate::world::market::economy::step(day, &mut economy, &params, &streams, &mut facts);
+                write_about_the_economy(day, &economy, &mut social, &params, &streams, &mut facts);
+            }
+            count += f64::from(social.next_post - 1);
+        }
+        let mean = count / seeds as f64;
+        assert!((mean - 23.04).abs() < 4.0 * 7.0 / (seeds as f64).sqrt(), "{mean}");
+    }
+}

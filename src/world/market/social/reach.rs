@@ -1,0 +1,178 @@
+//! How far the player's posts reach: views, comments, and what the inbox says (chapter 30 §6.2, §6.5-§6.7, step 23).
+
+use super::crowd::author_of;
+use super::engagement::Engagement;
+use super::sentiment::Sentiment;
+use crate::world::customers::Customers;
+use crate::world::events::{Facts, Matter, Notice, OwnPostSeen, PostAuthor, Reaction};
+use crate::world::identifiers::{ByGroup, Group};
+use crate::world::params::{CeoPosts, Params};
+use crate::world::random::{Part, Stream, Streams};
+use crate::world::state::World;
+
+/// How the groups take a post of the player.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// Number of the post, from 1.
+    pub post: u32,
+    /// Reactions of the known groups, -1..=1, in group order.
+    pub effects: Vec<(Group, f64)>,
+}
+
+/// Views of a group before the chance of the day: base f, f = 1..3 up to the threshold, 3..100 above it.
+pub fn expected_views(effect: f64, subscribers: u32, law: &CeoPosts) -> f64 {
+    let base = law.views_base_min.max(law.views_base_per_subscriber * f64::from(subscribers));
+    let (size, threshold) = (effect.abs(), law.viral_threshold);
+    let edge = law.views_threshold_multiplier;
+    let factor = if size <= threshold {
+        1.0 + size * (edge - 1.0) / threshold
+    } else {
+        let slope = libm::log(law.views_max_multiplier / edge) / (1.0 - threshold);
+        edge * libm::exp(slope * (size - threshold))
+    };
+    base * factor
+}
+
+/// The judged posts get their effects, views and comments; the inbox says so.
+pub fn receive(
+    world: &mut World,
+    verdicts: &[Verdict],
+    params: &Params,
+    streams: &Streams,
+    facts: &mut Facts,
+) {
+    for verdict in verdicts {
+        let known = |post: u32| post >= 1 && post as usize <= world.market.social.own.len();
+        if known(verdict.post) {
+            receive_one(world, verdict, params, streams, facts);
+        }
+    }
+}
+
+fn receive_one(world: &mut World, verdict: &Verdict, params: &Params, streams: &Streams, facts: &mut Facts) {
+    let law = &params.ceo_posts;
+    let subscribers = world.customers.active();
+    let (mut views, mut comments) = (0, Vec::new());
+    let mut effects = ByGroup::from_fn(|_| 0.0);
+    for &(group, effect) in &verdict.effects {
+        effects[group] = effect;
+        let keys = [u64::from(verdict.post), group.index() as u64];
+        let luck = streams
+            .open(Part::CeoViews, keys)
+            .log_normal(law.views_noise_lognormal_mu, law.views_noise_lognormal_sigma);
+        views += (expected_views(effect, subscribers[group], law) * luck) as u64;
+        if effect.abs() >= law.viral_threshold {
+            let mut stream = streams.open(Part::CeoReply, keys);
+            let author = pick_author(group, &world.customers, params, streams, &mut stream);
+            let sentiment = if effect > 0.0 { Sentiment::Positive } else { Sentiment::Negative };
+            let engagement = Engagement {
+                likes: stream.integer(law.reply_likes_low, law.reply_likes_high_exclusive - 1),
+                shares: stream.integer(law.reply_shares_low, law.reply_shares_high_exclusive - 1),
+                virality: effect.abs(),
+            };
+            let matter = Matter::Comment { own_post: verdict.post, group, effect };
+            comments.push(world.market.social.publish(author, sentiment, engagement, matter, facts));
+        }
+    }
+    facts.notices.push(Notice::OwnPostSeen(reaction(verdict, views, law)));
+    facts.own_posts_seen.push(OwnPostSeen { post: verdict.post, views, comments: comments.clone() });
+    let own = &mut world.market.social.own[verdict.post as usize - 1];
+    (own.effects, own.views, own.comments) = (Some(effects), views, comments);
+}
+
+/// Any active subscriber of a group; nobody where it has none.
+fn pick_author(
+    group: Group,
+    customers: &Customers,
+    params: &Params,
+    streams: &Streams,
+    stream: &mut Stream,
+) -> Option<PostAuthor> {
+    let own = &customers.groups[group];
+    let active = own.active() as usize;
+    if active == 0 {
+        return None;
+    }
+    let mut at = stream.index(active);
+    for block in &own.blocks {
+        if at < block.len() {
+            let seats = block.seats[at] as u32;
+            return Some(author_of(block.customer[at], group, block.n[at], seats, params, streams));
+        }
+        at -= block.len();
+    }
+    None
+}
+
+fn reaction(verdict: &Verdict, views: u64, law: &CeoPosts) -> Reaction {
+    let judged = verdict.effects.len().max(1) as f64;
+    let mean = verdict.effects.iter().map(|(_, effect)| effect).sum::<f64>() / judged;
+    let mut sorted = verdict.effects.clone();
+    sorted.sort_by(|(_, one), (_, other)| other.abs().total_cmp(&one.abs()));
+    sorted.truncate(law.notification_top_groups as usize);
+    let strongest = std::array::from_fn(|at| sorted.get(at).copied());
+    Reaction { post: verdict.post, views, mean, strongest }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::market::social::own::OwnPost;
+
+    fn group(id: &str) -> Group {
+        Group::parse(id).expect("a group")
+    }
+
+    #[test]
+    fn check_16_of_chapter_30() {
+        let law = Params::shipped().ceo_posts;
+        for (effect, expected) in
+            [(0.3, 100.0), (0.6, 150.0), (0.7, 360.421712), (0.8, 866.025404), (1.0, 5000.0), (-0.3, 100.0)]
+        {
+            let views = expected_views(effect, 0, &law);
+            assert!((views - expected).abs() < 1e-6, "{effect}: {views} instead of {expected}");
+        }
+        assert_eq!(expected_views(0.0, 4000, &law), 400.0);
+    }
+
+    #[test]
+    fn strong_reactions_bring_comments_and_the_inbox_names_three_groups() {
+        let (params, streams) = (Params::shipped(), Streams::new(4));
+        let mut facts = Facts::default();
+        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        world.market.social.own.push(OwnPost::new(0, "Hello.", None));
+        facts.begin(1);
+        let effects = vec![
+            (group("S1"), 0.2),
+            (group("S2"), -0.7),
+            (group("S3"), 0.6),
+            (group("E1"), 0.0),
+            (group("E2"), -0.2),
+        ];
+        let verdict = Verdict { post: 1, effects };
+        receive(&mut world, std::slice::from_ref(&verdict), &params, &streams, &mut facts);
+        let tones: Vec<Sentiment> = facts.posts.iter().map(|post| post.sentiment).collect();
+        assert_eq!(tones, [Sentiment::Negative, Sentiment::Positive]);
+        assert!(facts.posts.iter().all(|post| post.author.is_none()), "nobody has subscribed yet");
+        let seen = &facts.own_posts_seen[0];
+        assert_eq!((seen.post, seen.comments.as_slice()), (1, &[1, 2][..]));
+        let own = &world.market.social.own[0];
+        assert_eq!((own.views, own.comments.clone()), (seen.views, seen.comments.clone()));
+        assert_eq!(own.effects.as_ref().map(|effects| effects[group("S2")]), Some(-0.7));
+        let [Notice::OwnPostSeen(reaction)] = facts.notices.as_slice() else { panic!("one notice") };
+        let named = reaction.strongest.map(|one| one.map(|(group, effect)| (group.id(), effect)));
+        assert_eq!(named, [Some(("S2", -0.7)), Some(("S3", 0.6)), Some(("S1", 0.2))]);
+        assert!((reaction.mean + 0.02).abs() < 1e-12);
+        let mut again = world.clone();
+        again.market.social.next_post = 1;
+        let mut other = Facts::default();
+        receive(
+            &mut again,
+            &[verdict, Verdict { post: 9, effects: Vec::new() }],
+            &params,
+            &streams,
+            &mut other,
+        );
+        assert_eq!(other.posts, facts.posts);
+    }
+}

@@ -1,0 +1,63 @@
+//! The tone of a customer's post (chapter 30 §5.4).
+
+use crate::world::canonical::canonical_codes;
+use crate::world::params::{SentimentChances, Social};
+
+canonical_codes!(Sentiment);
+
+/// Tone of a post.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Sentiment {
+    /// Praise.
+    Positive,
+    /// Neither.
+    Neutral,
+    /// Complaint.
+    Negative,
+}
+
+/// Chances of a sentiment at a satisfaction.
+pub fn sentiment_chances(satisfaction: f64, law: &Social) -> &SentimentChances {
+    match satisfaction {
+        s if s >= law.sentiment_band_very_positive_min => &law.sentiment.very_positive,
+        s if s >= law.sentiment_band_positive_min => &law.sentiment.positive,
+        s if s >= law.sentiment_band_neutral_min => &law.sentiment.neutral,
+        s if s >= law.sentiment_band_negative_min => &law.sentiment.negative,
+        _ => &law.sentiment.very_negative,
+    }
+}
+
+/// Sentiment of a post from a uniform draw.
+pub fn sentiment(satisfaction: f64, u: f64, law: &Social) -> Sentiment {
+    let chances = sentiment_chances(satisfaction, law);
+    if u < chances.positive {
+        Sentiment::Positive
+    } else if u < chances.positive + chances.neutral {
+        Sentiment::Neutral
+    } else {
+        Sentiment::Negative
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::params::Params;
+
+    #[test]
+    fn sentiment_follows_the_bands_of_chapter_30() {
+        let law = Params::shipped().social;
+        for (satisfaction, u, expected) in [
+            (0.2, 0.69, Sentiment::Positive),
+            (0.2, 0.71, Sentiment::Neutral),
+            (0.19, 0.69, Sentiment::Neutral),
+            (0.0, 0.71, Sentiment::Negative),
+            (-0.05, 0.14, Sentiment::Positive),
+            (-0.2, 0.41, Sentiment::Negative),
+            (-0.21, 0.19, Sentiment::Neutral),
+        ] {
+            assert_eq!(sentiment(satisfaction, u, &law), expected, "{satisfaction} {u}");
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! How loudly somebody is heard: the weights behind the posts of a day (chapter 30 §5.3).
+
+use crate::world::params::Social;
+
+/// What weighs in a subscriber's chance to be heard today.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loudness {
+    /// Satisfaction after today's update.
+    pub satisfaction: f64,
+    /// Its change today.
+    pub change: f64,
+    /// Whether the group is an influencer group.
+    pub influencer: bool,
+    /// Days subscribed.
+    pub days_subscribed: u32,
+    /// Events felt today: overload, outage, issue, quota.
+    pub events: u32,
+    /// Whether an unhappy company is bound by a contract.
+    pub contract_locked: bool,
+    /// Whole seats.
+    pub seats: f64,
+}
+
+/// Weight of a subscriber.
+pub fn post_weight(voice: &Loudness, law: &Social) -> f64 {
+    let s = voice.satisfaction;
+    let mut weight = 1.0 + law.weight_abs_satisfaction_coef * s.abs();
+    if s < 0.0 {
+        weight *= 1.0 + law.weight_negative_satisfaction_sq_coef * s * s;
+    }
+    if voice.influencer {
+        weight *= law.weight_influencer_multiplier;
+    }
+    if voice.days_subscribed <= law.weight_new_customer_max_days {
+        weight *= law.weight_new_customer_multiplier;
+    }
+    if voice.change.abs() >= law.satisfaction_change_threshold {
+        weight *= 1.0 + law.weight_satisfaction_change_coef * voice.change.abs();
+    }
+    if voice.events > 0 {
+        weight *= 1.0 + law.weight_active_event_coef * f64::from(voice.events);
+    }
+    if voice.contract_locked {
+        weight *= law.contract_dissatisfaction_reputation_multiplier;
+    }
+    finite(weight * voice.seats.max(1.0), law)
+}
+
+/// Weight of an individual who cancelled today.
+pub fn cancelled_weight(satisfaction: f64, seats: f64, law: &Social) -> f64 {
+    let bad = satisfaction.min(0.0).abs();
+    finite(law.churn_weight_base * seats * (1.0 + law.churn_weight_negative_satisfaction_coef * bad), law)
+}
+
+/// Weight of a company that was lost today.
+pub fn lost_company_weight(seats: f64, law: &Social) -> f64 {
+    finite(law.enterprise_churn_weight_base * seats.max(1.0), law)
+}
+
+fn finite(weight: f64, law: &Social) -> f64 {
+    if weight.is_finite() { weight } else { law.weight_nonfinite_replacement }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::params::Params;
+
+    const PLAIN: Loudness = Loudness {
+        satisfaction: 0.0,
+        change: 0.0,
+        influencer: false,
+        days_subscribed: 100,
+        events: 0,
+        contract_locked: false,
+        seats: 1.0,
+    };
+
+    #[test]
+    fn check_b_of_chapter_30() {
+        let law = Params::shipped().social;
+        for (voice, expected) in [
+            (PLAIN, 1.0),
+            (Loudness { satisfaction: 0.3, ..PLAIN }, 4.0),
+            (Loudness { satisfaction: -0.3, ..PLAIN }, 11.2),
+            (Loudness { satisfaction: -0.3, influencer: true, days_subscribed: 10, ..PLAIN }, 33.6),
+            (Loudness { satisfaction: 0.1, change: 0.02, ..PLAIN }, 2.8),
+            (Loudness { satisfaction: 0.1, change: -0.05, events: 2, ..PLAIN }, 44.0),
+            (
+                Loudness { satisfaction: -0.25, events: 1, contract_locked: true, seats: 80.0, ..PLAIN },
+                5670.0,
+            ),
+            (
+                Loudness { satisfaction: 0.2, influencer: true, days_subscribed: 30, seats: 500.0, ..PLAIN },
+                4500.0,
+            ),
+            (Loudness { satisfaction: -40.0, ..PLAIN }, 12_832_401.0),
+        ] {
+            let weight = post_weight(&voice, &law);
+            assert!((weight / expected - 1.0).abs() < 1e-12, "{voice:?}: {weight} instead of {expected}");
+        }
+        assert_eq!(cancelled_weight(-0.2, 1.0, &law), 15.0);
+        assert_eq!(cancelled_weight(0.3, 1.0, &law), 5.0);
+        assert_eq!(lost_company_weight(120.0, &law), 960.0);
+        assert_eq!(lost_company_weight(0.0, &law), 8.0);
+        assert_eq!(post_weight(&Loudness { satisfaction: f64::INFINITY, ..PLAIN }, &law), 1e6);
+    }
+}

@@ -19,6 +19,8 @@ pub enum Scope {
     Query,
     /// Results of queries.
     Result,
+    /// Negotiations.
+    Inbox,
     /// The dialog before a week.
     Filing,
     /// Small dialogs.
@@ -31,12 +33,13 @@ pub enum Scope {
 
 impl Scope {
     /// All scopes, in the order of the help.
-    pub const ALL: [Scope; 12] = [
+    pub const ALL: [Scope; 13] = [
         Scope::Global,
         Scope::List,
         Scope::Form,
         Scope::Query,
         Scope::Result,
+        Scope::Inbox,
         Scope::Filing,
         Scope::Editor,
         Scope::Field,
@@ -57,6 +60,7 @@ impl Scope {
             Scope::Editor => "editor",
             Scope::Query => "query",
             Scope::Result => "result",
+            Scope::Inbox => "inbox",
             Scope::Filing => "filing",
             Scope::Dialog => "dialog",
             Scope::Final => "final",
@@ -108,6 +112,7 @@ actions! {
         Cash "cash" "Cash" "Show where money comes from and goes to."
         Customers "customers" "Customers" "Show the customer groups."
         Product "product" "Product" "Show quality, capacity, issues and R&D."
+        Inbox "inbox" "Inbox" "Negotiate with companies."
         Tools "tools" "Tools" "Show the forms of all tools."
         Sql "sql" "SQL" "Ask the database."
         Journal "journal" "Journal" "Show what was done and how forecasts turned out."
@@ -160,6 +165,19 @@ actions! {
         CopyRow "copy-row" "copy row" "Copy the row."
         ExportCsv "export-csv" "export CSV" "Write the result as CSV."
         ExportJson "export-json" "export JSON" "Write the result as JSON."
+    }
+    Inbox {
+        SendOffer "send-offer" "send" "Send the offer to the marked companies, or to the selected one."
+        TakeAsk "take-their-price" "take their price" "Offer what the company asks for the plan it named."
+        Mark "mark" "mark" "Mark the thread for one rule, or unmark it."
+        MarkAll "mark-all" "mark all" "Mark every thread that is shown; again to unmark them."
+        OfferPlan "plan" "plan" "Another plan for this line of the offer."
+        OfferBasis "basis" "basis" "Price in percent of the list, in percent of their price, or in dollars."
+        OfferPrice "price" "price" "Type the value of this line of the offer."
+        OtherThreads "other-threads" "other threads" "Show threads that wait for you, for the company, or ended."
+        RejectOffer "reject" "reject" "End the threads without a deal; asks first."
+        InboxGroup "group" "group" "Show the group of the company."
+        InboxSql "thread-sql" "SQL" "Ask the database for the thread."
     }
     Filing {
         NextStep "next-step" "next step" "Go on to the next step, and from the last one let the week pass."

@@ -25,6 +25,7 @@ use super::message::Message;
 use super::readings::Reading;
 use super::screens::cash::Cash;
 use super::screens::customers::Customers;
+use super::screens::inbox::Inbox;
 use super::screens::journal::Journal;
 use super::screens::menu::Menu;
 use super::screens::overview::Overview;
@@ -123,6 +124,7 @@ pub struct Screens {
     cash: Cash,
     customers: Customers,
     product: Product,
+    inbox: Inbox,
     tools: Tools,
     sql: Sql,
     journal: Journal,
@@ -136,6 +138,7 @@ impl Screens {
             ScreenId::Cash => &self.cash,
             ScreenId::Customers => &self.customers,
             ScreenId::Product => &self.product,
+            ScreenId::Inbox => &self.inbox,
             ScreenId::Tools => &self.tools,
             ScreenId::Sql => &self.sql,
             ScreenId::Journal => &self.journal,
@@ -149,6 +152,7 @@ impl Screens {
             ScreenId::Cash => &mut self.cash,
             ScreenId::Customers => &mut self.customers,
             ScreenId::Product => &mut self.product,
+            ScreenId::Inbox => &mut self.inbox,
             ScreenId::Tools => &mut self.tools,
             ScreenId::Sql => &mut self.sql,
             ScreenId::Journal => &mut self.journal,

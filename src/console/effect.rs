@@ -59,6 +59,8 @@ pub enum Effect {
     Show(ScreenId),
     /// Show the form of a tool.
     ShowTool(&'static str),
+    /// Show a customer group, by its id.
+    ShowGroup(String),
     /// Put a statement into the SQL editor.
     EditSql(String),
     /// Ask once before a call that cannot be taken back.

@@ -140,6 +140,7 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
 fn badge(run: &Run, screen: ScreenId) -> String {
     let count = match screen {
         ScreenId::Product => run.company.seen.running_research as usize,
+        ScreenId::Inbox => run.company.seen.waiting.len(),
         ScreenId::Tools => run.company.seen.changes.len(),
         _ => 0,
     };

@@ -30,6 +30,8 @@ readings! {
     LeadsByChannel "leads_by_channel" "Leads of the last four weeks: channel, group, leads, spend."
     Service "service" "The service by day: day, usage, capacity, tier, latency, errors, minutes of outage."
     OpenIssues "open_issues" "Open issues: group, and a count for each of four ages."
+    EnterpriseTurns "enterprise_turns" "Turns of negotiations, the newest first: thread, company, kind, turn, sender, words, offer, day, seats, end."
+    Companies "companies" "The companies of these negotiations: profile and subscription."
     Research "research" "R&D projects: id, tier, status, started, expected, boost; the newest first."
 }
 

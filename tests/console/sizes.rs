@@ -3,11 +3,12 @@
 use super::harness::Console;
 
 /// Keys that lead to every place of the console, each followed by what closes it.
-const PLACES: [(&str, &str); 15] = [
+const PLACES: [(&str, &str); 16] = [
     ("1", ""),
     ("2", ""),
     ("3", ""),
     ("4", ""),
+    ("6", ""),
     ("8", ""),
     ("8 enter", "esc"),
     ("9", "esc"),

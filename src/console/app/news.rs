@@ -115,7 +115,11 @@ impl App {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
         let look = Look { company: &company, keys: &self.keys, page: self.page };
-        let effects = run.screens.get_mut(screen).hear(&news, &look);
+        let mut effects = run.screens.get_mut(screen).hear(&news, &look);
+        // The forms hear of every call; the negotiations are another place that makes them.
+        if screen == ScreenId::Tools {
+            effects.extend(run.screens.get_mut(ScreenId::Inbox).hear(&news, &look));
+        }
         self.follow(effects);
     }
 

@@ -75,6 +75,13 @@ impl App {
                 }
                 self.show(ScreenId::Tools);
             }
+            Effect::ShowGroup(group) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    let company = run.company.clone();
+                    run.screens.customers.show(&group, &company);
+                }
+                self.show(ScreenId::Customers);
+            }
             Effect::EditSql(sql) => {
                 if let Stage::Run(run) = &mut self.stage {
                     run.screens.sql.edit(&sql);

@@ -3,6 +3,7 @@
 
 pub mod cash;
 pub mod customers;
+pub mod inbox;
 pub mod journal;
 pub mod menu;
 pub mod overview;
@@ -33,6 +34,8 @@ pub enum ScreenId {
     Customers,
     /// Quality, capacity, issues, R&D.
     Product,
+    /// Negotiations with companies.
+    Inbox,
     /// Forms of all tools.
     Tools,
     /// The database.
@@ -43,11 +46,12 @@ pub enum ScreenId {
 
 impl ScreenId {
     /// All screens in the order of their keys.
-    pub const ALL: [ScreenId; 7] = [
+    pub const ALL: [ScreenId; 8] = [
         ScreenId::Overview,
         ScreenId::Cash,
         ScreenId::Customers,
         ScreenId::Product,
+        ScreenId::Inbox,
         ScreenId::Tools,
         ScreenId::Sql,
         ScreenId::Journal,
@@ -60,6 +64,7 @@ impl ScreenId {
             ScreenId::Cash => Action::Cash,
             ScreenId::Customers => Action::Customers,
             ScreenId::Product => Action::Product,
+            ScreenId::Inbox => Action::Inbox,
             ScreenId::Tools => Action::Tools,
             ScreenId::Sql => Action::Sql,
             ScreenId::Journal => Action::Journal,

@@ -54,7 +54,7 @@ pub fn alerts(company: &Company) -> Vec<Alert> {
         let seats: u32 = seen.waiting.iter().map(|thread| thread.seats).sum();
         add(
             false,
-            ScreenId::Customers,
+            ScreenId::Inbox,
             format!(
                 "{waiting} companies ask for an offer ({} seats); the first leaves on day {day}",
                 grouped(f64::from(seats), 0)

@@ -129,6 +129,11 @@ impl Table {
         self.shown.get(self.selected).copied()
     }
 
+    /// Numbers of the rows that are shown, in their order.
+    pub fn shown(&self) -> &[usize] {
+        &self.shown
+    }
+
     /// Number of the selected column.
     pub fn selected_column(&self) -> usize {
         self.column

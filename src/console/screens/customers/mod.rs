@@ -124,6 +124,15 @@ impl Customers {
         self.place.group = self.place.group.min(last);
     }
 
+    /// Opens a group, if it is known.
+    pub fn show(&mut self, group: &str, company: &Company) {
+        if let Some(at) = company.seen.known_groups.iter().position(|known| known.id() == group) {
+            self.open = Some(at);
+            self.choice = 0;
+            self.table.select(at);
+        }
+    }
+
     fn act_open(&mut self, open: usize, action: Action, look: &Look<'_>) -> Vec<Effect> {
         let groups = &look.company.seen.known_groups;
         match action {

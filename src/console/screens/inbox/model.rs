@@ -1,0 +1,290 @@
+//! Threads of negotiations as the player may know them: what the rows say, and what they do not.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use crate::console::readings::{Reading, number_at, text_at};
+use crate::session::{Rows, WaitingThread};
+use crate::world::identifiers::Plan;
+
+/// Days after which an unanswered thread is lost (chapter 40 §11).
+pub const PATIENCE: u32 = 7;
+
+/// One row of a thread.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Turn {
+    /// Number in its thread.
+    pub number: u32,
+    /// `customer`, `agent` or `system`.
+    pub sender: String,
+    /// Words; empty for offers.
+    pub text: String,
+    /// What the player offered.
+    pub offers: Vec<(Plan, f64)>,
+    /// Price that the company named.
+    pub price: Option<f64>,
+    /// Day it was written.
+    pub day: u32,
+    /// Why it closed the thread; empty otherwise.
+    pub closes: String,
+}
+
+/// Whose move it is, or how a thread ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum State {
+    /// The company waits for the player, who has some days left.
+    Waiting(u32),
+    /// The player waits for the company.
+    Theirs,
+    /// They agreed.
+    Accepted,
+    /// The player ended it.
+    Rejected,
+    /// The company fell silent or was not answered. No row says so; its subscription does.
+    #[default]
+    Lost,
+}
+
+impl State {
+    /// Whether an offer goes into the thread.
+    pub fn is_open(self) -> bool {
+        matches!(self, State::Waiting(_) | State::Theirs)
+    }
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            State::Waiting(_) => "waits for you",
+            State::Theirs => "you wait for them",
+            State::Accepted => "agreed",
+            State::Rejected => "ended by you",
+            State::Lost => "lost",
+        }
+    }
+}
+
+/// A thread.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Thread {
+    /// Its number.
+    pub number: u32,
+    /// The company.
+    pub customer: u32,
+    /// Group of the company.
+    pub group: String,
+    /// How it began, as the table says it.
+    pub kind: String,
+    /// Whole seats.
+    pub seats: f64,
+    /// Whose move it is.
+    pub state: State,
+    /// Its rows, the oldest first.
+    pub turns: Vec<Turn>,
+}
+
+impl Thread {
+    /// Kind in words.
+    pub fn kind_in_words(&self) -> &str {
+        match self.kind.as_str() {
+            "new_lead" => "new lead",
+            "churn_prevention" => "retention",
+            "plan_change" => "plan change",
+            "renegotiation" => "new terms",
+            other => other,
+        }
+    }
+
+    /// Price that the company named last, and the plan its words name with it.
+    pub fn asked(&self) -> Option<(Option<Plan>, f64)> {
+        let turn = self.turns.iter().rev().find(|turn| turn.price.is_some())?;
+        Some((plan_in(&turn.text).or_else(|| self.only_offer()), turn.price?))
+    }
+
+    fn only_offer(&self) -> Option<Plan> {
+        match self.offered() {
+            [(plan, _)] => Some(*plan),
+            _ => None,
+        }
+    }
+
+    /// What the player offered last.
+    pub fn offered(&self) -> &[(Plan, f64)] {
+        let own = self.turns.iter().rev().find(|turn| !turn.offers.is_empty());
+        own.map_or(&[], |turn| &turn.offers)
+    }
+}
+
+/// The plan that words name.
+fn plan_in(text: &str) -> Option<Plan> {
+    let lower = text.to_lowercase();
+    let named = |(at, _): (usize, &str)| {
+        let mut rest = lower[at + 5..].chars();
+        let letter = rest.next()?.to_ascii_uppercase().to_string();
+        let ends = rest.next().is_none_or(|next| !next.is_alphanumeric());
+        Plan::parse(&letter).filter(|_| ends)
+    };
+    lower.match_indices("plan ").find_map(named)
+}
+
+/// A company.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Firm {
+    /// Group.
+    pub group: String,
+    /// Size and trade.
+    pub trade: String,
+    /// Culture, way to decide, concern.
+    pub manner: [String; 3],
+    /// State of its subscription.
+    pub status: String,
+    /// Its plan.
+    pub plan: String,
+    /// What it pays for a seat and month.
+    pub price: f64,
+    /// Day since which it subscribes, or asked.
+    pub since: u32,
+}
+
+/// Every thread that was read.
+#[derive(Debug, Clone, Default)]
+pub struct Letters {
+    read: BTreeMap<u32, Thread>,
+    firms: BTreeMap<u32, Firm>,
+    /// Threads: those that wait first, in the order in which they are lost, then the newest.
+    pub threads: Vec<Thread>,
+}
+
+impl Letters {
+    /// Takes what the database answered.
+    pub fn take(&mut self, reading: Reading, rows: &Rows) {
+        match reading {
+            Reading::EnterpriseTurns => self.read = threads_of(rows),
+            Reading::Companies => self.firms = firms_of(rows),
+            _ => {}
+        }
+    }
+
+    /// The company of a thread.
+    pub fn firm(&self, customer: u32) -> Option<&Firm> {
+        self.firms.get(&customer)
+    }
+
+    /// Brings threads and those that wait together.
+    pub fn settle(&mut self, waiting: &[WaitingThread]) {
+        let mut left = self.read.clone();
+        let mut threads: Vec<Thread> = waiting.iter().map(|own| of_waiting(own, &mut left)).collect();
+        for (_, mut thread) in left.into_iter().rev() {
+            let firm = self.firms.get(&thread.customer);
+            thread.group = firm.map_or(String::new(), |firm| firm.group.clone());
+            thread.state = state_of(&thread, firm);
+            threads.push(thread);
+        }
+        self.threads = threads;
+    }
+}
+
+fn of_waiting(waiting: &WaitingThread, read: &mut BTreeMap<u32, Thread>) -> Thread {
+    let known = read.remove(&waiting.thread).unwrap_or_default();
+    Thread {
+        number: waiting.thread,
+        customer: waiting.customer,
+        group: waiting.group.to_owned(),
+        kind: waiting.kind.to_owned(),
+        seats: f64::from(waiting.seats),
+        state: State::Waiting(waiting.days_left),
+        turns: known.turns,
+    }
+}
+
+/// State of a thread that does not wait for the player.
+fn state_of(thread: &Thread, firm: Option<&Firm>) -> State {
+    let Some(last) = thread.turns.last() else { return State::Lost };
+    let there = firm.is_none_or(|firm| matches!(firm.status.as_str(), "lead" | "subscribed"));
+    match (last.closes.as_str(), last.sender.as_str()) {
+        ("accepted", _) => State::Accepted,
+        ("agent_rejected", _) => State::Rejected,
+        (_, "agent") if there => State::Theirs,
+        _ => State::Lost,
+    }
+}
+
+fn threads_of(rows: &Rows) -> BTreeMap<u32, Thread> {
+    let mut threads: BTreeMap<u32, Thread> = BTreeMap::new();
+    // The answer begins with the newest row.
+    for row in rows.rows.iter().rev() {
+        let number = number_at(row, 0) as u32;
+        let thread = threads.entry(number).or_default();
+        let (offers, price) = offer_of(text_at(row, 6));
+        thread.number = number;
+        thread.customer = number_at(row, 1) as u32;
+        thread.kind = text_at(row, 2).to_owned();
+        // Rows of the player count one seat, whatever the company has.
+        thread.seats = thread.seats.max(if text_at(row, 4) == "agent" { 1.0 } else { number_at(row, 8) });
+        thread.turns.push(Turn {
+            number: number_at(row, 3) as u32,
+            sender: text_at(row, 4).to_owned(),
+            text: text_at(row, 5).to_owned(),
+            offers,
+            price,
+            day: number_at(row, 7) as u32,
+            closes: text_at(row, 9).to_owned(),
+        });
+    }
+    threads
+}
+
+fn offer_of(json: &str) -> (Vec<(Plan, f64)>, Option<f64>) {
+    let value: Value = serde_json::from_str(json).unwrap_or(Value::Null);
+    let one = |offer: &Value| {
+        Some((Plan::parse(offer.get("plan")?.as_str()?)?, offer.get("price_per_seat")?.as_f64()?))
+    };
+    let offers = value.as_array().into_iter().flatten().filter_map(one).collect();
+    (offers, value.get("price").and_then(Value::as_f64))
+}
+
+fn firms_of(rows: &Rows) -> BTreeMap<u32, Firm> {
+    let firm = |row: &Vec<crate::session::Cell>| {
+        let text = |at: usize| text_at(row, at).to_owned();
+        let trade = format!("{} {}", text_at(row, 3), text_at(row, 2)).trim().to_owned();
+        let firm = Firm {
+            group: text(1),
+            trade,
+            manner: [text(4), text(5), text(6)],
+            status: text(7),
+            plan: text(8),
+            price: number_at(row, 9),
+            since: number_at(row, 10) as u32,
+        };
+        (number_at(row, 0) as u32, firm)
+    };
+    rows.rows.iter().map(firm).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plans_are_found_in_words() {
+        for (text, plan) in [
+            ("At $27.34 a seat for plan B we can sign.", Some(Plan::B)),
+            ("Plan C, please", Some(Plan::C)),
+            ("we plan better; plan A it is", Some(Plan::A)),
+            ("we plan a move to plan", Some(Plan::A)),
+            ("a plan", None),
+            ("plan Bravo", None),
+        ] {
+            assert_eq!(plan_in(text), plan, "{text}");
+        }
+    }
+
+    #[test]
+    fn offers_are_read_from_their_json() {
+        let two = r#"[{"plan": "A", "price_per_seat": 18.5, "contract_months": 1}, {"plan": "Z", "price_per_seat": 1}]"#;
+        assert_eq!(offer_of(two), (vec![(Plan::A, 18.5)], None));
+        assert_eq!(offer_of(r#"{"price": 27.34}"#), (vec![], Some(27.34)));
+        assert_eq!(offer_of("{}"), (vec![], None));
+        assert_eq!(offer_of("broken"), (vec![], None));
+    }
+}

@@ -1,0 +1,206 @@
+//! Offers as the person writes them: plans at prices, fixed or relative to the list or to what a company asks.
+
+use super::model::Thread;
+use crate::notation::grouped;
+use crate::world::identifiers::Plan;
+
+/// Terms of an offer, at most as many as a company accepts in one message.
+pub const TERMS: usize = 3;
+
+/// The plan of a term.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Choice {
+    /// The term is not used.
+    Nothing,
+    /// This plan.
+    Fixed(Plan),
+    /// The plan that the company named with its price.
+    Theirs,
+}
+
+/// What the value of a term is a part of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// Dollars a month and seat.
+    Dollars,
+    /// Percent of the list price of the plan.
+    List,
+    /// Percent of the price that the company named.
+    Asked,
+}
+
+impl Basis {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Basis::Dollars => "$",
+            Basis::List => "% list",
+            Basis::Asked => "% ask",
+        }
+    }
+}
+
+/// One line of an offer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Term {
+    /// Its plan.
+    pub plan: Choice,
+    /// What the value is a part of.
+    pub basis: Basis,
+    /// Dollars or percent.
+    pub value: f64,
+}
+
+const UNUSED: Term = Term { plan: Choice::Nothing, basis: Basis::List, value: 100.0 };
+
+impl Term {
+    /// Its plan in words.
+    pub fn plan_in_words(&self) -> &'static str {
+        match self.plan {
+            Choice::Nothing => "–",
+            Choice::Fixed(plan) => plan.id(),
+            Choice::Theirs => "theirs",
+        }
+    }
+
+    /// Its value as it is typed.
+    pub fn value_in_words(&self) -> String {
+        let decimals = if self.value.fract() == 0.0 && self.basis != Basis::Dollars { 0 } else { 2 };
+        grouped(self.value, decimals)
+    }
+
+    /// The next plan.
+    pub fn turn_plan(&mut self) {
+        self.plan = match self.plan {
+            Choice::Nothing => Choice::Fixed(Plan::A),
+            Choice::Fixed(Plan::A) => Choice::Fixed(Plan::B),
+            Choice::Fixed(Plan::B) => Choice::Fixed(Plan::C),
+            Choice::Fixed(Plan::C) => Choice::Theirs,
+            Choice::Theirs => Choice::Nothing,
+        };
+    }
+
+    /// The next basis. A number of dollars would be no percentage and the other way round, so it starts anew.
+    pub fn turn_basis(&mut self, price: Option<f64>) {
+        (self.basis, self.value) = match self.basis {
+            Basis::List => (Basis::Asked, self.value),
+            Basis::Asked => (Basis::Dollars, price.unwrap_or(0.0)),
+            Basis::Dollars => (Basis::List, 100.0),
+        };
+    }
+
+    /// Plan and price for a company; nothing if the term is not used or there is no price to start from.
+    pub fn price(&self, thread: &Thread, lists: [f64; 3]) -> Option<(Plan, f64)> {
+        let asked = thread.asked();
+        let plan = match self.plan {
+            Choice::Nothing => return None,
+            Choice::Fixed(plan) => plan,
+            Choice::Theirs => asked.and_then(|(plan, _)| plan)?,
+        };
+        let price = match self.basis {
+            Basis::Dollars => self.value,
+            Basis::List => lists[plan as usize] * self.value / 100.0,
+            Basis::Asked => asked?.1 * self.value / 100.0,
+        };
+        Some((plan, (price * 100.0).round() / 100.0))
+    }
+}
+
+/// An offer, or a rule for many.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Offer(pub [Term; TERMS]);
+
+impl Offer {
+    /// Plan B at its list price.
+    pub fn at_list() -> Offer {
+        Offer([Term { plan: Choice::Fixed(Plan::B), ..UNUSED }, UNUSED, UNUSED])
+    }
+
+    /// What the company asks, for the plan it named.
+    pub fn as_asked() -> Offer {
+        Offer([Term { plan: Choice::Theirs, basis: Basis::Asked, value: 100.0 }, UNUSED, UNUSED])
+    }
+
+    /// Where to start with a company.
+    pub fn first_for(thread: &Thread) -> Offer {
+        if thread.asked().is_some_and(|(plan, _)| plan.is_some()) { Offer::as_asked() } else { Offer::at_list() }
+    }
+
+    /// Whether it makes sense for other companies as it is.
+    pub fn is_rule(&self) -> bool {
+        self.0.iter().all(|term| term.plan == Choice::Nothing || term.basis != Basis::Dollars)
+    }
+
+    /// What a company would be sent.
+    ///
+    /// # Errors
+    /// Why it would be sent nothing.
+    pub fn to(&self, thread: &Thread, lists: [f64; 3]) -> Result<Vec<(Plan, f64)>, String> {
+        let terms: Vec<(Plan, f64)> = self.0.iter().filter_map(|term| term.price(thread, lists)).collect();
+        match terms.iter().find(|(_, price)| *price <= 0.0) {
+            Some((plan, _)) => Err(format!("plan {plan} would be free: type a price above 0")),
+            None if terms.is_empty() && self.0.iter().all(|term| term.plan == Choice::Nothing) => {
+                Err("no plan is chosen".to_owned())
+            }
+            None if terms.is_empty() => Err("it has named no price yet".to_owned()),
+            None => Ok(terms),
+        }
+    }
+}
+
+/// Offers in few letters: `B $38.00 · C $61.00`.
+pub fn in_words(offers: &[(Plan, f64)]) -> String {
+    let one = |(plan, price): &(Plan, f64)| format!("{plan} ${}", grouped(*price, 2));
+    offers.iter().map(one).collect::<Vec<_>>().join(" · ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::model::Turn;
+    use super::*;
+
+    const LISTS: [f64; 3] = [14.0, 32.0, 0.0];
+
+    fn asking() -> Thread {
+        let turn = Turn {
+            number: 2,
+            sender: "customer".to_owned(),
+            text: "At $20.01 for plan A".to_owned(),
+            offers: Vec::new(),
+            price: Some(20.01),
+            day: 3,
+            closes: String::new(),
+        };
+        Thread { turns: vec![turn], ..Thread::default() }
+    }
+
+    #[test]
+    fn rules_are_relative_to_the_list_or_to_the_ask() {
+        let (asking, silent) = (asking(), Thread::default());
+        assert_eq!(Offer::as_asked().to(&asking, LISTS), Ok(vec![(Plan::A, 20.01)]));
+        assert!(Offer::as_asked().to(&silent, LISTS).is_err());
+        assert_eq!(Offer::at_list().to(&silent, LISTS), Ok(vec![(Plan::B, 32.0)]));
+        let mut offer = Offer::at_list();
+        offer.0[0].value = 90.0;
+        offer.0[1] = Term { plan: Choice::Fixed(Plan::C), basis: Basis::Asked, value: 150.0 };
+        assert_eq!(offer.to(&asking, LISTS), Ok(vec![(Plan::B, 28.8), (Plan::C, 30.02)]));
+        assert_eq!(offer.to(&silent, LISTS), Ok(vec![(Plan::B, 28.8)]), "a term without a start is left out");
+        offer.0[2] = Term { plan: Choice::Fixed(Plan::C), ..UNUSED };
+        assert!(offer.to(&asking, LISTS).is_err_and(|why| why.contains("plan C would be free")));
+        assert!(Offer([UNUSED; 3]).to(&asking, LISTS).is_err_and(|why| why.contains("no plan")));
+    }
+
+    #[test]
+    fn plans_and_bases_turn_round() {
+        let mut term = UNUSED;
+        for words in ["A", "B", "C", "theirs", "–"] {
+            term.turn_plan();
+            assert_eq!(term.plan_in_words(), words);
+        }
+        for (words, value) in [("% ask", 100.0), ("$", 28.5), ("% list", 100.0)] {
+            term.turn_basis(Some(28.5));
+            assert_eq!((term.basis.words(), term.value), (words, value));
+        }
+        assert!(Offer::at_list().is_rule());
+    }
+}

@@ -1,0 +1,163 @@
+//! From offers on screen to calls, and what their answers say.
+
+use serde_json::{Value, json};
+
+use super::model::{State, Thread};
+use super::offer::in_words;
+use super::{Inbox, list_prices};
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::notation::{dollars, grouped};
+use crate::world::identifiers::Plan;
+
+/// Tools of this screen.
+const SEND: &str = "send_enterprise_deal";
+const REJECT: &str = "reject_enterprise_deal";
+
+/// A thread and what it would be sent, or why nothing.
+pub(super) type Planned<'a> = (&'a Thread, Result<Vec<(Plan, f64)>, String>);
+
+/// The statement that shows a thread.
+pub(super) fn statement(thread: &Thread) -> Effect {
+    Effect::EditSql(format!(
+        "SELECT day, turn_number, sender, message_text, offer_json, seat_count, close_reason\n\
+         FROM enterprise_turns WHERE thread_id = {} ORDER BY message_id",
+        thread.number
+    ))
+}
+
+/// Dollars a month that a company would pay, at most.
+pub(super) fn monthly(thread: &Thread, offers: &[(Plan, f64)]) -> f64 {
+    offers.iter().map(|(_, price)| price * thread.seats).fold(0.0, f64::max)
+}
+
+impl Inbox {
+    /// What every target would be sent.
+    pub(super) fn planned(&self, company: &Company) -> Vec<Planned<'_>> {
+        let (offer, lists) = (self.offer(), list_prices(company));
+        self.targets().into_iter().map(|thread| (thread, offer.to(thread, lists))).collect()
+    }
+
+    /// Sends the offer on screen.
+    pub(super) fn send(&self, company: &Company) -> Vec<Effect> {
+        if !company.is_running() {
+            return vec![Effect::Complain("the run is over: nobody reads offers any more".to_owned())];
+        }
+        let planned = self.planned(company);
+        let sent: Vec<(&Thread, &Vec<(Plan, f64)>)> = planned
+            .iter()
+            .filter_map(|(thread, offers)| Some((*thread, offers.as_ref().ok()?)))
+            .collect();
+        let Some((first, offers)) = sent.first() else {
+            let why = planned.first().map(|(_, offers)| offers.clone());
+            let why = match why {
+                Some(Err(why)) => format!("nothing to send: {why}"),
+                _ => "no thread is selected: o shows the others".to_owned(),
+            };
+            return vec![Effect::Complain(why)];
+        };
+        let deal = |(thread, offers): &(&Thread, &Vec<(Plan, f64)>)| {
+            let offers: Vec<Value> = offers.iter().map(|(plan, price)| json!([plan.id(), price])).collect();
+            json!([thread.customer, offers])
+        };
+        let arguments = json!({ "deals": sent.iter().map(deal).collect::<Vec<_>>() });
+        let text = if sent.len() == 1 {
+            let to = format!("#{} ({} seats)", first.customer, grouped(first.seats, 0));
+            match first.state {
+                State::Waiting(_) => return vec![Effect::Call { tool: SEND, arguments }],
+                State::Theirs => format!(
+                    "{to} has not answered your last offer yet. This one, {}, replaces it and uses up another \
+                     turn of its patience.",
+                    in_words(offers)
+                ),
+                _ => format!(
+                    "Nothing is open with {to} in this thread. If it subscribes, {} opens new talks; if they \
+                     fail, the company leaves.",
+                    in_words(offers)
+                ),
+            }
+        } else {
+            summary(&planned) + " Each offer uses up a turn."
+        };
+        vec![Effect::ConfirmCall { tool: SEND, arguments, text }]
+    }
+
+    /// Asks whether to end the threads.
+    pub(super) fn reject(&self, company: &Company) -> Vec<Effect> {
+        let open: Vec<&Thread> =
+            self.targets().into_iter().filter(|thread| thread.state.is_open()).collect();
+        if !company.is_running() || open.is_empty() {
+            return vec![Effect::Complain("there is no open thread here to end".to_owned())];
+        }
+        let leads = open.iter().filter(|thread| thread.kind == "new_lead");
+        let (leads, seats) = leads.fold((0, 0.0), |(count, seats), thread| (count + 1, seats + thread.seats));
+        let mut text = String::new();
+        if leads > 0 {
+            text += &format!(
+                "{leads} new lead{} with {} seats {} lost for good: none ever asks again. ",
+                if leads == 1 { "" } else { "s" },
+                grouped(seats, 0),
+                if leads == 1 { "is" } else { "are" },
+            );
+        }
+        let others = open.len() - leads;
+        if others > 0 {
+            text += &format!(
+                "{others} subscriber{} on present terms; talks may begin again from the next day on.",
+                if others == 1 { " stays" } else { "s stay" }
+            );
+        }
+        let deals: Vec<Value> =
+            open.iter().map(|thread| json!({ "customer_id": thread.customer })).collect();
+        let arguments = json!({ "deals": deals });
+        vec![Effect::ConfirmCall { tool: REJECT, arguments, text: text.trim_end().to_owned() }]
+    }
+
+    /// Forgets drafts and marks of what was sent or ended.
+    pub(super) fn sent(&mut self, tool: &str, answer: &Value) -> Vec<Effect> {
+        if tool != SEND && tool != REJECT {
+            return Vec::new();
+        }
+        let results = answer.get("results").and_then(Value::as_array).cloned().unwrap_or_default();
+        let done: Vec<u64> = results
+            .iter()
+            .filter(|result| result.get("success").is_some())
+            .filter_map(|result| result.get("customer_id")?.as_u64())
+            .collect();
+        if tool == SEND && self.marked.is_empty() && self.offer().is_rule() {
+            self.last = self.here().and_then(|thread| self.drafts.get(&thread.number)).cloned().or(self.last.take());
+        }
+        let of_done = self.letters.threads.iter().filter(|thread| done.contains(&u64::from(thread.customer)));
+        for number in of_done.map(|thread| thread.number).collect::<Vec<_>>() {
+            self.marked.remove(&number);
+            self.drafts.remove(&number);
+        }
+        let failed = results.len() - done.len();
+        let what = if tool == SEND { "offered" } else { "ended" };
+        match failed {
+            0 => vec![Effect::Say(format!("{} {what}", done.len()))],
+            _ => vec![Effect::Complain(format!("{} {what}, {failed} refused: 0 shows why", done.len()))],
+        }
+    }
+}
+
+/// A batch in a sentence.
+pub(super) fn summary(planned: &[Planned<'_>]) -> String {
+    let sent = planned.iter().filter_map(|(thread, offers)| Some((*thread, offers.as_ref().ok()?)));
+    let (mut count, mut seats, mut worth) = (0, 0.0, 0.0);
+    for (thread, offers) in sent {
+        count += 1;
+        seats += thread.seats;
+        worth += monthly(thread, offers);
+    }
+    let skipped = match planned.len() - count {
+        0 => String::new(),
+        skipped => format!(" {skipped} skipped."),
+    };
+    let noun = if count == 1 { "company" } else { "companies" };
+    format!(
+        "{count} {noun}, {} seats, at most {} a month if all agree.{skipped}",
+        grouped(seats, 0),
+        dollars(worth)
+    )
+}

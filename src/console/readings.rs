@@ -31,6 +31,10 @@ readings! {
     Service "service" "The service by day: day, usage, capacity, tier, latency, errors, minutes of outage."
     OpenIssues "open_issues" "Open issues: group, and a count for each of four ages."
     Research "research" "R&D projects: id, tier, status, started, expected, boost; the newest first."
+    OwnPosts "own_posts" "Our posts, the newest first: number, day, text, post it answers, views, numbers of comments."
+    Knowledge "knowledge" "What is known of all groups: group, level, found on, studied on."
+    Attempts "attempts" "Attempts at market research, the newest first: day, cost, found, group."
+    Economy "economy" "The published index: day measured, value, trend, change, phase, description."
 }
 
 /// A cell of a row as a number; 0 if it holds none.

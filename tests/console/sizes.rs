@@ -3,11 +3,15 @@
 use super::harness::Console;
 
 /// Keys that lead to every place of the console, each followed by what closes it.
-const PLACES: [(&str, &str); 15] = [
+const PLACES: [(&str, &str); 19] = [
     ("1", ""),
     ("2", ""),
     ("3", ""),
     ("4", ""),
+    ("5", ""),
+    ("5 p", "esc"),
+    ("7", ""),
+    ("7 tab", ""),
     ("8", ""),
     ("8 enter", "esc"),
     ("9", "esc"),

@@ -61,7 +61,7 @@ impl App {
         let screen = match &news {
             News::Checked(number, _) if *number != self.checks => return,
             News::Answered(number, ..) if *number != self.questions => return,
-            News::Checked(..) => ScreenId::Tools,
+            News::Checked(..) => self.checker,
             News::Answered(..) => ScreenId::Sql,
             News::Called(tool, answer, company) => {
                 self.changed(company.clone());
@@ -115,7 +115,11 @@ impl App {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
         let look = Look { company: &company, keys: &self.keys, page: self.page };
-        let effects = run.screens.get_mut(screen).hear(&news, &look);
+        let mut effects = run.screens.get_mut(screen).hear(&news, &look);
+        // A call may come from a form or from the screen that is shown.
+        if matches!(news, News::Called(..)) && run.here != screen {
+            effects.extend(run.screens.get_mut(run.here).hear(&news, &look));
+        }
         self.follow(effects);
     }
 

@@ -4,9 +4,11 @@
 pub mod cash;
 pub mod customers;
 pub mod journal;
+pub mod market;
 pub mod menu;
 pub mod overview;
 pub mod product;
+pub mod social;
 pub mod sql;
 pub mod tools;
 
@@ -33,6 +35,10 @@ pub enum ScreenId {
     Customers,
     /// Quality, capacity, issues, R&D.
     Product,
+    /// What people write, and our posts.
+    Social,
+    /// Groups, studies, the economy.
+    Market,
     /// Forms of all tools.
     Tools,
     /// The database.
@@ -43,11 +49,13 @@ pub enum ScreenId {
 
 impl ScreenId {
     /// All screens in the order of their keys.
-    pub const ALL: [ScreenId; 7] = [
+    pub const ALL: [ScreenId; 9] = [
         ScreenId::Overview,
         ScreenId::Cash,
         ScreenId::Customers,
         ScreenId::Product,
+        ScreenId::Social,
+        ScreenId::Market,
         ScreenId::Tools,
         ScreenId::Sql,
         ScreenId::Journal,
@@ -60,6 +68,8 @@ impl ScreenId {
             ScreenId::Cash => Action::Cash,
             ScreenId::Customers => Action::Customers,
             ScreenId::Product => Action::Product,
+            ScreenId::Social => Action::Social,
+            ScreenId::Market => Action::Market,
             ScreenId::Tools => Action::Tools,
             ScreenId::Sql => Action::Sql,
             ScreenId::Journal => Action::Journal,
@@ -134,6 +144,14 @@ pub trait Screen {
 
     /// Takes what the database answered.
     fn take(&mut self, _: Reading, _: &Rows, _: &Look<'_>) {}
+
+    /// The person sees it now, or saw it until now.
+    fn looked_at(&mut self) {}
+
+    /// How much on it was not looked at yet, for the badge.
+    fn unseen(&self) -> usize {
+        0
+    }
 
     /// The company has changed.
     fn renew(&mut self, _: &Look<'_>) {}

@@ -114,6 +114,15 @@ fn row_of(group: Group, facts: &Facts, company: &Company, market: &Market) -> Ve
 }
 
 impl Customers {
+    /// Opens a group, if it is known.
+    pub fn show(&mut self, group: Group, company: &Company) {
+        self.focus = GROUPS;
+        self.open = company.seen.known_groups.iter().position(|own| *own == group);
+        if let Some(open) = self.open {
+            self.table.select(open);
+        }
+    }
+
     fn refresh(&mut self, company: &Company) {
         let groups = &company.seen.known_groups;
         let row = |group: &Group| row_of(*group, &self.market.of(*group), company, &self.market);

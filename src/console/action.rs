@@ -29,11 +29,15 @@ pub enum Scope {
     Final,
     /// The notes in the journal.
     Memo,
+    /// The public conversation.
+    Social,
+    /// Groups and their studies.
+    Market,
 }
 
 impl Scope {
     /// All scopes, in the order of the help.
-    pub const ALL: [Scope; 13] = [
+    pub const ALL: [Scope; 15] = [
         Scope::Global,
         Scope::List,
         Scope::Form,
@@ -44,6 +48,8 @@ impl Scope {
         Scope::Editor,
         Scope::Field,
         Scope::Memo,
+        Scope::Social,
+        Scope::Market,
         Scope::Dialog,
         Scope::Menu,
         Scope::Final,
@@ -65,6 +71,8 @@ impl Scope {
             Scope::Dialog => "dialog",
             Scope::Final => "final",
             Scope::Memo => "memo",
+            Scope::Social => "social",
+            Scope::Market => "market",
         }
     }
 
@@ -112,7 +120,9 @@ actions! {
         Cash "cash" "Cash" "Show where money comes from and goes to."
         Customers "customers" "Customers" "Show the customer groups."
         Product "product" "Product" "Show quality, capacity, issues and R&D."
+        Social "social" "Social" "Show what people write and our posts."
         Inbox "inbox" "Inbox" "Negotiate with companies."
+        Market "market" "Market" "Show groups, studies, the economy and rivals."
         Tools "tools" "Tools" "Show the forms of all tools."
         Sql "sql" "SQL" "Ask the database."
         Journal "journal" "Journal" "Show what was done and how forecasts turned out."
@@ -198,6 +208,21 @@ actions! {
     Memo {
         EditMemo "edit-memo" "edit notes" "Edit the notes of the run."
         SaveMemo "save-memo" "save notes" "Keep the notes with the run."
+    }
+    Social {
+        Compose "compose" "write" "Write a post of the company."
+        Reply "reply" "answer" "Write an answer to the selected post."
+        SendPost "send-post" "publish" "Publish what is written, after a question."
+        Unreply "unreply" "no answer" "Let the draft stand for itself instead of answering a post."
+        NextKind "next-kind" "kind" "Show only customers, the press, comments or our posts; then all again."
+        EarlierWeek "earlier-week" "week before" "Show the posts of one week only: the last one, then those before."
+        LaterWeek "later-week" "week after" "Show the week after; after the last one, all weeks."
+    }
+    Market {
+        FindGroup "find-group" "find a group" "Pay for an attempt at market research, after a question."
+        StudyGroup "study-group" "study" "Order a study of the selected group to the chosen level, after a question."
+        LevelUp "level-up" "level up" "Choose a higher level for the study."
+        LevelDown "level-down" "level down" "Choose a lower level for the study."
     }
     Dialog {
         Confirm "confirm" "yes" "Do it."

@@ -27,9 +27,11 @@ use super::screens::cash::Cash;
 use super::screens::customers::Customers;
 use super::screens::inbox::Inbox;
 use super::screens::journal::Journal;
+use super::screens::market::Market;
 use super::screens::menu::Menu;
 use super::screens::overview::Overview;
 use super::screens::product::Product;
+use super::screens::social::Social;
 use super::screens::sql::Sql;
 use super::screens::tools::Tools;
 use super::screens::{Look, Screen, ScreenId};
@@ -117,6 +119,15 @@ pub struct Run {
     pub asked: BTreeMap<Reading, u64>,
 }
 
+impl Run {
+    /// Changes the screen; what was to be seen on both counts as seen.
+    fn go_to(&mut self, screen: ScreenId) {
+        self.screens.get_mut(self.here).looked_at();
+        self.here = screen;
+        self.screens.get_mut(screen).looked_at();
+    }
+}
+
 /// Every screen of a run.
 #[derive(Default)]
 pub struct Screens {
@@ -124,7 +135,9 @@ pub struct Screens {
     cash: Cash,
     customers: Customers,
     product: Product,
+    social: Social,
     inbox: Inbox,
+    market: Market,
     tools: Tools,
     sql: Sql,
     journal: Journal,
@@ -138,7 +151,9 @@ impl Screens {
             ScreenId::Cash => &self.cash,
             ScreenId::Customers => &self.customers,
             ScreenId::Product => &self.product,
+            ScreenId::Social => &self.social,
             ScreenId::Inbox => &self.inbox,
+            ScreenId::Market => &self.market,
             ScreenId::Tools => &self.tools,
             ScreenId::Sql => &self.sql,
             ScreenId::Journal => &self.journal,
@@ -152,7 +167,9 @@ impl Screens {
             ScreenId::Cash => &mut self.cash,
             ScreenId::Customers => &mut self.customers,
             ScreenId::Product => &mut self.product,
+            ScreenId::Social => &mut self.social,
             ScreenId::Inbox => &mut self.inbox,
+            ScreenId::Market => &mut self.market,
             ScreenId::Tools => &mut self.tools,
             ScreenId::Sql => &mut self.sql,
             ScreenId::Journal => &mut self.journal,
@@ -180,6 +197,8 @@ pub struct App {
     pub busy: Option<Busy>,
     /// Number of the newest check of a form.
     checks: u64,
+    /// Screen that asked for it.
+    checker: ScreenId,
     /// Number of the newest query of the person.
     questions: u64,
     /// What is to follow when the run is closed.
@@ -228,6 +247,7 @@ impl App {
             note: None,
             busy: None,
             checks: 0,
+            checker: ScreenId::Tools,
             questions: 0,
             closing: None,
             clicks: Vec::new(),
@@ -363,7 +383,7 @@ impl App {
                 if run.before.len() > 50 {
                     run.before.remove(0);
                 }
-                run.here = screen;
+                run.go_to(screen);
             }
         }
         self.load();
@@ -373,7 +393,7 @@ impl App {
         let Stage::Run(run) = &mut self.stage else { return };
         match run.before.pop() {
             Some(screen) => {
-                run.here = screen;
+                run.go_to(screen);
                 run.shown = Instant::now();
                 self.load();
             }

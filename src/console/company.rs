@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use crate::session::{
-    DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Observation, Session, WeekFigures,
+    DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Observation, RunningStudy, Session,
+    Terms, WeekFigures,
 };
 use crate::tools::CATALOGUE;
+use crate::world::identifiers::Group;
 
 /// The company as a player may know it.
 #[derive(Debug, Clone)]
@@ -43,6 +45,16 @@ pub struct Company {
     pub costs: Value,
     /// Answer of list_research_projects.
     pub projects: Value,
+    /// Answer of get_social_posts: everything that people have written.
+    pub posts: Value,
+    /// Answer of get_market_overview.
+    pub market: Value,
+    /// Answers of get_group_insights for every known group.
+    pub insights: BTreeMap<Group, Value>,
+    /// Terms of the tools.
+    pub terms: Terms,
+    /// Studies of groups that run.
+    pub studies: Vec<RunningStudy>,
     /// What the person should know about the opening of the run.
     pub remarks: Vec<String>,
 }
@@ -69,6 +81,11 @@ impl Company {
             settings: settings.collect(),
             costs: read("get_cost_info"),
             projects: read("list_research_projects"),
+            posts: session.look_up("get_social_posts", &json!({ "limit": -1 })).unwrap_or(Value::Null),
+            market: read("get_market_overview"),
+            insights: insights(session),
+            terms: session.terms(),
+            studies: session.running_studies(),
             remarks: session.remarks().to_vec(),
         }
     }
@@ -107,4 +124,14 @@ impl Company {
         let last = self.trend(4, figure);
         (!last.is_empty()).then(|| last.iter().sum::<f64>() / last.len() as f64)
     }
+}
+
+/// What is known of every known group; free, and not recorded.
+fn insights(session: &Session) -> BTreeMap<Group, Value> {
+    let known = session.observe().known_groups;
+    let told = |group: Group| {
+        let answer = session.look_up("get_group_insights", &json!({ "group_id": group.id() }));
+        answer.ok().map(|answer| (group, answer))
+    };
+    known.into_iter().filter_map(told).collect()
 }

@@ -6,6 +6,7 @@ use super::action::Action;
 use super::readings::Reading;
 use super::screens::ScreenId;
 use crate::session::{Forecasts, NewRun};
+use crate::world::identifiers::Group;
 
 /// Something an update asks for.
 #[derive(Debug, Clone)]
@@ -59,8 +60,8 @@ pub enum Effect {
     Show(ScreenId),
     /// Show the form of a tool.
     ShowTool(&'static str),
-    /// Show a customer group, by its id.
-    ShowGroup(String),
+    /// Show a group on a screen that opens groups.
+    ShowGroup(ScreenId, Group),
     /// Put a statement into the SQL editor.
     EditSql(String),
     /// Ask once before a call that cannot be taken back.

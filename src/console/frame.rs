@@ -142,7 +142,9 @@ fn badge(run: &Run, screen: ScreenId) -> String {
         ScreenId::Product => run.company.seen.running_research as usize,
         ScreenId::Inbox => run.company.seen.waiting.len(),
         ScreenId::Tools => run.company.seen.changes.len(),
-        _ => 0,
+        // What arrives while one looks at it is not new.
+        _ if screen == run.here => 0,
+        _ => run.screens.get(screen).unseen(),
     };
     if count > 0 { format!(" ●{count}") } else { String::new() }
 }

@@ -33,6 +33,10 @@ readings! {
     EnterpriseTurns "enterprise_turns" "Turns of negotiations, the newest first: thread, company, kind, turn, sender, words, offer, day, seats, end."
     Companies "companies" "The companies of these negotiations: profile and subscription."
     Research "research" "R&D projects: id, tier, status, started, expected, boost; the newest first."
+    OwnPosts "own_posts" "Our posts, the newest first: number, day, text, post it answers, views, numbers of comments."
+    Knowledge "knowledge" "What is known of all groups: group, level, found on, studied on."
+    Attempts "attempts" "Attempts at market research, the newest first: day, cost, found, group."
+    Economy "economy" "The published index: day measured, value, trend, change, phase, description."
 }
 
 /// A cell of a row as a number; 0 if it holds none.

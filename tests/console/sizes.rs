@@ -3,12 +3,16 @@
 use super::harness::Console;
 
 /// Keys that lead to every place of the console, each followed by what closes it.
-const PLACES: [(&str, &str); 16] = [
+const PLACES: [(&str, &str); 20] = [
     ("1", ""),
     ("2", ""),
     ("3", ""),
     ("4", ""),
+    ("5", ""),
+    ("5 p", "esc"),
     ("6", ""),
+    ("7", ""),
+    ("7 tab", ""),
     ("8", ""),
     ("8 enter", "esc"),
     ("9", "esc"),

@@ -61,7 +61,7 @@ impl App {
         let screen = match &news {
             News::Checked(number, _) if *number != self.checks => return,
             News::Answered(number, ..) if *number != self.questions => return,
-            News::Checked(..) => ScreenId::Tools,
+            News::Checked(..) => self.checker,
             News::Answered(..) => ScreenId::Sql,
             News::Called(tool, answer, company) => {
                 self.changed(company.clone());
@@ -116,9 +116,9 @@ impl App {
         let company = run.company.clone();
         let look = Look { company: &company, keys: &self.keys, page: self.page };
         let mut effects = run.screens.get_mut(screen).hear(&news, &look);
-        // The forms hear of every call; the negotiations are another place that makes them.
-        if screen == ScreenId::Tools {
-            effects.extend(run.screens.get_mut(ScreenId::Inbox).hear(&news, &look));
+        // A call may come from a form or from the screen that is shown.
+        if matches!(news, News::Called(..)) && run.here != screen {
+            effects.extend(run.screens.get_mut(run.here).hear(&news, &look));
         }
         self.follow(effects);
     }

@@ -34,6 +34,7 @@ impl App {
             }
             Effect::Check { tool, arguments } => {
                 self.checks += 1;
+                self.checker = self.run().map_or(ScreenId::Tools, |run| run.here);
                 self.orders.push(Order::Job(Job::Check(self.checks, tool, arguments)));
             }
             Effect::Call { tool, arguments } => self.change(Job::Call(tool, arguments)),
@@ -75,12 +76,14 @@ impl App {
                 }
                 self.show(ScreenId::Tools);
             }
-            Effect::ShowGroup(group) => {
+            Effect::ShowGroup(screen, group) => {
                 if let Stage::Run(run) = &mut self.stage {
-                    let company = run.company.clone();
-                    run.screens.customers.show(&group, &company);
+                    match screen {
+                        ScreenId::Market => run.screens.market.show(group),
+                        _ => run.screens.customers.show(group, &run.company),
+                    }
                 }
-                self.show(ScreenId::Customers);
+                self.show(screen);
             }
             Effect::EditSql(sql) => {
                 if let Stage::Run(run) = &mut self.stage {

@@ -5,9 +5,11 @@ pub mod cash;
 pub mod customers;
 pub mod inbox;
 pub mod journal;
+pub mod market;
 pub mod menu;
 pub mod overview;
 pub mod product;
+pub mod social;
 pub mod sql;
 pub mod tools;
 
@@ -34,8 +36,12 @@ pub enum ScreenId {
     Customers,
     /// Quality, capacity, issues, R&D.
     Product,
+    /// What people write, and our posts.
+    Social,
     /// Negotiations with companies.
     Inbox,
+    /// Groups, studies, the economy.
+    Market,
     /// Forms of all tools.
     Tools,
     /// The database.
@@ -46,12 +52,14 @@ pub enum ScreenId {
 
 impl ScreenId {
     /// All screens in the order of their keys.
-    pub const ALL: [ScreenId; 8] = [
+    pub const ALL: [ScreenId; 10] = [
         ScreenId::Overview,
         ScreenId::Cash,
         ScreenId::Customers,
         ScreenId::Product,
+        ScreenId::Social,
         ScreenId::Inbox,
+        ScreenId::Market,
         ScreenId::Tools,
         ScreenId::Sql,
         ScreenId::Journal,
@@ -64,7 +72,9 @@ impl ScreenId {
             ScreenId::Cash => Action::Cash,
             ScreenId::Customers => Action::Customers,
             ScreenId::Product => Action::Product,
+            ScreenId::Social => Action::Social,
             ScreenId::Inbox => Action::Inbox,
+            ScreenId::Market => Action::Market,
             ScreenId::Tools => Action::Tools,
             ScreenId::Sql => Action::Sql,
             ScreenId::Journal => Action::Journal,
@@ -139,6 +149,14 @@ pub trait Screen {
 
     /// Takes what the database answered.
     fn take(&mut self, _: Reading, _: &Rows, _: &Look<'_>) {}
+
+    /// The person sees it now, or saw it until now.
+    fn looked_at(&mut self) {}
+
+    /// How much on it was not looked at yet, for the badge.
+    fn unseen(&self) -> usize {
+        0
+    }
 
     /// The company has changed.
     fn renew(&mut self, _: &Look<'_>) {}

@@ -6,7 +6,7 @@ use super::model::{Facts, Flow, Market, ad_budgets, development_budget};
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
-use crate::console::screens::Look;
+use crate::console::screens::{Look, ScreenId};
 use crate::console::theme::Role;
 use crate::console::widgets::spark::bar;
 use crate::console::widgets::{Axis, Line, chart};
@@ -23,13 +23,17 @@ pub const TOOLS: [(&str, &str); 6] = [
     ("set_ads_strength", "ads shown"),
 ];
 
-/// Number of things that can be chosen: the tools, and the customers themselves.
-pub const CHOICES: usize = TOOLS.len() + 1;
+/// Ways that are no tools: the insight report, and the customers themselves.
+const WAYS: [(&str, &str); 2] = [("Market", "its insight report"), ("SQL", "its customers by plan")];
+
+/// Number of things that can be chosen: the tools and the other ways.
+pub const CHOICES: usize = TOOLS.len() + WAYS.len();
 
 /// What a choice leads to.
 pub fn choose(choice: usize, group: Group) -> Effect {
     match TOOLS.get(choice) {
         Some((tool, _)) => Effect::ShowTool(tool),
+        None if choice == TOOLS.len() => Effect::ShowGroup(ScreenId::Market, group),
         None => Effect::EditSql(format!(
             "-- customers of {group}\nSELECT s.plan, s.status, count(*) AS customers, \
              round(avg(s.effective_price), 2) AS price\nFROM subscriptions s\n\
@@ -153,7 +157,7 @@ fn draw_choices(canvas: &mut Canvas<'_>, area: Rect, choice: usize) {
     for (at, row) in rows_of(inside).enumerate().take(CHOICES) {
         let role = if at == choice { Role::Selection } else { Role::Text };
         canvas.clear(row, role);
-        let (name, purpose) = TOOLS.get(at).copied().unwrap_or(("SQL", "its customers by plan"));
+        let (name, purpose) = TOOLS.iter().chain(&WAYS).nth(at).copied().unwrap_or_default();
         canvas.text(row, name, role);
         let purpose_role = if at == choice { role } else { Role::Dim };
         let place = Rect { x: row.x + 23, width: row.width.saturating_sub(23), ..row };

@@ -114,6 +114,16 @@ fn row_of(group: Group, facts: &Facts, company: &Company, market: &Market) -> Ve
 }
 
 impl Customers {
+    /// Opens a group, if it is known.
+    pub fn show(&mut self, group: Group, company: &Company) {
+        self.focus = GROUPS;
+        self.open = company.seen.known_groups.iter().position(|own| *own == group);
+        self.choice = 0;
+        if let Some(open) = self.open {
+            self.table.select(open);
+        }
+    }
+
     fn refresh(&mut self, company: &Company) {
         let groups = &company.seen.known_groups;
         let row = |group: &Group| row_of(*group, &self.market.of(*group), company, &self.market);
@@ -122,15 +132,6 @@ impl Customers {
         let last = groups.len().saturating_sub(1);
         self.open = self.open.map(|open| open.min(last)).filter(|_| !groups.is_empty());
         self.place.group = self.place.group.min(last);
-    }
-
-    /// Opens a group, if it is known.
-    pub fn show(&mut self, group: &str, company: &Company) {
-        if let Some(at) = company.seen.known_groups.iter().position(|known| known.id() == group) {
-            self.open = Some(at);
-            self.choice = 0;
-            self.table.select(at);
-        }
     }
 
     fn act_open(&mut self, open: usize, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -14,7 +14,7 @@ use ratatui::layout::Rect;
 
 use self::model::{Letters, PATIENCE, State, Thread};
 use self::offer::{Choice, Offer, TERMS, in_words};
-use super::{Look, Screen};
+use super::{Look, Screen, ScreenId};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
@@ -26,6 +26,7 @@ use crate::console::widgets::field::{Field, ONLY_NUMBERS, parse_number};
 use crate::console::widgets::{Cell, Column, Table};
 use crate::notation::grouped;
 use crate::session::Rows;
+use crate::world::identifiers::Group;
 
 /// Panes.
 const LIST: usize = 0;
@@ -149,9 +150,8 @@ impl Inbox {
         let here = self.here().map(|thread| thread.number);
         self.letters.settle(&company.seen.waiting);
         let threads = &self.letters.threads;
-        let open = |number: &u32| {
-            threads.iter().any(|thread| thread.number == *number && thread.state.is_open())
-        };
+        let open =
+            |number: &u32| threads.iter().any(|thread| thread.number == *number && thread.state.is_open());
         self.marked.retain(open);
         self.rows = (0..threads.len()).filter(|at| self.view.holds(threads[*at].state)).collect();
         let row = |at: &usize| row_of(&threads[*at], self.marked.contains(&threads[*at].number));
@@ -259,7 +259,9 @@ impl Inbox {
     fn act_on_offer(&mut self, action: Action, lists: [f64; 3]) -> Vec<Effect> {
         match action {
             Action::Up | Action::CommitPrevious => self.term = self.term.saturating_sub(1),
-            Action::Down | Action::CommitDown | Action::CommitNext => self.term = (self.term + 1).min(TERMS - 1),
+            Action::Down | Action::CommitDown | Action::CommitNext => {
+                self.term = (self.term + 1).min(TERMS - 1)
+            }
             Action::First => self.term = 0,
             Action::Last => self.term = TERMS - 1,
             Action::Open => self.type_value(),
@@ -415,8 +417,9 @@ impl Screen for Inbox {
             Action::SendOffer => return self.send(look.company),
             Action::RejectOffer => return self.reject(look.company),
             Action::InboxGroup => {
-                let group = self.here().map(|thread| thread.group.clone());
-                return group.map(Effect::ShowGroup).into_iter().collect();
+                let group = self.here().and_then(|thread| Group::parse(&thread.group));
+                let shown = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
+                return shown.into_iter().collect();
             }
             Action::InboxSql => return self.here().map(post::statement).into_iter().collect(),
             action if self.focus == OFFER => return self.act_on_offer(action, lists),

@@ -1,0 +1,483 @@
+//! The market: groups and studies, finding others, the economy, and what the press tells of rivals.
+
+mod economy;
+mod model;
+mod report;
+#[cfg(test)]
+mod tests;
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::{Constraint, Layout, Rect};
+use serde_json::{Value, json};
+
+use self::model::{Facts, Known, level_of, name_of, study_of, target_of, undiscovered};
+use super::social::feed::{self, Kind, Post};
+use super::{Look, Screen, ScreenId};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, Click};
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::message::News;
+use crate::console::readings::Reading;
+use crate::console::theme::Role;
+use crate::console::widgets::{Cell, Column, Field, Table};
+use crate::notation::{compact, dollars, grouped, percent};
+use crate::session::{Preview, Rows};
+use crate::world::identifiers::Group;
+
+/// Panes.
+const GROUPS: usize = 0;
+const REPORT: usize = 1;
+const ATTEMPTS: usize = 2;
+const NEWS: usize = 3;
+const FIND: &str = "research_market";
+const STUDY: &str = "research_group";
+
+/// The screen.
+#[derive(Default)]
+pub struct Market {
+    focus: usize,
+    facts: Facts,
+    /// Groups in the order of the table: the known ones first.
+    groups: Vec<Group>,
+    table: Table,
+    attempts: Table,
+    news: Vec<Post>,
+    headlines: Table,
+    /// Level that was chosen for the next study.
+    target: Option<u8>,
+    /// First line of the report that is shown.
+    from: usize,
+    /// Call that is being looked at before the question.
+    asking: Option<(&'static str, Value)>,
+}
+
+fn columns() -> Vec<Column> {
+    let mut columns = vec![Column::words("group"), Column::words("name").at_most(26)];
+    columns.extend(["level", "error", "found", "studied"].map(Column::numbers));
+    columns.push(Column::words("next study"));
+    columns
+}
+
+fn row_of(group: Group, known: Known, company: &Company) -> Vec<Cell> {
+    let level = level_of(company, group);
+    let none = || Cell::words("–").role(Role::Dim);
+    if level == 0 {
+        let not_found = Cell::words("not found yet").role(Role::Dim);
+        let id = Cell::words(group.id()).role(Role::Dim);
+        return vec![id, not_found, none(), none(), none(), none(), none()];
+    }
+    let day = |day: Option<u32>| match day {
+        Some(0) => Cell::number(0.0, "start").role(Role::Dim),
+        Some(day) => Cell::number(f64::from(day), format!("day {day}")),
+        None => none(),
+    };
+    let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
+    let next = match study_of(company, group) {
+        Some(study) => {
+            Cell::words(format!("→{} due day {}", study.target, study.due_day)).role(Role::Warning)
+        }
+        None => {
+            let target = target_of(company, group, None);
+            let cost = company.terms.level(target).map_or(0.0, |level| level.cost);
+            Cell::words(format!("→{target} ${}", compact(cost))).role(Role::Dim)
+        }
+    };
+    vec![
+        Cell::words(group.id()).role(Role::Strong),
+        Cell::words(name_of(company, group)),
+        Cell::number(f64::from(level), level.to_string()),
+        Cell::number(noise, format!("±{}", percent(noise, 0))),
+        day(known.found),
+        day(known.studied),
+        next,
+    ]
+}
+
+impl Market {
+    /// Selects a group and shows its report.
+    pub fn show(&mut self, group: Group) {
+        self.focus = GROUPS;
+        // A filter may hide the group.
+        self.table.act(Action::Close, 1);
+        if let Some(row) = self.groups.iter().position(|own| *own == group) {
+            self.table.select(row);
+        }
+        self.turn();
+    }
+
+    /// Another group is selected: its report begins at the top.
+    fn turn(&mut self) {
+        (self.target, self.from) = (None, 0);
+    }
+
+    fn group(&self) -> Option<Group> {
+        self.table.selected().and_then(|row| self.groups.get(row)).copied()
+    }
+
+    fn refresh(&mut self, company: &Company) {
+        let kept = self.group();
+        let known = |group: &Group| level_of(company, *group) > 0;
+        self.groups = company.seen.known_groups.clone();
+        self.groups.extend(Group::all().filter(|group| !known(group)));
+        let row =
+            |group: &Group| row_of(*group, self.facts.known.get(group).copied().unwrap_or_default(), company);
+        self.table.set(columns(), self.groups.iter().map(row).collect());
+        if let Some(row) = self.groups.iter().position(|own| Some(*own) == kept) {
+            self.table.select(row);
+        }
+        let attempt = |attempt: &model::Attempt| {
+            let found = match attempt.group {
+                Some(group) => Cell::words(format!("{group} {}", name_of(company, group))).role(Role::Good),
+                None => Cell::words("nothing").role(Role::Dim),
+            };
+            vec![
+                Cell::number(f64::from(attempt.day), attempt.day.to_string()),
+                Cell::number(attempt.cost, dollars(attempt.cost)),
+                found,
+            ]
+        };
+        let heads = vec![Column::numbers("day"), Column::numbers("cost"), Column::words("found")];
+        self.attempts.set(heads, self.facts.attempts.iter().map(attempt).collect());
+        self.news = feed::posts_of(company).into_iter().filter(|post| post.kind == Kind::Press).collect();
+        let headline = |post: &Post| {
+            vec![
+                Cell::number(f64::from(post.day), post.day.to_string()).role(Role::Dim),
+                Cell::words(post.text.replace('\n', " ")),
+            ]
+        };
+        let heads = vec![Column::numbers("day"), Column::words("news").at_most(u16::MAX)];
+        self.headlines.set(heads, self.news.iter().map(headline).collect());
+    }
+
+    fn list(&mut self) -> Option<&mut Table> {
+        match self.focus {
+            GROUPS => Some(&mut self.table),
+            ATTEMPTS => Some(&mut self.attempts),
+            NEWS => Some(&mut self.headlines),
+            _ => None,
+        }
+    }
+
+    fn check(&mut self, tool: &'static str, arguments: Value) -> Vec<Effect> {
+        self.asking = Some((tool, arguments.clone()));
+        vec![Effect::Check { tool, arguments }]
+    }
+
+    fn study(&mut self, company: &Company) -> Vec<Effect> {
+        match self.group().filter(|group| level_of(company, *group) > 0) {
+            Some(group) => {
+                let level = target_of(company, group, self.target);
+                self.check(STUDY, json!({ "group_id": group.id(), "target_level": level }))
+            }
+            None => vec![Effect::Complain("only a group that was found can be studied".to_owned())],
+        }
+    }
+
+    /// The question before a call that costs money.
+    fn ask(&self, tool: &'static str, arguments: Value, preview: &Preview, company: &Company) -> Effect {
+        let rest = company.seen.cash - preview.cost_now;
+        let what = match tool {
+            FIND => format!(
+                "An attempt at market research: {} in 100 find one of the {} groups that are left.",
+                grouped(company.terms.attempt_chance * 100.0, 0),
+                undiscovered(company)
+            ),
+            _ => {
+                let text = |name: &str| arguments.get(name).map_or(String::new(), Value::to_string);
+                let group = text("group_id").replace('"', "");
+                let level = text("target_level");
+                format!("A study of {group}, to level {level}.")
+            }
+        };
+        let when = preview.effect_day.map_or(String::new(), |day| format!(" It is done on day {day}."));
+        let text = format!(
+            "{what}{when} It costs {} at once, leaves {}, and cannot be taken back.",
+            dollars(preview.cost_now),
+            dollars(rest)
+        );
+        Effect::ConfirmCall { tool, arguments, text }
+    }
+
+    fn open(&self, company: &Company) -> Vec<Effect> {
+        let effect = match self.focus {
+            NEWS => {
+                let post = self.headlines.selected().and_then(|row| self.news.get(row));
+                post.map(|post| Effect::ShowText(format!("day {} · press", post.day), post.text.clone()))
+            }
+            ATTEMPTS => None,
+            _ => self.group().map(|group| match level_of(company, group) {
+                0 => Effect::Complain(format!("{group} is not found yet; nothing is known of it")),
+                _ => Effect::ShowGroup(ScreenId::Customers, group),
+            }),
+        };
+        effect.into_iter().collect()
+    }
+
+    fn choose_level(&mut self, company: &Company, up: bool) {
+        let Some(group) = self.group() else { return };
+        let now = target_of(company, group, self.target);
+        let chosen = if up { now.saturating_add(1) } else { now.saturating_sub(1) };
+        self.target = Some(target_of(company, group, Some(chosen)));
+    }
+
+    fn scroll(&mut self, action: Action, look: &Look<'_>) {
+        let page = usize::from(look.page.max(1));
+        let lines = self.group().map_or(0, |group| report::lines(look.company, group).len());
+        let last = lines.saturating_sub(page);
+        self.from = match action {
+            Action::Up => self.from.min(last).saturating_sub(1),
+            Action::Down => (self.from + 1).min(last),
+            Action::PageUp => self.from.saturating_sub(page),
+            Action::PageDown => (self.from + page).min(last),
+            Action::First => 0,
+            Action::Last => last,
+            Action::Close => {
+                self.focus = GROUPS;
+                0
+            }
+            _ => self.from,
+        };
+    }
+}
+
+impl Screen for Market {
+    fn scopes(&self) -> Vec<Scope> {
+        let typing = match self.focus {
+            GROUPS => self.table.is_typing(),
+            ATTEMPTS => self.attempts.is_typing(),
+            NEWS => self.headlines.is_typing(),
+            _ => false,
+        };
+        if typing { vec![Scope::Field] } else { vec![Scope::Market, Scope::List] }
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        match self.focus {
+            NEWS => vec![Action::Open, Action::Filter, Action::FindGroup],
+            _ => vec![Action::Open, Action::StudyGroup, Action::LevelUp, Action::FindGroup, Action::Filter],
+        }
+    }
+
+    fn panes(&self) -> usize {
+        4
+    }
+
+    fn focus(&self) -> usize {
+        self.focus
+    }
+
+    fn set_focus(&mut self, pane: usize) {
+        self.focus = pane.min(NEWS);
+    }
+
+    fn readings(&self) -> &'static [Reading] {
+        &[Reading::Knowledge, Reading::Attempts, Reading::Economy]
+    }
+
+    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
+        self.facts.take(reading, rows);
+        self.refresh(look.company);
+    }
+
+    fn renew(&mut self, look: &Look<'_>) {
+        self.refresh(look.company);
+    }
+
+    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
+        match news {
+            News::Checked(_, preview) => match (preview, self.asking.take()) {
+                (Ok(preview), Some((tool, arguments))) => {
+                    vec![self.ask(tool, arguments, preview, look.company)]
+                }
+                (Err(refusal), Some(_)) => vec![Effect::Complain(refusal.to_string())],
+                _ => Vec::new(),
+            },
+            News::Called(FIND, Ok(answer), _) => {
+                let found = answer.get("discovered_group_id").and_then(Value::as_str).and_then(Group::parse);
+                match found {
+                    Some(group) => {
+                        self.show(group);
+                        vec![Effect::Say(format!("{group} was found: {}", name_of(look.company, group)))]
+                    }
+                    None => {
+                        vec![Effect::Say("nothing was found this time; the next may be luckier".to_owned())]
+                    }
+                }
+            }
+            News::Called(STUDY, Ok(answer), _) => {
+                self.target = None;
+                let day = answer.get("expected_completion_day").and_then(Value::as_u64);
+                day.map(|day| Effect::Say(format!("the study is due on day {day}"))).into_iter().collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let before = self.group();
+        match action {
+            Action::FindGroup => return self.check(FIND, json!({})),
+            Action::StudyGroup => return self.study(look.company),
+            Action::LevelUp | Action::LevelDown => {
+                self.choose_level(look.company, action == Action::LevelUp);
+            }
+            Action::Open => return self.open(look.company),
+            action if self.focus == REPORT => self.scroll(action, look),
+            action => {
+                let action = match action {
+                    Action::CommitNext | Action::CommitPrevious => Action::Commit,
+                    other => other,
+                };
+                if let Some(list) = self.list() {
+                    list.act(action, look.page);
+                }
+            }
+        }
+        if before != self.group() {
+            self.turn();
+        }
+        Vec::new()
+    }
+
+    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
+        self.typed(|field| {
+            field.key(key);
+        });
+        Vec::new()
+    }
+
+    fn paste(&mut self, text: &str, _: &Look<'_>) -> Vec<Effect> {
+        self.typed(|field| field.insert(text));
+        Vec::new()
+    }
+
+    fn click(&mut self, _: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        let group = self.group();
+        let Some(list) = self.list() else { return Vec::new() };
+        let before = list.selected();
+        list.select_place(row);
+        let again = before == list.selected();
+        if group != self.group() {
+            self.turn();
+        }
+        if again { self.open(look.company) } else { Vec::new() }
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        if area.width >= 104 && area.height >= 24 {
+            let [left, right] =
+                Layout::horizontal([Constraint::Percentage(52), Constraint::Min(0)]).areas(area);
+            let rows = (self.groups.len() as u16 + 3).min(area.height * 55 / 100);
+            let [groups, economy] =
+                Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(left);
+            let attempts = (self.facts.attempts.len() as u16 + 4).clamp(6, area.height / 5);
+            let [report, found, news] = Layout::vertical([
+                Constraint::Length(area.height * 55 / 100),
+                Constraint::Length(attempts),
+                Constraint::Min(0),
+            ])
+            .areas(right);
+            self.draw_groups(canvas, groups, look);
+            economy::draw(canvas, economy, look.company, &self.facts.economy);
+            self.draw_report(canvas, report, look);
+            self.draw_attempts(canvas, found, look);
+            self.draw_news(canvas, news, look);
+            return;
+        }
+        // What has the focus takes the window; groups and report share it.
+        let halves = [Constraint::Percentage(50), Constraint::Min(0)];
+        let [upper, lower] = Layout::vertical(halves).areas(area);
+        match self.focus {
+            GROUPS if area.height >= 14 => {
+                self.draw_groups(canvas, upper, look);
+                self.draw_report(canvas, lower, look);
+            }
+            GROUPS => self.draw_groups(canvas, area, look),
+            REPORT => self.draw_report(canvas, area, look),
+            ATTEMPTS => {
+                self.draw_attempts(canvas, upper, look);
+                economy::draw(canvas, lower, look.company, &self.facts.economy);
+            }
+            _ => self.draw_news(canvas, area, look),
+        }
+    }
+}
+
+impl Market {
+    fn typed(&mut self, work: impl FnOnce(&mut Field)) {
+        let before = self.group();
+        if let Some(list) = self.list()
+            && let Some(field) = list.typing()
+        {
+            work(field);
+            list.typed();
+        }
+        if before != self.group() {
+            self.turn();
+        }
+    }
+
+    fn draw_groups(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        canvas.click(area, Click::Pane(GROUPS));
+        let focused = self.focus == GROUPS;
+        let known = look.company.seen.known_groups.len();
+        let note = match self.table.note() {
+            note if note.is_empty() => format!("{known} known · {} to find", undiscovered(look.company)),
+            note => note,
+        };
+        let inside = canvas.pane(area, "Groups", &note, focused);
+        self.table.draw(canvas, inside, focused, GROUPS);
+        if focused {
+            let open = look.keys.label(Action::Open).unwrap_or_default();
+            let keys = look.hints(&[Action::FindGroup, Action::StudyGroup, Action::Filter]);
+            canvas.pane_keys(area, &format!("{open} customers of the group · {keys}"));
+        }
+    }
+
+    fn draw_report(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        canvas.click(area, Click::Pane(REPORT));
+        let focused = self.focus == REPORT;
+        report::draw(canvas, area, look, self.group(), self.target, self.from, focused);
+    }
+
+    fn draw_attempts(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        canvas.click(area, Click::Pane(ATTEMPTS));
+        let focused = self.focus == ATTEMPTS;
+        let next = dollars(look.company.terms.attempt_cost);
+        let note = match self.facts.attempts.len() {
+            0 => format!("next {next}"),
+            count => format!(
+                "{} of {count} found · {} spent · next {next}",
+                self.facts.found(),
+                dollars(self.facts.spent())
+            ),
+        };
+        let inside = canvas.pane(area, "Market research", &note, focused);
+        if self.facts.attempts.is_empty() {
+            let key = look.keys.label(Action::FindGroup).unwrap_or_default();
+            canvas.text(inside, &format!("no attempt was made yet: {key} pays for one"), Role::Dim);
+        } else {
+            self.attempts.draw(canvas, inside, focused, ATTEMPTS);
+        }
+        canvas.pane_keys(area, &look.hint(Action::FindGroup));
+    }
+
+    fn draw_news(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        canvas.click(area, Click::Pane(NEWS));
+        let focused = self.focus == NEWS;
+        let note = match self.headlines.note() {
+            note if note.is_empty() => format!("{} in the press", self.news.len()),
+            note => note,
+        };
+        let inside = canvas.pane(area, "Rivals and economy in the news", &note, focused);
+        if self.news.is_empty() {
+            canvas.text(inside, "the press has written nothing yet", Role::Dim);
+            return;
+        }
+        self.headlines.draw(canvas, inside, focused, NEWS);
+        if focused {
+            canvas.pane_keys(area, &look.hints(&[Action::Open, Action::Filter]));
+        }
+    }
+}

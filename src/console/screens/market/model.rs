@@ -1,0 +1,179 @@
+//! What is known of the groups, what finding others has cost, and the index of the economy.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use crate::console::company::Company;
+use crate::console::readings::{Reading, number_at, text_at};
+use crate::session::{Cell, Rows, RunningStudy};
+use crate::world::identifiers::Group;
+
+/// Since when a group is known.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Known {
+    /// Level of knowledge, 0 while it is not found.
+    pub level: u8,
+    /// Day on which it was found; 0 for the groups of the start.
+    pub found: Option<u32>,
+    /// Day on which the level rose last.
+    pub studied: Option<u32>,
+}
+
+/// An attempt at market research.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attempt {
+    /// Day.
+    pub day: u32,
+    /// Dollars.
+    pub cost: f64,
+    /// What was found.
+    pub group: Option<Group>,
+}
+
+/// A published measurement of the economy.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Published {
+    /// Day of the measurement.
+    pub day: u32,
+    /// Index.
+    pub value: f64,
+    /// Its change from the measurement before.
+    pub change: f64,
+    /// Trend and phase in words.
+    pub words: String,
+    /// Description.
+    pub text: String,
+}
+
+/// Everything the readings say.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Facts {
+    /// Knowledge of the groups.
+    pub known: BTreeMap<Group, Known>,
+    /// Attempts, the newest first.
+    pub attempts: Vec<Attempt>,
+    /// The economy, the oldest first.
+    pub economy: Vec<Published>,
+}
+
+impl Facts {
+    /// Takes a reading in place of what it said before.
+    pub fn take(&mut self, reading: Reading, rows: &Rows) {
+        let rows = rows.rows.iter();
+        match reading {
+            Reading::Knowledge => {
+                self.known =
+                    rows.filter_map(|row| Some((Group::parse(text_at(row, 0))?, known(row)))).collect();
+            }
+            Reading::Attempts => self.attempts = rows.map(|row| attempt(row)).collect(),
+            Reading::Economy => self.economy = rows.map(|row| published(row)).collect(),
+            _ => {}
+        }
+    }
+
+    /// Dollars of all attempts.
+    pub fn spent(&self) -> f64 {
+        self.attempts.iter().map(|attempt| attempt.cost).sum()
+    }
+
+    /// Number of attempts that found a group.
+    pub fn found(&self) -> usize {
+        self.attempts.iter().filter(|attempt| attempt.group.is_some()).count()
+    }
+}
+
+fn day_at(row: &[Cell], at: usize) -> Option<u32> {
+    matches!(row.get(at), Some(Cell::Integer(_))).then(|| number_at(row, at) as u32)
+}
+
+fn known(row: &[Cell]) -> Known {
+    Known { level: number_at(row, 1) as u8, found: day_at(row, 2), studied: day_at(row, 3) }
+}
+
+fn attempt(row: &[Cell]) -> Attempt {
+    let group = Group::parse(text_at(row, 3)).filter(|_| number_at(row, 2) > 0.0);
+    Attempt { day: number_at(row, 0) as u32, cost: number_at(row, 1), group }
+}
+
+fn published(row: &[Cell]) -> Published {
+    Published {
+        day: number_at(row, 0) as u32,
+        value: number_at(row, 1),
+        change: number_at(row, 3),
+        words: format!("{} · {}", text_at(row, 2), text_at(row, 4)),
+        text: text_at(row, 5).to_owned(),
+    }
+}
+
+/// The study of a group that runs.
+pub fn study_of(company: &Company, group: Group) -> Option<&RunningStudy> {
+    company.studies.iter().find(|study| study.group == group)
+}
+
+/// Level of a known group, as its insight report says.
+pub fn level_of(company: &Company, group: Group) -> u8 {
+    let level = company.insights.get(&group).and_then(|told| told.get("info_level"));
+    level.and_then(Value::as_u64).and_then(|level| u8::try_from(level).ok()).unwrap_or(0)
+}
+
+/// Name of a known group.
+pub fn name_of(company: &Company, group: Group) -> &str {
+    let told = company.insights.get(&group).and_then(|told| told.get("group_name"));
+    told.and_then(Value::as_str).unwrap_or_default()
+}
+
+/// Groups that are still to be found, as get_market_overview counts them.
+pub fn undiscovered(company: &Company) -> u64 {
+    company.market.get("undiscovered_count").and_then(Value::as_u64).unwrap_or(0)
+}
+
+/// Level that a study aims at: the chosen one as far as it is allowed, else the next.
+pub fn target_of(company: &Company, group: Group, chosen: Option<u8>) -> u8 {
+    let (least, most) = company.terms.targets;
+    let now = level_of(company, group);
+    let lowest = now.max(least).min(most);
+    chosen.unwrap_or(now.saturating_add(1)).clamp(lowest, most)
+}
+
+/// Bounds of a true value whose estimate is off by at most a share: the estimate is the truth times 1 ± share
+/// (chapter 50 §4.5).
+pub fn bounds(estimate: f64, share: f64) -> (f64, f64) {
+    let from = estimate / (1.0 + share);
+    let to = if share < 1.0 { estimate / (1.0 - share) } else { f64::INFINITY };
+    (from.min(to), from.max(to))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_truth_lies_inside_the_bounds_whatever_the_noise_was() {
+        for share in [0.65, 0.4, 0.05] {
+            for draw in [-1.0, -0.3, 0.0, 0.8, 1.0] {
+                let truth = 20.0;
+                let (from, to) = bounds(truth * (1.0 + share * draw), share);
+                assert!(from <= truth + 1e-9 && truth <= to + 1e-9, "{share} {draw}: {from} {to}");
+            }
+        }
+        assert_eq!(bounds(0.0, 0.4), (0.0, 0.0));
+        assert_eq!(bounds(14.0, 0.4), (10.0, 14.0 / 0.6));
+    }
+
+    #[test]
+    fn rows_that_miss_something_are_taken_for_what_they_say() {
+        let text = |text: &str| Cell::Text(text.to_owned());
+        let rows = |row: Vec<Cell>| Rows { rows: vec![row], ..Rows::default() };
+        let mut facts = Facts::default();
+        facts.take(Reading::Knowledge, &rows(vec![text("D_S01"), Cell::Integer(0), Cell::Null, Cell::Null]));
+        facts.take(
+            Reading::Attempts,
+            &rows(vec![Cell::Integer(7), Cell::Real(25_000.0), Cell::Integer(0), Cell::Null]),
+        );
+        assert_eq!(facts.known.values().next(), Some(&Known::default()));
+        assert_eq!((facts.spent(), facts.found()), (25_000.0, 0));
+        facts.take(Reading::Attempts, &Rows::default());
+        assert!(facts.attempts.is_empty());
+    }
+}

@@ -1,0 +1,213 @@
+//! The insight report of a group: estimates with what the truth can be, influence, and the next study.
+
+use ratatui::layout::Rect;
+use serde_json::Value;
+use unicode_width::UnicodeWidthStr;
+
+use super::model::{bounds, level_of, name_of, study_of, target_of};
+use crate::console::action::Action;
+use crate::console::canvas::{Align, Canvas, rows_of};
+use crate::console::company::Company;
+use crate::console::screens::Look;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::notation::{compact, dollars, grouped, percent};
+use crate::world::identifiers::Group;
+
+/// A line: words to the left, figures to the right.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    words: String,
+    figures: String,
+    role: Role,
+}
+
+impl Line {
+    fn head(words: &str, figures: &str) -> Line {
+        Line { words: words.to_owned(), figures: figures.to_owned(), role: Role::Header }
+    }
+
+    fn of(words: String, figures: String) -> Line {
+        Line { words, figures, role: Role::Text }
+    }
+}
+
+/// An estimate: its name in the answer, the words for it, its unit, and how it is written.
+type Estimate = (&'static str, &'static str, &'static str, fn(f64) -> String);
+
+const ESTIMATES: [Estimate; 8] = [
+    ("willingness_to_pay", "budget", "$/month", figure),
+    ("usage_volume", "usage", "units/day", figure),
+    ("quality_floor_q_min", "quality floor", "", exact),
+    ("market_cap", "market", "customers", figure),
+    ("annual_market_cap_growth_rate", "growth of the market", "a year", share),
+    ("contract_lockin_aversion", "lock-in aversion", "", exact),
+    ("decision_rounds", "rounds of a deal", "", figure),
+    ("avg_response_days", "days to an answer", "", figure),
+];
+
+fn figure(value: f64) -> String {
+    match value.abs() {
+        size if size >= 1000.0 => compact(value),
+        size if size >= 100.0 || value.fract() == 0.0 => grouped(value, 0),
+        size if size >= 10.0 => grouped(value, 1),
+        _ => grouped(value, 2),
+    }
+}
+
+fn exact(value: f64) -> String {
+    if value != 0.0 && value.abs() < 0.01 { grouped(value, 5) } else { grouped(value, 3) }
+}
+
+fn share(value: f64) -> String {
+    percent(value, 1)
+}
+
+/// The report of a known group.
+pub fn lines(company: &Company, group: Group) -> Vec<Line> {
+    let Some(told) = company.insights.get(&group) else { return Vec::new() };
+    let noise = company.terms.level(level_of(company, group)).map_or(0.0, |level| level.noise);
+    let mut lines = vec![Line::head("estimate", "the truth is in")];
+    let estimates = told.get("estimates");
+    for (field, words, unit, write) in ESTIMATES {
+        let Some(value) = estimates.and_then(|all| all.get(field)).and_then(Value::as_f64) else { continue };
+        let (from, to) = bounds(value, noise);
+        let unit = match (unit, group.is_enterprise()) {
+            ("$/month", true) => "$/month a seat",
+            ("units/day", true) => "units/day a seat",
+            ("customers", true) => "companies",
+            (unit, _) => unit,
+        };
+        lines.push(Line::of(
+            format!("{words:<21}{:>8} {unit}", write(value)),
+            format!("{} – {}", write(from), write(to)),
+        ));
+    }
+    if let Some([least, most]) = estimates.and_then(|all| all.get("seat_range")).and_then(pair) {
+        let (from, to) = (bounds(least, noise).0, bounds(most, noise).1);
+        let seats = format!("{} – {}", figure(least), figure(most));
+        lines.push(Line::of(
+            format!("{:<21}{seats:>8} seats", "size of a company"),
+            format!("{} – {}", figure(from), figure(to)),
+        ));
+    }
+    influence(&mut lines, told, "network_influence", "leads a day of 1,000 subscribers", &|rate| {
+        figure(rate * 1000.0)
+    });
+    influence(&mut lines, told, "reputation_influence", "weight of reputation", &exact);
+    lines
+}
+
+fn pair(value: &Value) -> Option<[f64; 2]> {
+    let list = value.as_array()?;
+    Some([list.first()?.as_f64()?, list.get(1)?.as_f64()?])
+}
+
+fn influence(lines: &mut Vec<Line>, told: &Value, field: &str, unit: &str, write: &dyn Fn(f64) -> String) {
+    lines.push(Line::head(if field.starts_with("network") { "word of mouth" } else { "reputation" }, unit));
+    for (side, words) in [("outgoing", "for"), ("incoming", "from")] {
+        let all = told.get(field).and_then(|all| all.get(side)).and_then(Value::as_object);
+        let mut links: Vec<(&String, f64)> =
+            all.into_iter().flatten().map(|(id, value)| (id, value.as_f64().unwrap_or(0.0))).collect();
+        links.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(right.0)));
+        if links.is_empty() {
+            lines.push(Line::of(format!("  {words} no known group"), String::new()));
+        }
+        lines.extend(links.iter().map(|(id, value)| Line::of(format!("  {words} {id}"), write(*value))));
+    }
+}
+
+/// What a study would cost and bring, or which one runs.
+pub fn study_words(company: &Company, group: Group, chosen: Option<u8>) -> String {
+    if let Some(study) = study_of(company, group) {
+        return format!("a study to level {} is due on day {}", study.target, study.due_day);
+    }
+    let target = target_of(company, group, chosen);
+    let Some(terms) = company.terms.level(target) else { return String::new() };
+    let what = match target == level_of(company, group) {
+        true => format!("fresh figures at level {target}"),
+        false => format!("level {target}"),
+    };
+    format!("{what}: {}, {} days, then ±{}", dollars(terms.cost), terms.days, percent(terms.noise, 0))
+}
+
+/// Draws the report from one of its lines on.
+pub fn draw(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    look: &Look<'_>,
+    group: Option<Group>,
+    chosen: Option<u8>,
+    from: usize,
+    focused: bool,
+) {
+    let company = look.company;
+    let Some(group) = group else {
+        canvas.pane(area, "Insight report", "", focused);
+        return;
+    };
+    let level = level_of(company, group);
+    if level == 0 {
+        let inside = canvas.pane(area, &format!("{group} · not found yet"), "", focused);
+        let terms = &company.terms;
+        let words = format!(
+            "Nobody knows this group yet: {} pays {} for an attempt at market research, and {} in 100 attempts find \
+             one of the groups that are left. A found group sends leads from the next day on.",
+            look.keys.label(Action::FindGroup).unwrap_or_default(),
+            dollars(terms.attempt_cost),
+            grouped(terms.attempt_chance * 100.0, 0)
+        );
+        for (row, line) in rows_of(inside).zip(wrapped(&words, inside.width as usize)) {
+            canvas.text(row, &line, Role::Dim);
+        }
+        return;
+    }
+    let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
+    let title = format!("{group} · {}", name_of(company, group));
+    let note = format!("level {level} · ±{}", percent(noise, 0));
+    let inside = canvas.pane(area, &title, &note, focused);
+    if inside.is_empty() {
+        return;
+    }
+    let first = Rect { height: 1, ..inside };
+    let running = study_of(company, group).is_some();
+    canvas.text(
+        first,
+        &study_words(company, group, chosen),
+        if running { Role::Warning } else { Role::Strong },
+    );
+    let rest = Rect { y: inside.y + 1, height: inside.height - 1, ..inside };
+    let lines = lines(company, group);
+    if focused {
+        canvas.page = rest.height.max(1);
+    }
+    let from = from.min(lines.len().saturating_sub(rest.height as usize));
+    for (row, line) in rows_of(rest).zip(&lines[from..]) {
+        canvas.text(row, &line.words, line.role);
+        let taken = line.words.width() as u16 + 2;
+        // Half a range would be a wrong one.
+        if taken + line.figures.width() as u16 <= row.width {
+            canvas.aligned(row, &line.figures, line.role, Align::Right);
+        }
+    }
+    let keys = [Action::StudyGroup, Action::LevelUp, Action::LevelDown];
+    canvas.pane_keys(area, &look.hints(&keys));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_keep_the_digits_that_matter() {
+        for (value, words) in
+            [(1234.5, "1.23k"), (230.4, "230"), (23.44, "23.4"), (2.345, "2.35"), (3.0, "3")]
+        {
+            assert_eq!(figure(value), words);
+        }
+        assert_eq!(
+            (exact(0.51), exact(0.0031), exact(0.0)),
+            ("0.510".into(), "0.00310".into(), "0.000".into())
+        );
+    }
+}

@@ -1,0 +1,143 @@
+//! The feed on the screen: days, heads and wrapped texts, with the selected post in view.
+
+use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
+
+use super::feed::{Kind, Post};
+use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+
+/// A row of the feed: text, meaning, and the place of its post.
+struct Row {
+    text: String,
+    role: Role,
+    place: Option<usize>,
+}
+
+/// Draws posts; the selected one is a place among them.
+pub fn draw(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    posts: &[&Post],
+    selected: usize,
+    focused: bool,
+    pane: usize,
+) {
+    if area.is_empty() {
+        return;
+    }
+    let width = area.width as usize;
+    let rows = rows_around(posts, selected, width, area.height as usize);
+    let mut seen: Vec<usize> = rows.iter().filter_map(|row| row.place).collect();
+    seen.dedup();
+    if focused {
+        canvas.page = (seen.len() as u16).max(1);
+    }
+    for (row, line) in rows_of(area).zip(&rows) {
+        let here = line.place == Some(selected);
+        let role = match (here, focused) {
+            (true, true) => Role::Selection,
+            (true, false) => Role::SelectionIdle,
+            (false, _) => line.role,
+        };
+        if here {
+            canvas.clear(row, role);
+        }
+        canvas.text(row, &line.text, role);
+        if let Some(place) = line.place {
+            canvas.click(row, Click::Row(pane, place));
+        }
+    }
+}
+
+/// Rows of the window around the selected post; posts far from it are never wrapped.
+fn rows_around(posts: &[&Post], selected: usize, width: usize, height: usize) -> Vec<Row> {
+    let Some(last) = posts.len().checked_sub(1) else { return Vec::new() };
+    let selected = selected.min(last);
+    // Above the selected post up to half of the window, and more where the list ends below.
+    let mut blocks: Vec<Vec<Row>> = vec![rows_of_post(posts, selected, width)];
+    let mut below = blocks[0].len();
+    let mut next = selected + 1;
+    let mut rest = Vec::new();
+    while below < height && next <= last {
+        let own = rows_of_post(posts, next, width);
+        below += own.len();
+        rest.push(own);
+        next += 1;
+    }
+    let room = (height / 2).max(height.saturating_sub(below));
+    let (mut above, mut first) = (0, selected);
+    while first > 0 {
+        let own = rows_of_post(posts, first - 1, width);
+        if above + own.len() > room {
+            break;
+        }
+        above += own.len();
+        blocks.insert(0, own);
+        first -= 1;
+    }
+    blocks.into_iter().chain(rest).flatten().take(height).collect()
+}
+
+fn rows_of_post(posts: &[&Post], place: usize, width: usize) -> Vec<Row> {
+    let post = posts[place];
+    let before = place.checked_sub(1).map(|before| posts[before]);
+    let mut rows = Vec::new();
+    let comment = post.kind == Kind::Comments;
+    let same_thread = |before: &Post| match before.kind {
+        Kind::Own => Some(before.number) == post.answers,
+        Kind::Comments => before.answers == post.answers,
+        _ => false,
+    };
+    let follows_its_thread = comment && before.is_some_and(same_thread);
+    if before.is_none_or(|before| before.day != post.day && !follows_its_thread) {
+        let words = format!("── day {} · week {} ", post.day, post.week());
+        let line = "─".repeat(width.saturating_sub(words.width()));
+        rows.push(Row { text: words + &line, role: Role::Header, place: None });
+    }
+    let (indent, mark) = if comment { ("    ", "  ↳ ") } else { ("  ", "") };
+    let role = match post.kind {
+        Kind::Own => Role::Strong,
+        Kind::Press => Role::Title,
+        Kind::Customers | Kind::Comments => Role::Dim,
+    };
+    rows.push(Row { text: format!("{mark}{}", post.head()), role, place: Some(place) });
+    let lines = wrapped(&post.text, width.saturating_sub(indent.len()));
+    let text = |line: String| Row { text: format!("{indent}{line}"), role: Role::Text, place: Some(place) };
+    rows.extend(lines.into_iter().map(text));
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn post(number: u32) -> Post {
+        Post {
+            kind: Kind::Customers,
+            number,
+            day: number * 7,
+            author: "Ann · S1".to_owned(),
+            text: "Words that need more than one line of this window".to_owned(),
+            answers: None,
+            views: 0,
+            comments: 0,
+        }
+    }
+
+    #[test]
+    fn the_selected_post_is_always_in_the_window() {
+        let posts: Vec<Post> = (1..40).map(post).collect();
+        let posts: Vec<&Post> = posts.iter().collect();
+        for selected in [0, 1, 20, 37, 38, 99] {
+            for height in [2, 5, 9, 30] {
+                let rows = rows_around(&posts, selected, 24, height);
+                assert!(rows.iter().any(|row| row.place == Some(selected.min(38))), "{selected} in {height}");
+                assert!(rows.len() <= height);
+            }
+        }
+        assert_eq!(rows_around(&posts, 38, 24, 30).len(), 30 / 5 * 5, "the end fills the window");
+        assert!(rows_around(&[], 3, 24, 9).is_empty());
+    }
+}

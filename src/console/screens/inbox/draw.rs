@@ -126,7 +126,8 @@ fn conversation(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, Ro
     let mut lines = Vec::new();
     if let Some(firm) = inbox.letters.firm(thread.customer) {
         let [culture, decision, concern] = &firm.manner;
-        let facts: Vec<&str> = [firm.trade.as_str(), culture, decision].into_iter().filter(|fact| !fact.is_empty()).collect();
+        let facts: Vec<&str> =
+            [firm.trade.as_str(), culture, decision].into_iter().filter(|fact| !fact.is_empty()).collect();
         let mut text = facts.join(" · ");
         if !concern.is_empty() {
             text += &format!(" · worries about {concern}");
@@ -244,14 +245,21 @@ fn draw_offer(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_
     let planned = inbox.planned(look.company);
     match planned.first() {
         _ if batch => {
-            notes.extend(wrapped(&summary(&planned), inside.width as usize).into_iter().map(|line| (line, Role::Strong)));
+            notes.extend(
+                wrapped(&summary(&planned), inside.width as usize)
+                    .into_iter()
+                    .map(|line| (line, Role::Strong)),
+            );
         }
         Some((_, Err(why))) => notes.push((format!("not to be sent: {why}"), Role::Warning)),
         Some((thread, Ok(offers))) => {
             if let Some((_, price)) = thread.asked() {
                 let best = offers.iter().map(|(_, own)| own - price).fold(f64::INFINITY, f64::min);
                 let sign = if best < 0.0 { "-" } else { "+" };
-                notes.push((format!("they ask {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
+                notes.push((
+                    format!("they ask {}; yours {sign}{}", cents(price), cents(best.abs())),
+                    Role::Text,
+                ));
             }
         }
         None => {}

@@ -149,9 +149,8 @@ impl Inbox {
         let here = self.here().map(|thread| thread.number);
         self.letters.settle(&company.seen.waiting);
         let threads = &self.letters.threads;
-        let open = |number: &u32| {
-            threads.iter().any(|thread| thread.number == *number && thread.state.is_open())
-        };
+        let open =
+            |number: &u32| threads.iter().any(|thread| thread.number == *number && thread.state.is_open());
         self.marked.retain(open);
         self.rows = (0..threads.len()).filter(|at| self.view.holds(threads[*at].state)).collect();
         let row = |at: &usize| row_of(&threads[*at], self.marked.contains(&threads[*at].number));
@@ -259,7 +258,9 @@ impl Inbox {
     fn act_on_offer(&mut self, action: Action, lists: [f64; 3]) -> Vec<Effect> {
         match action {
             Action::Up | Action::CommitPrevious => self.term = self.term.saturating_sub(1),
-            Action::Down | Action::CommitDown | Action::CommitNext => self.term = (self.term + 1).min(TERMS - 1),
+            Action::Down | Action::CommitDown | Action::CommitNext => {
+                self.term = (self.term + 1).min(TERMS - 1)
+            }
             Action::First => self.term = 0,
             Action::Last => self.term = TERMS - 1,
             Action::Open => self.type_value(),

@@ -123,7 +123,11 @@ impl Offer {
 
     /// Where to start with a company.
     pub fn first_for(thread: &Thread) -> Offer {
-        if thread.asked().is_some_and(|(plan, _)| plan.is_some()) { Offer::as_asked() } else { Offer::at_list() }
+        if thread.asked().is_some_and(|(plan, _)| plan.is_some()) {
+            Offer::as_asked()
+        } else {
+            Offer::at_list()
+        }
     }
 
     /// Whether it makes sense for other companies as it is.

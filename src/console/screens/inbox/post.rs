@@ -44,10 +44,8 @@ impl Inbox {
             return vec![Effect::Complain("the run is over: nobody reads offers any more".to_owned())];
         }
         let planned = self.planned(company);
-        let sent: Vec<(&Thread, &Vec<(Plan, f64)>)> = planned
-            .iter()
-            .filter_map(|(thread, offers)| Some((*thread, offers.as_ref().ok()?)))
-            .collect();
+        let sent: Vec<(&Thread, &Vec<(Plan, f64)>)> =
+            planned.iter().filter_map(|(thread, offers)| Some((*thread, offers.as_ref().ok()?))).collect();
         let Some((first, offers)) = sent.first() else {
             let why = planned.first().map(|(_, offers)| offers.clone());
             let why = match why {
@@ -84,8 +82,7 @@ impl Inbox {
 
     /// Asks whether to end the threads.
     pub(super) fn reject(&self, company: &Company) -> Vec<Effect> {
-        let open: Vec<&Thread> =
-            self.targets().into_iter().filter(|thread| thread.state.is_open()).collect();
+        let open: Vec<&Thread> = self.targets().into_iter().filter(|thread| thread.state.is_open()).collect();
         if !company.is_running() || open.is_empty() {
             return vec![Effect::Complain("there is no open thread here to end".to_owned())];
         }
@@ -107,8 +104,7 @@ impl Inbox {
                 if others == 1 { " stays" } else { "s stay" }
             );
         }
-        let deals: Vec<Value> =
-            open.iter().map(|thread| json!({ "customer_id": thread.customer })).collect();
+        let deals: Vec<Value> = open.iter().map(|thread| json!({ "customer_id": thread.customer })).collect();
         let arguments = json!({ "deals": deals });
         vec![Effect::ConfirmCall { tool: REJECT, arguments, text: text.trim_end().to_owned() }]
     }
@@ -125,7 +121,8 @@ impl Inbox {
             .filter_map(|result| result.get("customer_id")?.as_u64())
             .collect();
         if tool == SEND && self.marked.is_empty() && self.offer().is_rule() {
-            self.last = self.here().and_then(|thread| self.drafts.get(&thread.number)).cloned().or(self.last.take());
+            self.last =
+                self.here().and_then(|thread| self.drafts.get(&thread.number)).cloned().or(self.last.take());
         }
         let of_done = self.letters.threads.iter().filter(|thread| done.contains(&u64::from(thread.customer)));
         for number in of_done.map(|thread| thread.number).collect::<Vec<_>>() {

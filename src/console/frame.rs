@@ -119,20 +119,43 @@ fn draw_top(canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
 }
 
 fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
+    // The first way in which every screen has its tab; the last one if none has.
+    let ways: [fn(&str, &str, &str) -> String; 3] = [
+        |key, title, badge| format!(" {key} {title}{badge} "),
+        |key, title, badge| format!(" {key} {title}{badge}"),
+        |key, title, badge| format!(" {key} {}{badge}", short(title)),
+    ];
+    let texts = |way: &fn(&str, &str, &str) -> String| {
+        ScreenId::ALL.map(|screen| {
+            let key = app.keys.label(screen.action()).unwrap_or_default();
+            way(&key, screen.action().entry().title, &badge(run, screen))
+        })
+    };
+    let fits = |texts: &[String; ScreenId::ALL.len()]| {
+        texts.iter().map(|text| text.width()).sum::<usize>() <= row.width as usize
+    };
+    let fitting = ways.iter().map(texts).find(fits).unwrap_or_else(|| texts(&ways[2]));
     let mut x = row.x;
-    for screen in ScreenId::ALL {
-        let action = screen.action();
-        let key = app.keys.label(action).unwrap_or_default();
-        let badge = badge(run, screen);
-        let text = format!(" {key} {}{badge} ", action.entry().title);
+    for (screen, text) in ScreenId::ALL.into_iter().zip(fitting) {
         let width = text.width() as u16;
         if x + width > row.right() {
             break;
         }
         let place = Rect { x, width, ..row };
         canvas.text(place, &text, if screen == run.here { Role::TabHere } else { Role::Tab });
-        canvas.click(place, Click::Do(action));
+        canvas.click(place, Click::Do(screen.action()));
         x += width;
+    }
+}
+
+/// Short names of screens for windows in which the long ones do not fit beside each other.
+fn short(title: &str) -> &str {
+    match title {
+        "Overview" => "View",
+        "Customers" => "Cust",
+        "Product" => "Prod",
+        "Journal" => "Log",
+        other => other,
     }
 }
 

@@ -1,1 +1,297 @@
+use serde_json::{Value, json};
 
+use super::model::Turn;
+use super::*;
+use crate::console::keys::{Chord, Keys};
+use crate::console::test_kit::{act, company, drawn, shown, sweep};
+use crate::session::{Cell as Datum, Configuration, NewRun, Session, Storage, Via, WaitingThread};
+use crate::world::identifiers::Plan;
+
+/// A run in which companies ask for offers.
+fn courted() -> Session {
+    let new =
+        NewRun { seed: Some(11), cash: Some(20_000_000.0), storage: Storage::Memory, ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
+        ("set_model_tiers", json!({"A": 4, "B": 4, "C": 4})),
+        ("set_usage_quotas", json!({"A": 300, "B": 30_000, "C": 1_000_000})),
+        ("set_targeted_dev_spend", json!({"E1": 4000, "E2": 5000, "E3": 5000})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"social_media": ads, "linkedin": ads}})),
+        ("set_capacity_tier", json!({"tier": 5})),
+    ] {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+    for _ in 0..20 {
+        if session.observe().waiting.len() >= 3 {
+            return session;
+        }
+        let forecasts = session.naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    }
+    panic!("nobody came in twenty weeks");
+}
+
+/// A company with 200 waiting threads: every third is a subscriber with a price of its own.
+fn crowded() -> (Company, Rows, Rows) {
+    let mut company = company();
+    company.seen.day = 70;
+    company.settings.insert(
+        "set_prices",
+        json!({"A": 14.0, "B": 32.0, "C": 55.0}).as_object().cloned().expect("an object"),
+    );
+    let (mut turns, mut firms) = (Vec::new(), Vec::new());
+    for number in 1..=200u32 {
+        let asks = number % 3 == 0;
+        company.seen.waiting.push(WaitingThread {
+            thread: number,
+            customer: 1000 + number,
+            group: ["E1", "E2", "E3"][number as usize % 3],
+            seats: 50 + number,
+            kind: if asks { "churn_prevention" } else { "new_lead" },
+            turn: if asks { 3 } else { 0 },
+            own_turns: u32::from(asks),
+            asked: asks.then_some(20.0),
+            days_left: number % 7 + 1,
+        });
+        let text = |text: &str| Datum::Text(text.to_owned());
+        let int = |value: u32| Datum::Integer(i64::from(value));
+        let row = |turn: u32, sender: &str, words: &str, offer: &str| {
+            let kind = if asks { "churn_prevention" } else { "new_lead" };
+            let cells = [text(sender), text(words), text(offer), int(60 + turn), int(50 + number), text("")];
+            [int(number), int(1000 + number), text(kind), int(turn)]
+                .into_iter()
+                .chain(cells)
+                .collect::<Vec<_>>()
+        };
+        turns.push(row(0, "system", "", "{}"));
+        if asks {
+            turns.push(row(1, "customer", "The price no longer fits.", "{}"));
+            turns.push(row(
+                2,
+                "agent",
+                "",
+                r#"[{"plan": "B", "price_per_seat": 30.0, "contract_months": 1}]"#,
+            ));
+            turns.push(row(3, "customer", "At $20.00 for plan B we stay.", r#"{"price": 20.0}"#));
+        }
+        let words = ["E1", "logistics", "mid-sized", "formal", "by committee", "cost", "lead", "pending"];
+        let mut firm = vec![int(1000 + number)];
+        firm.extend(words.map(text));
+        firm.extend([Datum::Real(0.0), int(60)]);
+        firms.push(firm);
+    }
+    turns.reverse();
+    (company, Rows { rows: turns, ..Rows::default() }, Rows { rows: firms, ..Rows::default() })
+}
+
+fn crowded_screen() -> (Inbox, Company) {
+    let (company, turns, firms) = crowded();
+    let mut screen = Inbox::default();
+    let keys = Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 20 };
+    screen.take(Reading::EnterpriseTurns, &turns, &look);
+    screen.take(Reading::Companies, &firms, &look);
+    (screen, company)
+}
+
+/// Presses keys as the console does; a word in quotes is typed. Returns what the last key brought and their number.
+fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usize) {
+    let known = Keys::shipped();
+    let look = Look { company, keys: &known, page: 20 };
+    let (mut effects, mut count) = (Vec::new(), 0);
+    for word in keys.split(' ') {
+        let typed = word.strip_prefix('\'').and_then(|rest| rest.strip_suffix('\''));
+        let chords: Vec<String> = match typed {
+            Some(text) => text.chars().map(|letter| letter.to_string()).collect(),
+            None => vec![word.to_owned()],
+        };
+        for chord in chords {
+            let chord = Chord::parse(&chord).expect("a key");
+            let scopes = screen.scopes();
+            let text = scopes[0].is_text() && chord.is_printable();
+            let number = chord.begins_number() && screen.takes_digits();
+            effects = match known.action(&scopes, chord).filter(|_| !text && !number) {
+                Some(action) => screen.act(action, &look),
+                None => screen.key(&chord.event(), &look),
+            };
+            count += 1;
+        }
+    }
+    (effects, count)
+}
+
+/// The deals of a call.
+fn deals(effects: &[Effect]) -> Vec<Value> {
+    match effects {
+        [Effect::ConfirmCall { arguments, .. } | Effect::Call { arguments, .. }] => {
+            arguments["deals"].as_array().expect("deals").clone()
+        }
+        other => panic!("no call: {other:?}"),
+    }
+}
+
+/// The company and the screen after a call that was answered for all.
+fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
+    let customers: Vec<u64> = deals.iter().map(|deal| deal[0].as_u64().expect("a number")).collect();
+    company.seen.waiting.retain(|thread| !customers.contains(&u64::from(thread.customer)));
+    let results: Vec<Value> =
+        customers.iter().map(|customer| json!({"customer_id": customer, "success": true})).collect();
+    let keys = Keys::shipped();
+    let look = Look { company, keys: &keys, page: 20 };
+    screen.renew(&look);
+    let news = News::Called(
+        "send_enterprise_deal",
+        Ok(json!({ "results": results })),
+        std::sync::Arc::new(company.clone()),
+    );
+    screen.hear(&news, &look);
+}
+
+#[test]
+fn two_hundred_threads_are_worked_with_rules_in_under_forty_keys() {
+    let (mut screen, mut company) = crowded_screen();
+    // Subscribers get what they ask, 3 % dearer; leads plan B at 90 % of the list, or C at 85 %.
+    let (effects, mut keys) = press(&mut screen, &company, "/ 'reten' enter a t e '103' ctrl-s");
+    let sent = deals(&effects);
+    assert_eq!((sent.len(), &sent[0][1]), (66, &json!([["B", 20.6]])));
+    assert!(matches!(&effects[0], Effect::ConfirmCall { text, .. } if text.starts_with("66 companies, ")));
+    answered(&mut screen, &mut company, &sent);
+    keys += 1;
+    assert_eq!(screen.marked.len(), 0);
+    let (_, more) = press(&mut screen, &company, "esc esc a");
+    keys += more;
+    assert_eq!(screen.marked.len(), 134);
+    let (effects, more) = press(&mut screen, &company, "e p p p '90' b b down p p p '85' ctrl-s");
+    keys += more + 1;
+    let sent = deals(&effects);
+    assert_eq!(sent.len(), 134, "{:?}", screen.rule);
+    answered(&mut screen, &mut company, &sent);
+    assert!(screen.rows.is_empty());
+    assert!(keys < 40, "{keys} keys");
+}
+
+#[test]
+fn one_by_one_the_list_goes_on_to_the_next_thread() {
+    let (mut screen, mut company) = crowded_screen();
+    let mut seen = BTreeSet::new();
+    for _ in 0..200 {
+        let customer = screen.here().expect("a thread").customer;
+        assert!(seen.insert(customer));
+        let (effects, _) = press(&mut screen, &company, "ctrl-s");
+        let sent = deals(&effects);
+        assert_eq!(sent[0][0], json!(customer));
+        let price = if customer % 1000 % 3 == 0 { json!([["B", 20.0]]) } else { json!([["B", 32.0]]) };
+        assert_eq!(sent[0][1], price);
+        answered(&mut screen, &mut company, &sent);
+    }
+    let (effects, _) = press(&mut screen, &company, "ctrl-s");
+    assert!(matches!(&effects[..], [Effect::Complain(_)]), "{effects:?}");
+}
+
+#[test]
+fn a_draft_survives_and_belongs_to_its_thread() {
+    let (mut screen, company) = crowded_screen();
+    press(&mut screen, &company, "e '95' down");
+    assert_eq!(screen.offer().0[0].value, 95.0);
+    press(&mut screen, &company, "esc down");
+    assert_ne!(screen.offer().0[0].value, 95.0);
+    press(&mut screen, &company, "up");
+    assert_eq!(screen.offer().0[0].value, 95.0);
+    assert!(screen.holds_unsent_text());
+    press(&mut screen, &company, "e '7' esc");
+    assert_eq!(screen.offer().0[0].value, 95.0, "what was cancelled is forgotten");
+    let (effects, _) = press(&mut screen, &company, "enter 'x'");
+    assert!(matches!(&effects[..], [Effect::Complain(_)]) && screen.typing.is_some());
+}
+
+#[test]
+fn rejecting_names_what_is_lost() {
+    let (mut screen, company) = crowded_screen();
+    press(&mut screen, &company, "a");
+    let (effects, _) = press(&mut screen, &company, "x");
+    let [Effect::ConfirmCall { tool: "reject_enterprise_deal", text, .. }] = &effects[..] else {
+        panic!("{effects:?}")
+    };
+    assert!(text.contains("134 new leads") && text.contains("lost for good"), "{text}");
+    assert!(text.contains("66 subscribers stay"), "{text}");
+    assert_eq!(deals(&effects).len(), 200);
+}
+
+#[test]
+fn pictures_hold_list_thread_offer_and_preview() {
+    let (mut screen, company) = crowded_screen();
+    for (width, height) in [(80, 21), (120, 37), (200, 57)] {
+        let text = drawn(&screen, &company, width, height);
+        for words in
+            ["200 wait for you", "waited", "company", "new lead", "retention", "Your offer", "a seat"]
+        {
+            assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
+        }
+    }
+    press(&mut screen, &company, "a");
+    for (width, height) in [(80, 21), (120, 37), (200, 57)] {
+        let text = drawn(&screen, &company, width, height);
+        for words in ["One rule for 200", "What 200 would get", "200 marked", "→ B $32.00", "200 companies"]
+        {
+            assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
+        }
+    }
+    sweep(&mut screen, &company);
+    screen.set_focus(LIST);
+    press(&mut screen, &company, "a / '1003' enter");
+    let text = drawn(&screen, &company, 120, 37);
+    for words in ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "they ask $20.00", "theirs"]
+    {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+    sweep(&mut screen, &company);
+}
+
+#[test]
+fn without_threads_it_says_what_brings_companies() {
+    let company = company();
+    let mut screen = Inbox::default();
+    for width in [80, 120, 200] {
+        let text = drawn(&screen, &company, width, 37);
+        assert!(
+            text.contains("No company has written yet") && text.contains("set_targeted_ad_spend"),
+            "{text}"
+        );
+    }
+    for action in [Action::SendOffer, Action::RejectOffer] {
+        assert!(matches!(&act(&mut screen, action, &company)[..], [Effect::Complain(_)]));
+    }
+    for action in [Action::Mark, Action::MarkAll, Action::TakeAsk, Action::OfferPlan, Action::OfferPrice] {
+        assert!(act(&mut screen, action, &company).is_empty());
+    }
+    sweep(&mut screen, &company);
+}
+
+#[test]
+fn a_real_company_is_answered_and_found_again() {
+    let mut session = courted();
+    let before = Company::of(&session);
+    let mut screen: Inbox = shown(&mut session, &before);
+    assert_eq!(screen.rows.len(), before.seen.waiting.len());
+    let first = screen.here().expect("a thread").clone();
+    assert_eq!(first.turns.first().map(|turn: &Turn| turn.sender.as_str()), Some("system"));
+    assert!(screen.letters.firm(first.customer).is_some_and(|firm| firm.group == first.group));
+    let [Effect::EditSql(sql)] = &act(&mut screen, Action::InboxSql, &before)[..] else { panic!("no query") };
+    assert_eq!(session.query(sql).expect("rows").rows.len(), first.turns.len());
+    let [Effect::Call { tool, arguments }] = &act(&mut screen, Action::SendOffer, &before)[..] else {
+        panic!("no call")
+    };
+    session.call(tool, arguments, Via::Form).expect("sent");
+    let after = Company::of(&session);
+    let mut screen: Inbox = shown(&mut session, &after);
+    assert_eq!(screen.rows.len(), before.seen.waiting.len() - 1);
+    act(&mut screen, Action::OtherThreads, &after);
+    let thread = screen.here().expect("the answered thread");
+    assert_eq!((thread.customer, thread.state), (first.customer, State::Theirs));
+    assert_eq!(thread.offered(), [(Plan::B, 32.0)]);
+    assert_eq!(thread.seats, first.seats);
+    let again = act(&mut screen, Action::SendOffer, &after);
+    assert!(matches!(&again[..], [Effect::ConfirmCall { text, .. }] if text.contains("another turn")));
+}

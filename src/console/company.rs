@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use serde_json::{Map, Value, json};
 
 use crate::session::{
-    DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Observation, RunningStudy, Session, Terms,
-    WeekFigures,
+    DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Observation, RunningStudy, Session,
+    Terms, WeekFigures,
 };
 use crate::tools::CATALOGUE;
 use crate::world::identifiers::Group;

@@ -82,8 +82,11 @@ fn a_group_opens_and_leads_to_its_tools() {
     session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
     act(&mut screen, Action::Up, &company);
     let effects = act(&mut screen, Action::Open, &company);
-    assert!(matches!(effects[..], [Effect::ShowGroup(crate::console::screens::ScreenId::Market, group)]
-        if group.id() == "S2"), "{effects:?}");
+    assert!(
+        matches!(effects[..], [Effect::ShowGroup(crate::console::screens::ScreenId::Market, group)]
+        if group.id() == "S2"),
+        "{effects:?}"
+    );
     screen.show(group("E1"), &company);
     assert_eq!(screen.open.map(|open| company.seen.known_groups[open].id()), Some("E1"));
     screen.show(group("S2"), &company);

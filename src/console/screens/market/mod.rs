@@ -120,18 +120,15 @@ impl Market {
         let known = |group: &Group| level_of(company, *group) > 0;
         self.groups = company.seen.known_groups.clone();
         self.groups.extend(Group::all().filter(|group| !known(group)));
-        let row = |group: &Group| {
-            row_of(*group, self.facts.known.get(group).copied().unwrap_or_default(), company)
-        };
+        let row =
+            |group: &Group| row_of(*group, self.facts.known.get(group).copied().unwrap_or_default(), company);
         self.table.set(columns(), self.groups.iter().map(row).collect());
         if let Some(row) = self.groups.iter().position(|own| Some(*own) == kept) {
             self.table.select(row);
         }
         let attempt = |attempt: &model::Attempt| {
             let found = match attempt.group {
-                Some(group) => {
-                    Cell::words(format!("{group} {}", name_of(company, group))).role(Role::Good)
-                }
+                Some(group) => Cell::words(format!("{group} {}", name_of(company, group))).role(Role::Good),
                 None => Cell::words("nothing").role(Role::Dim),
             };
             vec![
@@ -303,7 +300,9 @@ impl Screen for Market {
                         self.show(group);
                         vec![Effect::Say(format!("{group} was found: {}", name_of(look.company, group)))]
                     }
-                    None => vec![Effect::Say("nothing was found this time; the next may be luckier".to_owned())],
+                    None => {
+                        vec![Effect::Say("nothing was found this time; the next may be luckier".to_owned())]
+                    }
                 }
             }
             News::Called(STUDY, Ok(answer), _) => {

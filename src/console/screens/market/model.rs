@@ -63,7 +63,8 @@ impl Facts {
         let rows = rows.rows.iter();
         match reading {
             Reading::Knowledge => {
-                self.known = rows.filter_map(|row| Some((Group::parse(text_at(row, 0))?, known(row)))).collect();
+                self.known =
+                    rows.filter_map(|row| Some((Group::parse(text_at(row, 0))?, known(row)))).collect();
             }
             Reading::Attempts => self.attempts = rows.map(|row| attempt(row)).collect(),
             Reading::Economy => self.economy = rows.map(|row| published(row)).collect(),
@@ -165,10 +166,7 @@ mod tests {
         let text = |text: &str| Cell::Text(text.to_owned());
         let rows = |row: Vec<Cell>| Rows { rows: vec![row], ..Rows::default() };
         let mut facts = Facts::default();
-        facts.take(
-            Reading::Knowledge,
-            &rows(vec![text("D_S01"), Cell::Integer(0), Cell::Null, Cell::Null]),
-        );
+        facts.take(Reading::Knowledge, &rows(vec![text("D_S01"), Cell::Integer(0), Cell::Null, Cell::Null]));
         facts.take(
             Reading::Attempts,
             &rows(vec![Cell::Integer(7), Cell::Real(25_000.0), Cell::Integer(0), Cell::Null]),

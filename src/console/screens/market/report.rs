@@ -103,13 +103,7 @@ fn pair(value: &Value) -> Option<[f64; 2]> {
     Some([list.first()?.as_f64()?, list.get(1)?.as_f64()?])
 }
 
-fn influence(
-    lines: &mut Vec<Line>,
-    told: &Value,
-    field: &str,
-    unit: &str,
-    write: &dyn Fn(f64) -> String,
-) {
+fn influence(lines: &mut Vec<Line>, told: &Value, field: &str, unit: &str, write: &dyn Fn(f64) -> String) {
     lines.push(Line::head(if field.starts_with("network") { "word of mouth" } else { "reputation" }, unit));
     for (side, words) in [("outgoing", "for"), ("incoming", "from")] {
         let all = told.get(field).and_then(|all| all.get(side)).and_then(Value::as_object);
@@ -134,12 +128,7 @@ pub fn study_words(company: &Company, group: Group, chosen: Option<u8>) -> Strin
         true => format!("fresh figures at level {target}"),
         false => format!("level {target}"),
     };
-    format!(
-        "{what}: {}, {} days, then ±{}",
-        dollars(terms.cost),
-        terms.days,
-        percent(terms.noise, 0)
-    )
+    format!("{what}: {}, {} days, then ±{}", dollars(terms.cost), terms.days, percent(terms.noise, 0))
 }
 
 /// Draws the report from one of its lines on.
@@ -182,7 +171,11 @@ pub fn draw(
     }
     let first = Rect { height: 1, ..inside };
     let running = study_of(company, group).is_some();
-    canvas.text(first, &study_words(company, group, chosen), if running { Role::Warning } else { Role::Strong });
+    canvas.text(
+        first,
+        &study_words(company, group, chosen),
+        if running { Role::Warning } else { Role::Strong },
+    );
     let rest = Rect { y: inside.y + 1, height: inside.height - 1, ..inside };
     let lines = lines(company, group);
     if focused {
@@ -207,9 +200,14 @@ mod tests {
 
     #[test]
     fn figures_keep_the_digits_that_matter() {
-        for (value, words) in [(1234.5, "1.23k"), (230.4, "230"), (23.44, "23.4"), (2.345, "2.35"), (3.0, "3")] {
+        for (value, words) in
+            [(1234.5, "1.23k"), (230.4, "230"), (23.44, "23.4"), (2.345, "2.35"), (3.0, "3")]
+        {
             assert_eq!(figure(value), words);
         }
-        assert_eq!((exact(0.51), exact(0.0031), exact(0.0)), ("0.510".into(), "0.00310".into(), "0.000".into()));
+        assert_eq!(
+            (exact(0.51), exact(0.0031), exact(0.0)),
+            ("0.510".into(), "0.00310".into(), "0.000".into())
+        );
     }
 }

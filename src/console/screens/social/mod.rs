@@ -373,8 +373,7 @@ impl Screen for Social {
             let [left, side] =
                 Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
             let [feed, desk] = Layout::vertical([Constraint::Min(0), Constraint::Length(8)]).areas(left);
-            let [own, weeks] =
-                Layout::vertical([Constraint::Percentage(60), Constraint::Min(0)]).areas(side);
+            let [own, weeks] = Layout::vertical([Constraint::Percentage(60), Constraint::Min(0)]).areas(side);
             self.draw_feed(canvas, feed, look);
             self.draw_desk(canvas, desk, look);
             self.draw_own(canvas, own, look);

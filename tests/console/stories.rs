@@ -184,5 +184,5 @@ fn a_group_is_studied_and_one_walks_between_its_report_and_its_customers() {
     console.press("backspace");
     console.shows("S2 · individual");
     console.press("7 m y");
-    console.shows("of 1 found · $25,000 spent");
+    console.shows("of 1 found · $25,000 · next");
 }

@@ -145,3 +145,44 @@ fn a_run_that_cannot_be_opened_is_explained_in_the_menu() {
     console.press("esc n enter");
     console.shows("day 0/500");
 }
+
+#[test]
+fn a_post_is_published_from_the_feed_after_one_question() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    open_shop(&mut console);
+    console.week();
+    console.press("esc");
+    console.shows("5 Social ●");
+    console.press("5 p 'Drafts_are_right_at_once.' ctrl-s");
+    console.shows("cannot be taken back");
+    console.press("esc ctrl-s y");
+    console.shows("post_social_media: done");
+    console.shows("our post 1 · 0 views, 0 comments");
+    console.press("p 'Again' ctrl-s");
+    console.shows("already posted");
+    console.press("esc q");
+    console.shows("forget that text?");
+    console.press("esc 1 5");
+    console.shows("Again");
+}
+
+#[test]
+fn a_group_is_studied_and_one_walks_between_its_report_and_its_customers() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.press("7 down + r");
+    console.shows("A study of S2, to level 3.");
+    console.press("n");
+    console.shows("level 3: $175,000");
+    console.press("r y");
+    console.shows("due on day 5");
+    console.press("enter");
+    console.shows("S2 · individual");
+    console.press("end up enter");
+    console.shows("a study to level 3 is due on day 5");
+    console.press("backspace");
+    console.shows("S2 · individual");
+    console.press("7 m y");
+    console.shows("of 1 found · $25,000 · next");
+}

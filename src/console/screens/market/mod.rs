@@ -448,12 +448,12 @@ impl Market {
         let note = match self.facts.attempts.len() {
             0 => format!("next {next}"),
             count => format!(
-                "{} of {count} found · {} spent · next {next}",
+                "{} of {count} found · {} · next {next}",
                 self.facts.found(),
                 dollars(self.facts.spent())
             ),
         };
-        let inside = canvas.pane(area, "Market research", &note, focused);
+        let inside = canvas.pane(area, "Attempts", &note, focused);
         if self.facts.attempts.is_empty() {
             let key = look.keys.label(Action::FindGroup).unwrap_or_default();
             canvas.text(inside, &format!("no attempt was made yet: {key} pays for one"), Role::Dim);

@@ -1,1 +1,182 @@
+use std::sync::Arc;
 
+use super::*;
+use crate::console::keys::Keys;
+use crate::console::test_kit::{act, drawn, played, shown, sweep};
+use crate::session::{Session, Via};
+
+fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
+    let keys = Keys::shipped();
+    work(&Look { company, keys: &keys, page: 5 })
+}
+
+/// Plays a question to its end: the look ahead, the question, the call, what the screen says.
+fn order(screen: &mut Market, session: &mut Session, action: Action) -> (String, Vec<Effect>) {
+    let company = Company::of(session);
+    let effects = act(screen, action, &company);
+    let [Effect::Check { tool, arguments }] = &effects[..] else { panic!("{effects:?}") };
+    let checked = News::Checked(1, session.check(tool, arguments));
+    let effects = with_look(&company, |look| screen.hear(&checked, look));
+    let [Effect::ConfirmCall { tool, arguments, text }] = &effects[..] else { panic!("{effects:?}") };
+    let answer = session.call(tool, arguments, Via::Form);
+    let company = Company::of(session);
+    let called = News::Called(tool, answer, Arc::new(company.clone()));
+    let said = with_look(&company, |look| {
+        screen.renew(look);
+        screen.hear(&called, look)
+    });
+    (text.clone(), said)
+}
+
+fn week(session: &mut Session) {
+    let forecasts = session.naive_forecasts();
+    session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+}
+
+#[test]
+fn a_study_is_chosen_asked_for_and_shown_until_it_is_done() {
+    let mut session = played(1);
+    let company = Company::of(&session);
+    let mut screen: Market = shown(&mut session, &company);
+    act(&mut screen, Action::LevelUp, &company);
+    let text = drawn(&screen, &company, 120, 37);
+    assert!(text.contains("level 3: $175,000, 5 days, then ±25%"), "{text}");
+    act(&mut screen, Action::LevelDown, &company);
+    act(&mut screen, Action::LevelDown, &company);
+    let (question, said) = order(&mut screen, &mut session, Action::StudyGroup);
+    for part in ["A study of S1, to level 2.", "$60,000", "day 10", "cannot be taken back"] {
+        assert!(question.contains(part), "{part} in {question}");
+    }
+    assert!(matches!(&said[..], [Effect::Say(text)] if text.contains("day 10")), "{said:?}");
+    let company = Company::of(&session);
+    let text = drawn(&screen, &company, 120, 37);
+    assert!(text.contains("→2 due day 10") && text.contains("a study to level 2 is due on day 10"), "{text}");
+    week(&mut session);
+    let company = Company::of(&session);
+    let screen: Market = shown(&mut session, &company);
+    let text = drawn(&screen, &company, 120, 37);
+    assert!(text.contains("level 2 · ±40%") && text.contains("day 10"), "{text}");
+}
+
+#[test]
+fn attempts_find_groups_and_are_listed() {
+    let mut session = played(0);
+    let company = Company::of(&session);
+    let mut screen: Market = shown(&mut session, &company);
+    assert!(drawn(&screen, &company, 120, 37).contains("no attempt was made yet: m pays for one"));
+    let mut found = None;
+    for _ in 0..25 {
+        let (question, said) = order(&mut screen, &mut session, Action::FindGroup);
+        assert!(question.contains("30 in 100") && question.contains("$25,000 at once"), "{question}");
+        let [Effect::Say(text)] = &said[..] else { panic!("{said:?}") };
+        if text.contains("was found") {
+            found = screen.group();
+            break;
+        }
+    }
+    let group = found.expect("a group within 25 attempts");
+    let company = Company::of(&session);
+    assert!(company.seen.known_groups.contains(&group));
+    let mut screen: Market = shown(&mut session, &company);
+    assert_eq!(screen.facts.found(), 1);
+    screen.show(group);
+    let text = drawn(&screen, &company, 120, 37);
+    assert!(text.contains("7 known · 19 to find") && text.contains(&format!("{group} · ")), "{text}");
+    screen.set_focus(ATTEMPTS);
+    assert!(drawn(&screen, &company, 80, 21).contains("1 of "));
+}
+
+#[test]
+fn the_report_tells_estimates_and_what_the_truth_can_be() {
+    let session = played(1);
+    let company = Company::of(&session);
+    for group in &company.seen.known_groups {
+        let lines = report::lines(&company, *group);
+        let text = format!("{lines:?}");
+        for words in ["budget", "usage", "quality floor", "market", "lock-in aversion", "word of mouth"] {
+            assert!(text.contains(words), "{group} {words}: {text}");
+        }
+        assert_eq!(text.contains("size of a company"), group.is_enterprise());
+    }
+}
+
+#[test]
+fn a_group_leads_to_its_customers_and_unknown_ones_are_explained() {
+    let mut session = played(1);
+    let company = Company::of(&session);
+    let mut screen: Market = shown(&mut session, &company);
+    let group = company.seen.known_groups[2];
+    screen.set_focus(NEWS);
+    screen.show(group);
+    let effects = act(&mut screen, Action::Open, &company);
+    assert!(
+        matches!(effects[..], [Effect::ShowGroup(ScreenId::Customers, own)] if own == group),
+        "{effects:?}"
+    );
+    act(&mut screen, Action::Last, &company);
+    let effects = act(&mut screen, Action::Open, &company);
+    assert!(
+        matches!(&effects[..], [Effect::Complain(text)] if text.contains("not found yet")),
+        "{effects:?}"
+    );
+    let effects = act(&mut screen, Action::StudyGroup, &company);
+    assert!(matches!(&effects[..], [Effect::Complain(_)]), "{effects:?}");
+    let text = drawn(&screen, &company, 120, 37);
+    assert!(text.contains("30 in 100 attempts"), "{text}");
+}
+
+#[test]
+fn the_economy_is_shown_with_its_lag() {
+    let mut session = played(0);
+    let company = Company::of(&session);
+    let screen: Market = shown(&mut session, &company);
+    let text = drawn(&screen, &company, 120, 37);
+    assert!(text.contains("published on day 31, 30 days"), "{text}");
+    let mut session = played(10);
+    let company = Company::of(&session);
+    let mut screen: Market = shown(&mut session, &company);
+    assert_eq!(screen.facts.economy.len(), 2);
+    for (width, height) in [(120, 37), (200, 57)] {
+        let text = drawn(&screen, &company, width, height);
+        for words in ["PMI ", "measured on day 31, told on day 61; next on day 91", "day 70"] {
+            assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
+        }
+    }
+    screen.set_focus(ATTEMPTS);
+    assert!(drawn(&screen, &company, 80, 21).contains("PMI "));
+    assert!(!screen.news.is_empty() && screen.news.iter().all(|post| post.kind == Kind::Press));
+    screen.set_focus(NEWS);
+    let effects = act(&mut screen, Action::Open, &company);
+    assert!(matches!(&effects[..], [Effect::ShowText(title, _)] if title.contains("press")), "{effects:?}");
+}
+
+#[test]
+fn the_small_window_shows_groups_and_report() {
+    let mut session = played(2);
+    let company = Company::of(&session);
+    let mut screen: Market = shown(&mut session, &company);
+    let text = drawn(&screen, &company, 80, 21);
+    for words in ["6 known · 20 to find", "next study", "→2 $60k", "level 1 · ±65%", "budget", "r study"]
+    {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+    screen.set_focus(REPORT);
+    act(&mut screen, Action::Last, &company);
+    assert!(screen.from > 0);
+    act(&mut screen, Action::Close, &company);
+    assert_eq!((screen.focus, screen.from), (GROUPS, 0));
+}
+
+#[test]
+fn it_is_drawn_in_every_window_with_and_without_data() {
+    for weeks in [0, 6] {
+        let mut session = played(weeks);
+        let company = Company::of(&session);
+        sweep(&mut Market::default(), &company);
+        let mut screen = shown::<Market>(&mut session, &company);
+        sweep(&mut screen, &company);
+        screen.set_focus(GROUPS);
+        act(&mut screen, Action::Last, &company);
+        sweep(&mut screen, &company);
+    }
+}

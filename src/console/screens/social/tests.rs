@@ -1,1 +1,198 @@
+use std::sync::Arc;
 
+use crossterm::event::KeyModifiers;
+
+use super::*;
+use crate::console::company::Company;
+use crate::console::keys::Keys;
+use crate::console::test_kit::{act, drawn, played, shown, sweep};
+use crate::session::{Refusal, Session, Via};
+
+fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
+    let keys = Keys::shipped();
+    work(&Look { company, keys: &keys, page: 5 })
+}
+
+fn write(screen: &mut Social, company: &Company, text: &str) {
+    for letter in text.chars() {
+        let key = KeyEvent::new(KeyCode::Char(letter), KeyModifiers::NONE);
+        with_look(company, |look| screen.key(&key, look));
+    }
+}
+
+/// A company that posted after its third week; two more have passed.
+fn talked() -> Session {
+    let mut session = played(3);
+    let text = "Freelancers: 20% more of your drafts are right at once, measured on 1,200 of them.";
+    session.call(POST, &json!({ "content": text }), Via::Form).expect("a post");
+    for _ in 0..2 {
+        let forecasts = session.naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+    }
+    session
+}
+
+#[test]
+fn the_feed_holds_what_the_tools_and_the_database_tell() {
+    let mut session = talked();
+    let company = Company::of(&session);
+    let screen: Social = shown(&mut session, &company);
+    let total = company.posts.get("total").and_then(Value::as_u64).unwrap_or(0);
+    assert!(total > 10, "{total}");
+    assert_eq!(screen.all.len() as u64, total + 1);
+    assert!(screen.own[0].views > 0 && screen.own[0].day == 21);
+    let comments = screen.others.iter().filter(|post| post.kind == Kind::Comments).count();
+    assert_eq!(comments as u32, screen.own[0].comments);
+    let rows = session.query("SELECT count(*) FROM social_media_posts").expect("rows");
+    assert_eq!(crate::console::readings::number_at(&rows.rows[0], 0) as u64, total);
+}
+
+#[test]
+fn every_window_shows_feed_and_desk_and_large_ones_our_posts() {
+    let mut session = talked();
+    let company = Company::of(&session);
+    let mut screen: Social = shown(&mut session, &company);
+    for (width, height) in [(80, 21), (120, 37), (200, 57)] {
+        let text = drawn(&screen, &company, width, height);
+        for words in ["Feed", "── day 35 · week 5", "New post", "0 of 280 characters", "p write"] {
+            assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
+        }
+        if width >= 120 {
+            for words in ["Our posts", "1 · ", " views", "Posts by week", "by the press"] {
+                assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
+            }
+        }
+    }
+    screen.set_focus(OWN);
+    let text = drawn(&screen, &company, 80, 21);
+    assert!(text.contains("Our posts") && text.contains("Freelancers: 20% more"), "{text}");
+}
+
+#[test]
+fn filters_narrow_the_feed_and_esc_ends_them() {
+    let mut session = talked();
+    let company = Company::of(&session);
+    let mut screen: Social = shown(&mut session, &company);
+    let all = screen.shown.len();
+    act(&mut screen, Action::NextKind, &company);
+    assert!(screen.shown.len() < all && screen.post().is_some_and(|post| post.kind == Kind::Customers));
+    act(&mut screen, Action::EarlierWeek, &company);
+    assert!(screen.shown.iter().all(|at| screen.all[*at].week() == 5));
+    let text = drawn(&screen, &company, 120, 37);
+    assert!(text.contains("customers · week 5: "), "{text}");
+    act(&mut screen, Action::Filter, &company);
+    assert_eq!(screen.scopes(), [Scope::Field]);
+    write(&mut screen, &company, "zzzz");
+    act(&mut screen, Action::Commit, &company);
+    assert!(screen.shown.is_empty());
+    assert!(drawn(&screen, &company, 80, 21).contains("no post fits: esc"));
+    sweep(&mut screen, &company);
+    screen.set_focus(FEED);
+    act(&mut screen, Action::Close, &company);
+    assert_eq!(screen.shown.len(), all);
+}
+
+#[test]
+fn a_post_opens_with_its_comments() {
+    let mut session = talked();
+    let company = Company::of(&session);
+    let mut screen: Social = shown(&mut session, &company);
+    screen.set_focus(OWN);
+    let effects = act(&mut screen, Action::Open, &company);
+    let [Effect::ShowText(title, text)] = &effects[..] else { panic!("{effects:?}") };
+    assert!(
+        title.starts_with("day 21 · our post 1 · ") && text.contains("measured on 1,200"),
+        "{title} {text}"
+    );
+    assert_eq!(text.matches("↳ ").count() as u32, screen.own[0].comments);
+    screen.set_focus(FEED);
+    let effects = act(&mut screen, Action::Open, &company);
+    assert!(matches!(&effects[..], [Effect::ShowText(..)]), "{effects:?}");
+}
+
+#[test]
+fn a_post_is_written_checked_asked_for_and_sent() {
+    let mut session = played(2);
+    let company = Company::of(&session);
+    let mut screen: Social = shown(&mut session, &company);
+    let effects = act(&mut screen, Action::SendPost, &company);
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing is written")));
+    let answered = screen.post().expect("a post").number;
+    act(&mut screen, Action::Reply, &company);
+    assert_eq!(screen.scopes(), [Scope::Editor, Scope::Social]);
+    write(&mut screen, &company, &"x".repeat(281));
+    let effects = act(&mut screen, Action::SendPost, &company);
+    assert!(
+        matches!(&effects[..], [Effect::Complain(text)] if text.contains("shorten it by 1")),
+        "{effects:?}"
+    );
+    assert!(drawn(&screen, &company, 120, 37).contains("! 281 of 280 characters: 1 too many"));
+    let key = KeyEvent::new(KeyCode::Backspace, KeyModifiers::NONE);
+    with_look(&company, |look| screen.key(&key, look));
+    act(&mut screen, Action::LeaveEditor, &company);
+    assert!(screen.holds_unsent_text(), "the draft stays");
+    let effects = act(&mut screen, Action::SendPost, &company);
+    let [Effect::Check { tool, arguments }] = &effects[..] else { panic!("{effects:?}") };
+    assert_eq!(arguments["reply_to_post_id"], answered);
+    let checked = News::Checked(1, session.check(tool, arguments));
+    let effects = with_look(&company, |look| screen.hear(&checked, look));
+    let [Effect::ConfirmCall { tool, arguments, text }] = &effects[..] else { panic!("{effects:?}") };
+    assert!(text.contains("cannot be taken back") && text.contains("on day 15"), "{text}");
+    let answer = session.call(tool, arguments, Via::Form);
+    let company = Company::of(&session);
+    let called = News::Called(POST, answer, Arc::new(company.clone()));
+    with_look(&company, |look| screen.hear(&called, look));
+    assert!(!screen.holds_unsent_text() && screen.answers.is_none());
+    let screen: Social = shown(&mut session, &company);
+    assert_eq!(screen.own[0].answers, Some(answered));
+    assert!(drawn(&screen, &company, 80, 21).contains("published for this week"));
+}
+
+#[test]
+fn a_refused_post_keeps_the_draft() {
+    let mut session = played(1);
+    let company = Company::of(&session);
+    let mut screen: Social = shown(&mut session, &company);
+    act(&mut screen, Action::Compose, &company);
+    write(&mut screen, &company, "Again");
+    act(&mut screen, Action::SendPost, &company);
+    let refused = News::Checked(1, Err(Refusal::new("already_posted", "you have already posted")));
+    let effects = with_look(&company, |look| screen.hear(&refused, look));
+    assert!(
+        matches!(&effects[..], [Effect::Complain(text)] if text.contains("already posted")),
+        "{effects:?}"
+    );
+    assert_eq!(screen.draft.text(), "Again");
+    let effects = with_look(&company, |look| screen.hear(&refused, look));
+    assert!(effects.is_empty(), "an answer to nobody's question says nothing");
+}
+
+#[test]
+fn what_was_looked_at_is_not_new() {
+    let mut session = played(2);
+    let company = Company::of(&session);
+    let mut screen: Social = shown(&mut session, &company);
+    let week = screen.others.iter().filter(|post| post.day > 7).count();
+    assert_eq!((screen.unseen(), week > 0), (week, true));
+    screen.looked_at();
+    assert_eq!(screen.unseen(), 0);
+}
+
+#[test]
+fn it_is_drawn_in_every_window_with_and_without_posts() {
+    for weeks in [0, 1] {
+        let mut session = played(weeks);
+        let company = Company::of(&session);
+        sweep(&mut Social::default(), &company);
+        sweep(&mut shown::<Social>(&mut session, &company), &company);
+    }
+    let mut session = talked();
+    let company = Company::of(&session);
+    let mut screen: Social = shown(&mut session, &company);
+    act(&mut screen, Action::Compose, &company);
+    write(&mut screen, &company, "a long post with words, and more of them");
+    drawn(&screen, &company, 3, 40);
+    sweep(&mut screen, &company);
+    let empty = drawn(&Social::default(), &company, 80, 21);
+    assert!(empty.contains("nobody has written anything yet: let a week pass"), "{empty}");
+}

@@ -368,12 +368,12 @@ impl Screen for Market {
         if area.width >= 104 && area.height >= 24 {
             let [left, right] =
                 Layout::horizontal([Constraint::Percentage(52), Constraint::Min(0)]).areas(area);
-            let rows = (self.groups.len() as u16 + 3).min(area.height * 55 / 100);
+            let rows = (self.groups.len() as u16 + 3).min(area.height / 20 * 11);
             let [groups, economy] =
                 Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(left);
-            let attempts = (self.facts.attempts.len() as u16 + 4).clamp(6, area.height / 5);
+            let attempts = (self.facts.attempts.len() as u16 + 4).min(area.height / 5).max(6);
             let [report, found, news] = Layout::vertical([
-                Constraint::Length(area.height * 55 / 100),
+                Constraint::Length(area.height / 20 * 11),
                 Constraint::Length(attempts),
                 Constraint::Min(0),
             ])

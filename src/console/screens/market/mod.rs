@@ -53,9 +53,10 @@ pub struct Market {
 }
 
 fn columns() -> Vec<Column> {
-    let mut columns = vec![Column::words("group"), Column::words("name").at_most(26)];
-    columns.extend(["level", "error", "found", "studied"].map(Column::numbers));
+    let mut columns = vec![Column::words("group"), Column::words("name").at_most(20)];
+    columns.extend(["level", "error"].map(Column::numbers));
     columns.push(Column::words("next study"));
+    columns.extend(["found", "studied"].map(Column::numbers));
     columns
 }
 
@@ -88,9 +89,9 @@ fn row_of(group: Group, known: Known, company: &Company) -> Vec<Cell> {
         Cell::words(name_of(company, group)),
         Cell::number(f64::from(level), level.to_string()),
         Cell::number(noise, format!("±{}", percent(noise, 0))),
+        next,
         day(known.found),
         day(known.studied),
-        next,
     ]
 }
 

@@ -487,7 +487,7 @@ impl Social {
         let people = feed::by_week(&self.others, last, |kind| kind == Kind::Customers);
         let press = feed::by_week(&self.others, last, |kind| kind == Kind::Press);
         let now = |points: &[(f64, f64)]| points.last().map_or(0.0, |point| point.1);
-        let note = format!("{} by customers · {} by the press", now(&people), now(&press));
+        let note = format!("customers {} · press {}", now(&people), now(&press));
         let inside = canvas.pane(area, "Posts by week", &note, false);
         let lines = [
             Line::through(people, Role::Series(0)),

@@ -155,7 +155,7 @@ fn a_post_is_published_from_the_feed_after_one_question() {
     console.press("esc");
     console.shows("5 Social ●");
     console.press("5 p 'Drafts_are_right_at_once.' ctrl-s");
-    console.shows("cannot be taken back");
+    console.shows("is the only post of this week");
     console.press("esc ctrl-s y");
     console.shows("post_social_media: done");
     console.shows("our post 1 · 0 views, 0 comments");

@@ -54,7 +54,7 @@ fn a_study_is_chosen_asked_for_and_shown_until_it_is_done() {
     week(&mut session);
     let company = Company::of(&session);
     let screen: Market = shown(&mut session, &company);
-    let text = drawn(&screen, &company, 120, 37);
+    let text = drawn(&screen, &company, 200, 57);
     assert!(text.contains("level 2 · ±40%") && text.contains("day 10"), "{text}");
 }
 

@@ -8,7 +8,7 @@
 //! | 5 | [`cli`] | one file per subcommand; maps failures to exit codes |
 //! | 4 | [`console`], [`plain`], [`lab`] | the terminal application; the same game line by line; policies, metrics, comparison with reference figures, speed |
 //! | 3 | [`session`] | one run: open, act, query, advance, record, resume, replay, branch. The only door to a world |
-//! | 2 | [`tools`], [`database`], [`voice`] | the catalogue of tools; the observable company in SQLite and its guarded queries; words for facts |
+//! | 2 | [`tools`], [`database`], [`voice`] | the catalogue of tools; the observable company in SQLite and its guarded queries; words for facts, and the judge of the player's posts |
 //! | 1 | [`world`] | the simulator: pure, deterministic, no files, no clock, no SQL, no prose |
 //!
 //! [`notation`] writes and reads numbers for all of them. Arrows point down only; houses on one floor never import each

@@ -214,15 +214,9 @@ fn actions_shown(app: &App) -> Vec<Action> {
             Action::Quit,
         ];
         if !typing {
-            actions.extend(always);
+            let own = actions.clone();
+            actions.extend(always.into_iter().filter(|action| !own.contains(action)));
         }
-        let mut seen = Vec::new();
-        actions.retain(|action| {
-            !seen.contains(action) && {
-                seen.push(*action);
-                true
-            }
-        });
     }
     actions
 }

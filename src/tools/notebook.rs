@@ -54,6 +54,11 @@ impl Shelf {
         self.0.iter().map(|(name, _)| name.as_str()).collect()
     }
 
+    /// All names but one.
+    pub fn names_without(&self, name: &str) -> Vec<&str> {
+        self.names().into_iter().filter(|own| *own != name).collect()
+    }
+
     /// Names and statements.
     pub fn entries(&self) -> &[(String, String)] {
         &self.0

@@ -63,10 +63,9 @@ impl Dialog for Help {
     }
 
     fn key(&mut self, key: &crossterm::event::KeyEvent, _: &Look<'_>) -> Outcome {
-        if let Some(field) = self.table.typing() {
+        self.table.edit_filter(|field| {
             field.key(key);
-            self.table.typed();
-        }
+        });
         Outcome::stay()
     }
 

@@ -161,6 +161,14 @@ impl Table {
         self.typing.as_mut()
     }
 
+    /// Changes the filter while it is typed and applies it; does nothing if none is typed.
+    pub fn edit_filter(&mut self, edit: impl FnOnce(&mut Field)) {
+        if let Some(field) = &mut self.typing {
+            edit(field);
+            self.typed();
+        }
+    }
+
     /// Applies the filter as far as it is typed.
     pub fn typed(&mut self) {
         if let Some(field) = &self.typing {

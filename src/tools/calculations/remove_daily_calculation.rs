@@ -57,8 +57,6 @@ impl Tool for RemoveDailyCalculation {
 
     fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
         let name = text(arguments, "name").unwrap_or_default();
-        let mut remaining = kept(view).names();
-        remaining.retain(|own| *own != name);
-        json!({ "name": name, "remaining": remaining })
+        json!({ "name": name, "remaining": kept(view).names_without(name) })
     }
 }

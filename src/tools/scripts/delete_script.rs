@@ -53,8 +53,6 @@ impl Tool for DeleteScript {
 
     fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
         let Ok((name, _)) = find(arguments, view) else { return Value::Null };
-        let mut remaining = stored(view).names();
-        remaining.retain(|own| *own != name);
-        json!({ "name": name, "remaining": remaining })
+        json!({ "name": name, "remaining": stored(view).names_without(name) })
     }
 }

@@ -198,18 +198,14 @@ impl Screen for Cash {
     }
 
     fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
-        if let Some(field) = self.table.typing() {
+        self.table.edit_filter(|field| {
             field.key(key);
-            self.table.typed();
-        }
+        });
         Vec::new()
     }
 
     fn paste(&mut self, text: &str, _: &Look<'_>) -> Vec<Effect> {
-        if let Some(field) = self.table.typing() {
-            field.insert(text);
-            self.table.typed();
-        }
+        self.table.edit_filter(|field| field.insert(text));
         Vec::new()
     }
 

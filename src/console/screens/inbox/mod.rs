@@ -441,19 +441,17 @@ impl Screen for Inbox {
             let taken = field.number_key(key);
             return if taken { Vec::new() } else { vec![Effect::Complain(ONLY_NUMBERS.to_owned())] };
         }
-        if let Some(field) = self.table.typing() {
+        self.table.edit_filter(|field| {
             field.key(key);
-            self.table.typed();
-        }
+        });
         Vec::new()
     }
 
     fn paste(&mut self, text: &str, _: &Look<'_>) -> Vec<Effect> {
         if let Some(field) = &mut self.typing {
             field.insert(text);
-        } else if let Some(field) = self.table.typing() {
-            field.insert(text);
-            self.table.typed();
+        } else {
+            self.table.edit_filter(|field| field.insert(text));
         }
         Vec::new()
     }

@@ -139,9 +139,10 @@ impl Screen for Journal {
                 return vec![Effect::Do(Action::FocusPrevious)];
             }
             self.notes.key(key);
-        } else if let Some(field) = self.table.typing() {
-            field.key(key);
-            self.table.typed();
+        } else {
+            self.table.edit_filter(|field| {
+                field.key(key);
+            });
         }
         Vec::new()
     }
@@ -149,9 +150,8 @@ impl Screen for Journal {
     fn paste(&mut self, text: &str, _: &Look<'_>) -> Vec<Effect> {
         if self.editing {
             self.notes.insert(text);
-        } else if let Some(field) = self.table.typing() {
-            field.insert(text);
-            self.table.typed();
+        } else {
+            self.table.edit_filter(|field| field.insert(text));
         }
         Vec::new()
     }

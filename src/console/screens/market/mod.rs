@@ -408,11 +408,8 @@ impl Screen for Market {
 impl Market {
     fn typed(&mut self, work: impl FnOnce(&mut Field)) {
         let before = self.group();
-        if let Some(list) = self.list()
-            && let Some(field) = list.typing()
-        {
-            work(field);
-            list.typed();
+        if let Some(list) = self.list() {
+            list.edit_filter(work);
         }
         if before != self.group() {
             self.turn();

@@ -215,9 +215,8 @@ impl Social {
             work(field);
             self.filter.text = field.text().to_owned();
             self.refilter();
-        } else if let Some(field) = self.table.typing() {
-            work(field);
-            self.table.typed();
+        } else {
+            self.table.edit_filter(work);
         }
     }
 }

@@ -307,15 +307,12 @@ impl Form {
             && let Some(slot) = self.sheet.slot_mut(self.at)
             && let Some(field) = &mut slot.draft
         {
-            let taken = if text {
-                {
-                    field.key(key);
-                    true
-                }
-            } else {
-                field.number_key(key)
-            };
-            return if taken { self.check() } else { vec![Effect::Complain(ONLY_NUMBERS.to_owned())] };
+            if text {
+                field.key(key);
+            } else if !field.number_key(key) {
+                return vec![Effect::Complain(ONLY_NUMBERS.to_owned())];
+            }
+            return self.check();
         }
         Vec::new()
     }

@@ -113,6 +113,18 @@ impl Look<'_> {
     }
 }
 
+/// A figure on a screen that can be explained, and followed to the rows that make it up.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Figure {
+    /// What it is here: `cancellations of S1`.
+    pub title: String,
+    /// What explains it: an entry of the glossary (`churn`), a tool or its argument (`set_prices`, `set_prices.A`), or a
+    /// column of a table (`ledger.amount`).
+    pub term: &'static str,
+    /// The question whose answer are the rows behind it, where rows make it up.
+    pub sql: Option<String>,
+}
+
 /// One screen.
 pub trait Screen {
     /// Scopes of the focused place, the innermost first; the global one is added by the caller. A text scope first
@@ -141,6 +153,11 @@ pub trait Screen {
 
     /// Moves the focus to a pane.
     fn set_focus(&mut self, _: usize) {}
+
+    /// The figure that is selected.
+    fn figure(&self, _: &Look<'_>) -> Option<Figure> {
+        None
+    }
 
     /// What it asks the database for.
     fn readings(&self) -> &'static [Reading] {

@@ -3,6 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
+use ratatui::symbols::Marker;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Widget};
 use unicode_segmentation::UnicodeSegmentation;
@@ -34,6 +35,10 @@ pub struct Canvas<'a> {
     pub cursor: Option<Position>,
     /// Rows that the focused list shows, for paging.
     pub page: u16,
+    /// The focused pane has the whole screen; the others are not drawn.
+    pub zoomed: bool,
+    /// What curves are drawn with.
+    pub marker: Marker,
 }
 
 /// Side of a cell to which text is pushed.
@@ -48,7 +53,15 @@ pub enum Align {
 impl<'a> Canvas<'a> {
     /// A canvas over cells.
     pub fn new(buffer: &'a mut Buffer, theme: &'a Theme) -> Canvas<'a> {
-        Canvas { buffer, theme, clicks: Vec::new(), cursor: None, page: 10 }
+        Canvas {
+            buffer,
+            theme,
+            clicks: Vec::new(),
+            cursor: None,
+            page: 10,
+            zoomed: false,
+            marker: Marker::Braille,
+        }
     }
 
     /// The whole area.

@@ -83,7 +83,7 @@ pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], x: &Axis<'_>, 
 fn dataset<'a>(canvas: &Canvas<'_>, line: &'a Line) -> Dataset<'a> {
     Dataset::default()
         .data(&line.points)
-        .marker(if line.scattered { Marker::Dot } else { Marker::Braille })
+        .marker(if line.scattered { Marker::Dot } else { canvas.marker })
         .graph_type(if line.scattered { GraphType::Scatter } else { GraphType::Line })
         .style(canvas.style(line.role))
 }

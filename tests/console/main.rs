@@ -1,6 +1,9 @@
-//! The console as a person meets it: stories, sizes, random keys.
+//! The console as a person meets it: stories, pictures, sizes, random keys.
 
+mod company;
+mod dice;
 mod harness;
 mod monkey;
+mod pictures;
 mod sizes;
 mod stories;

@@ -3,6 +3,7 @@
 mod company;
 mod dice;
 mod harness;
+mod looks;
 mod monkey;
 mod pictures;
 mod sizes;

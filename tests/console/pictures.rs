@@ -12,6 +12,7 @@ use ratatui::style::Style;
 
 use super::company::led;
 use super::harness::Console;
+use super::looks::{cut_with_room, emptiest_half};
 
 /// Sizes of windows: the smallest that is promised, a usual one, a large one.
 const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
@@ -45,14 +46,24 @@ fn pictures(name: &str, policy: &str, seed: u64, until: u32) {
     let mut console = Console::in_latest_run(runs.path(), SIZES[1]);
     for (place, keys, back) in PLACES {
         console.press(keys);
-        let picture = picture(&mut console);
+        let picture = picture(&mut console, place);
         insta::assert_snapshot!(format!("{name}-{place}"), picture);
         console.size = SIZES[1];
         console.press(back);
     }
 }
 
-fn picture(console: &mut Console) -> String {
+/// Least share of cells with ink in every half of a large window.
+const LEAST_INK: f64 = 0.04;
+
+fn looks_well(place: &str, size: (u16, u16), letters: &str) {
+    let cut = cut_with_room(letters);
+    assert!(cut.is_empty(), "{place} at {size:?}: cut although there is room:\n{}", cut.join("\n"));
+    let ink = emptiest_half(letters, size.0.into());
+    assert!(size.0 < 120 || ink > LEAST_INK, "{place} at {size:?}: a half is empty ({ink:.3}):\n{letters}");
+}
+
+fn picture(console: &mut Console, place: &str) -> String {
     let mut text = String::new();
     for size in SIZES {
         console.size = size;
@@ -64,6 +75,7 @@ fn picture(console: &mut Console) -> String {
             if let Some(before) = &letters {
                 assert_eq!(*before, own, "the theme {theme} changes letters");
             } else {
+                looks_well(place, size, &own);
                 writeln!(text, "{}×{}\n{own}", size.0, size.1).expect("text");
             }
             letters = Some(own);

@@ -30,7 +30,7 @@ const PLACES: [(&str, &str); 40] = [
     ("8 enter", "esc"),
     ("8 / 'ads' enter enter", "esc esc"),
     ("9", "esc"),
-    ("9 i 'SELECT * FROM ledger' f5", "esc"),
+    ("9 i 'SELECT*FROM(ledger)' f5", "esc"),
     ("9 tab tab", "esc"),
     ("0", ""),
     ("0 tab", ""),

@@ -95,7 +95,7 @@ fn what_is_set_can_be_taken_back_and_the_zero_of_the_start_cannot() {
     console.shows("taken back: operations");
     console.press("u");
     console.shows("! ");
-    console.press("esc g enter '12' enter ctrl-s u");
+    console.press("esc home enter '12' enter ctrl-s u");
     console.shows("a price of 0 cannot be set");
 }
 

@@ -42,10 +42,10 @@ fn a_statement_is_completed_run_and_a_slow_one_cancelled() {
     terminal.wait_for("day 0/500");
     terminal.type_keys("9");
     terminal.wait_for("Query");
-    terminal.type_keys("SELECT count(*) AS plans FROM offer");
-    terminal.wait_for("offerings");
+    terminal.type_keys("SELECT count(*) AS plans FROM rese");
+    terminal.wait_for("FROM rese");
     terminal.type_keys("\t");
-    terminal.wait_for("FROM offerings");
+    terminal.wait_for("FROM research_projects");
     // F5
     terminal.type_keys("\x1b[15~");
     terminal.wait_for("Result · 1 row");
@@ -53,7 +53,7 @@ fn a_statement_is_completed_run_and_a_slow_one_cancelled() {
     // Pasted text goes in as a whole, line ends included, and runs nothing.
     let slow = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)\nSELECT count(*) FROM n";
     terminal.type_keys("\x0e");
-    terminal.wait_until_gone("FROM offerings");
+    terminal.wait_until_gone("FROM research_projects");
     terminal.type_keys(&format!("\x1b[200~{slow}\x1b[201~"));
     terminal.wait_for("SELECT count(*) FROM n");
     terminal.type_keys("\x1b[15~");
@@ -72,13 +72,13 @@ fn many_companies_are_answered_by_one_rule() {
     let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (120, 40));
     terminal.wait_for("day 35/500");
     terminal.type_keys("6");
-    terminal.wait_for("Threads");
+    terminal.wait_for("wait for you");
     terminal.type_keys("a");
     terminal.wait_for("marked");
     terminal.type_keys("\x13");
     terminal.wait_for("y yes");
     terminal.type_keys("y");
-    terminal.wait_for("sent");
+    terminal.wait_for("0 wait for you");
     terminal.type_keys("q");
     let (code, screen) = terminal.end();
     assert_eq!(code, 0, "{screen}");

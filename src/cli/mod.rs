@@ -3,7 +3,9 @@
 mod bench;
 mod completions;
 mod failure;
+mod keys;
 mod lab;
+mod pictures;
 mod play;
 mod query;
 mod replay;
@@ -52,6 +54,10 @@ enum Command {
     Tools(tools::Options),
     /// Show the tables that can be asked.
     Tables(tables::Options),
+    /// Show every key of the console.
+    Keys(keys::Options),
+    /// Draw the screens of a run as text or SVG.
+    Pictures(pictures::Options),
     /// Show the scenarios and their parameters.
     Scenario(scenario::Options),
     /// Compare policies with reference figures.
@@ -100,6 +106,8 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Query(options)) => query::run(&options, &context),
         Some(Command::Tools(options)) => tools::run(&options),
         Some(Command::Tables(options)) => tables::run(&options),
+        Some(Command::Keys(options)) => keys::run(&options, &context),
+        Some(Command::Pictures(options)) => pictures::run(&options, &context),
         Some(Command::Scenario(options)) => scenario::run(&options, &context),
         Some(Command::Lab(options)) => lab::run(&options, &context),
         Some(Command::Bench(options)) => bench::run(&options, &context),

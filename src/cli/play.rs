@@ -8,6 +8,7 @@ use super::run::parse_override;
 use super::{Context, Failure};
 use crate::console::app::Settings;
 use crate::console::effect::Effect;
+use crate::console::glyphs::Glyphs;
 use crate::console::keys::Keys;
 use crate::console::theme::Theme;
 use crate::session::{Access, Mode, NewRun, Session, Storage, find_run};
@@ -128,7 +129,7 @@ fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
     let settings = Settings {
         theme,
         keys,
-        ascii: options.ascii,
+        glyphs: if options.ascii { Glyphs::Ascii } else { Glyphs::Braille },
         configuration: context.configuration.clone(),
         runs: context.runs()?,
     };

@@ -76,6 +76,27 @@ impl Scope {
         }
     }
 
+    /// Heading in the manual.
+    pub fn title(self) -> &'static str {
+        match self {
+            Scope::Global => "Everywhere in a run",
+            Scope::Menu => "Start menu",
+            Scope::List => "Lists and tables",
+            Scope::Form => "Forms of tools",
+            Scope::Field => "While a value is typed",
+            Scope::Editor => "Editors of several lines",
+            Scope::Query => "SQL editor",
+            Scope::Result => "Results of queries",
+            Scope::Inbox => "Inbox",
+            Scope::Filing => "Before a week",
+            Scope::Dialog => "Dialogs",
+            Scope::Final => "Final page",
+            Scope::Memo => "Notes",
+            Scope::Social => "Social",
+            Scope::Market => "Market",
+        }
+    }
+
     /// Whether plain characters are typed here.
     pub fn is_text(self) -> bool {
         matches!(self, Scope::Field | Scope::Editor)
@@ -240,6 +261,8 @@ actions! {
         Cancel "cancel" "close" "Leave it."
         ScrollUp "scroll-up" "up" "Scroll up."
         ScrollDown "scroll-down" "down" "Scroll down."
+        OpenInSql "open-in-sql" "open in SQL" "Put the query behind the rows into the SQL editor and run it."
+        CopyQuery "copy-query" "copy query" "Copy the query behind the rows."
     }
     Menu {
         NewRun "new-run" "new run" "Start a new run."

@@ -21,7 +21,8 @@ use super::dialogs::Dialog;
 use super::dialogs::filing::Filing;
 use super::dialogs::report::Report;
 use super::effect::Effect;
-use super::keys::Keys;
+use super::glyphs::Glyphs;
+use super::keys::{Chord, Keys};
 use super::message::Message;
 use super::readings::Reading;
 use super::screens::cash::Cash;
@@ -41,6 +42,9 @@ use super::tour::Tour;
 use super::worker::{Job, Question};
 use crate::session::Configuration;
 
+/// Screens that back remembers.
+const SCREENS_KEPT: usize = 50;
+
 /// Something for the outside of the console.
 pub enum Order {
     /// Work for the session's thread.
@@ -57,6 +61,8 @@ pub enum Order {
     ListRuns,
     /// Draw everything again.
     Redraw,
+    /// Use the mouse, or leave it to the terminal.
+    Mouse(bool),
     /// Leave, with an exit code and what to print on the way.
     Exit(u8, Option<String>),
 }
@@ -107,6 +113,10 @@ pub struct Run {
     pub here: ScreenId,
     /// Screens shown before, the last one last.
     pub before: Vec<ScreenId>,
+    /// Screens that were left with back, the last one last.
+    pub after: Vec<ScreenId>,
+    /// The focused pane has the whole screen.
+    pub zoomed: bool,
     /// When it was shown.
     pub shown: Instant,
     /// Every screen.
@@ -130,6 +140,7 @@ impl Run {
     fn go_to(&mut self, screen: ScreenId) {
         self.screens.get_mut(self.here).looked_at();
         self.here = screen;
+        self.zoomed = false;
         self.screens.get_mut(screen).looked_at();
     }
 }
@@ -189,8 +200,11 @@ pub struct App {
     pub theme: Theme,
     /// Keys.
     pub keys: Keys,
-    /// Draw with ASCII only.
-    pub ascii: bool,
+    /// What is drawn with.
+    pub glyphs: Glyphs,
+    /// Whether the program has the mouse.
+    pub mouse: bool,
+    themes: Vec<Theme>,
     configuration: Configuration,
     runs: PathBuf,
     /// Where the person is.
@@ -205,8 +219,14 @@ pub struct App {
     checks: u64,
     /// Screen that asked for it.
     checker: ScreenId,
-    /// Number of the newest query of the person.
+    /// Keys that were pressed and begin something.
+    pub pending: Vec<Chord>,
+    /// Number of the newest question of the person.
     questions: u64,
+    /// Number of the newest one of the SQL screen.
+    sql_question: u64,
+    /// Number of the newest one about the rows behind a figure.
+    rows_question: u64,
     /// What is to follow when the run is closed.
     closing: Option<Closing>,
     /// The run that is being started shows the tour.
@@ -232,8 +252,8 @@ pub struct Settings {
     pub theme: Theme,
     /// Keys.
     pub keys: Keys,
-    /// Draw with ASCII only.
-    pub ascii: bool,
+    /// What is drawn with.
+    pub glyphs: Glyphs,
     /// Configuration of this person.
     pub configuration: Configuration,
     /// Folder of the runs.
@@ -247,7 +267,9 @@ impl App {
         App {
             theme: settings.theme,
             keys: settings.keys,
-            ascii: settings.ascii,
+            glyphs: settings.glyphs,
+            mouse: true,
+            themes: Theme::all(&settings.configuration),
             configuration: settings.configuration,
             runs: settings.runs,
             stage: Stage::Menu(menu),
@@ -256,7 +278,10 @@ impl App {
             busy: None,
             checks: 0,
             checker: ScreenId::Tools,
+            pending: Vec::new(),
             questions: 0,
+            sql_question: 0,
+            rows_question: 0,
             closing: None,
             tour_planned: false,
             clicks: Vec::new(),
@@ -385,16 +410,14 @@ impl App {
 
     /// Shows a screen.
     fn show(&mut self, screen: ScreenId) {
-        let Stage::Run(run) = &self.stage else { return };
+        let Stage::Run(run) = &mut self.stage else { return };
         if run.here != screen {
-            self.note_view();
-            if let Stage::Run(run) = &mut self.stage {
-                run.before.push(run.here);
-                if run.before.len() > 50 {
-                    run.before.remove(0);
-                }
-                run.go_to(screen);
+            run.before.push(run.here);
+            if run.before.len() > SCREENS_KEPT {
+                run.before.remove(0);
             }
+            run.after.clear();
+            self.move_to(screen);
         }
         self.load();
     }
@@ -403,11 +426,30 @@ impl App {
         let Stage::Run(run) = &mut self.stage else { return };
         match run.before.pop() {
             Some(screen) => {
-                run.go_to(screen);
-                run.shown = Instant::now();
+                run.after.push(run.here);
+                self.move_to(screen);
                 self.load();
             }
             None => self.complain("there is no screen before this one"),
+        }
+    }
+
+    fn forward(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        match run.after.pop() {
+            Some(screen) => {
+                run.before.push(run.here);
+                self.move_to(screen);
+                self.load();
+            }
+            None => self.complain("no screen was left with back"),
+        }
+    }
+
+    fn move_to(&mut self, screen: ScreenId) {
+        self.note_view();
+        if let Stage::Run(run) = &mut self.stage {
+            run.go_to(screen);
         }
     }
 

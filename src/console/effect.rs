@@ -14,8 +14,10 @@ use crate::world::identifiers::Group;
 pub enum Effect {
     /// Start a run.
     Create(Box<NewRun>),
-    /// Open a run by its id.
+    /// Open a run by its id, to go on with it.
     Open(String),
+    /// Open a run by its id, to look at it; nothing of it is changed.
+    Look(String),
     /// What a call would do; only the newest answer counts.
     Check {
         /// Tool.
@@ -41,6 +43,8 @@ pub enum Effect {
     },
     /// Ask the database for the person.
     Ask(String),
+    /// Ask the database for the rows behind a figure.
+    AskBehind(String),
     /// Stop what the person asked.
     CancelQuery,
     /// Ask the database for a screen.

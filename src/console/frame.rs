@@ -7,8 +7,10 @@ use unicode_width::UnicodeWidthStr;
 use super::action::Action;
 use super::app::{App, Busy, Layer, Run, Stage};
 use super::ascii;
-use super::canvas::{Align, Canvas, Click};
+use super::canvas::{Align, Canvas, Click, rows_of};
 use super::company::Company;
+use super::glyphs::Glyphs;
+use super::keys::written;
 use super::screens::{Look, ScreenId};
 use super::text::short_dollars;
 use super::theme::Role;
@@ -33,6 +35,7 @@ pub struct Drawn {
 pub fn draw(app: &App, buffer: &mut Buffer) -> Drawn {
     let area = buffer.area;
     let mut canvas = Canvas::new(buffer, &app.theme);
+    canvas.marker = app.glyphs.marker();
     canvas.clear(area, Role::Text);
     if area.width < LEAST.0 || area.height < LEAST.1 {
         let text =
@@ -43,7 +46,7 @@ pub fn draw(app: &App, buffer: &mut Buffer) -> Drawn {
     }
     let drawn =
         Drawn { clicks: std::mem::take(&mut canvas.clicks), cursor: canvas.cursor, page: canvas.page };
-    if app.ascii {
+    if app.glyphs == Glyphs::Ascii {
         ascii::plain(buffer);
     }
     drawn
@@ -56,6 +59,28 @@ fn draw_all(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
         Stage::Run(run) => draw_run(app, run, canvas, area),
     }
     draw_last_line(app, canvas, last);
+    if !app.pending.is_empty() {
+        draw_continuations(app, canvas, Rect { height: area.height - 1, ..area });
+    }
+}
+
+/// What may follow the keys that were pressed, at the lower right corner.
+fn draw_continuations(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
+    let following = app.keys.continuations(&app.scopes(), &app.pending);
+    let keys = following.iter().map(|(keys, _)| keys.width()).max().unwrap_or(0) as u16;
+    let titles = following.iter().map(|(_, action)| action.entry().title.width()).max().unwrap_or(0) as u16;
+    let (width, height) = ((keys + titles + 7).max(20), following.len() as u16 + 2);
+    let (width, height) = (width.min(area.width), height.min(area.height));
+    let own = Rect { x: area.right() - width, y: area.bottom() - height, width, height };
+    canvas.clear(own, Role::Text);
+    let inside = canvas.pane(own, &format!("{} …", written(&app.pending)), "", true);
+    for (row, (chords, action)) in rows_of(inside).zip(following) {
+        canvas.text(Rect { x: row.x + 1, width: keys, ..row }, &chords, Role::Key);
+        let title = Rect { x: row.x + keys + 3, width: row.width.saturating_sub(keys + 3), ..row };
+        canvas.text(title, action.entry().title, Role::Text);
+        canvas.click(row, Click::Do(action));
+    }
+    canvas.pane_keys(own, "esc cancel");
 }
 
 fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
@@ -66,6 +91,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     let below = tour.as_ref().map_or(0, |(_, height)| *height);
     let body = Rect { height: body.height.saturating_sub(below), ..body };
     let look = Look { company: &run.company, keys: &app.keys, page: app.page };
+    canvas.zoomed = run.zoomed;
     run.screens.get(run.here).draw(canvas, body, &look);
     for layer in &app.layers {
         // What lies below a dialog can be seen but not clicked.
@@ -151,6 +177,11 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
         canvas.text(place, &text, if screen == run.here { Role::TabHere } else { Role::Tab });
         canvas.click(place, Click::Do(screen.action()));
         x += width;
+    }
+    if run.zoomed {
+        let key = app.keys.label(Action::Zoom).unwrap_or_default();
+        let left = Rect { x, width: row.right() - x, ..row };
+        canvas.aligned(left, &format!("{key} all panes "), Role::Warning, Align::Right);
     }
 }
 

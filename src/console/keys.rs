@@ -1,4 +1,6 @@
-//! Keys: which chord asks for which action where. Read from `configs/keys.toml`; a person's file patches it.
+//! Keys: which chords ask for which action where. Read from `configs/keys.toml`; a person's file patches it.
+//!
+//! A binding is one chord or a few pressed one after the other: `n`, `; c`. Nothing depends on how fast they come.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -104,6 +106,11 @@ impl Chord {
         KeyEvent::new(self.code, modifiers)
     }
 
+    /// Whether it is the key that cancels.
+    pub fn is_escape(&self) -> bool {
+        self.code == KeyCode::Esc
+    }
+
     /// Whether it is a character that is typed.
     pub fn is_printable(&self) -> bool {
         matches!(self.code, KeyCode::Char(_)) && !self.ctrl && !self.alt
@@ -160,9 +167,23 @@ impl fmt::Display for Chord {
     }
 }
 
-/// What every chord means in every scope.
+/// Longest row of chords for one action.
+const LONGEST: usize = 3;
+
+/// What chords mean where the focus is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Meaning {
+    /// They ask for an action.
+    Action(Action),
+    /// They begin something: another chord has to follow.
+    Begin,
+    /// Nothing.
+    Nothing,
+}
+
+/// What chords mean in every scope.
 #[derive(Debug, Clone)]
-pub struct Keys(BTreeMap<Scope, Vec<(Chord, Action)>>);
+pub struct Keys(BTreeMap<Scope, Vec<(Vec<Chord>, Action)>>);
 
 const SHIPPED: &str = include_str!("../../configs/keys.toml");
 
@@ -206,51 +227,92 @@ impl Keys {
 
     fn bind(&mut self, scope: Scope, action: Action, chords: &toml::Value) -> Result<(), String> {
         let list = chords.as_array().ok_or("a list of keys is expected, for instance [\"n\"]")?;
-        let parsed: Result<Vec<Chord>, String> = list
+        let parsed: Result<Vec<Vec<Chord>>, String> = list
             .iter()
-            .map(|chord| Chord::parse(chord.as_str().ok_or("a key is text, for instance \"n\"")?))
+            .map(|chords| sequence(chords.as_str().ok_or("a key is text, for instance \"n\"")?))
             .collect();
         let bindings = self.0.entry(scope).or_default();
         bindings.retain(|(_, own)| *own != action);
-        for chord in parsed? {
-            if let Some((_, other)) = bindings.iter().find(|(bound, _)| *bound == chord) {
-                return Err(format!("{chord} already means {}", other.entry().name));
+        for chords in parsed? {
+            let clash = |bound: &[Chord]| bound.starts_with(&chords) || chords.starts_with(bound);
+            if let Some((bound, other)) = bindings.iter().find(|(bound, _)| clash(bound)) {
+                return Err(format!("{} already means {}", written(bound), other.entry().name));
             }
-            bindings.push((chord, action));
+            bindings.push((chords, action));
         }
         Ok(())
     }
 
-    /// What a chord means in the first of these scopes that knows it.
-    pub fn action(&self, scopes: &[Scope], chord: Chord) -> Option<Action> {
+    /// What chords pressed one after the other mean in the first of these scopes that knows them.
+    pub fn meaning(&self, scopes: &[Scope], pressed: &[Chord]) -> Meaning {
         let in_scope = |scope: &Scope| {
-            self.0.get(scope)?.iter().find(|(bound, _)| *bound == chord).map(|(_, action)| *action)
+            let mut begins = self.0.get(scope)?.iter().filter(|(bound, _)| bound.starts_with(pressed));
+            let (bound, action) = begins.next()?;
+            Some(if bound.len() == pressed.len() { Meaning::Action(*action) } else { Meaning::Begin })
         };
-        scopes.iter().find_map(in_scope)
+        scopes.iter().find_map(in_scope).unwrap_or(Meaning::Nothing)
     }
 
-    /// The first key of an action, as the footer shows it.
+    /// What may follow chords: the next ones, and the action at their end.
+    pub fn continuations(&self, scopes: &[Scope], pressed: &[Chord]) -> Vec<(String, Action)> {
+        let longer = |(bound, action): &(Vec<Chord>, Action)| {
+            let rest = bound.strip_prefix(pressed).filter(|rest| !rest.is_empty());
+            rest.map(|rest| (written(rest), *action))
+        };
+        let mut following: Vec<(String, Action)> = Vec::new();
+        for found in scopes.iter().filter_map(|scope| self.0.get(scope)).flatten().filter_map(longer) {
+            if !following.iter().any(|(chords, _)| *chords == found.0) {
+                following.push(found);
+            }
+        }
+        following
+    }
+
+    /// What one chord means in the first of these scopes that knows it.
+    pub fn action(&self, scopes: &[Scope], chord: Chord) -> Option<Action> {
+        match self.meaning(scopes, &[chord]) {
+            Meaning::Action(action) => Some(action),
+            _ => None,
+        }
+    }
+
+    /// The first keys of an action, as the footer shows them.
     pub fn label(&self, action: Action) -> Option<String> {
-        self.chords(action).next().map(|chord| chord.to_string())
+        self.chords(action).next().map(written)
     }
 
     /// All keys of an action.
-    pub fn chords(&self, action: Action) -> impl Iterator<Item = Chord> + '_ {
+    pub fn chords(&self, action: Action) -> impl Iterator<Item = &[Chord]> + '_ {
         let bindings = self.0.get(&action.entry().scope).into_iter().flatten();
-        bindings.filter(move |(_, own)| *own == action).map(|(chord, _)| *chord)
+        bindings.filter(move |(_, own)| *own == action).map(|(chords, _)| chords.as_slice())
     }
 
     /// Rows of the help for some scopes: scope, keys, title, explanation.
     pub fn help(&self, scopes: &[Scope]) -> Vec<(Scope, String, &'static str, &'static str)> {
         let wanted = ACTIONS.iter().filter(|entry| scopes.contains(&entry.scope));
         let row = |entry: &'static super::action::ActionEntry| {
-            let keys: Vec<String> = self.chords(entry.action).map(|chord| chord.to_string()).collect();
-            (entry.scope, keys.join(" "), entry.title, entry.doc)
+            let keys: Vec<String> = self.chords(entry.action).map(written).collect();
+            (entry.scope, keys.join(", "), entry.title, entry.doc)
         };
         let mut rows: Vec<_> = wanted.map(row).collect();
         rows.sort_by_key(|(scope, ..)| scopes.iter().position(|own| own == scope));
         rows
     }
+}
+
+/// Reads chords that are pressed one after the other.
+fn sequence(text: &str) -> Result<Vec<Chord>, String> {
+    let chords: Result<Vec<Chord>, String> = text.split(' ').map(Chord::parse).collect();
+    let chords = chords?;
+    if chords.len() > LONGEST {
+        return Err(format!("{text:?} is longer than {LONGEST} keys"));
+    }
+    Ok(chords)
+}
+
+/// Chords as the key file writes them.
+pub fn written(chords: &[Chord]) -> String {
+    chords.iter().map(Chord::to_string).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
@@ -297,6 +359,23 @@ mod tests {
             let problem = Keys::shipped().patch(file).expect_err(file);
             assert!(problem.contains(part), "{problem}");
         }
+    }
+
+    #[test]
+    fn keys_that_begin_something_name_what_may_follow() {
+        let mut keys = Keys::shipped();
+        keys.patch("[global]\nquit = [\", q\", \", x y\"]").expect("a patch");
+        let pressed = |text: &str| sequence(text).expect("keys");
+        let scopes = [Scope::List, Scope::Global];
+        assert_eq!(keys.meaning(&scopes, &pressed(",")), Meaning::Begin);
+        assert_eq!(keys.meaning(&scopes, &pressed(", q")), Meaning::Action(Action::Quit));
+        assert_eq!(keys.meaning(&scopes, &pressed(", x")), Meaning::Begin);
+        assert_eq!(keys.meaning(&scopes, &pressed(", n")), Meaning::Nothing);
+        let following = [("q".to_owned(), Action::Quit), ("x y".to_owned(), Action::Quit)];
+        assert_eq!(keys.continuations(&scopes, &pressed(",")), following);
+        assert_eq!(keys.label(Action::Quit).as_deref(), Some(", q"));
+        let clash = keys.patch("[global]\nundo = [\",\"]").expect_err("a clash");
+        assert!(clash.contains("already means quit"), "{clash}");
     }
 
     #[test]

@@ -13,9 +13,13 @@ pub mod dialogs;
 pub mod effect;
 mod files;
 pub mod frame;
+pub mod glyphs;
 pub mod keys;
+pub mod manual;
 pub mod message;
+pub mod photograph;
 pub mod readings;
+pub mod rehearsal;
 pub mod screens;
 pub mod speed;
 mod terminal;
@@ -75,6 +79,8 @@ impl Console {
             }
             self.screen.draw(&mut self.app)?;
             let Ok(message) = self.messages.recv() else { return Ok((1, None)) };
+            #[cfg(debug_assertions)]
+            fail_on_purpose(&message);
             self.app.update(message);
             // Everything that has arrived meanwhile is drawn once.
             while let Ok(message) = self.messages.try_recv() {
@@ -97,6 +103,7 @@ impl Console {
                 Order::Write(path, contents) => files::write_behind(path, contents, self.sender.clone()),
                 Order::ListRuns => self.workers.send(Job::List(self.runs.clone())),
                 Order::Redraw => self.screen.clear()?,
+                Order::Mouse(taken) => self.screen.mouse(taken),
                 Order::Exit(code, text) => return Ok(Some((code, text))),
             }
         }
@@ -106,6 +113,17 @@ impl Console {
         };
         terminal::remember_run(folder);
         Ok(None)
+    }
+}
+
+/// Fails at f12 if the environment asks for it, so that what a failure leaves behind can be tested. Not in release
+/// builds.
+#[cfg(debug_assertions)]
+fn fail_on_purpose(message: &Message) {
+    use crossterm::event::{Event, KeyCode};
+    let pressed = matches!(message, Message::Input(Event::Key(key)) if key.code == KeyCode::F(12));
+    if pressed && std::env::var("NOVAMIND_FAULT").is_ok_and(|fault| fault == "panic") {
+        panic!("asked to fail by NOVAMIND_FAULT");
     }
 }
 

@@ -89,6 +89,15 @@ impl Screen {
         self.terminal.clear()
     }
 
+    /// Takes the mouse, or leaves it to the terminal, which then selects text with it.
+    pub fn mouse(&mut self, taken: bool) {
+        // A terminal without a mouse ignores it.
+        let _ = match taken {
+            true => execute!(self.terminal.backend_mut(), EnableMouseCapture),
+            false => execute!(self.terminal.backend_mut(), DisableMouseCapture),
+        };
+    }
+
     /// Puts text into the clipboard, where the terminal lets programs do that.
     pub fn copy(&mut self, text: &str) {
         // A terminal without a clipboard ignores it; the text is on the screen anyway.

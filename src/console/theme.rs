@@ -149,6 +149,15 @@ impl Theme {
         }
     }
 
+    /// Every theme that can be read, the shipped ones first. A person's broken file is left out: [`Theme::find`] tells
+    /// what is wrong with it.
+    pub fn all(configuration: &Configuration) -> Vec<Theme> {
+        let own = configuration.names("themes");
+        let shipped = THEMES.iter().map(|(name, _)| *name);
+        let others = own.iter().map(String::as_str).filter(|own| THEMES.iter().all(|(name, _)| name != own));
+        shipped.chain(others).filter_map(|name| Theme::find(name, configuration).ok()).collect()
+    }
+
     fn parse(name: &str, text: &str) -> Result<Theme, String> {
         let looks: File = toml::from_str(text).map_err(|error| error.to_string())?;
         if looks.series.is_empty() {

@@ -19,7 +19,7 @@ use super::readings::Reading;
 use crate::database::query::Limits;
 use crate::session::{
     Access, Configuration, Desk, Forecasts, Interrupt, NewRun, Refusal, Rows, Session, Via, delete_run,
-    end_run, find_run, list_runs, run_course,
+    end_run, find_run, find_run_to_read, list_runs, run_course,
 };
 
 /// Work for the session's thread.
@@ -34,8 +34,8 @@ pub enum Job {
     DeleteRun(PathBuf, String),
     /// Start a run.
     Create(Box<NewRun>),
-    /// Open a run of a folder by its id.
-    Open(PathBuf, String),
+    /// Open a run of a folder by its id, to go on with it or to look at it.
+    Open(PathBuf, String, Access),
     /// What a call would do.
     Check(u64, &'static str, Value),
     /// Call a tool.
@@ -204,9 +204,12 @@ impl SessionThread {
                 let made = Session::create(*new, &self.configuration).map_err(|error| error.to_string());
                 self.take(made);
             }
-            Job::Open(runs, id) => {
-                let found =
-                    find_run(&runs, &id).and_then(|folder| Session::open(&folder, Access::Write, true));
+            Job::Open(runs, id, access) => {
+                let found = match access {
+                    Access::Write => find_run(&runs, &id),
+                    Access::Read => find_run_to_read(&runs, &id),
+                };
+                let found = found.and_then(|folder| Session::open(&folder, access, true));
                 self.take(found.map_err(|error| error.to_string()));
             }
             Job::Close | Job::End => {

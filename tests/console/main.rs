@@ -1,7 +1,11 @@
-//! The console as a person meets it: stories, sizes, random keys.
+//! The console as a person meets it: stories, pictures, sizes, random keys.
 
+mod company;
+mod dice;
 mod guide;
 mod harness;
+mod looks;
 mod monkey;
+mod pictures;
 mod sizes;
 mod stories;

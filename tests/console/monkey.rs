@@ -1,14 +1,23 @@
-//! Random keys: nothing panics, the cursor stays inside, and the run replays to the same state.
+//! Random keys, clicks, pastes and sizes: nothing panics, the cursor stays inside, drafts stay, and the run replays to the
+//! same state.
 
+use std::path::Path;
+
+use crossterm::event::{Event, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use novamind::session::{list_runs, verify};
 
+use super::dice::Dice;
 use super::harness::Console;
 
-const KEYS: [&str; 64] = [
+/// Keys that are pressed; those that lead somewhere stand more than once.
+const KEYS: [&str; 88] = [
     "1",
     "2",
     "3",
     "4",
+    "5",
+    "6",
+    "7",
     "8",
     "9",
     "0",
@@ -17,15 +26,24 @@ const KEYS: [&str; 64] = [
     "u",
     "w",
     "d",
+    "f",
+    "i",
+    "z",
+    "tab",
+    "tab",
     "tab",
     "shift-tab",
     "enter",
     "enter",
+    "enter",
+    "esc",
     "esc",
     "esc",
     "up",
     "down",
+    "down",
     "left",
+    "right",
     "right",
     "pageup",
     "pagedown",
@@ -34,6 +52,9 @@ const KEYS: [&str; 64] = [
     "/",
     ":",
     "?",
+    ";",
+    "g",
+    "g",
     "s",
     "e",
     "E",
@@ -43,16 +64,28 @@ const KEYS: [&str; 64] = [
     "x",
     "a",
     "r",
-    "f",
     "b",
+    "p",
+    "v",
+    "o",
+    "t",
+    "m",
+    ".",
+    ",",
+    "+",
+    "-",
     "ctrl-s",
     "f5",
+    "f2",
     "ctrl-r",
     "ctrl-o",
     "ctrl-n",
     "ctrl-l",
-    "5",
-    "7",
+    "ctrl-f",
+    "ctrl-u",
+    "ctrl-w",
+    "ctrl-d",
+    "ctrl-p",
     "space",
     "backspace",
     "delete",
@@ -60,48 +93,172 @@ const KEYS: [&str; 64] = [
     "k",
     "h",
     "l",
-    "g",
     "G",
     "[",
-    "-",
-    ".",
-    "ctrl-f",
-    "ctrl-u",
-    "ctrl-w",
+    "]",
     "é",
+    "7",
+    "M",
 ];
 
-/// A small generator: tests must not depend on a crate's stream of numbers.
-struct Dice(u64);
+/// What is pasted.
+const PASTES: [&str; 6] = [
+    "12",
+    "SELECT count(*) FROM customers",
+    "two\nlines\tand a tab",
+    "日本語 👩‍👩‍👧 e\u{301}",
+    "\u{1b}[31mred\u{0}",
+    "",
+];
 
-impl Dice {
-    fn roll(&mut self, sides: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % sides
+/// Steps in the ordinary test, over all its runs.
+const STEPS: usize = 5_000;
+
+#[test]
+fn random_input_breaks_nothing() {
+    let mut dice = Dice::of_test("monkey");
+    for _ in 0..4 {
+        play(&mut dice, STEPS / 4);
     }
 }
 
 #[test]
-fn random_keys_break_nothing() {
-    for seed in 1..=4 {
-        let runs = tempfile::tempdir().expect("a folder");
-        let mut dice = Dice(seed);
-        let mut console = Console::in_new_run(runs.path(), (80 + 20 * seed as u16, 24 + 8 * seed as u16));
-        console.press("8 enter '12' enter '25' enter '55' enter ctrl-s esc 1");
-        for step in 0..600 {
-            if step % 150 == 149 {
-                console.press("esc esc esc esc");
-                console.week();
-            }
-            console.key(KEYS[dice.roll(KEYS.len())]);
-            if console.left.is_some() {
-                break;
-            }
+#[ignore = "takes minutes: cargo test --release --test console -- --ignored"]
+fn soak_random_input_breaks_nothing() {
+    let mut dice = Dice::of_test("monkey");
+    for _ in 0..40 {
+        play(&mut dice, 100_000 / 40);
+    }
+}
+
+/// One run that is played at random.
+fn play(dice: &mut Dice, steps: usize) {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = opened(runs.path(), dice);
+    for step in 1..=steps {
+        if step % 150 == 0 {
+            console.press("esc esc esc esc");
+            console.week();
         }
-        drop(console);
-        for run in list_runs(runs.path()).expect("a list") {
-            let verified = verify(&runs.path().join(&run.id)).expect("an intact run");
-            assert_eq!(verified.day, run.day);
+        if step % 100 == 0 {
+            drafts_stay(&mut console, dice);
+        }
+        one_step(&mut console, dice);
+        if console.left.is_some() {
+            console = come_back(console, runs.path());
         }
     }
+    drop(console);
+    for run in list_runs(runs.path()).expect("a list") {
+        let verified = verify(&runs.path().join(&run.id)).expect("an intact run");
+        assert_eq!(verified.day, run.day);
+    }
+}
+
+/// A shop that opens, in a window of some size.
+fn opened(runs: &Path, dice: &mut Dice) -> Console {
+    let mut console = Console::in_new_run(runs, (120, 40));
+    console.press("8 enter '12' enter '25' enter '55' enter ctrl-s esc 1");
+    console.size = a_size(dice);
+    console
+}
+
+/// A person who has left opens the run again.
+fn come_back(console: Console, runs: &Path) -> Console {
+    let size = console.size;
+    drop(console);
+    let mut console = Console::start(runs, size);
+    console.press("c");
+    if console.app.run().is_none() {
+        console.press("n enter");
+    }
+    console
+}
+
+fn a_size(dice: &mut Dice) -> (u16, u16) {
+    match dice.roll(4) {
+        0 => (dice.roll(80) as u16, dice.roll(30) as u16),
+        1 => (80, 24),
+        _ => (60 + dice.roll(150) as u16, 16 + dice.roll(50) as u16),
+    }
+}
+
+fn one_step(console: &mut Console, dice: &mut Dice) {
+    match dice.roll(20) {
+        0 => console.size = a_size(dice),
+        1 => console.send(Event::Paste((*dice.pick(&PASTES)).to_owned())),
+        2 | 3 => {
+            let event = a_click(console.size, dice);
+            console.send(event);
+        }
+        _ => {
+            let key = *dice.pick(&KEYS);
+            console.key(key);
+        }
+    }
+}
+
+fn a_click((width, height): (u16, u16), dice: &mut Dice) -> Event {
+    let kinds = [
+        MouseEventKind::Down(MouseButton::Left),
+        MouseEventKind::Down(MouseButton::Left),
+        MouseEventKind::Down(MouseButton::Right),
+        MouseEventKind::Up(MouseButton::Left),
+        MouseEventKind::Drag(MouseButton::Left),
+        MouseEventKind::ScrollUp,
+        MouseEventKind::ScrollDown,
+        MouseEventKind::Moved,
+    ];
+    // Some terminals report places outside of what the program thinks it has.
+    let column = dice.roll(usize::from(width) + 2) as u16;
+    let row = dice.roll(usize::from(height) + 2) as u16;
+    Event::Mouse(MouseEvent { kind: *dice.pick(&kinds), column, row, modifiers: KeyModifiers::NONE })
+}
+
+/// Places in which text is written: keys that lead there and into the text, and those that lead back.
+const DRAFTS: [(&str, &str); 5] = [
+    ("9 esc i ctrl-n", "9 esc"),
+    ("5 p ctrl-u", "5 p"),
+    ("0 tab tab e", "0"),
+    ("n enter ctrl-u", "n enter"),
+    ("8 home enter", "8 enter"),
+];
+
+/// Keys that walk through the console and change no text.
+const WALKS: [&str; 16] =
+    ["1", "2", "3", "4", "7", "9", "0", "tab", "up", "down", "?", ":", "c", "w", "d", "["];
+
+/// Writes a draft somewhere, walks away in random ways, and finds the draft again.
+fn drafts_stay(console: &mut Console, dice: &mut Dice) {
+    if console.app.run().is_none_or(|run| !run.company.is_running()) {
+        return;
+    }
+    let size = std::mem::replace(&mut console.size, (120, 40));
+    let (there, again) = *dice.pick(&DRAFTS);
+    console.press("esc esc esc esc esc 1");
+    console.press(there);
+    let number = 1_000 + dice.roll(8_999);
+    let draft = if there.starts_with('8') { number.to_string() } else { format!("draft{number}") };
+    console.press(&format!("'{draft}'"));
+    let written = console.screen();
+    assert!(holds(&written, &draft), "{there}: {draft} was not taken:\n{written}");
+    console.press("esc esc esc 1");
+    let mut walked = Vec::new();
+    for _ in 0..6 {
+        let key = *dice.pick(&WALKS);
+        walked.push(key);
+        console.press(key);
+        console.press("esc esc");
+    }
+    console.press("esc esc esc 1");
+    console.press(again);
+    let found = console.screen();
+    assert!(holds(&found, &draft), "{there}: {draft} is lost after {walked:?}:\n{found}");
+    console.press("esc esc esc 1");
+    console.size = size;
+}
+
+/// Whether a screen shows a draft; numbers may be grouped.
+fn holds(screen: &str, draft: &str) -> bool {
+    screen.contains(draft) || screen.replace(',', "").contains(draft)
 }

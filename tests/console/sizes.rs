@@ -1,68 +1,78 @@
-//! Every screen at every size.
+//! Every screen and every dialog in windows of every size.
 
+use novamind::console::glyphs::Glyphs;
+
+use super::dice::Dice;
 use super::harness::Console;
 
 /// Keys that lead to every place of the console, each followed by what closes it.
-const PLACES: [(&str, &str); 20] = [
+const PLACES: [(&str, &str); 40] = [
     ("1", ""),
+    ("1 z", "z"),
     ("2", ""),
+    ("2 tab z", "z shift-tab"),
     ("3", ""),
+    ("3 enter", "esc"),
+    ("3 enter z", "z esc"),
+    ("3 tab", "shift-tab"),
     ("4", ""),
+    ("4 tab", ""),
+    ("4 tab z", "z"),
     ("5", ""),
     ("5 p", "esc"),
+    ("5 p 'draft'", "esc"),
     ("6", ""),
+    ("6 tab", ""),
     ("7", ""),
     ("7 tab", ""),
+    ("7 tab tab z", "z"),
     ("8", ""),
     ("8 enter", "esc"),
+    ("8 / 'ads' enter enter", "esc esc"),
     ("9", "esc"),
+    ("9 i 'SELECT * FROM ledger' f5", "esc"),
+    ("9 tab tab", "esc"),
     ("0", ""),
-    (":", "esc"),
+    ("0 tab", ""),
+    ("0 tab tab", ""),
+    ("1 :", "esc"),
+    (": 'set'", "esc"),
     ("?", "esc"),
+    ("? / 'a' enter", "esc esc"),
     ("n", "esc"),
     ("n enter", "esc"),
+    ("n enter enter", "esc"),
     ("w", "esc"),
     ("d", "esc"),
     ("c", "esc"),
+    ("1 f", "esc"),
+    ("1 g", "esc"),
 ];
 
-fn sizes() -> impl Iterator<Item = (u16, u16)> {
-    let small = (0..=62).step_by(3).flat_map(|width| (0..=20).step_by(2).map(move |height| (width, height)));
-    small.chain([
-        (60, 16),
-        (61, 17),
-        (79, 23),
-        (80, 24),
-        (81, 25),
-        (103, 30),
-        (104, 31),
-        (120, 40),
-        (200, 60),
-        (400, 120),
-    ])
+/// Widths and heights at which layouts change, and their neighbours.
+const WIDTHS: [u16; 30] = [
+    0, 1, 2, 59, 60, 61, 69, 70, 79, 80, 81, 89, 90, 99, 100, 101, 103, 104, 109, 110, 111, 119, 120, 121,
+    139, 140, 159, 160, 200, 400,
+];
+const HEIGHTS: [u16; 20] = [0, 1, 2, 15, 16, 17, 19, 20, 23, 24, 25, 29, 30, 31, 39, 40, 41, 59, 60, 120];
+
+/// Random sizes in the ordinary test.
+const RANDOM: usize = 2_000;
+
+/// A console in a run with some weeks behind it and something everywhere.
+fn console(runs: &std::path::Path) -> Console {
+    super::company::led("companies.toml", 3, 35, runs);
+    Console::in_latest_run(runs, (120, 40))
 }
 
-#[test]
-fn nothing_breaks_at_any_size_and_growing_brings_the_screen_back() {
-    let runs = tempfile::tempdir().expect("a folder");
-    let mut console = Console::start(runs.path(), (80, 24));
-    let menu = console.screen();
-    for size in sizes() {
-        console.size = size;
-        console.draw();
-    }
-    console.size = (80, 24);
-    assert_eq!(console.screen(), menu);
-    console.press("n");
-    for size in sizes() {
-        console.size = size;
-        console.draw();
-    }
-    console.size = (80, 24);
-    console.press("enter");
-    console.week();
-    console.press("esc");
+fn boundaries() -> impl Iterator<Item = (u16, u16)> {
+    WIDTHS.into_iter().flat_map(|width| HEIGHTS.into_iter().map(move |height| (width, height)))
+}
+
+/// Draws every place in windows of some sizes; what was there before is there again when the window has its size back.
+fn sweep(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
     for (open, close) in PLACES {
+        console.size = (120, 40);
         console.press(open);
         let before = console.screen();
         for size in sizes() {
@@ -72,19 +82,59 @@ fn nothing_breaks_at_any_size_and_growing_brings_the_screen_back() {
                 assert!(drawn.contains("NovaMind needs 60"), "{open} at {size:?}: {drawn}");
             }
         }
-        console.size = (80, 24);
+        console.size = (120, 40);
         assert_eq!(console.screen(), before, "{open}");
         console.press(close);
     }
 }
 
 #[test]
+fn nothing_breaks_where_layouts_change_and_growing_brings_the_screen_back() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = console(runs.path());
+    sweep(&mut console, &mut || boundaries().collect());
+}
+
+#[test]
+fn nothing_breaks_at_random_sizes() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = console(runs.path());
+    let mut dice = Dice::of_test("sizes");
+    let each = RANDOM.div_ceil(PLACES.len());
+    sweep(&mut console, &mut || (0..each).map(|_| (dice.roll(260) as u16, dice.roll(90) as u16)).collect());
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test --release --test console -- --ignored"]
+fn soak_nothing_breaks_at_any_size() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = console(runs.path());
+    sweep(&mut console, &mut || {
+        (0..=200).flat_map(|width| (0..=60).map(move |height| (width, height))).collect()
+    });
+}
+
+#[test]
+fn the_menu_fits_every_window() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::start(runs.path(), (80, 24));
+    for keys in ["", "n"] {
+        console.press(keys);
+        let before = console.screen();
+        for size in boundaries() {
+            console.size = size;
+            console.draw();
+        }
+        console.size = (80, 24);
+        assert_eq!(console.screen(), before);
+    }
+}
+
+#[test]
 fn ascii_is_all_that_is_drawn_with_ascii() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut console = Console::in_new_run(runs.path(), (120, 40));
-    console.week();
-    console.press("esc");
-    console.app.ascii = true;
+    let mut console = console(runs.path());
+    console.app.glyphs = Glyphs::Ascii;
     for (open, close) in PLACES {
         console.press(open);
         let screen = console.screen();

@@ -1,6 +1,7 @@
 //! The rows of the speed table that the console adds.
 
 use crate::console::app::Settings;
+use crate::console::glyphs::Glyphs;
 use crate::console::keys::Keys;
 use crate::console::speed;
 use crate::console::theme::Theme;
@@ -50,7 +51,7 @@ fn settings(bench: &Bench) -> Result<Settings, BenchError> {
     Ok(Settings {
         theme: Theme::find("dark", &configuration).map_err(BenchError::new)?,
         keys: Keys::of_user(&configuration).map_err(BenchError::new)?,
-        ascii: false,
+        glyphs: Glyphs::Braille,
         configuration,
         runs: bench.scratch.clone(),
     })

@@ -3,7 +3,7 @@
 use crossterm::event::{Event, KeyEvent, KeyEventKind, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Position;
 
-use super::{App, Closing, Layer, Stage};
+use super::{App, Closing, Layer, Order, Stage};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::Click;
 use crate::console::dialogs::confirm::Confirm;
@@ -11,18 +11,25 @@ use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::help::Help;
 use crate::console::dialogs::palette::Palette;
 use crate::console::dialogs::reader::Reader;
+use crate::console::dialogs::rows::RowsBehind;
 use crate::console::dialogs::{Dialog, Outcome, report};
 use crate::console::effect::Effect;
-use crate::console::keys::Chord;
-use crate::console::screens::{Look, ScreenId};
+use crate::console::keys::{Chord, Meaning, written};
+use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::text::number;
 
 impl App {
     pub(super) fn input(&mut self, event: Event) {
         match event {
             Event::Key(key) if key.kind != KeyEventKind::Release => self.key(key),
-            Event::Paste(text) => self.paste(&text),
-            Event::Mouse(mouse) => self.mouse(mouse),
+            Event::Paste(text) => {
+                self.pending.clear();
+                self.paste(&text);
+            }
+            Event::Mouse(mouse) => {
+                self.pending.clear();
+                self.pointer(mouse);
+            }
             _ => {}
         }
     }
@@ -32,6 +39,9 @@ impl App {
         let scopes = self.scopes();
         let typing = scopes.first().is_some_and(|scope| scope.is_text());
         let chord = Chord::of(&key);
+        if !self.pending.is_empty() {
+            return self.go_on(chord);
+        }
         let action = if typing && chord.is_text() {
             // What the text wants comes before what the places around it would do with the key.
             let texts: Vec<Scope> = scopes.iter().copied().filter(|scope| scope.is_text()).collect();
@@ -46,7 +56,28 @@ impl App {
         };
         match action {
             Some(action) => self.act(action),
+            None if !typing && self.keys.meaning(&scopes, &[chord]) == Meaning::Begin => {
+                self.pending.push(chord);
+            }
             None => self.typed(&key),
+        }
+    }
+
+    /// A chord after others that began something.
+    fn go_on(&mut self, chord: Chord) {
+        self.pending.push(chord);
+        match self.keys.meaning(&self.scopes(), &self.pending) {
+            Meaning::Begin => {}
+            Meaning::Action(action) => {
+                self.pending.clear();
+                self.act(action);
+            }
+            Meaning::Nothing => {
+                let pressed = written(&std::mem::take(&mut self.pending));
+                if !chord.is_escape() {
+                    self.complain(format!("{pressed} means nothing here"));
+                }
+            }
         }
     }
 
@@ -91,7 +122,7 @@ impl App {
         }
     }
 
-    fn mouse(&mut self, mouse: MouseEvent) {
+    fn pointer(&mut self, mouse: MouseEvent) {
         let at = Position::new(mouse.column, mouse.row);
         let wheel = match mouse.kind {
             MouseEventKind::ScrollUp => Some(Action::Up),
@@ -136,7 +167,7 @@ impl App {
         let global = action.entry().scope == Scope::Global;
         match action {
             Action::Quit => return self.quit(),
-            Action::Redraw => return self.orders.push(super::Order::Redraw),
+            Action::Redraw => return self.orders.push(Order::Redraw),
             Action::TourSkip => return self.skip_step(),
             Action::TourClose => return self.close_tour(),
             _ => {}
@@ -155,7 +186,7 @@ impl App {
         self.follow(effects);
     }
 
-    fn in_dialog(&mut self, work: impl FnOnce(&mut dyn Dialog, &Look<'_>) -> Outcome) {
+    pub(super) fn in_dialog(&mut self, work: impl FnOnce(&mut dyn Dialog, &Look<'_>) -> Outcome) {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
         let look = Look { company: &company, keys: &self.keys, page: self.page };
@@ -204,6 +235,15 @@ impl App {
             Action::Explain => self.explain(),
             Action::Glossary => self.show_glossary(),
             Action::Tour => self.show_tour(),
+            Action::Forward => self.forward(),
+            Action::Zoom => self.zoom(),
+            Action::Rows => self.show_rows(),
+            Action::NextTheme => self.next_theme(),
+            Action::NextMarker => {
+                self.glyphs = self.glyphs.next();
+                self.say(format!("drawn with {}", self.glyphs.words()));
+            }
+            Action::Mouse => self.hand_over_mouse(),
             Action::LeaveRun => self.leave(Closing::ToMenu),
             _ => {}
         }
@@ -214,6 +254,48 @@ impl App {
             let panes = screen.panes();
             let step = if forward { 1 } else { panes - 1 };
             screen.set_focus((screen.focus() + step) % panes);
+        });
+    }
+
+    fn zoom(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        if run.screens.get(run.here).panes() < 2 {
+            return self.complain("this screen has one pane, and it has all the room");
+        }
+        run.zoomed = !run.zoomed;
+    }
+
+    fn show_rows(&mut self) {
+        let found = self.with_screen(|screen, look| screen.figure(look)).flatten();
+        match found {
+            Some(Figure { title, sql: Some(sql), .. }) => {
+                self.open(RowsBehind::new(title, sql.clone()));
+                self.follow(vec![Effect::AskBehind(sql)]);
+            }
+            Some(Figure { title, sql: None, .. }) => {
+                let explain = self.keys.label(Action::Explain).unwrap_or_default();
+                self.complain(format!("{title}: no rows make it up; {explain} explains it"));
+            }
+            None => self.complain("no figure is selected here: tab changes the pane, arrows the row"),
+        }
+    }
+
+    fn next_theme(&mut self) {
+        let here = self.themes.iter().position(|theme| theme.name == self.theme.name);
+        let next = here.map_or(0, |at| (at + 1) % self.themes.len().max(1));
+        if let Some(theme) = self.themes.get(next) {
+            self.theme = theme.clone();
+            self.say(format!("theme {0}; --theme {0} starts with it", self.theme.name));
+        }
+    }
+
+    fn hand_over_mouse(&mut self) {
+        self.mouse = !self.mouse;
+        self.orders.push(Order::Mouse(self.mouse));
+        self.say(if self.mouse {
+            "the mouse selects and presses; shift and drag marks text"
+        } else {
+            "the mouse belongs to the terminal and marks text"
         });
     }
 

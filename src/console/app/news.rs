@@ -78,7 +78,10 @@ impl App {
         }
         let screen = match &news {
             News::Checked(number, _) if *number != self.checks => return,
-            News::Answered(number, ..) if *number != self.questions => return,
+            News::Answered(number, ..) if *number == self.rows_question => {
+                return self.in_dialog(|dialog, look| dialog.hear(&news, look));
+            }
+            News::Answered(number, ..) if *number != self.sql_question => return,
             News::Checked(..) => self.checker,
             News::Answered(..) => ScreenId::Sql,
             News::Called(tool, answer, company) => {
@@ -158,6 +161,8 @@ impl App {
             interrupt,
             here: ScreenId::Overview,
             before: Vec::new(),
+            after: Vec::new(),
+            zoomed: false,
             shown: Instant::now(),
             screens: Screens::default(),
             filing: Filing::default(),

@@ -8,6 +8,7 @@ use crate::console::dialogs::reader::Reader;
 use crate::console::effect::Effect;
 use crate::console::screens::ScreenId;
 use crate::console::worker::{Job, Question};
+use crate::session::Access;
 
 impl App {
     /// Lets effects follow, in their order.
@@ -29,7 +30,11 @@ impl App {
                 self.start("starting the run", Job::Create(Box::new(new)));
             }
             Effect::Open(id) => {
-                let job = Job::Open(self.runs.clone(), id);
+                let job = Job::Open(self.runs.clone(), id, Access::Write);
+                self.start("opening the run", job);
+            }
+            Effect::Look(id) => {
+                let job = Job::Open(self.runs.clone(), id, Access::Read);
                 self.start("opening the run", job);
             }
             Effect::Check { tool, arguments } => {
@@ -40,16 +45,8 @@ impl App {
             Effect::Call { tool, arguments } => self.change(Job::Call(tool, arguments)),
             Effect::Undo => self.change(Job::Undo),
             Effect::Advance { rationale, forecasts } => self.advance(rationale, forecasts),
-            Effect::Ask(sql) => {
-                self.questions += 1;
-                let question = Question::of_person(sql, self.questions);
-                let running = self.busy.is_some();
-                self.orders.push(if running {
-                    Order::AskNow(question)
-                } else {
-                    Order::Job(Job::Ask(question))
-                });
-            }
+            Effect::Ask(sql) => self.sql_question = self.ask(sql),
+            Effect::AskBehind(sql) => self.rows_question = self.ask(sql),
             Effect::CancelQuery => self.orders.push(Order::CancelQuery),
             Effect::Read(reading) => {
                 if let Stage::Run(run) = &mut self.stage {
@@ -103,6 +100,15 @@ impl App {
             Effect::LeaveNow => self.leave(Closing::ToShell(0)),
             Effect::Do(action) => self.act(action),
         }
+    }
+
+    /// Asks the database for the person; returns the number of the question.
+    fn ask(&mut self, sql: String) -> u64 {
+        self.questions += 1;
+        let question = Question::of_person(sql, self.questions);
+        let running = self.busy.is_some();
+        self.orders.push(if running { Order::AskNow(question) } else { Order::Job(Job::Ask(question)) });
+        self.questions
     }
 
     fn start(&mut self, what: &'static str, job: Job) {

@@ -9,6 +9,7 @@ pub mod help;
 pub mod palette;
 pub mod reader;
 pub mod report;
+pub mod rows;
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -16,6 +17,7 @@ use ratatui::layout::Rect;
 use super::action::{Action, Scope};
 use super::canvas::Canvas;
 use super::effect::Effect;
+use super::message::News;
 use super::screens::Look;
 
 /// What follows from an action in a dialog.
@@ -67,6 +69,11 @@ pub trait Dialog {
 
     /// Takes pasted text.
     fn paste(&mut self, _: &str, _: &Look<'_>) -> Outcome {
+        Outcome::stay()
+    }
+
+    /// Takes news that it waits for.
+    fn hear(&mut self, _: &News, _: &Look<'_>) -> Outcome {
         Outcome::stay()
     }
 

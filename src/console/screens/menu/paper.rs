@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 use super::Menu;
 use crate::console::canvas::{Align, Canvas, rows_of};
 use crate::console::dialogs::final_page::published;
+use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{compact, dollars};
@@ -63,7 +64,7 @@ impl Menu {
         let note = if own > 0 { format!("{own} of yours") } else { String::new() };
         let inside = canvas.pane(area, "Published results and yours", &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        let list = Rect { height: inside.height.saturating_sub(3), ..inside };
+        let list = Rect { height: inside.height.saturating_sub(4), ..inside };
         let most = results.first().map_or(1.0, |result| result.cash.max(1.0));
         let from = first_row(self.selected, list.height as usize, results.len());
         for (row, (at, result)) in rows_of(list).zip(results.iter().enumerate().skip(from)) {
@@ -81,9 +82,10 @@ impl Menu {
             "Best cash of three runs each, seed 42, 500 days, $1,000,000 start. Estimated upper bound ${}.",
             compact(bound)
         );
-        let below =
-            Rect { y: list.bottom() + 1, height: inside.height.saturating_sub(list.height + 1), ..inside };
-        for (row, line) in rows_of(below).zip([yours, source]) {
+        let used = list.height + 1;
+        let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
+        let lines = wrapped(&format!("{yours}\n{source}"), below.width as usize);
+        for (row, line) in rows_of(below).zip(lines) {
             canvas.text(row, &line, Role::Dim);
         }
     }

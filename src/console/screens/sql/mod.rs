@@ -8,7 +8,7 @@ mod lexer;
 mod results;
 #[cfg(test)]
 mod tests;
-mod values;
+pub mod values;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};

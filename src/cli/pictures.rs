@@ -1,0 +1,126 @@
+//! `novamind pictures`: the screens of a run as text or SVG, drawn by the console itself.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::{Context, Failure, print};
+use crate::console::app::Settings;
+use crate::console::glyphs::Glyphs;
+use crate::console::keys::Keys;
+use crate::console::photograph::{self, Paper};
+use crate::console::rehearsal::Rehearsal;
+use crate::console::screens::ScreenId;
+use crate::console::theme::Theme;
+use crate::session::find_run_to_read;
+
+/// Options of `pictures`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// The run: its id or the beginning of it, or `latest`.
+    #[arg(default_value = "latest")]
+    run: String,
+    /// Only these screens, by name: overview, cash, customers, …
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    screens: Vec<String>,
+    /// Keys that are pressed instead of showing screens, as the key file writes them, with blanks between them.
+    #[arg(long, conflicts_with = "screens")]
+    keys: Option<String>,
+    /// Columns and rows of the window.
+    #[arg(long, default_value = "120x40", value_parser = size)]
+    size: (u16, u16),
+    /// Theme.
+    #[arg(long, default_value = "dark")]
+    theme: String,
+    /// Draw with ASCII only.
+    #[arg(long)]
+    ascii: bool,
+    /// Text or SVG.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// Folder for one file per screen; without it everything goes to standard output.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Text,
+    Svg,
+}
+
+/// Largest window, columns and rows: a picture of more is a mistake.
+const LARGEST: u16 = 500;
+
+fn size(text: &str) -> Result<(u16, u16), String> {
+    let parts = text.split_once(['x', '×']);
+    let number = |part: &str| part.trim().parse::<u16>().ok().filter(|number| (1..=LARGEST).contains(number));
+    parts
+        .and_then(|(columns, rows)| Some((number(columns)?, number(rows)?)))
+        .ok_or_else(|| format!("a size is columns and rows up to {LARGEST}, for instance 120x40"))
+}
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let runs = context.runs()?;
+    let folder = find_run_to_read(&runs, &options.run)?;
+    let id = folder.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+    let settings = Settings {
+        theme: Theme::find(&options.theme, &context.configuration).map_err(Failure::usage)?,
+        keys: Keys::of_user(&context.configuration).map_err(Failure::usage)?,
+        glyphs: if options.ascii { Glyphs::Ascii } else { Glyphs::Braille },
+        configuration: context.configuration.clone(),
+        runs,
+    };
+    let places = places(options, &settings.keys)?;
+    let mut console = Rehearsal::new(settings, options.size);
+    let taken = take_pictures(&mut console, &id, &places, options);
+    console.finish();
+    taken
+}
+
+/// Names of the pictures, and the keys before each.
+fn places(options: &Options, keys: &Keys) -> Result<Vec<(String, String)>, Failure> {
+    if let Some(keys) = &options.keys {
+        return Ok(vec![("keys".to_owned(), keys.clone())]);
+    }
+    let known = ScreenId::ALL.map(ScreenId::id);
+    if let Some(wrong) = options.screens.iter().find(|name| !known.contains(&name.as_str())) {
+        return Err(Failure::usage(format!("there is no screen {wrong}; there are {}", known.join(", "))));
+    }
+    let wanted = |screen: &ScreenId| {
+        options.screens.is_empty() || options.screens.iter().any(|name| name == screen.id())
+    };
+    let place = |screen: ScreenId| (screen.id().to_owned(), keys.label(screen.action()).unwrap_or_default());
+    Ok(ScreenId::ALL.into_iter().filter(wanted).map(place).collect())
+}
+
+fn take_pictures(
+    console: &mut Rehearsal,
+    run: &str,
+    places: &[(String, String)],
+    options: &Options,
+) -> Result<(), Failure> {
+    let failed = |error: std::io::Error| Failure::failed(error.to_string());
+    console.look_at(run).map_err(failed)?;
+    for (name, keys) in places {
+        console.press(keys).map_err(|error| Failure::usage(error.to_string()))?;
+        let frame = console.draw();
+        let paper = if options.theme == "light" { Paper::LIGHT } else { Paper::DARK };
+        let (picture, ending) = match options.format {
+            Format::Text => (photograph::text(&frame), "txt"),
+            Format::Svg => (photograph::svg(&frame, paper), "svg"),
+        };
+        match &options.out {
+            None => print(&picture)?,
+            Some(folder) => write(&folder.join(format!("{name}.{ending}")), &picture)?,
+        }
+    }
+    Ok(())
+}
+
+fn write(path: &Path, picture: &str) -> Result<(), Failure> {
+    let written =
+        path.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::write(path, picture));
+    written.map_err(|error| Failure::failed(format!("{}: {error}", path.display())))
+}

@@ -1,0 +1,138 @@
+//! The rows that make up a figure, and the query they come from.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use super::{Dialog, Outcome};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, centered, rows_of};
+use crate::console::effect::Effect;
+use crate::console::message::News;
+use crate::console::screens::Look;
+use crate::console::screens::sql::values;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::Table;
+use crate::notation::grouped;
+use crate::session::{Refusal, Rows};
+
+/// Most lines of the query that are shown above its rows.
+const QUERY_LINES: usize = 6;
+
+/// The rows behind a figure.
+pub struct RowsBehind {
+    title: String,
+    sql: String,
+    answer: Option<Result<Rows, Refusal>>,
+    table: Table,
+}
+
+impl RowsBehind {
+    /// Waits for the answer to the question behind a figure.
+    pub fn new(title: String, sql: String) -> RowsBehind {
+        RowsBehind { title, sql, answer: None, table: Table::default() }
+    }
+
+    fn take(&mut self, answer: &Result<Rows, Refusal>) {
+        if let Ok(rows) = answer {
+            self.table = Table::new(values::columns(rows)).by_cell();
+            self.table.set_rows(values::cells(rows));
+        }
+        self.answer = Some(answer.clone());
+    }
+
+    fn note(&self) -> String {
+        match &self.answer {
+            None => String::new(),
+            Some(Err(_)) => "refused".to_owned(),
+            Some(Ok(rows)) => {
+                let count = grouped(rows.rows.len() as f64, 0);
+                let noun = if rows.rows.len() == 1 { "row" } else { "rows" };
+                let first = if rows.truncated { "first " } else { "" };
+                format!("{first}{count} {noun} {}", self.table.note()).trim_end().to_owned()
+            }
+        }
+    }
+
+    fn whole_cell(&self) -> Option<Effect> {
+        let Some(Ok(rows)) = &self.answer else { return None };
+        let column = self.table.selected_column();
+        let cell = rows.rows.get(self.table.selected()?)?.get(column)?;
+        Some(Effect::ShowText(rows.columns.get(column)?.clone(), values::whole(cell)))
+    }
+}
+
+impl Dialog for RowsBehind {
+    fn scopes(&self) -> Vec<Scope> {
+        if self.table.is_typing() { vec![Scope::Field] } else { vec![Scope::List, Scope::Dialog] }
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        vec![Action::OpenInSql, Action::CopyQuery, Action::Sort, Action::Filter, Action::Close]
+    }
+
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
+        match action {
+            Action::OpenInSql => {
+                let effects = vec![Effect::EditSql(self.sql.clone()), Effect::Do(Action::RunQuery)];
+                return Outcome::close_with(effects);
+            }
+            Action::CopyQuery => return Outcome::with(vec![Effect::Copy(self.sql.clone())]),
+            Action::Open => return Outcome::with(self.whole_cell().into_iter().collect()),
+            _ => {}
+        }
+        if self.table.act(action, look.page) {
+            return Outcome::stay();
+        }
+        match action {
+            Action::Close | Action::Cancel if self.answer.is_none() => {
+                Outcome::close_with(vec![Effect::CancelQuery])
+            }
+            Action::Close | Action::Cancel => Outcome::close(),
+            _ => Outcome::stay(),
+        }
+    }
+
+    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Outcome {
+        self.table.edit_filter(|field| {
+            field.key(key);
+        });
+        Outcome::stay()
+    }
+
+    fn hear(&mut self, news: &News, _: &Look<'_>) -> Outcome {
+        if let News::Answered(_, answer, _) = news {
+            self.take(answer);
+        }
+        Outcome::stay()
+    }
+
+    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+        self.table.select_place(row);
+        Outcome::stay()
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let own = centered(area, area.width.saturating_sub(4).min(140), area.height.saturating_sub(2));
+        canvas.clear(own, Role::Text);
+        let inside = canvas.pane(own, &self.title, &self.note(), true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let query = wrapped(&self.sql, inside.width as usize);
+        let used = query.len().min(QUERY_LINES).min(inside.height as usize / 3);
+        for (row, line) in rows_of(inside).zip(query.iter().take(used)) {
+            canvas.text(row, line, Role::Dim);
+        }
+        let taken = (used as u16 + 1).min(inside.height);
+        let below = Rect { y: inside.y + taken, height: inside.height - taken, ..inside };
+        match &self.answer {
+            None => canvas.text(below, "asking … esc cancels", Role::Warning),
+            Some(Err(refusal)) => canvas.text(below, &refusal.message, Role::Bad),
+            Some(Ok(rows)) if rows.rows.is_empty() => {
+                canvas.text(below, "no rows yet", Role::Dim);
+            }
+            Some(Ok(_)) => self.table.draw(canvas, below, true, 0),
+        }
+        let keys = [Action::OpenInSql, Action::CopyQuery, Action::Sort, Action::Filter, Action::Close];
+        canvas.pane_keys(own, &look.hints(&keys));
+    }
+}

@@ -1,0 +1,74 @@
+//! Every key of the console as text, made from the table of actions: for the terminal and for the README.
+
+use super::action::{ACTIONS, ActionEntry, Scope};
+use super::keys::{Keys, written};
+
+/// Actions of each place that has any, with their keys: the place, then title, keys and explanation of each action.
+fn places(keys: &Keys) -> impl Iterator<Item = (Scope, Vec<(&'static ActionEntry, Vec<String>)>)> + '_ {
+    Scope::ALL.into_iter().filter_map(move |scope| {
+        let own = ACTIONS.iter().filter(|entry| entry.scope == scope);
+        let with_keys =
+            |entry: &'static ActionEntry| (entry, keys.chords(entry.action).map(written).collect());
+        let rows: Vec<(&ActionEntry, Vec<String>)> = own.map(with_keys).collect();
+        (!rows.is_empty()).then_some((scope, rows))
+    })
+}
+
+/// Aligned columns.
+pub fn text(keys: &Keys) -> String {
+    let mut text = String::new();
+    for (scope, rows) in places(keys) {
+        text.push_str(&format!("{}\n", scope.title()));
+        let shown: Vec<(String, &ActionEntry)> =
+            rows.into_iter().map(|(entry, chords)| (chords.join(", "), entry)).collect();
+        let width = shown.iter().map(|(chords, _)| chords.len()).max().unwrap_or(0);
+        for (chords, entry) in shown {
+            text.push_str(&format!("  {chords:<width$}  {}\n", entry.doc));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Tables in Markdown, one for each place.
+pub fn markdown(keys: &Keys) -> String {
+    let mut text = String::new();
+    for (scope, rows) in places(keys) {
+        text.push_str(&format!("**{}**\n\n| keys | |\n|---|---|\n", scope.title()));
+        for (entry, chords) in rows {
+            let chords: Vec<String> =
+                chords.iter().map(|chord| format!("`{}`", chord.replace('|', "\\|"))).collect();
+            let chords = if chords.is_empty() { "palette".to_owned() } else { chords.join(" ") };
+            text.push_str(&format!("| {chords} | {} |\n", entry.doc));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_action_is_in_the_manual_once() {
+        let keys = Keys::shipped();
+        for manual in [text(&keys), markdown(&keys)] {
+            for entry in ACTIONS {
+                assert!(manual.contains(entry.doc), "{}", entry.name);
+            }
+        }
+        assert!(text(&keys).contains("  n "), "{}", text(&keys));
+        assert!(markdown(&keys).contains("| `n` | Review the changes"), "{}", markdown(&keys));
+    }
+
+    #[test]
+    fn the_readme_has_the_keys_that_the_program_has() {
+        let readme = include_str!("../../README.md");
+        let shipped = markdown(&Keys::shipped());
+        assert!(
+            readme.contains(shipped.trim()),
+            "the keys in README.md are out of date; `novamind keys --markdown` prints them:\n{shipped}"
+        );
+    }
+}

@@ -1,0 +1,190 @@
+//! Pictures of frames: text, and SVG with the colours of a terminal.
+
+use std::fmt::Write;
+
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::style::{Color, Modifier};
+use unicode_width::UnicodeWidthStr;
+
+/// Width of a cell, pixels.
+const WIDTH: f64 = 8.4;
+/// Height of a cell, pixels.
+const HEIGHT: f64 = 18.0;
+/// Room around the cells, pixels.
+const MARGIN: f64 = 14.0;
+
+/// Colours of a terminal's own ink and paper.
+#[derive(Debug, Clone, Copy)]
+pub struct Paper {
+    ink: &'static str,
+    paper: &'static str,
+}
+
+impl Paper {
+    /// Light signs on a dark ground.
+    pub const DARK: Paper = Paper { ink: "#d6dae1", paper: "#14171c" };
+    /// Dark signs on a light ground.
+    pub const LIGHT: Paper = Paper { ink: "#24292f", paper: "#fbfbfa" };
+}
+
+/// The letters of a frame, a line for each row.
+pub fn text(buffer: &Buffer) -> String {
+    let row = |y| {
+        let mut line = String::new();
+        let mut x = 0;
+        while x < buffer.area.width {
+            let symbol = buffer[(x, y)].symbol();
+            line.push_str(symbol);
+            x += symbol.width().max(1) as u16;
+        }
+        line.trim_end().to_owned() + "\n"
+    };
+    (0..buffer.area.height).map(row).collect()
+}
+
+/// A frame as an SVG picture that needs nothing besides itself.
+pub fn svg(buffer: &Buffer, paper: Paper) -> String {
+    let width = f64::from(buffer.area.width) * WIDTH + 2.0 * MARGIN;
+    let height = f64::from(buffer.area.height) * HEIGHT + 2.0 * MARGIN;
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
+         height=\"{height:.0}\" font-family=\"'DejaVu Sans Mono','Cascadia Mono','Menlo','Consolas',monospace\" \
+         font-size=\"14\" xml:space=\"preserve\">\n<rect width=\"100%\" height=\"100%\" rx=\"8\" fill=\"{}\"/>\n",
+        paper.paper
+    );
+    for y in 0..buffer.area.height {
+        draw_row(&mut out, buffer, y, paper);
+    }
+    out.push_str("</svg>\n");
+    out
+}
+
+fn draw_row(out: &mut String, buffer: &Buffer, y: u16, paper: Paper) {
+    let cells: Vec<&Cell> = (0..buffer.area.width).map(|x| &buffer[(x, y)]).collect();
+    let mut from = 0;
+    for same in cells.chunk_by(|left, right| left.style() == right.style()) {
+        let letters: String = same.iter().map(|cell| cell.symbol()).collect();
+        draw_piece(out, (from, y), same.len(), letters.trim_end(), same[0], paper);
+        from += same.len();
+    }
+}
+
+/// Cells of one row that look the same.
+fn draw_piece(
+    out: &mut String,
+    (x, y): (usize, u16),
+    cells: usize,
+    letters: &str,
+    cell: &Cell,
+    paper: Paper,
+) {
+    let (ink, ground) = colours(cell, paper);
+    let left = MARGIN + x as f64 * WIDTH;
+    let top = MARGIN + f64::from(y) * HEIGHT;
+    // Writing into a text cannot fail.
+    if let Some(ground) = ground {
+        let width = cells as f64 * WIDTH;
+        let _ = writeln!(
+            out,
+            "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{HEIGHT}\" fill=\"{ground}\"/>"
+        );
+    }
+    if letters.is_empty() {
+        return;
+    }
+    let weight = if cell.modifier.contains(Modifier::BOLD) { " font-weight=\"bold\"" } else { "" };
+    let faint = if cell.modifier.contains(Modifier::DIM) { " opacity=\"0.6\"" } else { "" };
+    let line =
+        if cell.modifier.contains(Modifier::UNDERLINED) { " text-decoration=\"underline\"" } else { "" };
+    // The length keeps columns where they are, whatever font the reader has.
+    let length = letters.width() as f64 * WIDTH;
+    let base = top + HEIGHT * 0.76;
+    let _ = writeln!(
+        out,
+        "<text x=\"{left:.1}\" y=\"{base:.1}\" textLength=\"{length:.1}\" lengthAdjust=\"spacingAndGlyphs\" \
+         fill=\"{ink}\"{weight}{faint}{line}>{}</text>",
+        escaped(letters)
+    );
+}
+
+/// Ink of a cell, and its ground where it is not the paper.
+fn colours(cell: &Cell, paper: Paper) -> (String, Option<String>) {
+    let ink = colour(cell.fg).unwrap_or_else(|| paper.ink.to_owned());
+    let ground = colour(cell.bg);
+    if cell.modifier.contains(Modifier::REVERSED) {
+        (ground.unwrap_or_else(|| paper.paper.to_owned()), Some(ink))
+    } else {
+        (ink, ground)
+    }
+}
+
+/// A colour of a terminal as the web writes it; none for the terminal's own.
+fn colour(colour: Color) -> Option<String> {
+    let name = match colour {
+        Color::Reset => return None,
+        Color::Black => "#16191d",
+        Color::Red => "#d9534f",
+        Color::Green => "#3fa45b",
+        Color::Yellow => "#c99a2e",
+        Color::Blue => "#4f83d1",
+        Color::Magenta => "#b06fc4",
+        Color::Cyan => "#2fa3b5",
+        Color::Gray => "#aab2bd",
+        Color::DarkGray => "#6b7280",
+        Color::LightRed => "#f07f7a",
+        Color::LightGreen => "#74cf8c",
+        Color::LightYellow => "#e8c465",
+        Color::LightBlue => "#86aef0",
+        Color::LightMagenta => "#d29be3",
+        Color::LightCyan => "#6fd0de",
+        Color::White => "#f4f6f8",
+        Color::Rgb(red, green, blue) => return Some(format!("#{red:02x}{green:02x}{blue:02x}")),
+        Color::Indexed(number) => return Some(indexed(number)),
+    };
+    Some(name.to_owned())
+}
+
+/// A colour of the cube of 256.
+fn indexed(number: u8) -> String {
+    let level = |step: u8| if step == 0 { 0 } else { 55 + 40 * step };
+    let (red, green, blue) = match number {
+        0..=15 => (128, 128, 128),
+        16..=231 => (level((number - 16) / 36), level((number - 16) / 6 % 6), level((number - 16) % 6)),
+        232..=255 => (8 + 10 * (number - 232), 8 + 10 * (number - 232), 8 + 10 * (number - 232)),
+    };
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use ratatui::layout::Rect;
+    use ratatui::style::Style;
+
+    use super::*;
+
+    #[test]
+    fn a_frame_becomes_text_and_a_picture() {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 8, 2));
+        buffer.set_string(0, 0, "a<b 日本", Style::new().fg(Color::Red));
+        buffer.set_string(0, 1, "on", Style::new().add_modifier(Modifier::REVERSED | Modifier::BOLD));
+        assert_eq!(text(&buffer), "a<b 日本\non\n");
+        let picture = svg(&buffer, Paper::DARK);
+        assert!(picture.starts_with("<svg ") && picture.ends_with("</svg>\n"), "{picture}");
+        assert!(picture.contains("a&lt;b 日"), "{picture}");
+        assert!(picture.contains("fill=\"#d9534f\""), "{picture}");
+        assert!(picture.contains("fill=\"#14171c\" font-weight=\"bold\">on<"), "{picture}");
+        assert_eq!(picture.matches("<text").count(), picture.matches("</text>").count());
+    }
+
+    #[test]
+    fn the_cube_of_colours_is_that_of_terminals() {
+        assert_eq!(indexed(16), "#000000");
+        assert_eq!(indexed(196), "#ff0000");
+        assert_eq!(indexed(231), "#ffffff");
+        assert_eq!(indexed(244), "#808080");
+    }
+}

@@ -1,0 +1,215 @@
+//! The console without a terminal: the real application and its threads, drawn into cells. Tests play it, the speed
+//! table measures it, and the pictures of the documentation are taken of it.
+
+use std::io;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Duration;
+
+use crossterm::event::Event;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use super::app::{App, Order, Settings};
+use super::effect::Effect;
+use super::files;
+use super::frame;
+use super::keys::Chord;
+use super::message::{Message, News};
+use super::worker::{Job, Workers};
+
+/// An answer that takes longer than this does not come.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A console that nobody sees.
+pub struct Rehearsal {
+    /// The application.
+    pub app: App,
+    /// Columns and rows of the window.
+    pub size: (u16, u16),
+    /// Exit code and last words, once it has left.
+    pub left: Option<(u8, Option<String>)>,
+    /// What was put into the clipboard.
+    pub copied: Vec<String>,
+    /// Where the cursor stood in the last frame.
+    pub cursor: Option<Position>,
+    workers: Workers,
+    sender: Sender<Message>,
+    messages: Receiver<Message>,
+    /// Answers that are still to come.
+    waiting: u32,
+}
+
+impl Rehearsal {
+    /// A console that has shown nothing yet.
+    pub fn new(settings: Settings, size: (u16, u16)) -> Rehearsal {
+        let (sender, messages) = channel();
+        let workers = Workers::start(sender.clone(), settings.configuration.clone());
+        Rehearsal {
+            app: App::new(settings),
+            size,
+            left: None,
+            copied: Vec::new(),
+            cursor: None,
+            workers,
+            sender,
+            messages,
+            waiting: 0,
+        }
+    }
+
+    /// Opens a run, to go on with it, and waits until everything about it is known.
+    ///
+    /// # Errors
+    /// It does not open.
+    pub fn open(&mut self, run: &str) -> io::Result<()> {
+        self.open_with(Effect::Open(run.to_owned()))
+    }
+
+    /// Opens a run, to look at it, and waits until everything about it is known.
+    ///
+    /// # Errors
+    /// It does not open.
+    pub fn look_at(&mut self, run: &str) -> io::Result<()> {
+        self.open_with(Effect::Look(run.to_owned()))
+    }
+
+    fn open_with(&mut self, effect: Effect) -> io::Result<()> {
+        self.app.start_with(effect);
+        self.settle()?;
+        match (self.app.run(), &self.app.note) {
+            (Some(_), _) => Ok(()),
+            (None, Some(note)) => Err(io::Error::other(note.text.clone())),
+            (None, None) => Err(io::Error::other("the run did not open")),
+        }
+    }
+
+    /// Where input comes from while a week runs.
+    pub fn sender(&self) -> Sender<Message> {
+        self.sender.clone()
+    }
+
+    /// Presses keys, written as the key file writes them, one after the other; `_` is a blank, and a word in single
+    /// quotes is typed letter by letter.
+    ///
+    /// # Errors
+    /// A key that there is not; an answer does not come.
+    pub fn press(&mut self, keys: &str) -> io::Result<()> {
+        for word in keys.split(' ').filter(|word| !word.is_empty()) {
+            match word.strip_prefix('\'').and_then(|rest| rest.strip_suffix('\'')) {
+                Some(text) => text.chars().try_for_each(|letter| self.key(&letter.to_string()))?,
+                None => self.key(word)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Presses one key and waits for what follows.
+    ///
+    /// # Errors
+    /// There is no such key; an answer does not come.
+    pub fn key(&mut self, key: &str) -> io::Result<()> {
+        let event = event(if key == "_" { "space" } else { key })?;
+        self.send(event)
+    }
+
+    /// Lets something happen in the window as it is drawn now, and waits for what follows.
+    ///
+    /// # Errors
+    /// An answer does not come.
+    pub fn send(&mut self, event: Event) -> io::Result<()> {
+        self.draw();
+        self.app.update(Message::Input(event));
+        self.settle()
+    }
+
+    /// Waits until nothing is left to do.
+    ///
+    /// # Errors
+    /// An answer does not come.
+    pub fn settle(&mut self) -> io::Result<()> {
+        self.hand_over();
+        while self.waiting > 0 && self.left.is_none() {
+            let message = self.receive()?;
+            self.app.update(message);
+            self.hand_over();
+        }
+        Ok(())
+    }
+
+    /// The next thing that arrives.
+    ///
+    /// # Errors
+    /// Nothing arrives.
+    pub fn receive(&mut self) -> io::Result<Message> {
+        let message = self.messages.recv_timeout(PATIENCE).map_err(|_| io::Error::other("no answer came"))?;
+        self.count(&message);
+        Ok(message)
+    }
+
+    /// The next thing that has arrived already.
+    pub fn received(&mut self) -> Option<Message> {
+        let message = self.messages.try_recv().ok()?;
+        self.count(&message);
+        Some(message)
+    }
+
+    fn count(&mut self, message: &Message) {
+        let answers = matches!(message, Message::News(news) if !matches!(news, News::Day(..)));
+        self.waiting -= u32::from(answers).min(self.waiting);
+    }
+
+    /// Hands over what has to be done outside.
+    pub fn hand_over(&mut self) {
+        for order in self.app.take_orders() {
+            match order {
+                Order::Job(job) => {
+                    self.waiting += u32::from(!matches!(job, Job::NoteQuery(..) | Job::NoteView(..)));
+                    self.workers.send(job);
+                }
+                Order::AskNow(question) => {
+                    self.waiting += 1;
+                    self.workers.ask_now(question);
+                }
+                Order::ListRuns => {
+                    self.waiting += 1;
+                    self.workers.send(Job::List(self.app.runs_folder().to_owned()));
+                }
+                Order::Write(path, contents) => {
+                    self.waiting += 1;
+                    files::write_behind(path, contents, self.sender.clone());
+                }
+                Order::Copy(text) => self.copied.push(text),
+                Order::Exit(code, text) => self.left = Some((code, text)),
+                Order::CancelQuery | Order::Redraw | Order::Mouse(_) => {}
+            }
+        }
+    }
+
+    /// Draws a frame; returns its cells.
+    pub fn draw(&mut self) -> Buffer {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, self.size.0, self.size.1));
+        self.draw_into(&mut buffer);
+        buffer
+    }
+
+    /// Draws a frame into cells.
+    pub fn draw_into(&mut self, buffer: &mut Buffer) {
+        let drawn = frame::draw(&self.app, buffer);
+        self.app.clicks = drawn.clicks;
+        self.app.page = drawn.page;
+        self.cursor = drawn.cursor;
+    }
+
+    /// Saves the run and ends the threads.
+    pub fn finish(self) {
+        self.workers.finish();
+    }
+}
+
+/// The event of a key.
+///
+/// # Errors
+/// There is no such key.
+pub fn event(key: &str) -> io::Result<Event> {
+    Chord::parse(key).map(|chord| Event::Key(chord.event())).map_err(io::Error::other)
+}

@@ -1,0 +1,58 @@
+//! What can be checked of looks without eyes: words that are cut although there is room, halves that stay empty.
+
+/// Blanks behind a cut word that are room, not the gap between two columns.
+const GAP: usize = 4;
+
+/// Lines of a screen in which something is cut although there is room behind it, up to the next border.
+pub fn cut_with_room(screen: &str) -> Vec<String> {
+    let wasteful = |line: &&str| {
+        line.match_indices('…').any(|(at, sign)| {
+            let behind = &line[at + sign.len()..];
+            let blanks = behind.chars().take_while(|letter| *letter == ' ').count();
+            let next = behind.chars().nth(blanks);
+            blanks >= GAP && matches!(next, Some('│') | None) && next.is_some()
+        })
+    };
+    screen.lines().filter(wasteful).map(str::to_owned).collect()
+}
+
+/// Share of cells with ink in the emptier of two halves, side by side and one above the other; borders are no ink.
+pub fn emptiest_half(screen: &str, width: usize) -> f64 {
+    let rows: Vec<Vec<char>> = screen
+        .lines()
+        .map(|line| {
+            let mut cells: Vec<char> = line.chars().collect();
+            cells.resize(width, ' ');
+            cells
+        })
+        .collect();
+    let (rows_half, columns_half) = (rows.len() / 2, width / 2);
+    let share = |of: &dyn Fn(usize, usize) -> bool| {
+        let cells = rows
+            .iter()
+            .enumerate()
+            .flat_map(|(y, row)| row.iter().enumerate().map(move |(x, cell)| (x, y, *cell)));
+        let own: Vec<char> = cells.filter(|(x, y, _)| of(*x, *y)).map(|(_, _, cell)| cell).collect();
+        own.iter().filter(|cell| is_ink(**cell)).count() as f64 / own.len().max(1) as f64
+    };
+    let halves: [&dyn Fn(usize, usize) -> bool; 4] =
+        [&|x, _| x < columns_half, &|x, _| x >= columns_half, &|_, y| y < rows_half, &|_, y| y >= rows_half];
+    halves.into_iter().map(share).fold(1.0, f64::min)
+}
+
+fn is_ink(cell: char) -> bool {
+    !matches!(cell, ' ' | '\u{2800}' | '─' | '│' | '┌' | '┐' | '└' | '┘' | '├' | '┤' | '┬' | '┴' | '┼')
+}
+
+#[test]
+fn a_cut_word_before_room_is_found_and_one_before_a_column_is_not() {
+    assert_eq!(cut_with_room("│ a long na…        │"), ["│ a long na…        │"]);
+    assert!(cut_with_room("│ a long na…  12 │\n│ a long name…│\n at the end of the line…").is_empty());
+}
+
+#[test]
+fn an_empty_half_is_seen() {
+    let half = "xxxxx     \n".repeat(4);
+    assert!(emptiest_half(&half, 10) < 1e-9);
+    assert!(emptiest_half(&"x x x x x \n".repeat(4), 10) > 0.39);
+}

@@ -1,0 +1,144 @@
+//! Every screen as a picture, with realistic companies behind it: the first week, a crisis in week 30, a large company in
+//! week 60. The pictures lie in `snapshots/`, with the checklist they were looked at with; `cargo insta review` shows
+//! what a change does to them.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use novamind::console::theme::Theme;
+use novamind::session::Configuration;
+use ratatui::buffer::Buffer;
+use ratatui::style::Style;
+
+use super::company::led;
+use super::harness::Console;
+use super::looks::{cut_with_room, emptiest_half};
+
+/// Sizes of windows: the smallest that is promised, a usual one, a large one.
+const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
+
+/// Themes of the pictures. The letters are the same in all of them.
+const THEMES: [&str; 2] = ["dark", "light"];
+
+/// Names of the pictures, the keys that lead to them, and those that lead back.
+const PLACES: [(&str, &str, &str); 15] = [
+    ("overview", "1", ""),
+    ("cash", "2", ""),
+    ("customers", "3", ""),
+    ("customers-group", "3 enter", "esc"),
+    ("product", "4", ""),
+    ("social", "5", ""),
+    ("inbox", "6", ""),
+    ("market", "7", ""),
+    ("tools", "8", ""),
+    ("tools-form", "8 enter", "esc"),
+    ("sql", "9", "esc"),
+    ("journal", "0", ""),
+    ("week-report", "1 w", "esc"),
+    ("palette", "1 :", "esc"),
+    ("next-week", "1 n enter 'because' enter f", "esc esc"),
+];
+
+/// Every place of a run, as text and styles.
+fn pictures(name: &str, policy: &str, seed: u64, until: u32) {
+    let runs = tempfile::tempdir().expect("a folder");
+    led(policy, seed, until, runs.path());
+    let mut console = Console::in_latest_run(runs.path(), SIZES[1]);
+    for (place, keys, back) in PLACES {
+        console.press(keys);
+        let picture = picture(&mut console, place);
+        insta::assert_snapshot!(format!("{name}-{place}"), picture);
+        console.size = SIZES[1];
+        console.press(back);
+    }
+}
+
+/// Least share of cells with ink in every half of a large window.
+const LEAST_INK: f64 = 0.04;
+
+fn looks_well(place: &str, size: (u16, u16), letters: &str) {
+    let cut = cut_with_room(letters);
+    assert!(cut.is_empty(), "{place} at {size:?}: cut although there is room:\n{}", cut.join("\n"));
+    let ink = emptiest_half(letters, size.0.into());
+    assert!(size.0 < 120 || ink > LEAST_INK, "{place} at {size:?}: a half is empty ({ink:.3}):\n{letters}");
+}
+
+fn picture(console: &mut Console, place: &str) -> String {
+    let mut text = String::new();
+    for size in SIZES {
+        console.size = size;
+        let mut letters: Option<String> = None;
+        for theme in THEMES {
+            console.app.theme = Theme::find(theme, &Configuration::shipped()).expect("a theme");
+            let buffer = console.draw();
+            let own = letters_of(&buffer);
+            if let Some(before) = &letters {
+                assert_eq!(*before, own, "the theme {theme} changes letters");
+            } else {
+                looks_well(place, size, &own);
+                writeln!(text, "{}×{}\n{own}", size.0, size.1).expect("text");
+            }
+            letters = Some(own);
+            writeln!(text, "{} {}×{}\n{}", theme, size.0, size.1, styles_of(&buffer)).expect("text");
+        }
+    }
+    text
+}
+
+fn letters_of(buffer: &Buffer) -> String {
+    let row = |y| (0..buffer.area.width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+    (0..buffer.area.height).map(|y| row(y).trim_end().to_owned() + "\n").collect()
+}
+
+/// Styles of the cells, run by run, and what the letters stand for: `80a` are eighty cells of the style a.
+fn styles_of(buffer: &Buffer) -> String {
+    let mut names: BTreeMap<String, String> = BTreeMap::new();
+    let mut text = String::new();
+    for y in 0..buffer.area.height {
+        let styles: Vec<String> = (0..buffer.area.width).map(|x| described(buffer[(x, y)].style())).collect();
+        for same in styles.chunk_by(|left, right| left == right) {
+            let next = names.len();
+            let name = names.entry(same[0].clone()).or_insert_with(|| letter(next));
+            write!(text, "{}{name} ", same.len()).expect("text");
+        }
+        text.truncate(text.trim_end().len());
+        text.push('\n');
+    }
+    let mut legend: Vec<(&String, &String)> = names.iter().map(|(style, name)| (name, style)).collect();
+    legend.sort_by_key(|(name, _)| (name.len(), (*name).clone()));
+    for (name, style) in legend {
+        writeln!(text, "{name} = {style}").expect("text");
+    }
+    text
+}
+
+/// a … z, then aa, ab …
+fn letter(number: usize) -> String {
+    let last = char::from(b'a' + (number % 26) as u8);
+    if number < 26 { last.to_string() } else { letter(number / 26 - 1) + &last.to_string() }
+}
+
+fn described(style: Style) -> String {
+    let colour = |colour: Option<ratatui::style::Color>| {
+        colour.map_or_else(|| "reset".to_owned(), |colour| colour.to_string().to_lowercase())
+    };
+    let modifiers = style.add_modifier.iter_names().map(|(name, _)| name.to_lowercase());
+    let looks: Vec<String> =
+        [colour(style.fg), format!("on {}", colour(style.bg))].into_iter().chain(modifiers).collect();
+    looks.join(" ")
+}
+
+#[test]
+fn the_first_week() {
+    pictures("week-1", "opening.toml", 42, 7);
+}
+
+#[test]
+fn a_crisis_in_week_30() {
+    pictures("week-30", "crisis.toml", 42, 210);
+}
+
+#[test]
+fn a_large_company_in_week_60() {
+    pictures("week-60", "crowd.toml", 42, 420);
+}

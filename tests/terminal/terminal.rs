@@ -1,0 +1,166 @@
+//! The built program in a pseudo terminal: its screen, its bytes, its end.
+
+use std::io::{Read, Write};
+use std::num::NonZeroU16;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
+
+fn cells(count: u16) -> NonZeroU16 {
+    NonZeroU16::new(count).expect("a size")
+}
+
+/// The program in a terminal.
+pub struct Terminal {
+    child: Box<dyn Child + Send + Sync>,
+    master: Box<dyn MasterPty + Send>,
+    writer: Box<dyn Write + Send>,
+    bytes: Receiver<Vec<u8>>,
+    screen: vt100::Parser,
+    /// Everything it has written.
+    written: Vec<u8>,
+}
+
+impl Terminal {
+    /// Starts the program with its runs in a folder.
+    pub fn start(runs: &Path, arguments: &[&str], size: (u16, u16)) -> Terminal {
+        Terminal::start_with(runs, arguments, size, &[])
+    }
+
+    /// The same with variables of the environment.
+    pub fn start_with(
+        runs: &Path,
+        arguments: &[&str],
+        (columns, rows): (u16, u16),
+        variables: &[(&str, &str)],
+    ) -> Terminal {
+        let size = PtySize { rows, cols: columns, pixel_width: 0, pixel_height: 0 };
+        let pair = native_pty_system().openpty(size).expect("a terminal");
+        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_novamind"));
+        command.args(arguments);
+        command.env("NOVAMIND_RUNS", runs);
+        command.env("NOVAMIND_CONFIG", runs.join("no-configuration"));
+        command.env("TERM", "xterm-256color");
+        command.env_remove("NO_COLOR");
+        for (name, value) in variables {
+            command.env(name, value);
+        }
+        let child = pair.slave.spawn_command(command).expect("the program starts");
+        drop(pair.slave);
+        let mut reader = pair.master.try_clone_reader().expect("a reader");
+        let (sender, bytes) = channel();
+        std::thread::spawn(move || {
+            let mut buffer = [0; 8192];
+            while let Ok(count) = reader.read(&mut buffer) {
+                if count == 0 || sender.send(buffer[..count].to_vec()).is_err() {
+                    return;
+                }
+            }
+        });
+        let writer = pair.master.take_writer().expect("a writer");
+        Terminal {
+            child,
+            master: pair.master,
+            writer,
+            bytes,
+            screen: vt100::Parser::new(cells(rows), cells(columns), 0),
+            written: Vec::new(),
+        }
+    }
+
+    /// Types.
+    pub fn type_keys(&mut self, keys: &str) {
+        self.writer.write_all(keys.as_bytes()).expect("written");
+        self.writer.flush().expect("flushed");
+    }
+
+    /// Waits until the screen shows some text; fails with the whole screen.
+    pub fn wait_for(&mut self, text: &str) {
+        self.wait_until(text, |screen, _| screen.contains(text));
+    }
+
+    /// Waits until some text has left the screen.
+    pub fn wait_until_gone(&mut self, text: &str) {
+        self.wait_until(text, |screen, _| !screen.contains(text));
+    }
+
+    /// Waits until the program has written some bytes, seen or not.
+    pub fn wait_for_bytes(&mut self, bytes: &[u8]) {
+        let name = String::from_utf8_lossy(bytes).into_owned();
+        self.wait_until(&name, |_, written| written.windows(bytes.len()).any(|window| window == bytes));
+    }
+
+    fn wait_until(&mut self, what: &str, done: impl Fn(&str, &[u8]) -> bool) {
+        let deadline = Instant::now() + Duration::from_secs(60);
+        while !done(&self.screen.screen().contents(), &self.written) {
+            let left = deadline.saturating_duration_since(Instant::now());
+            match self.bytes.recv_timeout(left) {
+                Ok(bytes) => self.take(&bytes),
+                Err(_) => panic!("waiting for {what:?} in vain:\n{}", self.screen.screen().contents()),
+            }
+        }
+    }
+
+    fn take(&mut self, bytes: &[u8]) {
+        self.screen.process(bytes);
+        self.written.extend_from_slice(bytes);
+    }
+
+    /// What is on the screen.
+    pub fn contents(&self) -> String {
+        self.screen.screen().contents()
+    }
+
+    /// Everything the program has written.
+    pub fn written(&self) -> &[u8] {
+        &self.written
+    }
+
+    /// Number of the process.
+    pub fn process(&self) -> String {
+        self.child.process_id().expect("a process").to_string()
+    }
+
+    /// Sends the process a signal, for instance `-TERM`.
+    pub fn signal(&self, signal: &str) {
+        let sent = std::process::Command::new("kill").args([signal, &self.process()]).status();
+        assert!(sent.expect("kill runs").success());
+    }
+
+    /// Changes the size of the window.
+    pub fn resize(&mut self, columns: u16, rows: u16) {
+        let size = PtySize { rows, cols: columns, pixel_width: 0, pixel_height: 0 };
+        self.master.resize(size).expect("resized");
+        self.screen.screen_mut().set_size(cells(rows), cells(columns));
+    }
+
+    /// Waits for the end of a process that was killed and could not tidy up.
+    pub fn killed(mut self) {
+        self.child.wait().expect("it ends");
+    }
+
+    /// Waits for the end; returns the exit code and what is on the screen then.
+    pub fn end(mut self) -> (u32, String) {
+        let code = self.child.wait().expect("it ends").exit_code();
+        while let Ok(bytes) = self.bytes.recv_timeout(Duration::from_secs(5)) {
+            self.take(&bytes);
+        }
+        assert!(!self.screen.screen().alternate_screen(), "the terminal is not restored");
+        (code, self.screen.screen().contents())
+    }
+}
+
+/// Lets a policy play a run that is kept in a folder.
+pub fn run_of(runs: &Path, arguments: &[&str]) {
+    let played = std::process::Command::new(env!("CARGO_BIN_EXE_novamind"))
+        .arg("run")
+        .args(arguments)
+        .arg("--save")
+        .env("NOVAMIND_RUNS", runs)
+        .env("NOVAMIND_CONFIG", runs.join("no-configuration"))
+        .output()
+        .expect("the program runs");
+    assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
+}

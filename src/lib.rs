@@ -8,6 +8,7 @@
 //! | 5 | [`cli`] | one file per subcommand; maps failures to exit codes |
 //! | 4 | [`console`], [`plain`], [`lab`] | the terminal application; the same game line by line; policies, metrics, comparison with reference figures, speed |
 //! | 3 | [`session`] | one run: open, act, query, advance, record, resume, replay, branch. The only door to a world |
+//! | 3 | [`glossary`] | what every term, tool, argument, table and column means, for people |
 //! | 2 | [`tools`], [`database`], [`voice`] | the catalogue of tools; the observable company in SQLite and its guarded queries; words for facts, and the judge of the player's posts |
 //! | 1 | [`world`] | the simulator: pure, deterministic, no files, no clock, no SQL, no prose |
 //!
@@ -45,6 +46,7 @@
 pub mod cli;
 pub mod console;
 pub mod database;
+pub mod glossary;
 pub mod lab;
 pub mod notation;
 pub mod plain;

@@ -266,3 +266,22 @@ fn market_and_engine_tools_are_commands() {
     let notices = by_line(16)["data"]["notifications"].to_string();
     assert!(notices.contains("Study of group S1 complete: level 2"), "{notices}");
 }
+
+#[test]
+fn words_are_explained() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let lines = "explain runway\nwhat delivered quality\nglossary churn\nhelp runway\nexplain set_prices.A\nexplain nonsens\nhelp explain\n";
+    let (said, code) = play(runs.path(), &["--seed", "7"], lines);
+    assert_eq!(code, 0);
+    for part in [
+        "Runway (money)\nThe number of weeks",
+        "Delivered quality (product)\n",
+        "\n  churn ",
+        "set_prices.A (argument of set_prices)",
+        "error usage: there is nothing called nonsens",
+        "explain TERM ",
+    ] {
+        assert!(said.contains(part), "{part} is missing in\n{said}");
+    }
+    assert_eq!(said.matches("Runway (money)").count(), 2, "help knows terms too");
+}

@@ -163,6 +163,8 @@ actions! {
         Explain "explain" "what is this" "Explain the selected figure or field."
         Glossary "glossary" "glossary" "Explain every term of the company."
         Tour "tour" "tour" "Show the first steps in the game, two minutes long."
+        TourSkip "tour-skip" "skip" "Go on with the tour without doing this step."
+        TourClose "tour-close" "close" "Close the tour; it can be resumed."
         NextTheme "next-theme" "next theme" "Use the next set of colours."
         NextMarker "next-marker" "next marker" "Draw curves with braille dots, blocks or ASCII signs."
         Mouse "mouse" "mouse" "Use the mouse, or leave it to the terminal for selecting text."
@@ -265,6 +267,10 @@ actions! {
     Menu {
         NewRun "new-run" "new run" "Start a new run."
         ContinueRun "continue-run" "continue" "Continue the latest run."
+        MarkRun "mark-run" "mark" "Mark the run for a comparison, or unmark it."
+        CompareRuns "compare-runs" "compare" "Show the marked runs side by side."
+        EndRun "end-run" "give up" "End the run for good, after a question."
+        DeleteRun "delete-run" "delete" "Delete the run with everything in its folder, after a question."
     }
     Final {
         ToMenu "to-menu" "start menu" "Go to the start menu."

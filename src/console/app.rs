@@ -2,6 +2,7 @@
 //!
 //! Nothing here waits, reads a file or draws. What takes time is an [`Order`]; its result comes back as news.
 
+mod guide;
 mod input;
 mod news;
 mod orders;
@@ -37,6 +38,7 @@ use super::screens::sql::Sql;
 use super::screens::tools::Tools;
 use super::screens::{Look, Screen, ScreenId};
 use super::theme::Theme;
+use super::tour::Tour;
 use super::worker::{Job, Question};
 use crate::session::Configuration;
 
@@ -127,6 +129,10 @@ pub struct Run {
     pub changes: u64,
     /// What is known for each reading: the count of changes when it was asked.
     pub asked: BTreeMap<Reading, u64>,
+    /// The first steps, while they are shown.
+    pub tour: Option<Tour>,
+    /// Something was explained in this sitting.
+    pub explained: bool,
 }
 
 impl Run {
@@ -223,6 +229,8 @@ pub struct App {
     rows_question: u64,
     /// What is to follow when the run is closed.
     closing: Option<Closing>,
+    /// The run that is being started shows the tour.
+    tour_planned: bool,
     /// What could be clicked in the last frame.
     pub clicks: Vec<(Rect, Click)>,
     /// Rows that the focused list showed in the last frame.
@@ -275,6 +283,7 @@ impl App {
             sql_question: 0,
             rows_question: 0,
             closing: None,
+            tour_planned: false,
             clicks: Vec::new(),
             page: 10,
             drawable: true,
@@ -299,6 +308,7 @@ impl App {
             Message::News(news) => self.news(news),
             Message::Signal(number) => self.leave(Closing::ToShell(128u8.saturating_add(number as u8))),
         }
+        self.settle_tour();
     }
 
     /// What has to be done outside since the last time.

@@ -5,6 +5,7 @@ use serde_json::Value;
 use super::action::Action;
 use super::readings::Reading;
 use super::screens::ScreenId;
+use crate::glossary::Subject;
 use crate::session::{Forecasts, NewRun};
 use crate::world::identifiers::Group;
 
@@ -77,6 +78,16 @@ pub enum Effect {
         /// What it means.
         text: String,
     },
+    /// Explain something over what is open.
+    Explain(Subject),
+    /// Start a run for practice with the tour in it.
+    StartTour,
+    /// How a run of the folder went.
+    ReadCourse(String),
+    /// Give up a run of the folder.
+    EndRun(String),
+    /// Delete a run of the folder.
+    DeleteRun(String),
     /// Save and leave, whatever is half typed.
     LeaveNow,
     /// Do what a key would do.

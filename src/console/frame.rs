@@ -87,6 +87,9 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     draw_top(canvas, Rect { height: 1, ..area }, &run.company);
     draw_tabs(app, run, canvas, Rect { y: area.y + 1, height: 1, ..area });
     let body = Rect { y: area.y + 2, height: area.height - 3, ..area };
+    let tour = run.tour.as_ref().map(|tour| (tour, tour.height(&app.keys, area.width)));
+    let below = tour.as_ref().map_or(0, |(_, height)| *height);
+    let body = Rect { height: body.height.saturating_sub(below), ..body };
     let look = Look { company: &run.company, keys: &app.keys, page: app.page };
     canvas.zoomed = run.zoomed;
     run.screens.get(run.here).draw(canvas, body, &look);
@@ -98,6 +101,9 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
             Layer::Filing => super::dialogs::Dialog::draw(&run.filing, canvas, body, &look),
             Layer::Dialog(dialog) => dialog.draw(canvas, body, &look),
         }
+    }
+    if let Some((tour, height)) = tour {
+        tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys);
     }
 }
 

@@ -27,6 +27,7 @@ mod terminal;
 mod test_kit;
 mod text;
 pub mod theme;
+pub mod tour;
 pub mod widgets;
 pub mod worker;
 

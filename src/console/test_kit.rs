@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::action::Action;
 use super::canvas::Canvas;
 use super::company::Company;
+use super::dialogs::{Dialog, Outcome};
 use super::effect::Effect;
 use super::keys::Keys;
 use super::readings::Reading;
@@ -85,14 +86,8 @@ pub fn act(screen: &mut dyn Screen, action: Action, company: &Company) -> Vec<Ef
 
 /// Draws a screen in a window; the lines of text that are seen.
 pub fn picture(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> Vec<String> {
-    let area = Rect::new(0, 0, width, height);
-    let mut buffer = Buffer::empty(area);
-    let theme = Theme::find("mono", &Configuration::shipped()).expect("a theme");
-    let mut canvas = Canvas::new(&mut buffer, &theme);
     let keys = Keys::shipped();
-    screen.draw(&mut canvas, area, &Look { company, keys: &keys, page: 5 });
-    let line = |y: u16| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
-    (0..height).map(|y| line(y).trim_end().to_owned()).collect()
+    painted(width, height, |canvas, area| screen.draw(canvas, area, &Look { company, keys: &keys, page: 5 }))
 }
 
 /// The same picture as one text.
@@ -109,4 +104,28 @@ pub fn sweep(screen: &mut dyn Screen, company: &Company) {
             drawn(screen, company, width, height);
         }
     }
+}
+
+/// Lets a dialog do an action.
+pub fn in_dialog(dialog: &mut dyn Dialog, action: Action, company: &Company) -> Outcome {
+    let keys = Keys::shipped();
+    dialog.act(action, &Look { company, keys: &keys, page: 5 })
+}
+
+/// Draws a dialog in a window, as one text.
+pub fn dialog_picture(dialog: &dyn Dialog, company: &Company, width: u16, height: u16) -> String {
+    let keys = Keys::shipped();
+    let draw =
+        |canvas: &mut Canvas<'_>, area| dialog.draw(canvas, area, &Look { company, keys: &keys, page: 5 });
+    painted(width, height, draw).join("\n")
+}
+
+/// What is drawn into a window: the lines of text that are seen.
+pub fn painted(width: u16, height: u16, draw: impl FnOnce(&mut Canvas<'_>, Rect)) -> Vec<String> {
+    let area = Rect::new(0, 0, width, height);
+    let mut buffer = Buffer::empty(area);
+    let theme = Theme::find("mono", &Configuration::shipped()).expect("a theme");
+    draw(&mut Canvas::new(&mut buffer, &theme), area);
+    let line = |y: u16| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+    (0..height).map(|y| line(y).trim_end().to_owned()).collect()
 }

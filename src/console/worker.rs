@@ -18,14 +18,20 @@ use super::message::{Message, News};
 use super::readings::Reading;
 use crate::database::query::Limits;
 use crate::session::{
-    Access, Configuration, Desk, Forecasts, Interrupt, NewRun, Refusal, Rows, Session, Via, find_run,
-    find_run_to_read, list_runs,
+    Access, Configuration, Desk, Forecasts, Interrupt, NewRun, Refusal, Rows, Session, Via, delete_run,
+    end_run, find_run, find_run_to_read, list_runs, run_course,
 };
 
 /// Work for the session's thread.
 pub enum Job {
     /// List the runs of a folder.
     List(PathBuf),
+    /// How a run of a folder went.
+    Course(PathBuf, String),
+    /// Give up a run of a folder.
+    EndRun(PathBuf, String),
+    /// Delete a run of a folder.
+    DeleteRun(PathBuf, String),
     /// Start a run.
     Create(Box<NewRun>),
     /// Open a run of a folder by its id, to go on with it or to look at it.
@@ -179,6 +185,21 @@ impl SessionThread {
                 let list = list_runs(&runs).map_err(|error| error.to_string());
                 self.say(News::Runs(list));
             }
+            Job::Course(runs, id) => {
+                let course = run_course(&runs, &id).map_err(|error| error.to_string());
+                self.say(News::Course(id, course));
+            }
+            Job::EndRun(runs, id) => {
+                let done = end_run(&runs, &id).map_err(|error| error.to_string());
+                self.say_kept(
+                    &runs,
+                    done.map(|()| format!("run {id} is given up; it can still be looked at")),
+                );
+            }
+            Job::DeleteRun(runs, id) => {
+                let done = delete_run(&runs, &id).map_err(|error| error.to_string());
+                self.say_kept(&runs, done.map(|()| format!("run {id} is deleted")));
+            }
             Job::Create(new) => {
                 let made = Session::create(*new, &self.configuration).map_err(|error| error.to_string());
                 self.take(made);
@@ -205,6 +226,12 @@ impl SessionThread {
                 }
             }
         }
+    }
+
+    /// What became of a run of the folder, and the runs that are there now.
+    fn say_kept(&self, runs: &std::path::Path, done: Result<String, String>) {
+        let list = list_runs(runs).map_err(|error| error.to_string());
+        self.say(News::Kept(done, list));
     }
 
     fn take(&mut self, opened: Result<Session, String>) {
@@ -267,7 +294,14 @@ impl SessionThread {
                 let kept = session.set_memo(&text);
                 Some(News::MemoKept(kept, Arc::new(Company::of(session))))
             }
-            Job::List(_) | Job::Create(_) | Job::Open(..) | Job::Close | Job::End => None,
+            Job::List(_)
+            | Job::Course(..)
+            | Job::EndRun(..)
+            | Job::DeleteRun(..)
+            | Job::Create(_)
+            | Job::Open(..)
+            | Job::Close
+            | Job::End => None,
         }
     }
 }

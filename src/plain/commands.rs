@@ -1,12 +1,14 @@
 //! The commands of plain mode: what each line does, and what is answered (chapter 70 §8.1).
 
 mod readings;
+mod words;
 
 use std::io::{self, BufRead};
 
 use serde_json::{Value, json};
 
 pub use readings::change as change_line;
+use words::{explain, glossary};
 
 use super::answers::Answer;
 use super::grammar::{self, Argument, Line, Problem, as_object};
@@ -19,7 +21,7 @@ use crate::session::{Mode, Refusal, Session, Via, rows_as_json};
 use crate::tools::{self, Kind, Module, Tool};
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 18] = [
+const COMMANDS: [(&str, &str); 21] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, let a week pass (also: next-week)"),
     ("dashboard", "dashboard                the dashboard of the last week"),
@@ -31,6 +33,8 @@ const COMMANDS: [(&str, &str); 18] = [
     ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
     ("tools", "tools [NAME]             the tools, or one of them"),
     ("tables", "tables [NAME]            the tables, or one of them"),
+    ("explain", "explain TERM             what a term, tool, argument, table or column means (also: what)"),
+    ("glossary", "glossary [WORD]          every term in a line, or those with a word"),
     ("vars", "vars                     the current day, as get_vars tells it"),
     ("branch", "branch WEEK              go on in a branch from the start of that week"),
     ("step", "step [DAYS]              debug: let single days pass (1)"),
@@ -38,6 +42,7 @@ const COMMANDS: [(&str, &str); 18] = [
     ("quit", "quit                     leave; everything confirmed is saved (also: exit)"),
     ("query", ""),
     ("next-week", ""),
+    ("what", ""),
 ];
 
 /// The session and how the dialogue reaches it.
@@ -75,6 +80,8 @@ impl Desk {
         match word {
             "memo" if rest.is_empty() => self.show_memo(),
             "memo" => self.add_to_memo(rest),
+            "explain" | "what" => explain(word, rest),
+            "glossary" => glossary(rest),
             _ => self.query(rest),
         }
     }

@@ -2,6 +2,7 @@
 
 mod company;
 mod dice;
+mod guide;
 mod harness;
 mod looks;
 mod monkey;

@@ -87,7 +87,7 @@ impl App {
 
     /// What a chord means even over a dialog: leaving and drawing again must always be possible.
     fn anywhere(&self, chord: Chord) -> Option<Action> {
-        let always = [Action::Quit, Action::Redraw];
+        let always = [Action::Quit, Action::Redraw, Action::TourSkip, Action::TourClose];
         let global = self.keys.action(&[Scope::Global], chord)?;
         (always.contains(&global) && !chord.is_text()).then_some(global)
     }
@@ -168,6 +168,8 @@ impl App {
         match action {
             Action::Quit => return self.quit(),
             Action::Redraw => return self.orders.push(Order::Redraw),
+            Action::TourSkip => return self.skip_step(),
+            Action::TourClose => return self.close_tour(),
             _ => {}
         }
         if !self.layers.is_empty() {
@@ -230,6 +232,9 @@ impl App {
             Action::Undo => self.follow(vec![Effect::Undo]),
             Action::FocusNext | Action::FocusPrevious => self.move_focus(action == Action::FocusNext),
             Action::Back => self.back(),
+            Action::Explain => self.explain(),
+            Action::Glossary => self.show_glossary(),
+            Action::Tour => self.show_tour(),
             Action::Forward => self.forward(),
             Action::Zoom => self.zoom(),
             Action::Rows => self.show_rows(),

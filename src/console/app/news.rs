@@ -11,6 +11,7 @@ use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::report::Report;
 use crate::console::message::News;
 use crate::console::screens::{Look, ScreenId};
+use crate::console::tour::Tour;
 use crate::notation::{dollars, signed_dollars};
 use crate::session::{Interrupt, Refusal, Week};
 
@@ -19,12 +20,29 @@ impl App {
         match news {
             News::Runs(list) => {
                 if let Stage::Menu(menu) = &mut self.stage {
-                    menu.take(list);
+                    let effects = menu.take(list);
+                    self.follow(effects);
+                }
+            }
+            News::Course(id, course) => {
+                if let Stage::Menu(menu) = &mut self.stage {
+                    menu.learn(id, course);
+                }
+            }
+            News::Kept(done, list) => {
+                match done {
+                    Ok(text) => self.say(text),
+                    Err(problem) => self.complain(problem),
+                }
+                if let Stage::Menu(menu) = &mut self.stage {
+                    let effects = menu.take(list);
+                    self.follow(effects);
                 }
             }
             News::Opened(company, interrupt) => self.opened(company, interrupt),
             News::NotOpened(problem) => {
                 self.busy = None;
+                self.tour_planned = false;
                 if let Stage::Menu(menu) = &mut self.stage {
                     menu.refused(problem.clone());
                 }
@@ -130,6 +148,7 @@ impl App {
         self.busy = None;
         self.layers.clear();
         let over = !company.is_running();
+        let tour = std::mem::take(&mut self.tour_planned).then(Tour::default);
         match company.remarks.last() {
             Some(remark) => self.say(remark.clone()),
             None if company.seen.day == 0 => {
@@ -150,6 +169,8 @@ impl App {
             report: None,
             changes: 0,
             asked: BTreeMap::new(),
+            tour,
+            explained: false,
         }));
         self.renew();
         if over {

@@ -92,6 +92,11 @@ impl App {
                 let confirm = Confirm::new(tool, text, vec![Effect::Call { tool, arguments }]);
                 self.layers.push(Layer::Dialog(Box::new(confirm)));
             }
+            Effect::Explain(subject) => self.explain_subject(subject),
+            Effect::StartTour => self.start_tour(),
+            Effect::ReadCourse(id) => self.orders.push(Order::Job(Job::Course(self.runs.clone(), id))),
+            Effect::EndRun(id) => self.orders.push(Order::Job(Job::EndRun(self.runs.clone(), id))),
+            Effect::DeleteRun(id) => self.orders.push(Order::Job(Job::DeleteRun(self.runs.clone(), id))),
             Effect::LeaveNow => self.leave(Closing::ToShell(0)),
             Effect::Do(action) => self.act(action),
         }

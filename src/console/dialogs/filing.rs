@@ -80,6 +80,11 @@ impl Filing {
             || (!self.naive && self.cells.iter().flatten().any(|cell| !cell.is_empty()))
     }
 
+    /// Number of the step, from 1.
+    pub fn step_number(&self) -> usize {
+        self.step as usize + 1
+    }
+
     /// Shows why a week was refused.
     pub fn refused(&mut self, problem: String) {
         self.problem = Some(problem);

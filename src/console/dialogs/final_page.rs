@@ -22,18 +22,30 @@ use crate::session::{Ended, JournalEntry};
 
 /// Published results (read once).
 #[derive(Debug, Deserialize)]
-struct Published {
-    rule_based_baseline: f64,
-    agent: Vec<Agent>,
+pub struct Published {
+    /// Cash of the rule-based policy, dollars.
+    pub rule_based_baseline: f64,
+    /// What a perfect player might reach, dollars.
+    pub estimated_upper_bound: f64,
+    /// Results of agents.
+    pub agent: Vec<Agent>,
 }
 
+/// Results of one agent.
 #[derive(Debug, Deserialize)]
-struct Agent {
-    name: String,
-    best_cash: f64,
+pub struct Agent {
+    /// Model.
+    pub name: String,
+    /// Runs that ended with cash below zero.
+    pub bankruptcies: u32,
+    /// Runs.
+    pub runs: u32,
+    /// Cash of the best run, dollars.
+    pub best_cash: f64,
 }
 
-fn published() -> &'static Published {
+/// The published results.
+pub fn published() -> &'static Published {
     static READ: OnceLock<Published> = OnceLock::new();
     READ.get_or_init(|| {
         toml::from_str(include_str!("../../../assets/paper-results.toml"))

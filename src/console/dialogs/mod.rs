@@ -1,8 +1,10 @@
 //! What lies over a screen for a while.
 
 pub mod confirm;
+pub mod explain;
 pub mod filing;
 pub mod final_page;
+pub mod glossary;
 pub mod help;
 pub mod palette;
 pub mod reader;

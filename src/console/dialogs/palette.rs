@@ -16,6 +16,7 @@ use crate::console::theme::Role;
 use crate::console::widgets::Field;
 use crate::console::widgets::table::first_row;
 use crate::database;
+use crate::glossary::{self, Subject};
 use crate::tools::{CATALOGUE, Kind};
 
 /// Something that can be chosen.
@@ -105,6 +106,13 @@ fn entries(keys: &Keys, company: &Company) -> Vec<Entry> {
             "SELECT s.status, s.plan, count(*) AS customers, sum(s.seat_count) AS seats\nFROM customers c JOIN subscriptions s USING (customer_id)\nWHERE c.group_id = '{}' GROUP BY 1, 2 ORDER BY 1, 2",
             group.id()
         )),
+    }));
+    list.extend(glossary::terms().iter().map(|term| Entry {
+        kind: "term",
+        title: term.title.clone(),
+        doc: term.text.clone(),
+        keys: String::new(),
+        effect: Effect::Explain(Subject::Term(term)),
     }));
     list.extend(database::tables().iter().map(|table| Entry {
         kind: "table",

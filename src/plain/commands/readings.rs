@@ -4,8 +4,9 @@ use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
-use super::{COMMANDS, Desk, problem, tool_called};
+use super::{COMMANDS, Desk, problem, tool_called, words};
 use crate::database;
+use crate::glossary;
 use crate::notation::{dollars, grouped, nearest, signed_dollars};
 use crate::session::{Change, JournalEntry};
 use crate::tools::{self, Kind, describe};
@@ -125,7 +126,7 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument]) -> Result<Answer,
             COMMANDS.iter().map(|(_, line)| *line).filter(|line| !line.is_empty()).collect();
         let tools: Vec<&str> = callable().collect();
         let text = format!(
-            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=12 B=25 C=55\nhelp NAME explains one of them.",
+            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=12 B=25 C=55\nhelp NAME explains one of them, explain TERM what a word means.",
             lines.join("\n"),
             tools.join(", ")
         );
@@ -139,6 +140,9 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument]) -> Result<Answer,
     }
     if database::table(name).is_some() {
         return tables(Some(name), arguments);
+    }
+    if let Ok(found) = glossary::find(name) {
+        return Ok(words::answer("help", found));
     }
     let names = COMMANDS.iter().map(|(name, _)| *name).chain(callable());
     let names = names.chain(database::tables().iter().map(|table| table.name.as_str()));

@@ -90,7 +90,8 @@ impl Outlook {
             canvas.pane_keys(area, &format!("{keys} · {} journal", label(Action::Open)));
         }
         if self.all.is_empty() {
-            canvas.text(inside, "no forecast was filed yet", Role::Dim);
+            let text = format!("no forecast was filed yet: {} asks for four", look.hint(Action::NextWeek));
+            canvas.text(inside, &text, Role::Dim);
             return;
         }
         let list = if inside.height >= 13 { (inside.height / 3).max(5) } else { inside.height };

@@ -232,7 +232,7 @@ fn draw_scores(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
         let none = company.scores.iter().all(|score| score.scored == 0);
         canvas.text(
             row,
-            if none { "no forecast has come due yet" } else { "miss, width: share of cash" },
+            if none { "the first comes due in a week" } else { "miss, width: share of cash" },
             Role::Dim,
         );
     }

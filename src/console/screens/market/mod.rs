@@ -470,7 +470,8 @@ impl Market {
         };
         let inside = canvas.pane(area, "Rivals and economy in the news", &note, focused);
         if self.news.is_empty() {
-            canvas.text(inside, "the press has written nothing yet", Role::Dim);
+            let text = format!("the press has written nothing yet: {}", look.hint(Action::NextWeek));
+            canvas.text(inside, &text, Role::Dim);
             return;
         }
         self.headlines.draw(canvas, inside, focused, NEWS);

@@ -70,7 +70,7 @@ fn draw_line(canvas: &mut Canvas<'_>, area: Rect, company: &Company, projects: &
     let today = company.seen.day;
     let shown = &projects[..projects.len().min(area.height.saturating_sub(1) as usize)];
     if shown.is_empty() {
-        canvas.text(area, "no project was started yet", Role::Dim);
+        canvas.text(area, "no project was started yet: the form start_research_project buys one", Role::Dim);
         return;
     }
     let first = shown.iter().map(|project| project.started).min().unwrap_or(0).min(today);

@@ -67,7 +67,8 @@ fn draw_list(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
         }
     }
     if lines.is_empty() {
-        canvas.text(inside, "no tool is called like that", Role::Dim);
+        let text = format!("no tool is called like that: {}", look.hint(Action::Close));
+        canvas.text(inside, &text, Role::Dim);
     }
     let field = u16::from(tools.typing.is_some());
     let list = Rect { height: inside.height.saturating_sub(field), ..inside };

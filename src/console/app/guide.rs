@@ -1,0 +1,95 @@
+//! Explanations, the glossary and the tour.
+
+use super::{App, Layer, Stage};
+use crate::console::action::Action;
+use crate::console::dialogs::explain::Explain;
+use crate::console::dialogs::glossary::Glossary;
+use crate::console::effect::Effect;
+use crate::console::tour::{Facts, Tour};
+use crate::glossary::Subject;
+use crate::session::NewRun;
+
+impl App {
+    /// Explains the figure that is selected, or the screen if none is.
+    pub(super) fn explain(&mut self) {
+        let figure = self.with_screen(|screen, look| screen.figure(look)).flatten();
+        let Stage::Run(run) = &mut self.stage else { return };
+        run.explained = true;
+        let dialog = match figure {
+            Some(figure) => Explain::figure(&figure),
+            None => Explain::screen(run.here),
+        };
+        self.layers.push(Layer::Dialog(Box::new(dialog)));
+    }
+
+    /// Explains a subject over what is open.
+    pub(super) fn explain_subject(&mut self, subject: Subject) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        run.explained = true;
+        self.layers.push(Layer::Dialog(Box::new(Explain::subject(subject))));
+    }
+
+    pub(super) fn show_glossary(&mut self) {
+        self.layers.push(Layer::Dialog(Box::new(Glossary::new())));
+    }
+
+    /// Starts a new run for practice with the tour in it.
+    pub(super) fn start_tour(&mut self) {
+        self.tour_planned = true;
+        self.follow(vec![Effect::Create(Box::new(NewRun { seed: Some(42), ..NewRun::default() }))]);
+    }
+
+    /// Shows the tour in the run, from the first step that is not done.
+    pub(super) fn show_tour(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        if run.company.is_baseline() {
+            return self.complain("a baseline run has no tour: start one for practice from the start menu");
+        }
+        run.tour.get_or_insert_default();
+    }
+
+    pub(super) fn skip_step(&mut self) {
+        match self.tour() {
+            Some(tour) => tour.skip(),
+            None => self.complain("no tour is shown"),
+        }
+    }
+
+    pub(super) fn close_tour(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        if run.tour.take().is_none() {
+            return self.complain("no tour is shown");
+        }
+        let way = match self.keys.label(Action::Tour) {
+            Some(key) => key,
+            None => format!("{} tour", self.keys.label(Action::Palette).unwrap_or_default()),
+        };
+        self.say(format!("the tour is closed; {way} goes on with it"));
+    }
+
+    fn tour(&mut self) -> Option<&mut Tour> {
+        match &mut self.stage {
+            Stage::Run(run) => run.tour.as_mut(),
+            Stage::Menu(_) => None,
+        }
+    }
+
+    /// Goes on over the steps of the tour that are done.
+    pub(super) fn settle_tour(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        let Some(tour) = &mut run.tour else { return };
+        let filing = matches!(self.layers.last(), Some(Layer::Filing)).then(|| run.filing.step_number());
+        let facts = Facts {
+            company: &run.company,
+            here: run.here,
+            before: &run.before,
+            filing,
+            dialog: !self.layers.is_empty(),
+            explained: run.explained,
+        };
+        if !tour.settle(&facts) {
+            run.tour = None;
+            self.say("that was the tour; the company is yours");
+        }
+    }
+}

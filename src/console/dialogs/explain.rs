@@ -1,0 +1,333 @@
+//! What a figure, a field or a screen is: words for it, the rows behind it, and terms that lead on.
+
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use super::{Dialog, Outcome};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, Click, centered, rows_of};
+use crate::console::effect::Effect;
+use crate::console::screens::{Figure, Look, ScreenId};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::table::first_row;
+use crate::glossary::{self, Explanation, Subject};
+
+/// Something that can be chosen below the text.
+#[derive(Debug, Clone, Copy)]
+enum Link {
+    To(Subject),
+    /// A screen or dialog.
+    Place(Action),
+}
+
+impl Link {
+    fn title(self, look: &Look<'_>) -> (String, &'static str) {
+        match self {
+            Link::To(subject) => (subject.title(), subject.kind()),
+            Link::Place(action) => {
+                let key = look.keys.label(action).map_or(String::new(), |key| format!(" ({key})"));
+                (format!("{}{key}", action.entry().title), "go to")
+            }
+        }
+    }
+}
+
+/// One explanation, and where the person is in it.
+struct Page {
+    title: String,
+    note: String,
+    /// Heading and text of each part.
+    parts: Vec<(String, String)>,
+    links: Vec<Link>,
+    selected: usize,
+}
+
+impl Page {
+    fn of(subject: Subject) -> Page {
+        let told = Explanation::of(subject);
+        let places = told.places.iter().filter_map(|name| Action::named(Scope::Global, name));
+        Page {
+            title: told.title,
+            note: told.note,
+            parts: told.sections.into_iter().map(|own| (own.name.to_owned(), own.text)).collect(),
+            links: told.related.iter().copied().map(Link::To).chain(places.map(Link::Place)).collect(),
+            selected: 0,
+        }
+    }
+}
+
+/// The dialog.
+pub struct Explain {
+    /// The page that is read, and those before it.
+    pages: Vec<Page>,
+    /// There are rows behind the figure.
+    rows: bool,
+}
+
+impl Explain {
+    /// Explains a subject.
+    pub fn subject(subject: Subject) -> Explain {
+        Explain { pages: vec![Page::of(subject)], rows: false }
+    }
+
+    /// Explains the figure that is selected on a screen.
+    pub fn figure(figure: &Figure) -> Explain {
+        let mut page = match glossary::subject(figure.term) {
+            Some(subject) => Page::of(subject),
+            None => Page {
+                title: String::new(),
+                note: String::new(),
+                parts: Vec::new(),
+                links: Vec::new(),
+                selected: 0,
+            },
+        };
+        if !page.title.eq_ignore_ascii_case(&figure.title) {
+            let note = [page.title.as_str(), page.note.as_str()];
+            page.note = note.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" · ");
+            page.title.clone_from(&figure.title);
+        }
+        if let Some(sql) = &figure.sql {
+            page.parts.push(("rows behind".to_owned(), sql.trim().to_owned()));
+        }
+        Explain { pages: vec![page], rows: figure.sql.is_some() }
+    }
+
+    /// Explains a screen, and lists its terms.
+    pub fn screen(screen: ScreenId) -> Explain {
+        let entry = screen.action().entry();
+        let help = "Select a figure or a field to have it explained, or choose a term of this screen.";
+        let page = Page {
+            title: entry.title.to_owned(),
+            note: "screen".to_owned(),
+            parts: vec![(String::new(), entry.doc.to_owned()), (String::new(), help.to_owned())],
+            links: glossary::terms_of(entry.name).map(Subject::Term).map(Link::To).collect(),
+            selected: 0,
+        };
+        Explain { pages: vec![page], rows: false }
+    }
+
+    fn page(&self) -> &Page {
+        self.pages.last().expect("there is a first page")
+    }
+
+    fn follow(&mut self) -> Outcome {
+        let page = self.page();
+        match page.links.get(page.selected) {
+            Some(Link::To(subject)) => self.pages.push(Page::of(*subject)),
+            Some(Link::Place(action)) => return Outcome::close_with(vec![Effect::Do(*action)]),
+            None => return Outcome::close(),
+        }
+        Outcome::stay()
+    }
+
+    fn select(&mut self, to: impl Fn(usize, usize) -> usize) {
+        if let Some(page) = self.pages.last_mut() {
+            let last = page.links.len().saturating_sub(1);
+            page.selected = to(page.selected, last).min(last);
+        }
+    }
+
+    fn keys(&self, look: &Look<'_>) -> String {
+        let mut keys = vec![look.hint(Action::Open)];
+        if self.pages.len() > 1 {
+            keys.push(look.hint(Action::Back));
+        } else if self.rows {
+            keys.push(look.hint(Action::Rows));
+        }
+        keys.push(look.hint(Action::Close));
+        keys.join(" · ")
+    }
+}
+
+impl Dialog for Explain {
+    fn scopes(&self) -> Vec<Scope> {
+        vec![Scope::List, Scope::Dialog, Scope::Global]
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        let first = if self.pages.len() > 1 { Action::Back } else { Action::Glossary };
+        vec![Action::Open, first, Action::Close]
+    }
+
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
+        let page = look.page.max(1) as usize;
+        match action {
+            Action::Open => return self.follow(),
+            Action::Back | Action::Left if self.pages.len() > 1 => {
+                self.pages.pop();
+            }
+            Action::Back | Action::Close | Action::Cancel | Action::Explain => return Outcome::close(),
+            Action::Glossary => return Outcome::close_with(vec![Effect::Do(Action::Glossary)]),
+            Action::Rows if self.rows && self.pages.len() == 1 => {
+                return Outcome::close_with(vec![Effect::Do(Action::Rows)]);
+            }
+            Action::Up | Action::ScrollUp => self.select(|at, _| at.saturating_sub(1)),
+            Action::Down | Action::ScrollDown => self.select(|at, _| at + 1),
+            Action::PageUp => self.select(|at, _| at.saturating_sub(page)),
+            Action::PageDown => self.select(|at, _| at + page),
+            Action::First => self.select(|_, _| 0),
+            Action::Last => self.select(|_, last| last),
+            _ => {}
+        }
+        Outcome::stay()
+    }
+
+    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+        self.select(|_, _| row);
+        self.follow()
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let page = self.page();
+        let width = area.width.saturating_sub(4).min(100);
+        let text = lines_of(page, width.saturating_sub(4) as usize);
+        // Words before links: at least three links can be seen, the rest is scrolled.
+        let links = (page.links.len() as u16).min(10);
+        let least = links.min(3) + u16::from(links > 0);
+        let room = area.height.saturating_sub(2);
+        let for_text = (text.len() as u16).min(room.saturating_sub(least));
+        let for_links = (links + u16::from(links > 0)).min(room - for_text);
+        let own = centered(area, width, for_text + for_links + 2);
+        canvas.clear(own, Role::Text);
+        let inside = canvas.pane(own, &page.title, &page.note, true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let above = Rect { height: for_text.min(inside.height), ..inside };
+        for (row, (heading, words)) in rows_of(above).zip(&text) {
+            let line = Line::from(vec![
+                canvas.span(heading.as_str(), Role::Dim),
+                canvas.span(words.as_str(), Role::Text),
+            ]);
+            canvas.line(row, &line);
+        }
+        let below = Rect { y: above.bottom(), height: inside.height - above.height, ..inside };
+        self.draw_links(canvas, below, look);
+        canvas.pane_keys(own, &self.keys(look));
+    }
+}
+
+impl Explain {
+    fn draw_links(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let page = self.page();
+        if page.links.is_empty() || area.height < 2 {
+            return;
+        }
+        let place = format!("{} of {}", page.selected + 1, page.links.len());
+        canvas.text(area, &format!("leads to · {place}"), Role::Header);
+        let list = Rect { y: area.y + 1, height: area.height - 1, ..area };
+        let from = first_row(page.selected, list.height as usize, page.links.len());
+        for (row, (at, link)) in rows_of(list).zip(page.links.iter().enumerate().skip(from)) {
+            let role = |other| if at == page.selected { Role::Selection } else { other };
+            if at == page.selected {
+                canvas.clear(row, Role::Selection);
+            }
+            let (title, kind) = link.title(look);
+            canvas.text(Rect { width: 9.min(row.width), ..row }, kind, role(Role::Dim));
+            let place = Rect { x: row.x + 10, width: row.width.saturating_sub(10), ..row };
+            canvas.text(place, &title, role(Role::Text));
+            canvas.click(row, Click::Row(0, at));
+        }
+    }
+}
+
+/// Headings and texts in lines of a width; the headings stand in a column of their own.
+fn lines_of(page: &Page, width: usize) -> Vec<(String, String)> {
+    let column = page.parts.iter().map(|(heading, _)| heading.chars().count()).max().unwrap_or(0);
+    let column = if column > 0 { column + 2 } else { 0 };
+    let mut lines = Vec::new();
+    for (heading, text) in &page.parts {
+        // What stands without a heading is the sentence that says what it is: it has the whole width.
+        let (left, room) =
+            if heading.is_empty() { (0, width) } else { (column, width.saturating_sub(column)) };
+        for (at, line) in wrapped(text, room).into_iter().enumerate() {
+            let word = if at == 0 { heading.as_str() } else { "" };
+            lines.push((format!("{word:<left$}"), line));
+        }
+        if heading.is_empty() {
+            lines.push((String::new(), String::new()));
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::{company, dialog_picture, in_dialog};
+
+    fn figure(term: &'static str, sql: Option<&str>) -> Figure {
+        Figure { title: "cancellations of S1".to_owned(), term, sql: sql.map(str::to_owned) }
+    }
+
+    #[test]
+    fn every_place_of_the_glossary_is_an_action() {
+        for term in glossary::terms() {
+            for name in &term.places {
+                assert!(Action::named(Scope::Global, name).is_some(), "{} is at {name}", term.id);
+            }
+        }
+        for screen in ScreenId::ALL {
+            assert!(glossary::terms_of(screen.id()).count() >= 2, "{screen:?} has no terms");
+        }
+    }
+
+    #[test]
+    fn a_figure_is_explained_with_its_rows_and_leads_on_and_back() {
+        let company = company();
+        let mut dialog = Explain::figure(&figure("churn", Some("SELECT 1")));
+        let shown = dialog_picture(&dialog, &company, 80, 21);
+        for part in [
+            "cancellations of S1",
+            "Churn · customers",
+            "The loss of subscribers.",
+            "SELECT 1",
+            "leads to · 1 of",
+        ] {
+            assert!(shown.contains(part), "{part} is missing in\n{shown}");
+        }
+        assert!(!in_dialog(&mut dialog, Action::Open, &company).close);
+        let second = dialog_picture(&dialog, &company, 80, 21);
+        assert!(second.contains("Billing day") && !second.contains("SELECT 1"), "{second}");
+        assert!(!in_dialog(&mut dialog, Action::Back, &company).close);
+        assert_eq!(dialog_picture(&dialog, &company, 80, 21), shown);
+        let rows = in_dialog(&mut dialog, Action::Rows, &company);
+        assert!(rows.close && matches!(rows.effects[..], [Effect::Do(Action::Rows)]));
+        assert!(in_dialog(&mut dialog, Action::Back, &company).close);
+    }
+
+    #[test]
+    fn the_last_links_go_to_the_places_of_a_term() {
+        let company = company();
+        let mut dialog = Explain::figure(&figure("runway", None));
+        in_dialog(&mut dialog, Action::Last, &company);
+        let outcome = in_dialog(&mut dialog, Action::Open, &company);
+        assert!(outcome.close && matches!(outcome.effects[..], [Effect::Do(Action::Cash)]));
+    }
+
+    #[test]
+    fn a_screen_lists_its_terms_and_an_unknown_term_says_what_it_can() {
+        let company = company();
+        let shown = dialog_picture(&Explain::screen(ScreenId::Inbox), &company, 80, 21);
+        assert!(
+            shown.contains("Negotiate with companies.") && shown.contains("Enterprise customer"),
+            "{shown}"
+        );
+        let mut odd = Explain::figure(&figure("no-such-term", None));
+        let shown = dialog_picture(&odd, &company, 80, 21);
+        assert!(shown.contains("cancellations of S1"), "{shown}");
+        assert!(in_dialog(&mut odd, Action::Open, &company).close);
+    }
+
+    #[test]
+    fn every_term_fits_every_window() {
+        let company = company();
+        for term in glossary::terms() {
+            let dialog = Explain::subject(Subject::Term(term));
+            for (width, height) in [(0, 0), (3, 2), (60, 13), (80, 21), (200, 57)] {
+                let shown = dialog_picture(&dialog, &company, width, height);
+                assert!(width < 60 || shown.contains(&term.title), "{}: {shown}", term.id);
+            }
+        }
+    }
+}

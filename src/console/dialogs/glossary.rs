@@ -1,0 +1,195 @@
+//! Every term of the company, found by typing into the filter.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use super::{Dialog, Outcome};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, centered, rows_of};
+use crate::console::effect::Effect;
+use crate::console::screens::Look;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::{Cell, Column, Table};
+use crate::glossary::{Subject, Term, terms};
+
+/// The list of terms.
+pub struct Glossary {
+    table: Table,
+}
+
+/// Rows for the text of the selected term.
+const TEXT_ROWS: u16 = 6;
+
+impl Glossary {
+    /// All terms by topic.
+    pub fn new() -> Glossary {
+        let columns = vec![
+            Column::words("term").at_most(22),
+            Column::words("about").at_most(9),
+            Column::words("what it is").at_most(160),
+        ];
+        let row = |term: &Term| {
+            // Other words for a term find it too: they stand behind what can be seen of the sentence.
+            let text = match term.aka.as_slice() {
+                [] => term.text.clone(),
+                words => format!("{} Also: {}.", term.text, words.join(", ")),
+            };
+            vec![
+                Cell::words(term.title.as_str()),
+                Cell::words(term.topic.as_str()).role(Role::Dim),
+                Cell::words(text).role(Role::Dim),
+            ]
+        };
+        let mut table = Table::new(columns);
+        table.set_rows(terms().iter().map(row).collect());
+        Glossary { table }
+    }
+
+    fn selected(&self) -> Option<&'static Term> {
+        self.table.selected().and_then(|at| terms().get(at))
+    }
+
+    fn open(&self) -> Outcome {
+        match self.selected() {
+            Some(term) => Outcome::with(vec![Effect::Explain(Subject::Term(term))]),
+            None => Outcome::stay(),
+        }
+    }
+}
+
+impl Dialog for Glossary {
+    fn scopes(&self) -> Vec<Scope> {
+        if self.table.is_typing() { vec![Scope::Field] } else { vec![Scope::List, Scope::Dialog] }
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        if self.table.is_typing() {
+            vec![Action::Commit, Action::Discard]
+        } else {
+            vec![Action::Open, Action::Filter, Action::Close]
+        }
+    }
+
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
+        // The wheel walks over the list.
+        let action = match action {
+            Action::ScrollUp => Action::Up,
+            Action::ScrollDown => Action::Down,
+            other => other,
+        };
+        if self.table.act(action, look.page) {
+            return Outcome::stay();
+        }
+        match action {
+            Action::Open => self.open(),
+            Action::Close | Action::Cancel => Outcome::close(),
+            // An explanation over the list leads on to a screen.
+            Action::Glossary => Outcome::stay(),
+            other if other.entry().scope == Scope::Global => Outcome::close_with(vec![Effect::Do(other)]),
+            _ => Outcome::stay(),
+        }
+    }
+
+    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Outcome {
+        self.table.edit_filter(|field| {
+            field.key(key);
+        });
+        Outcome::stay()
+    }
+
+    fn paste(&mut self, text: &str, _: &Look<'_>) -> Outcome {
+        self.table.edit_filter(|field| field.insert(text.trim()));
+        Outcome::stay()
+    }
+
+    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+        let before = self.table.selected();
+        self.table.select_place(row);
+        if before == self.table.selected() { self.open() } else { Outcome::stay() }
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let own = centered(area, area.width.saturating_sub(4).min(130), area.height.saturating_sub(2));
+        canvas.clear(own, Role::Text);
+        let note = match self.table.note() {
+            note if note.is_empty() => format!("{} terms", terms().len()),
+            note => note,
+        };
+        let inside = canvas.pane(own, "Glossary", &note, true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let for_text = if inside.height >= 2 * TEXT_ROWS { TEXT_ROWS } else { 0 };
+        let list = Rect { height: inside.height - for_text, ..inside };
+        self.table.draw(canvas, list, true, 0);
+        if self.table.shown().is_empty() && list.height > 1 {
+            let row = Rect { y: list.y + 1, height: 1, ..list };
+            let text = format!("no term has this word in it: {}", look.hint(Action::Discard));
+            canvas.text(row, &text, Role::Dim);
+        }
+        let below = Rect { y: list.bottom(), height: for_text, ..inside };
+        if let Some(term) = self.selected() {
+            self.draw_term(canvas, below, term);
+        }
+        canvas.pane_keys(own, &look.hints(&self.hints()));
+    }
+}
+
+impl Glossary {
+    fn draw_term(&self, canvas: &mut Canvas<'_>, area: Rect, term: &Term) {
+        if area.is_empty() {
+            return;
+        }
+        let rule = "─".repeat(area.width as usize);
+        canvas.text(area, &rule, Role::Border);
+        let text = format!("{} {}", term.text, term.more);
+        let rest = Rect { y: area.y + 1, height: area.height - 1, ..area };
+        for (row, line) in rows_of(rest).zip(wrapped(text.trim(), area.width as usize)) {
+            canvas.text(row, &line, Role::Text);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::{company, dialog_picture, in_dialog};
+
+    #[test]
+    fn terms_are_found_by_any_of_their_words_and_opened() {
+        let company = company();
+        let mut dialog = Glossary::new();
+        let shown = dialog_picture(&dialog, &company, 80, 21);
+        assert!(
+            shown.contains("terms") && shown.contains("Runway") && shown.contains("amounts in the ledger"),
+            "{shown}"
+        );
+        in_dialog(&mut dialog, Action::Filter, &company);
+        dialog.table.edit_filter(|field| field.insert("word of mouth"));
+        in_dialog(&mut dialog, Action::Commit, &company);
+        let outcome = in_dialog(&mut dialog, Action::Open, &company);
+        assert!(
+            matches!(&outcome.effects[..], [Effect::Explain(Subject::Term(term))] if term.id == "network-source"),
+            "{outcome:?}"
+        );
+        assert!(!outcome.close, "closing the explanation leads back to the list");
+        let away = in_dialog(&mut dialog, Action::Cash, &company);
+        assert!(away.close && matches!(away.effects[..], [Effect::Do(Action::Cash)]));
+        assert!(!in_dialog(&mut dialog, Action::Close, &company).close, "the filter is cleared first");
+        assert!(in_dialog(&mut dialog, Action::Close, &company).close);
+    }
+
+    #[test]
+    fn a_filter_without_terms_says_so() {
+        let company = company();
+        let mut dialog = Glossary::new();
+        in_dialog(&mut dialog, Action::Filter, &company);
+        dialog.table.edit_filter(|field| field.insert("zzz"));
+        let shown = dialog_picture(&dialog, &company, 80, 21);
+        assert!(shown.contains("no term has this word in it"), "{shown}");
+        in_dialog(&mut dialog, Action::Commit, &company);
+        assert!(in_dialog(&mut dialog, Action::Open, &company).effects.is_empty());
+        for (width, height) in [(0, 0), (2, 2), (20, 5), (60, 13), (200, 57)] {
+            dialog_picture(&dialog, &company, width, height);
+        }
+    }
+}

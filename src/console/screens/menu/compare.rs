@@ -1,0 +1,132 @@
+//! Runs side by side: curves of cash, and the figures they stand at.
+
+use ratatui::layout::Rect;
+
+use super::Menu;
+use super::runs::{draw_curves, known, state};
+use crate::console::canvas::{Align, Canvas, rows_of};
+use crate::console::theme::Role;
+use crate::console::widgets::spark::spark;
+use crate::notation::{compact, dollars};
+use crate::session::{Mode, RunCourse, RunSummary};
+
+/// Columns of the figures: title, width, side. A narrow window has the first of them: the curve in a row tells runs
+/// apart where colours do not.
+const COLUMNS: [(&str, u16, Align); 8] = [
+    ("", 3, Align::Left),
+    ("run", 8, Align::Left),
+    ("state", 16, Align::Left),
+    ("cash", 12, Align::Right),
+    ("subs", 7, Align::Right),
+    ("seats", 7, Align::Right),
+    ("revenue/mo", 12, Align::Right),
+    ("mode", 8, Align::Left),
+];
+
+/// Number of columns in a narrow window, and the width from which all are shown.
+const NARROW: (usize, u16) = (5, 104);
+
+impl Menu {
+    pub(super) fn draw_compare(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let runs: Vec<&RunSummary> =
+            self.marked.iter().filter_map(|id| self.list().iter().find(|run| run.id == *id)).collect();
+        let for_figures = (runs.len() as u16 + 3).min(area.height);
+        let above = Rect { height: area.height - for_figures, ..area };
+        let below = Rect { y: above.bottom(), height: for_figures, ..area };
+        let courses: Vec<(usize, &RunCourse)> = runs
+            .iter()
+            .enumerate()
+            .filter_map(|(at, run)| known(&self.courses, &run.id).map(|course| (at, course)))
+            .collect();
+        if above.height >= 5 {
+            let inside = canvas.pane(above, "Cash", &format!("{} runs", runs.len()), false);
+            if courses.len() < runs.len() {
+                canvas.text(inside, " reading …", Role::Dim);
+            } else {
+                draw_curves(canvas, inside, &courses);
+            }
+        }
+        let inside = canvas.pane(below, "Where they stand", "", false);
+        let mut rows = rows_of(inside);
+        if let Some(head) = rows.next() {
+            let titles = COLUMNS.map(|(title, ..)| title.to_owned());
+            draw_cells(canvas, head, &titles, |_| Role::Header);
+            let rest = rest_of(head);
+            canvas.text(rest, "cash by week", Role::Header);
+        }
+        for (row, (at, run)) in rows.zip(runs.iter().enumerate()) {
+            let course = known(&self.courses, &run.id);
+            let cells = cells(at, run, course);
+            draw_cells(canvas, row, &cells, |column| if column == 0 { Role::Series(at) } else { Role::Text });
+            let rest = rest_of(row);
+            if let Some(course) = course {
+                let values: Vec<f64> = course.cash.iter().map(|point| point.1).collect();
+                canvas.text(
+                    rest,
+                    &spark(&thinned(&values, rest.width as usize), rest.width as usize),
+                    Role::Series(at),
+                );
+            }
+        }
+    }
+}
+
+fn cells(at: usize, run: &RunSummary, course: Option<&RunCourse>) -> [String; 8] {
+    let figure =
+        |read: fn(&RunCourse) -> f64| course.map_or("…".to_owned(), |course| compact(read(course)));
+    [
+        format!("{}━", at + 1),
+        run.id.clone(),
+        state(run),
+        dollars(run.cash),
+        figure(|course| course.subscribers as f64),
+        figure(|course| course.seats as f64),
+        course.map_or("…".to_owned(), |course| dollars(course.recurring_revenue)),
+        run.mode.map_or("", Mode::id).to_owned(),
+    ]
+}
+
+fn draw_cells(canvas: &mut Canvas<'_>, row: Rect, cells: &[String; 8], role: impl Fn(usize) -> Role) {
+    let mut x = row.x + 1;
+    for (at, (cell, (_, width, align))) in cells.iter().zip(COLUMNS).enumerate().take(columns_in(row)) {
+        if x + width > row.right() {
+            return;
+        }
+        canvas.aligned(Rect { x, width, ..row }, cell, role(at), align);
+        x += width + 1;
+    }
+}
+
+/// Number of columns that are shown in a row.
+fn columns_in(row: Rect) -> usize {
+    if row.width >= NARROW.1 { COLUMNS.len() } else { NARROW.0 }
+}
+
+/// What is left of a row behind the columns.
+fn rest_of(row: Rect) -> Rect {
+    let shown = COLUMNS.iter().take(columns_in(row));
+    let used = shown.map(|(_, width, _)| width + 1).sum::<u16>() + 2;
+    Rect { x: row.x + used, width: row.width.saturating_sub(used + 1), ..row }
+}
+
+/// At most so many of the values, evenly taken, the last one among them.
+fn thinned(values: &[f64], most: usize) -> Vec<f64> {
+    if values.len() <= most || most == 0 {
+        return values.to_vec();
+    }
+    (1..=most).map(|at| values[at * values.len() / most - 1]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_thinned_evenly_and_keep_the_last() {
+        let values: Vec<f64> = (0..10).map(f64::from).collect();
+        assert_eq!(thinned(&values, 5), [1.0, 3.0, 5.0, 7.0, 9.0]);
+        assert_eq!(thinned(&values, 3).last(), Some(&9.0));
+        assert_eq!(thinned(&values, 20), values);
+        assert_eq!(thinned(&[], 3), Vec::<f64>::new());
+    }
+}

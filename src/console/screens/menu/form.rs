@@ -1,0 +1,248 @@
+//! The form of a new run.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::effect::Effect;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::Field;
+use crate::console::widgets::field::parse_number;
+use crate::session::{Configuration, DEFAULT_SCENARIO, Mode, NewRun};
+
+/// Fields of a new run.
+pub(super) struct Form {
+    /// Names and titles of the scenarios.
+    scenarios: Vec<(String, String)>,
+    scenario: usize,
+    mode: usize,
+    seed: Field,
+    days: Field,
+    cash: Field,
+    participant: Field,
+    /// The row that is selected.
+    pub(super) at: usize,
+    /// Why the run could not be started.
+    pub(super) refused: Option<String>,
+}
+
+/// Rows of the form: name and what it means.
+pub(super) const ROWS: [(&str, &str); 7] = [
+    ("Scenario", "The rules of the world: left and right choose another."),
+    ("Mode", "What the run is for: left and right choose another. It cannot be changed later."),
+    ("Seed", "The same seed meets the same luck."),
+    ("Days", "Last day of the run, at least 7. Published results ran for 500."),
+    ("Starting cash", "Dollars on day 0."),
+    ("Participant", "A label for the record; may be left out."),
+    ("Start", "enter begins the run"),
+];
+
+/// Column of the values.
+const VALUES: u16 = 17;
+/// Width of a field that is typed into.
+const FIELD: u16 = 18;
+
+impl Form {
+    pub(super) fn new(configuration: &Configuration) -> Form {
+        let title = |name: &String| {
+            configuration.scenario(name).map_or_else(|error| error.to_string(), |own| own.title)
+        };
+        let scenarios: Vec<(String, String)> =
+            configuration.scenarios().into_iter().map(|name| (name.clone(), title(&name))).collect();
+        let scenario = scenarios.iter().position(|(name, _)| name == DEFAULT_SCENARIO).unwrap_or(0);
+        Form {
+            scenarios,
+            scenario,
+            mode: Mode::ALL.iter().position(|mode| *mode == Mode::Sandbox).unwrap_or(0),
+            seed: Field::to_replace("42"),
+            days: Field::default(),
+            cash: Field::default(),
+            participant: Field::default(),
+            at: ROWS.len() - 1,
+            refused: None,
+        }
+    }
+
+    /// Whether the selected row is typed into.
+    pub(super) fn is_typing(&self) -> bool {
+        (2..=5).contains(&self.at)
+    }
+
+    fn field(&mut self) -> Option<&mut Field> {
+        match self.at {
+            2 => Some(&mut self.seed),
+            3 => Some(&mut self.days),
+            4 => Some(&mut self.cash),
+            5 => Some(&mut self.participant),
+            _ => None,
+        }
+    }
+
+    pub(super) fn key(&mut self, key: &KeyEvent) {
+        self.refused = None;
+        if let Some(field) = self.field() {
+            field.key(key);
+        }
+    }
+
+    pub(super) fn paste(&mut self, text: &str) {
+        if let Some(field) = self.field() {
+            field.insert(text.trim());
+        }
+    }
+
+    pub(super) fn turn(&mut self, forward: bool) {
+        let step = |at: usize, count: usize| {
+            let count = count.max(1);
+            if forward { (at + 1) % count } else { (at + count - 1) % count }
+        };
+        match self.at {
+            0 => self.scenario = step(self.scenario, self.scenarios.len()),
+            1 => self.mode = step(self.mode, Mode::ALL.len()),
+            _ => {}
+        }
+    }
+
+    /// Goes on to the next row, and from the last one starts the run if nothing is wrong.
+    pub(super) fn enter(&mut self) -> Vec<Effect> {
+        if self.at < ROWS.len() - 1 {
+            self.at += 1;
+            return Vec::new();
+        }
+        match (0..ROWS.len()).find(|row| self.problem(*row).is_some()) {
+            Some(row) => {
+                self.at = row;
+                Vec::new()
+            }
+            None => {
+                self.refused = None;
+                vec![Effect::Create(Box::new(self.run()))]
+            }
+        }
+    }
+
+    /// What is wrong with a row as it is typed.
+    fn problem(&self, row: usize) -> Option<&'static str> {
+        let whole = |field: &Field, least: f64| {
+            let fits = |number: f64| number >= least && number.fract() == 0.0 && number < 9e15;
+            field.text().trim().is_empty() || parse_number(field.text()).is_some_and(fits)
+        };
+        match row {
+            2 if !whole(&self.seed, 0.0) => Some("a whole number of at least 0"),
+            3 if !whole(&self.days, 7.0) => Some("a whole number of at least 7"),
+            4 if !self.cash.text().trim().is_empty()
+                && parse_number(self.cash.text()).is_none_or(|cash| cash <= 0.0) =>
+            {
+                Some("dollars above 0, such as 500k")
+            }
+            _ => None,
+        }
+    }
+
+    fn run(&self) -> NewRun {
+        let participant = self.participant.text().trim();
+        NewRun {
+            seed: parse_number(self.seed.text()).map(|seed| seed as u64),
+            days: parse_number(self.days.text()).map(|days| days.min(f64::from(u32::MAX)) as u32),
+            cash: parse_number(self.cash.text()),
+            scenario: self
+                .scenarios
+                .get(self.scenario)
+                .map_or(DEFAULT_SCENARIO, |own| own.0.as_str())
+                .to_owned(),
+            mode: Mode::ALL[self.mode],
+            participant: (!participant.is_empty()).then(|| participant.to_owned()),
+            ..NewRun::default()
+        }
+    }
+
+    fn value(&self, row: usize) -> (String, Role) {
+        let or = |field: &Field, empty: &str| match field.text() {
+            "" => (empty.to_owned(), Role::Dim),
+            text => (text.to_owned(), Role::Text),
+        };
+        match row {
+            0 => {
+                let chosen = self.scenarios.get(self.scenario);
+                (chosen.map_or(String::new(), |(name, _)| format!("‹ {name} ›")), Role::Text)
+            }
+            1 => (format!("‹ {} ›", Mode::ALL[self.mode].id()), Role::Text),
+            2 => or(&self.seed, "any: a new one is drawn"),
+            3 => or(&self.days, "as the scenario says (500)"),
+            4 => or(&self.cash, "as the scenario says ($1,000,000)"),
+            5 => or(&self.participant, "nobody in particular"),
+            _ => (String::new(), Role::Text),
+        }
+    }
+
+    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let inside = canvas.pane(area, "New run", "", true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        // A blank row before the last one, where there is room for it.
+        let gap = usize::from(inside.height as usize > ROWS.len() + 6);
+        for at in 0..ROWS.len() {
+            let y = inside.y + (at + if at + 1 == ROWS.len() { gap } else { 0 }) as u16;
+            if y < inside.bottom() {
+                self.draw_row(canvas, Rect { y, height: 1, ..inside }, at);
+            }
+        }
+        let used = (ROWS.len() + gap + 1) as u16;
+        let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
+        let mut lines: Vec<(String, Role)> = Vec::new();
+        let mut say = |text: &str, role: Role| {
+            lines.extend(wrapped(text, below.width.min(100) as usize).into_iter().map(|line| (line, role)));
+        };
+        match &self.refused {
+            Some(problem) => say(&format!("! {problem}"), Role::Bad),
+            None => say(ROWS[self.at].1, Role::Text),
+        }
+        let mode = Mode::ALL[self.mode];
+        let scenario = self.scenarios.get(self.scenario).map_or("", |own| own.1.as_str());
+        say("", Role::Dim);
+        say(&format!("{}: {}. {}", mode.id(), mode.purpose(), allows(mode)), Role::Dim);
+        say(&format!("scenario: {scenario}"), Role::Dim);
+        for (row, (line, role)) in rows_of(below).zip(&lines) {
+            canvas.text(row, line, *role);
+        }
+    }
+
+    fn draw_row(&self, canvas: &mut Canvas<'_>, row: Rect, at: usize) {
+        let here = at == self.at;
+        let name = Rect { width: 15.min(row.width), ..row };
+        let role = if here { Role::Selection } else { Role::Text };
+        canvas.text(name, &format!(" {:<14}", ROWS[at].0), role);
+        let place = Rect { x: row.x + VALUES, width: row.width.saturating_sub(VALUES), ..row };
+        let field = match at {
+            2 => Some(&self.seed),
+            3 => Some(&self.days),
+            4 => Some(&self.cash),
+            5 => Some(&self.participant),
+            _ => None,
+        };
+        let (value, role) = self.value(at);
+        match field {
+            Some(field) if here => field.draw(canvas, Rect { width: FIELD.min(place.width), ..place }),
+            _ => canvas.text(place, &value, role),
+        }
+        if let Some(problem) = self.problem(at) {
+            let right =
+                Rect { x: place.x + FIELD + 1, width: place.width.saturating_sub(FIELD + 1), ..place };
+            canvas.text(right, &format!("! {problem}"), Role::Bad);
+        }
+        canvas.click(row, Click::Row(0, at));
+    }
+}
+
+/// What a mode allows.
+fn allows(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Baseline => {
+            "No branches, no rewinding, no tour; rationale and forecasts are your own. The result can be compared with \
+             published ones."
+        }
+        Mode::Sandbox => "All of a baseline, and branches from any earlier week; forecasts may be filled in.",
+        Mode::Lesson => "All of a sandbox; the record says that it was played to learn.",
+        Mode::Debug => "All of a sandbox, but no run to compare with others.",
+    }
+}

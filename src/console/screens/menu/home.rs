@@ -1,0 +1,174 @@
+//! The first page: what can be done, and how the last run stands.
+
+use ratatui::layout::Rect;
+
+use super::runs::{draw_course, facts, state};
+use super::{Courses, Menu};
+use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::notation::dollars;
+use crate::session::RunSummary;
+
+/// Choices of the first page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Choice {
+    Continue,
+    Tour,
+    New,
+    Runs,
+    Compare,
+    Paper,
+    Quit,
+}
+
+/// Width from which the last run stands beside the choices.
+const WIDE: u16 = 76;
+
+impl Menu {
+    pub(super) fn choices(&self) -> Vec<(Choice, &'static str, String)> {
+        let mut choices = Vec::new();
+        let count = self.list().len();
+        if let Some(run) = self.latest() {
+            choices.push((Choice::Continue, "Continue", short(run)));
+        }
+        let tour = (Choice::Tour, "Tour", "New here? The first steps in two minutes".to_owned());
+        let known = matches!(self.runs, Some(Ok(_)));
+        let newcomer = known && count == 0;
+        if newcomer {
+            choices.push(tour.clone());
+        }
+        choices.push((Choice::New, "New run", "500 days from one million dollars".to_owned()));
+        if !newcomer {
+            choices.push(tour);
+        }
+        if count > 0 {
+            let text = if count == 1 {
+                "the one on this machine".to_owned()
+            } else {
+                format!("all {count} on this machine")
+            };
+            choices.push((Choice::Runs, "Runs", text));
+        }
+        if count > 1 {
+            choices.push((Choice::Compare, "Compare runs", "two or more side by side".to_owned()));
+        }
+        choices.push((Choice::Paper, "Paper table", "published results, and yours among them".to_owned()));
+        choices.push((Choice::Quit, "Quit", "everything confirmed is saved".to_owned()));
+        choices
+    }
+
+    pub(super) fn draw_home(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let left = if area.width >= WIDE { (area.width * 2 / 5).clamp(36, 48) } else { area.width };
+        let used = self.draw_choices(canvas, Rect { width: left, ..area });
+        if area.width >= WIDE {
+            let right = Rect { x: area.x + left + 1, width: area.width - left - 1, ..area };
+            self.draw_last_run(canvas, right);
+        } else {
+            let below = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
+            if below.height >= 4 {
+                self.draw_last_run(canvas, below);
+            }
+        }
+    }
+
+    /// Draws the choices; returns the rows they took.
+    fn draw_choices(&self, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
+        let choices = self.choices();
+        let count = choices.len() as u16;
+        let each = [3, 2].into_iter().find(|each| count * each <= area.height).unwrap_or(1);
+        for (at, (_, title, detail)) in choices.iter().enumerate() {
+            let y = area.y + at as u16 * each;
+            if y >= area.bottom() {
+                break;
+            }
+            let row = Rect { y, height: 1, ..area };
+            let here = at == self.selected;
+            if here {
+                canvas.clear(row, Role::Selection);
+            }
+            let mark = if here { "›" } else { " " };
+            canvas.text(row, &format!("{mark} {title}"), if here { Role::Selection } else { Role::Strong });
+            let place = match each {
+                1 => Rect { x: row.x + 16, width: row.width.saturating_sub(16), ..row },
+                _ => Rect { x: row.x + 2, y: row.y + 1, width: row.width.saturating_sub(2), ..row },
+            };
+            let role = if here && each == 1 { Role::Selection } else { Role::Dim };
+            canvas.text(place, detail, role);
+            canvas.click(Rect { height: each.min(area.bottom() - y), ..row }, Click::Row(0, at));
+        }
+        count * each
+    }
+
+    fn draw_last_run(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        match &self.runs {
+            None => {
+                let inside = canvas.pane(area, "Last run", "", false);
+                canvas.text(inside, " looking for runs …", Role::Dim);
+            }
+            Some(Err(problem)) => {
+                let inside = canvas.pane(area, "Runs", "", false);
+                for (row, line) in
+                    rows_of(inside).zip(wrapped(&format!("! {problem}"), inside.width as usize))
+                {
+                    canvas.text(row, &line, Role::Bad);
+                }
+            }
+            Some(Ok(list)) => match list.first() {
+                Some(run) => draw_run(canvas, area, "Last run", run, &self.courses),
+                None => draw_welcome(canvas, area),
+            },
+        }
+    }
+}
+
+/// A run with its figures and the curve of its cash.
+pub(super) fn draw_run(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    title: &str,
+    run: &RunSummary,
+    courses: &Courses,
+) {
+    let inside = canvas.pane(area, title, &state(run), false);
+    let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+    let known = courses.get(&run.id).and_then(Option::as_ref);
+    let facts = facts(run, known);
+    let beside = inside.width >= 70 && inside.height < 14;
+    let (above, below) = if beside {
+        let left = Rect { width: 38, ..inside };
+        (left, Rect { x: inside.x + 39, width: inside.width - 39, ..inside })
+    } else {
+        let used = (facts.len() as u16 + 1).min(inside.height);
+        (inside, Rect { y: inside.y + used, height: inside.height - used, ..inside })
+    };
+    for (row, (name, value)) in rows_of(above).zip(&facts) {
+        canvas.text(Rect { width: 13.min(row.width), ..row }, name, Role::Dim);
+        let place = Rect { x: row.x + 13, width: row.width.saturating_sub(13), ..row };
+        canvas.text(place, value, Role::Text);
+    }
+    draw_course(canvas, below, known, run.problem.is_some());
+}
+
+fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
+    let inside = canvas.pane(area, "What this is", "", false);
+    let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+    let parts = [
+        "You run a company that sells an AI subscription. It begins with a million dollars and no customer.",
+        "Once a week you set prices, models, quotas, capacity, advertising and development, answer companies, and say \
+         what cash will be. Then seven days pass.",
+        "Customers, rivals and the economy answer. What you may know is on the screens and in the tables; the rest has \
+         to be found out.",
+        "Cash after the last day is the score. Below zero it is over.",
+        "Nothing you confirm is lost: quit whenever you like.",
+    ];
+    let text = parts.join("\n\n");
+    for (row, line) in rows_of(inside).zip(wrapped(&text, inside.width as usize)) {
+        canvas.text(row, &line, Role::Text);
+    }
+}
+
+/// A run in a few words.
+fn short(run: &RunSummary) -> String {
+    format!("day {} of {} · {}", run.day, run.days, dollars(run.cash))
+}

@@ -1,0 +1,314 @@
+//! The start menu: continue, a new run, the runs, comparisons, published results, the tour, quit.
+
+mod compare;
+mod form;
+mod home;
+mod paper;
+mod runs;
+#[cfg(test)]
+pub(in crate::console) mod tests;
+
+use std::collections::BTreeMap;
+
+use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::layout::Rect;
+
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Align, Canvas};
+use crate::console::effect::Effect;
+use crate::console::theme::Role;
+use crate::console::widgets::Table;
+use crate::session::{Configuration, RunCourse, RunSummary};
+use form::{Form, ROWS};
+use home::Choice;
+use runs::Asked;
+
+/// Rows of a page, to walk over.
+const PAGE: u16 = 10;
+
+/// How runs went, by their names; none while it is being read.
+type Courses = BTreeMap<String, Option<Result<RunCourse, String>>>;
+
+/// The start menu.
+pub struct Menu {
+    page: Page,
+    runs: Option<Result<Vec<RunSummary>, String>>,
+    /// Place on a page that is a plain list.
+    selected: usize,
+    form: Form,
+    table: Table,
+    /// Runs to be compared, in the order in which they were marked.
+    marked: Vec<String>,
+    courses: Courses,
+    /// What is asked about before it is done.
+    asked: Option<Asked>,
+    configuration: Configuration,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Page {
+    Home,
+    NewRun,
+    Runs,
+    Compare,
+    Paper,
+}
+
+impl Menu {
+    /// The menu, before the runs are known.
+    pub fn new(configuration: &Configuration) -> Menu {
+        Menu {
+            page: Page::Home,
+            runs: None,
+            selected: 0,
+            form: Form::new(configuration),
+            table: Table::new(runs::columns()),
+            marked: Vec::new(),
+            courses: Courses::new(),
+            asked: None,
+            configuration: configuration.clone(),
+        }
+    }
+
+    /// Takes the list of runs; asks how the last one went.
+    pub fn take(&mut self, runs: Result<Vec<RunSummary>, String>) -> Vec<Effect> {
+        self.runs = Some(runs);
+        if self.page == Page::Home {
+            self.selected = 0;
+        }
+        let known: Vec<String> = self.list().iter().map(|run| run.id.clone()).collect();
+        self.marked.retain(|id| known.contains(id));
+        // What was played since may have gone further.
+        self.courses.clear();
+        self.asked = None;
+        self.renew_table();
+        let last = self.list().first().filter(|run| run.problem.is_none()).map(|run| run.id.clone());
+        let mut effects: Vec<Effect> = last.and_then(|id| self.read(&id)).into_iter().collect();
+        if self.page == Page::Runs {
+            effects.extend(self.read_chosen());
+        }
+        effects
+    }
+
+    /// Takes how a run went.
+    pub fn learn(&mut self, id: String, course: Result<RunCourse, String>) {
+        self.courses.insert(id, Some(course));
+    }
+
+    /// A run could not be started or opened.
+    pub fn refused(&mut self, problem: String) {
+        self.form.refused = Some(problem);
+    }
+
+    /// Asks how a run went, unless that is known or asked already.
+    fn read(&mut self, id: &str) -> Option<Effect> {
+        if self.courses.contains_key(id) {
+            return None;
+        }
+        self.courses.insert(id.to_owned(), None);
+        Some(Effect::ReadCourse(id.to_owned()))
+    }
+
+    fn list(&self) -> &[RunSummary] {
+        match &self.runs {
+            Some(Ok(list)) => list,
+            _ => &[],
+        }
+    }
+
+    fn latest(&self) -> Option<&RunSummary> {
+        self.list().iter().find(|run| run.ended.is_none() && run.problem.is_none())
+    }
+
+    /// Last place of a page that is a plain list.
+    fn last(&self) -> usize {
+        let rows = match self.page {
+            Page::Home => self.choices().len(),
+            Page::NewRun => ROWS.len(),
+            Page::Paper => paper::ranked(self.list()).len(),
+            Page::Runs | Page::Compare => 1,
+        };
+        rows.saturating_sub(1)
+    }
+
+    /// Scopes of the page.
+    pub fn scopes(&self) -> Vec<Scope> {
+        match self.page {
+            Page::Runs if self.asked.is_some() => vec![Scope::Dialog],
+            Page::Runs if self.table.is_typing() => vec![Scope::Field],
+            Page::NewRun if self.form.is_typing() => vec![Scope::Field],
+            Page::NewRun | Page::Compare | Page::Paper => vec![Scope::List],
+            Page::Home | Page::Runs => vec![Scope::Menu, Scope::List],
+        }
+    }
+
+    /// Actions worth showing.
+    pub fn hints(&self) -> Vec<Action> {
+        match self.page {
+            Page::Home if self.latest().is_none() => vec![Action::Open, Action::NewRun, Action::Quit],
+            Page::Home => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],
+            Page::NewRun => vec![Action::Open, Action::Left, Action::Right, Action::Close],
+            Page::Runs if self.asked.is_some() => vec![Action::Confirm, Action::Cancel],
+            Page::Runs if self.table.is_typing() => vec![Action::Commit, Action::Discard],
+            Page::Runs => vec![
+                Action::Open,
+                Action::MarkRun,
+                Action::CompareRuns,
+                Action::EndRun,
+                Action::DeleteRun,
+                Action::Close,
+                Action::Filter,
+                Action::Sort,
+            ],
+            Page::Compare | Page::Paper => vec![Action::Close, Action::Quit],
+        }
+    }
+
+    fn place(&mut self) -> &mut usize {
+        match self.page {
+            Page::NewRun => &mut self.form.at,
+            _ => &mut self.selected,
+        }
+    }
+
+    fn go_home(&mut self) {
+        (self.page, self.selected) = (Page::Home, 0);
+    }
+
+    /// Does an action.
+    pub fn act(&mut self, action: Action) -> Vec<Effect> {
+        if self.asked.is_some() {
+            return self.answer(action);
+        }
+        match (action, self.page) {
+            (Action::NewRun, _) => self.open_form(),
+            (Action::ContinueRun, _) => return self.open_latest(),
+            (_, Page::Runs) => return self.act_on_runs(action),
+            (Action::Close | Action::Discard, Page::Compare) => self.page = Page::Runs,
+            (Action::Close | Action::Discard, _) => self.go_home(),
+            (Action::Left | Action::Right, Page::NewRun) => self.form.turn(action == Action::Right),
+            (Action::Open | Action::Commit, Page::NewRun) => return self.form.enter(),
+            (Action::Open, Page::Home) => return self.choose(),
+            _ => self.walk(action),
+        }
+        Vec::new()
+    }
+
+    fn walk(&mut self, action: Action) {
+        let (last, page) = (self.last(), PAGE as usize);
+        let place = self.place();
+        *place = match action {
+            Action::Up | Action::CommitPrevious => place.saturating_sub(1),
+            Action::Down | Action::CommitDown | Action::CommitNext => *place + 1,
+            Action::PageUp => place.saturating_sub(page),
+            Action::PageDown => *place + page,
+            Action::First => 0,
+            Action::Last => last,
+            _ => *place,
+        }
+        .min(last);
+    }
+
+    fn open_form(&mut self) {
+        self.page = Page::NewRun;
+        self.form = Form::new(&self.configuration);
+    }
+
+    fn open_latest(&self) -> Vec<Effect> {
+        match self.latest() {
+            Some(run) => vec![Effect::Open(run.id.clone())],
+            None => vec![Effect::Complain("there is no unfinished run; n starts one".to_owned())],
+        }
+    }
+
+    fn choose(&mut self) -> Vec<Effect> {
+        match self.choices().get(self.selected).map(|choice| choice.0) {
+            Some(Choice::Continue) => return self.open_latest(),
+            Some(Choice::Tour) => return vec![Effect::StartTour],
+            Some(Choice::New) => self.open_form(),
+            Some(Choice::Runs) => return self.open_runs(),
+            Some(Choice::Compare) => {
+                let mut effects = self.open_runs();
+                effects.push(Effect::Say("mark two or more, then compare".to_owned()));
+                return effects;
+            }
+            Some(Choice::Paper) => (self.page, self.selected) = (Page::Paper, 0),
+            Some(Choice::Quit) => return vec![Effect::Do(Action::Quit)],
+            None => {}
+        }
+        Vec::new()
+    }
+
+    fn open_runs(&mut self) -> Vec<Effect> {
+        self.page = Page::Runs;
+        self.read_chosen()
+    }
+
+    /// Takes a typed key.
+    pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
+        match self.page {
+            Page::NewRun => self.form.key(key),
+            Page::Runs if self.table.is_typing() => self.table.edit_filter(|field| {
+                field.key(key);
+            }),
+            _ if key.code == KeyCode::Char('q') && self.asked.is_none() => {
+                return vec![Effect::Do(Action::Quit)];
+            }
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    /// Takes pasted text.
+    pub fn paste(&mut self, text: &str) {
+        match self.page {
+            Page::NewRun => self.form.paste(text),
+            Page::Runs => self.table.edit_filter(|field| field.insert(text.trim())),
+            _ => {}
+        }
+    }
+
+    /// A row was clicked: once selects, twice opens.
+    pub fn click(&mut self, row: usize) -> Vec<Effect> {
+        if self.asked.is_some() {
+            return Vec::new();
+        }
+        if self.page == Page::Runs {
+            let before = self.table.selected();
+            self.table.select_place(row);
+            let again = before == self.table.selected();
+            return if again { self.act(Action::Open) } else { self.read_chosen() };
+        }
+        let row = row.min(self.last());
+        let again = *self.place() == row;
+        *self.place() = row;
+        if again && !(self.page == Page::NewRun && row < ROWS.len() - 1) {
+            self.act(Action::Open)
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// Draws the page below the name of the program.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let version = concat!("version ", env!("CARGO_PKG_VERSION"), " ");
+        let name = Rect { x: area.x + 2, y: area.y + 1, width: area.width.saturating_sub(3), height: 1 };
+        canvas.text(name, "▲  N O V A M I N D", Role::Title);
+        canvas.aligned(name, version, Role::Dim, Align::Right);
+        let line = Rect { x: name.x + 3, y: name.y + 1, width: name.width.saturating_sub(3), ..name };
+        canvas.text(line, "one company, five hundred days, every decision yours", Role::Dim);
+        let body = Rect {
+            x: area.x + 2,
+            y: area.y + 4,
+            width: area.width.saturating_sub(4),
+            height: area.height.saturating_sub(4),
+        };
+        match self.page {
+            Page::Home => self.draw_home(canvas, body),
+            Page::NewRun => self.form.draw(canvas, body),
+            Page::Runs => self.draw_runs(canvas, body),
+            Page::Compare => self.draw_compare(canvas, body),
+            Page::Paper => self.draw_paper(canvas, body),
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Published results, ranked, with the finished runs of this machine among them.
+
+use ratatui::layout::Rect;
+
+use super::Menu;
+use crate::console::canvas::{Align, Canvas, rows_of};
+use crate::console::dialogs::final_page::published;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::table::first_row;
+use crate::notation::{compact, dollars};
+use crate::session::{Ended, Mode, RunSummary};
+
+/// Days of a run that can stand beside published ones.
+const PUBLISHED_DAYS: u32 = 500;
+
+/// A line of the table.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Ranked {
+    name: String,
+    cash: f64,
+    note: String,
+    own: bool,
+}
+
+/// All results, the best first.
+pub(super) fn ranked(runs: &[RunSummary]) -> Vec<Ranked> {
+    let paper = published();
+    let baseline = Ranked {
+        name: "Rule-based baseline".to_owned(),
+        cash: paper.rule_based_baseline,
+        note: String::new(),
+        own: false,
+    };
+    let mut results = vec![baseline];
+    results.extend(paper.agent.iter().map(|agent| Ranked {
+        name: agent.name.clone(),
+        cash: agent.best_cash,
+        note: format!("{} of {} bankrupt", agent.bankruptcies, agent.runs),
+        own: false,
+    }));
+    results.extend(runs.iter().filter(|run| is_comparable(run)).map(|run| Ranked {
+        name: format!("You · {}", run.id),
+        cash: if run.ended == Some(Ended::Bankruptcy) { 0.0 } else { run.cash },
+        note: format!("{} · seed {}", run.mode.map_or("", Mode::id), run.seed),
+        own: true,
+    }));
+    results.sort_by(|left, right| right.cash.total_cmp(&left.cash).then_with(|| left.name.cmp(&right.name)));
+    results
+}
+
+fn is_finished(run: &RunSummary) -> bool {
+    matches!(run.ended, Some(Ended::Horizon | Ended::Bankruptcy)) && run.problem.is_none()
+}
+
+fn is_comparable(run: &RunSummary) -> bool {
+    is_finished(run) && run.days == PUBLISHED_DAYS
+}
+
+impl Menu {
+    pub(super) fn draw_paper(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let results = ranked(self.list());
+        let own = results.iter().filter(|result| result.own).count();
+        let note = if own > 0 { format!("{own} of yours") } else { String::new() };
+        let inside = canvas.pane(area, "Published results and yours", &note, true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let list = Rect { height: inside.height.saturating_sub(4), ..inside };
+        let most = results.first().map_or(1.0, |result| result.cash.max(1.0));
+        let from = first_row(self.selected, list.height as usize, results.len());
+        for (row, (at, result)) in rows_of(list).zip(results.iter().enumerate().skip(from)) {
+            draw_result(canvas, row, at, result, most);
+        }
+        let left_out = self.list().iter().filter(|run| is_finished(run) && !is_comparable(run)).count();
+        let yours = match (own, left_out) {
+            (0, 0) => "Finish a run of 500 days and it stands here.".to_owned(),
+            (_, 0) => "Yours are marked; a bankrupt run counts as $0.".to_owned(),
+            (_, 1) => "One finished run of another length is left out.".to_owned(),
+            (_, count) => format!("{count} finished runs of another length are left out."),
+        };
+        let bound = published().estimated_upper_bound;
+        let source = format!(
+            "Best cash of three runs each, seed 42, 500 days, $1,000,000 start. Estimated upper bound ${}.",
+            compact(bound)
+        );
+        let used = list.height + 1;
+        let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
+        let lines = wrapped(&format!("{yours}\n{source}"), below.width as usize);
+        for (row, line) in rows_of(below).zip(lines) {
+            canvas.text(row, &line, Role::Dim);
+        }
+    }
+}
+
+fn draw_result(canvas: &mut Canvas<'_>, row: Rect, at: usize, result: &Ranked, most: f64) {
+    let role = if result.own { Role::Key } else { Role::Text };
+    let place =
+        |x: u16, width: u16| Rect { x: row.x + x, width: width.min(row.width.saturating_sub(x)), ..row };
+    let mark = if result.own { "▌" } else { " " };
+    canvas.text(place(0, 1), mark, role);
+    canvas.aligned(place(1, 2), &(at + 1).to_string(), Role::Dim, Align::Right);
+    canvas.text(place(4, 22), &result.name, role);
+    canvas.aligned(place(27, 13), &dollars(result.cash), role, Align::Right);
+    canvas.text(place(41, 20), &result.note, Role::Dim);
+    let room = row.width.saturating_sub(62);
+    let length = (f64::from(room) * (result.cash / most).clamp(0.0, 1.0)).round() as usize;
+    let bar = "█".repeat(length.max(usize::from(result.cash > 0.0)));
+    canvas.text(place(62, room), &bar, if result.own { Role::Key } else { Role::Series(0) });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::screens::menu::tests::summary;
+
+    #[test]
+    fn own_runs_stand_where_their_cash_puts_them() {
+        let finished = |id: &str, cash: f64, days: u32, ended: Option<Ended>| RunSummary {
+            cash,
+            days,
+            day: days,
+            ended,
+            ..summary(id)
+        };
+        let runs = [
+            finished("rich", 1e9, 500, Some(Ended::Horizon)),
+            finished("short", 1e9, 70, Some(Ended::Horizon)),
+            finished("open", 1e9, 500, None),
+            finished("ruin", -5.0, 500, Some(Ended::Bankruptcy)),
+        ];
+        let results = ranked(&runs);
+        assert_eq!((results[0].name.as_str(), results[0].own), ("You · rich", true));
+        assert_eq!(results.iter().filter(|result| result.own).count(), 2);
+        let ruin = results.iter().find(|result| result.name == "You · ruin").expect("the bankrupt one");
+        assert!(ruin.cash.abs() < 1e-9);
+        assert!(results.is_sorted_by(|left, right| left.cash >= right.cash));
+    }
+}

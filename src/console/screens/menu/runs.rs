@@ -1,0 +1,294 @@
+//! The list of runs: open, compare, give up, delete.
+
+use ratatui::layout::Rect;
+
+use super::home::draw_run;
+use super::{Courses, Menu};
+use crate::console::action::Action;
+use crate::console::canvas::{Canvas, rows_of};
+use crate::console::effect::Effect;
+use crate::console::text::{short_dollars, wrapped};
+use crate::console::theme::Role;
+use crate::console::widgets::chart::zero_if_near;
+use crate::console::widgets::{Axis, Cell, Column, Line, chart};
+use crate::notation::{dollars, grouped};
+use crate::session::{Ended, Mode, RunCourse, RunSummary};
+
+/// Something that cannot be taken back and is asked about first.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Asked {
+    GiveUp(String),
+    Delete(String),
+}
+
+/// Most runs that are compared.
+pub(super) const MOST_COMPARED: usize = 6;
+
+/// Columns of the list.
+pub(super) fn columns() -> Vec<Column> {
+    vec![
+        Column::words("run").at_most(10),
+        Column::words("state").at_most(20),
+        Column::numbers("cash"),
+        Column::words("mode"),
+        Column::numbers("seed").at_most(12),
+        Column::words("scenario").at_most(20),
+        Column::words("played").at_most(16),
+        Column::words("participant").at_most(16),
+        Column::words("created").at_most(16),
+    ]
+}
+
+fn row(run: &RunSummary, marked: bool) -> Vec<Cell> {
+    let mark = if marked { "●" } else { " " };
+    let name = Cell::words(format!("{mark} {}", run.id)).role(if marked { Role::Key } else { Role::Text });
+    if run.problem.is_some() {
+        return vec![name, Cell::words("cannot be read").role(Role::Bad)];
+    }
+    let role = match run.ended {
+        None => Role::Text,
+        Some(Ended::Horizon) => Role::Good,
+        Some(Ended::Bankruptcy) => Role::Bad,
+        Some(Ended::Abandoned) => Role::Dim,
+    };
+    vec![
+        name,
+        Cell::words(state(run)).role(role),
+        Cell::number(run.cash, dollars(run.cash)),
+        Cell::words(run.mode.map_or("", Mode::id)),
+        Cell::number(run.seed as f64, run.seed.to_string()),
+        Cell::words(run.scenario.as_str()),
+        Cell::words(minute(&run.played)).role(Role::Dim),
+        Cell::words(run.participant.as_deref().unwrap_or("–")),
+        Cell::words(minute(&run.created)).role(Role::Dim),
+    ]
+}
+
+impl Menu {
+    pub(super) fn renew_table(&mut self) {
+        let rows = self.list().iter().map(|run| row(run, self.marked.contains(&run.id))).collect();
+        self.table.set_rows(rows);
+    }
+
+    pub(super) fn chosen(&self) -> Option<&RunSummary> {
+        self.table.selected().and_then(|at| self.list().get(at))
+    }
+
+    /// Does an action of the list of runs.
+    pub(super) fn act_on_runs(&mut self, action: Action) -> Vec<Effect> {
+        if self.table.act(action, super::PAGE) {
+            return self.read_chosen();
+        }
+        match action {
+            Action::Open => {
+                return self.chosen().map(|run| Effect::Open(run.id.clone())).into_iter().collect();
+            }
+            Action::MarkRun => return self.mark(),
+            Action::CompareRuns => return self.compare(),
+            Action::EndRun => {
+                match self.chosen().filter(|run| run.ended.is_none() && run.problem.is_none()) {
+                    Some(run) => self.asked = Some(Asked::GiveUp(run.id.clone())),
+                    None => return vec![Effect::Complain("this run is over already".to_owned())],
+                }
+            }
+            Action::DeleteRun => self.asked = self.chosen().map(|run| Asked::Delete(run.id.clone())),
+            Action::Close => self.go_home(),
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    fn mark(&mut self) -> Vec<Effect> {
+        let Some(run) = self.chosen().filter(|run| run.problem.is_none()) else { return Vec::new() };
+        let id = run.id.clone();
+        match self.marked.iter().position(|own| *own == id) {
+            Some(at) => {
+                self.marked.remove(at);
+            }
+            None if self.marked.len() == MOST_COMPARED => {
+                return vec![Effect::Complain(format!(
+                    "{MOST_COMPARED} runs are marked; more cannot be compared"
+                ))];
+            }
+            None => self.marked.push(id),
+        }
+        self.renew_table();
+        let mut effects = self.act_on_runs(Action::Down);
+        effects.extend(self.read_marked());
+        effects
+    }
+
+    /// Asks for what is not known yet of the marked runs.
+    fn read_marked(&mut self) -> Vec<Effect> {
+        let marked = self.marked.clone();
+        marked.into_iter().filter_map(|id| self.read(&id)).collect()
+    }
+
+    fn compare(&mut self) -> Vec<Effect> {
+        if self.marked.len() < 2 {
+            return vec![Effect::Complain("mark two or more runs first".to_owned())];
+        }
+        let effects = self.read_marked();
+        self.page = super::Page::Compare;
+        effects
+    }
+
+    pub(super) fn read_chosen(&mut self) -> Vec<Effect> {
+        let id = self.chosen().filter(|run| run.problem.is_none()).map(|run| run.id.clone());
+        id.and_then(|id| self.read(&id)).into_iter().collect()
+    }
+
+    /// Answers the question about a run.
+    pub(super) fn answer(&mut self, action: Action) -> Vec<Effect> {
+        match (action, self.asked.take()) {
+            (Action::Confirm, Some(Asked::GiveUp(id))) => vec![Effect::EndRun(id)],
+            (Action::Confirm, Some(Asked::Delete(id))) => vec![Effect::DeleteRun(id)],
+            (Action::Cancel, _) => Vec::new(),
+            (_, asked) => {
+                self.asked = asked;
+                Vec::new()
+            }
+        }
+    }
+
+    fn question(&self) -> Option<(&'static str, String)> {
+        let id = match self.asked.as_ref()? {
+            Asked::GiveUp(id) | Asked::Delete(id) => id,
+        };
+        let run = self.list().iter().find(|run| run.id == *id)?;
+        let stand = format!("day {} of {}, {}", run.day, run.days, dollars(run.cash));
+        Some(match self.asked.as_ref()? {
+            Asked::GiveUp(_) => (
+                "Give up",
+                format!(
+                    "Run {id} stands at {stand}. If you give it up, it ends there for good and has no score. It can still \
+                     be looked at, and branched from."
+                ),
+            ),
+            Asked::Delete(_) => (
+                "Delete",
+                format!(
+                    "Run {id} stands at {stand}. Deleting it removes its record and everything in its folder. It cannot \
+                     be brought back."
+                ),
+            ),
+        })
+    }
+
+    pub(super) fn draw_runs(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let for_detail = if area.height >= 16 { (area.height * 2 / 5).max(9) } else { 0 };
+        let above = Rect { height: area.height - for_detail, ..area };
+        let below = Rect { y: above.bottom(), height: for_detail, ..area };
+        let note = match (self.table.note(), self.marked.len()) {
+            (note, 0) => note,
+            (note, marked) if note.is_empty() => format!("{marked} marked"),
+            (note, marked) => format!("{note} · {marked} marked"),
+        };
+        let inside = canvas.pane(above, "Runs", &note, self.asked.is_none());
+        self.table.draw(canvas, inside, self.asked.is_none(), 0);
+        if self.list().is_empty() {
+            let row = Rect { y: inside.y + 1, height: 1.min(inside.height.saturating_sub(1)), ..inside };
+            canvas.text(row, "There are no runs any more; close this page and start one.", Role::Dim);
+        }
+        match (self.question(), self.chosen()) {
+            (Some((title, text)), _) => {
+                // Over the list, where there is no room for a pane of its own.
+                let place = if for_detail > 0 { below } else { area };
+                canvas.clear(place, Role::Text);
+                let inside = canvas.pane(place, title, "", true);
+                let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+                for (row, line) in rows_of(inside).zip(wrapped(&text, inside.width as usize)) {
+                    canvas.text(row, &line, Role::Warning);
+                }
+            }
+            (None, Some(run)) if for_detail > 0 => {
+                draw_run(canvas, below, &format!("Run {}", run.id), run, &self.courses)
+            }
+            _ => {}
+        }
+    }
+}
+
+/// How far a run has come.
+pub(super) fn state(run: &RunSummary) -> String {
+    match run.ended {
+        _ if run.problem.is_some() => "cannot be read".to_owned(),
+        None => format!("day {} of {}", run.day, run.days),
+        Some(Ended::Horizon) => format!("finished day {}", run.day),
+        Some(Ended::Bankruptcy) => format!("bankrupt day {}", run.day),
+        Some(Ended::Abandoned) => format!("given up day {}", run.day),
+    }
+}
+
+/// A moment to the minute.
+fn minute(at: &str) -> String {
+    at.get(..16).unwrap_or("").replace('T', " ")
+}
+
+/// Figures of a run.
+pub(super) fn facts(
+    run: &RunSummary,
+    course: Option<&Result<RunCourse, String>>,
+) -> Vec<(&'static str, String)> {
+    if let Some(problem) = &run.problem {
+        return vec![("problem", problem.clone())];
+    }
+    let mode = run.mode.map_or("", Mode::id);
+    let mut facts = vec![
+        ("cash", dollars(run.cash)),
+        ("run", format!("{} · {mode} · seed {}", run.id, run.seed)),
+        ("scenario", run.scenario.clone()),
+    ];
+    if let Some(Ok(course)) = course {
+        facts.insert(
+            1,
+            (
+                "subscribers",
+                format!(
+                    "{} · {} seats",
+                    grouped(course.subscribers as f64, 0),
+                    grouped(course.seats as f64, 0)
+                ),
+            ),
+        );
+        facts.insert(2, ("revenue", format!("{} a month", dollars(course.recurring_revenue))));
+    }
+    if let Some(participant) = &run.participant {
+        facts.push(("participant", participant.clone()));
+    }
+    facts.push(("last played", minute(&run.played)));
+    facts
+}
+
+/// The curve of a run's cash, or why there is none.
+pub(super) fn draw_course(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    course: Option<&Result<RunCourse, String>>,
+    unreadable: bool,
+) {
+    match course {
+        Some(Ok(course)) if course.cash.len() > 1 => draw_curves(canvas, area, &[(0, course)]),
+        Some(Ok(_)) => canvas.text(area, "no week has passed yet", Role::Dim),
+        Some(Err(problem)) => canvas.text(area, &format!("! {problem}"), Role::Bad),
+        None if unreadable => {}
+        None => canvas.text(area, "reading the course …", Role::Dim),
+    }
+}
+
+/// Curves of cash over days, each in the colour of its number.
+pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, courses: &[(usize, &RunCourse)]) {
+    let points =
+        |course: &RunCourse| course.cash.iter().map(|(day, cash)| (f64::from(*day), *cash)).collect();
+    let lines: Vec<Line> =
+        courses.iter().map(|(number, course)| Line::through(points(course), Role::Series(*number))).collect();
+    let values = courses.iter().flat_map(|(_, course)| course.cash.iter().map(|point| point.1));
+    let zero = zero_if_near(values);
+    let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
+    chart(canvas, area, &lines, &x, &Axis { write: &short_dollars, holds: zero });
+}
+
+/// A course that is known.
+pub(super) fn known<'a>(courses: &'a Courses, id: &str) -> Option<&'a RunCourse> {
+    courses.get(id)?.as_ref()?.as_ref().ok()
+}

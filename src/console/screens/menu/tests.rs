@@ -1,0 +1,209 @@
+//! What the start menu does and shows.
+
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+
+use super::*;
+use crate::console::test_kit::painted;
+use crate::session::{Ended, Mode};
+
+/// An unfinished run.
+pub(in crate::console) fn summary(id: &str) -> RunSummary {
+    RunSummary {
+        id: id.to_owned(),
+        created: "2026-11-20T10:00:00Z".to_owned(),
+        played: "2026-11-21T10:42:07Z".to_owned(),
+        mode: Some(Mode::Sandbox),
+        seed: 42,
+        scenario: "default".to_owned(),
+        participant: None,
+        day: 84,
+        days: 500,
+        cash: 1_234_567.0,
+        ended: None,
+        problem: None,
+    }
+}
+
+fn menu(runs: Vec<RunSummary>) -> Menu {
+    let mut menu = Menu::new(&Configuration::shipped());
+    menu.take(Ok(runs));
+    menu
+}
+
+fn course() -> RunCourse {
+    let cash = (0..=12).map(|week| (week * 7, 1e6 + f64::from(week * week) * 2e4)).collect();
+    RunCourse { cash, subscribers: 41_950, seats: 1_240, recurring_revenue: 812_345.0 }
+}
+
+fn three() -> Menu {
+    let mut menu = menu(vec![
+        summary("aaaa0001"),
+        RunSummary { ended: Some(Ended::Horizon), day: 500, ..summary("bbbb0002") },
+        RunSummary { problem: Some("run.toml is missing".to_owned()), ..summary("cccc0003") },
+    ]);
+    for id in ["aaaa0001", "bbbb0002"] {
+        menu.learn(id.to_owned(), Ok(course()));
+    }
+    menu
+}
+
+fn shown(menu: &Menu, width: u16, height: u16) -> String {
+    painted(width, height, |canvas, area| menu.draw(canvas, area)).join("\n")
+}
+
+fn type_text(menu: &mut Menu, text: &str) {
+    for letter in text.chars() {
+        menu.key(&KeyEvent::new(KeyCode::Char(letter), KeyModifiers::NONE));
+    }
+}
+
+#[test]
+fn a_newcomer_is_offered_the_tour_first() {
+    let mut menu = menu(Vec::new());
+    let screen = shown(&menu, 80, 23);
+    assert!(
+        screen.contains("› Tour") && screen.contains("New here?") && screen.contains("What this is"),
+        "{screen}"
+    );
+    assert!(!screen.contains("Continue") && !screen.contains("Runs"), "{screen}");
+    assert!(matches!(menu.act(Action::Open)[..], [Effect::StartTour]));
+}
+
+#[test]
+fn the_last_run_stands_beside_the_choices() {
+    let mut menu = three();
+    let screen = shown(&menu, 120, 39);
+    for part in [
+        "› Continue",
+        "day 84 of 500 · $1,234,567",
+        "Compare runs",
+        "Last run",
+        "41,950 · 1,240 seats",
+        "$812,345 a month",
+    ] {
+        assert!(screen.contains(part), "{part} is missing in\n{screen}");
+    }
+    assert!(matches!(&menu.act(Action::Open)[..], [Effect::Open(id)] if id == "aaaa0001"));
+}
+
+#[test]
+fn the_course_of_a_run_is_asked_for_once() {
+    let mut menu = Menu::new(&Configuration::shipped());
+    let effects = menu.take(Ok(vec![summary("aaaa0001"), summary("bbbb0002")]));
+    assert!(matches!(&effects[..], [Effect::ReadCourse(id)] if id == "aaaa0001"));
+    menu.page = Page::Runs;
+    assert!(menu.read_chosen().is_empty());
+    assert!(matches!(&menu.act(Action::Down)[..], [Effect::ReadCourse(id)] if id == "bbbb0002"));
+    assert!(menu.act(Action::Up).is_empty());
+}
+
+#[test]
+fn runs_are_given_up_and_deleted_only_after_a_question() {
+    let mut menu = three();
+    menu.page = Page::Runs;
+    for (action, words) in [(Action::EndRun, "has no score"), (Action::DeleteRun, "cannot be brought back")] {
+        assert!(menu.act(action).is_empty());
+        let screen = shown(&menu, 80, 23).replace("\n", " ");
+        let words_apart: Vec<&str> = words.split(' ').collect();
+        assert!(words_apart.iter().all(|word| screen.contains(word)), "{screen}");
+        assert_eq!(menu.scopes(), [Scope::Dialog]);
+        assert!(menu.act(Action::Cancel).is_empty() && menu.asked.is_none());
+    }
+    menu.act(Action::DeleteRun);
+    assert!(menu.act(Action::Down).is_empty() && menu.asked.is_some(), "only an answer counts");
+    assert!(matches!(&menu.act(Action::Confirm)[..], [Effect::DeleteRun(id)] if id == "aaaa0001"));
+    menu.act(Action::EndRun);
+    assert!(matches!(&menu.act(Action::Confirm)[..], [Effect::EndRun(id)] if id == "aaaa0001"));
+    menu.act(Action::Down);
+    assert!(matches!(&menu.act(Action::EndRun)[..], [Effect::Complain(_)]), "it is over already");
+}
+
+#[test]
+fn marked_runs_are_compared() {
+    let mut menu = three();
+    menu.page = Page::Runs;
+    assert!(matches!(&menu.act(Action::CompareRuns)[..], [Effect::Complain(_)]));
+    menu.act(Action::MarkRun);
+    menu.act(Action::MarkRun);
+    menu.act(Action::MarkRun);
+    assert_eq!(menu.marked, ["aaaa0001", "bbbb0002"], "what cannot be read cannot be marked");
+    assert!(shown(&menu, 80, 23).contains("● bbbb0002"));
+    menu.act(Action::CompareRuns);
+    for (width, figure) in [(80, "▁"), (120, "$812,345")] {
+        let screen = shown(&menu, width, 39);
+        for part in ["Cash", "2 runs", "1━", "aaaa0001", "finished day 500", figure] {
+            assert!(screen.contains(part), "{part} is missing in\n{screen}");
+        }
+    }
+    menu.act(Action::Close);
+    assert!(menu.page == Page::Runs);
+}
+
+#[test]
+fn the_list_is_filtered_and_sorted() {
+    let mut menu = three();
+    menu.page = Page::Runs;
+    menu.act(Action::Filter);
+    assert_eq!(menu.scopes(), [Scope::Field]);
+    type_text(&mut menu, "finished q");
+    assert_eq!(menu.chosen(), None, "q is typed, not quit");
+    menu.key(&KeyEvent::new(KeyCode::Backspace, KeyModifiers::NONE));
+    menu.key(&KeyEvent::new(KeyCode::Backspace, KeyModifiers::NONE));
+    menu.act(Action::Commit);
+    assert_eq!(menu.chosen().map(|run| run.id.as_str()), Some("bbbb0002"));
+    menu.act(Action::Close);
+    menu.act(Action::Close);
+    assert!(menu.page == Page::Home);
+}
+
+#[test]
+fn the_form_says_what_is_wrong_while_it_is_typed() {
+    let mut menu = three();
+    menu.act(Action::NewRun);
+    menu.form.at = 3;
+    type_text(&mut menu, "3");
+    assert!(shown(&menu, 80, 23).contains("! a whole number of at least 7"));
+    menu.form.at = ROWS.len() - 1;
+    assert!(menu.act(Action::Open).is_empty() && menu.form.at == 3, "the form goes to what is wrong");
+    type_text(&mut menu, "0");
+    menu.form.at = 1;
+    menu.act(Action::Left);
+    assert!(shown(&menu, 80, 23).contains("No branches, no rewinding"));
+    menu.form.at = ROWS.len() - 1;
+    match &menu.act(Action::Open)[..] {
+        [Effect::Create(new)] => {
+            assert_eq!((new.days, new.seed, new.mode), (Some(30), Some(42), Mode::Baseline))
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_paper_table_shows_both_kinds_of_results() {
+    let mut menu = three();
+    menu.page = Page::Paper;
+    let screen = shown(&menu, 120, 39);
+    for part in
+        ["Rule-based baseline", "$15,756,408", "You · bbbb0002", "sandbox · seed 42", "upper bound $2.20B"]
+    {
+        assert!(screen.contains(part), "{part} is missing in\n{screen}");
+    }
+    menu.act(Action::Last);
+    menu.act(Action::Down);
+    assert_eq!(menu.selected, menu.last());
+}
+
+#[test]
+fn every_page_is_drawn_in_every_window() {
+    for mut menu in [menu(Vec::new()), three(), Menu::new(&Configuration::shipped())] {
+        menu.marked = menu.list().iter().map(|run| run.id.clone()).collect();
+        for page in [Page::Home, Page::NewRun, Page::Runs, Page::Compare, Page::Paper] {
+            menu.page = page;
+            for width in (0..130).step_by(13) {
+                for height in (0..40).step_by(3) {
+                    shown(&menu, width, height);
+                }
+            }
+        }
+    }
+}

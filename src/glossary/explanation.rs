@@ -1,0 +1,216 @@
+//! What there is to say of a subject, in sections that any place can show.
+
+use std::fmt::Write;
+
+use super::{Subject, Term, subject, term};
+use crate::database::{Column, Table};
+use crate::tools::{Argument, Spec};
+
+/// A part of an explanation.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Section {
+    /// Word for it; empty for the first one, which says what the subject is.
+    pub name: &'static str,
+    /// Text; may have several lines.
+    pub text: String,
+}
+
+/// What there is to say.
+#[derive(Debug, Clone)]
+pub struct Explanation {
+    /// As the subject is written.
+    pub title: String,
+    /// What it belongs to, in a few words.
+    pub note: String,
+    /// Texts.
+    pub sections: Vec<Section>,
+    /// Subjects that help to understand it.
+    pub related: Vec<Subject>,
+    /// Screens and dialogs that show it, by the names of their actions.
+    pub places: &'static [String],
+}
+
+impl Explanation {
+    /// Explains a subject.
+    pub fn of(subject: Subject) -> Explanation {
+        let (note, sections, related, places) = match subject {
+            Subject::Term(term) => of_term(term),
+            Subject::Tool(spec) => of_tool(spec),
+            Subject::Argument(spec, argument) => of_argument(spec, argument),
+            Subject::Table(table) => of_table(table),
+            Subject::Column(table, column) => of_column(table, column),
+        };
+        let sections = sections.into_iter().filter(|section| !section.text.is_empty()).collect();
+        Explanation { title: subject.title(), note, sections, related, places }
+    }
+
+    /// The explanation as lines of text.
+    pub fn as_text(&self) -> String {
+        let mut text = format!("{} ({})\n", self.title, self.note);
+        for section in &self.sections {
+            let label = if section.name.is_empty() { String::new() } else { format!("{}: ", section.name) };
+            let lines = section.text.replace('\n', "\n  ");
+            let _ = writeln!(text, "{label}{lines}");
+        }
+        let names: Vec<String> = self.related.iter().map(Subject::name).collect();
+        if !names.is_empty() {
+            let _ = writeln!(text, "see: {}", names.join(", "));
+        }
+        text
+    }
+}
+
+type Parts = (String, Vec<Section>, Vec<Subject>, &'static [String]);
+
+fn section(name: &'static str, text: impl Into<String>) -> Section {
+    Section { name, text: text.into() }
+}
+
+fn of_term(own: &'static Term) -> Parts {
+    let sections = vec![
+        section("", own.text.clone()),
+        section("more", own.more.clone()),
+        section("also called", own.aka.join(", ")),
+    ];
+    let terms = own.see.iter().filter_map(|id| term(id)).map(Subject::Term);
+    let tools = own.tools.iter().filter_map(|name| subject(name));
+    let tables = own.tables.iter().filter_map(|name| crate::database::table(name)).map(Subject::Table);
+    (own.topic.clone(), sections, terms.chain(tools).chain(tables).collect(), &own.places)
+}
+
+fn of_tool(spec: &'static Spec) -> Parts {
+    let line = |argument: &Argument| format!("{}: {}", argument.name, argument.doc);
+    let arguments: Vec<String> = spec.arguments.iter().map(line).collect();
+    let sections = vec![
+        section("", sentence(spec.summary)),
+        section("effect", spec.effect),
+        section("felt", spec.when.id()),
+        section("cost", spec.cost),
+        section("takes", arguments.join("\n")),
+        section("refused as", spec.refusals.join(", ")),
+        section("example", format!("{}({})", spec.name, spec.example)),
+    ];
+    let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name));
+    let arguments = spec.arguments.iter().map(|argument| Subject::Argument(spec, argument));
+    let tables = spec.writes.iter().filter_map(|name| crate::database::table(name)).map(Subject::Table);
+    let related = terms.map(Subject::Term).chain(arguments).chain(tables).collect();
+    (format!("tool · {}", spec.module.id()), sections, related, &[])
+}
+
+fn of_argument(spec: &'static Spec, argument: &'static Argument) -> Parts {
+    let default = match (argument.required, spec.kind) {
+        (true, _) => "must be given",
+        (false, crate::tools::Kind::Setting) => "may be left out: then what holds stays",
+        (false, _) => "may be left out",
+    };
+    let sections = vec![
+        section("", sentence(argument.doc)),
+        section("unit", argument.unit),
+        section("range", argument.kind.words()),
+        section("default", default),
+        section("effect", spec.effect),
+        section("felt", spec.when.id()),
+        section("cost", spec.cost),
+        section("refused as", spec.refusals.join(", ")),
+    ];
+    let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name));
+    let related = std::iter::once(Subject::Tool(spec)).chain(terms.map(Subject::Term)).collect();
+    (format!("argument of {}", spec.name), sections, related, &[])
+}
+
+fn of_table(table: &'static Table) -> Parts {
+    let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+    let sections = vec![
+        section("", sentence(&table.description)),
+        section("written", table.written.clone()),
+        section("a row is named by", table.key.join(", ")),
+        section("columns", columns.join(", ")),
+    ];
+    let terms = super::terms().iter().filter(|term| term.tables.contains(&table.name));
+    let columns = table.columns.iter().map(|column| Subject::Column(table, column));
+    ("table".to_owned(), sections, terms.map(Subject::Term).chain(columns).collect(), &[])
+}
+
+fn of_column(table: &'static Table, column: &'static Column) -> Parts {
+    let sections = vec![
+        section("", sentence(&column.description)),
+        section("type", column.kind.clone()),
+        section("values", column.values.join(", ")),
+        section("table", format!("{}: {}", table.name, table.description)),
+        section("written", table.written.clone()),
+    ];
+    let terms = super::terms().iter().filter(|term| term.tables.contains(&table.name));
+    let related = std::iter::once(Subject::Table(table)).chain(terms.map(Subject::Term)).collect();
+    (format!("column of {}", table.name), sections, related, &[])
+}
+
+/// Documentation as a sentence: it begins large and ends with a full stop.
+fn sentence(text: &str) -> String {
+    let mut letters = text.trim_end_matches('.').chars();
+    match letters.next() {
+        Some(first) => format!("{}{}.", first.to_uppercase(), letters.as_str()),
+        None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn explained(name: &str) -> Explanation {
+        Explanation::of(subject(name).unwrap_or_else(|| panic!("{name} is nothing")))
+    }
+
+    #[test]
+    fn a_term_says_what_it_is_and_where_it_leads() {
+        let runway = explained("runway");
+        assert_eq!((runway.title.as_str(), runway.note.as_str()), ("Runway", "money"));
+        assert!(
+            runway.sections[0].name.is_empty() && runway.sections[0].text.starts_with("The number of weeks")
+        );
+        assert!(runway.related.iter().any(|other| other.name() == "burn"));
+        assert_eq!(runway.places, ["overview", "cash"]);
+        let ledger = explained("ledger");
+        assert!(ledger.related.iter().any(|other| other.kind() == "table"), "the table of the same name");
+    }
+
+    #[test]
+    fn an_argument_says_unit_range_default_and_refusals() {
+        let text = explained("set_prices.A").as_text();
+        for part in [
+            "set_prices.A (argument of set_prices)",
+            "List price of plan A.",
+            "unit: $/month",
+            "range: number, > 0",
+            "default: may be left out: then what holds stays",
+            "felt: ",
+            "refused as: ",
+            "see: set_prices, plan",
+        ] {
+            assert!(text.contains(part), "{part} is missing in\n{text}");
+        }
+    }
+
+    #[test]
+    fn everything_can_be_explained_in_words() {
+        let specs = || crate::tools::CATALOGUE.iter().map(|tool| tool.spec());
+        let tables = || crate::database::tables().iter();
+        let subjects = super::super::terms()
+            .iter()
+            .map(Subject::Term)
+            .chain(specs().map(Subject::Tool))
+            .chain(
+                specs().flat_map(|spec| spec.arguments.iter().map(move |own| Subject::Argument(spec, own))),
+            )
+            .chain(tables().map(Subject::Table))
+            .chain(
+                tables().flat_map(|table| table.columns.iter().map(move |own| Subject::Column(table, own))),
+            );
+        for subject in subjects {
+            let explained = Explanation::of(subject);
+            let first = &explained.sections[0];
+            assert!(first.name.is_empty() && first.text.ends_with('.'), "{}: {first:?}", subject.name());
+            assert!(!explained.note.is_empty(), "{}", subject.name());
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! What can be explained, and how it is found by a name or by words.
+
+use super::{Term, term, terms};
+use crate::database::{self, Column, Table};
+use crate::notation::nearest;
+use crate::tools::{self, Argument, Spec};
+
+/// Something that can be explained.
+#[derive(Debug, Clone, Copy)]
+pub enum Subject {
+    /// A term of the glossary.
+    Term(&'static Term),
+    /// A tool.
+    Tool(&'static Spec),
+    /// An argument of a tool.
+    Argument(&'static Spec, &'static Argument),
+    /// A table.
+    Table(&'static Table),
+    /// A column of a table.
+    Column(&'static Table, &'static Column),
+}
+
+impl Subject {
+    /// The name by which it is found.
+    pub fn name(&self) -> String {
+        match self {
+            Subject::Term(term) => term.id.clone(),
+            Subject::Tool(spec) => spec.name.to_owned(),
+            Subject::Argument(spec, argument) => format!("{}.{}", spec.name, argument.name),
+            Subject::Table(table) => table.name.clone(),
+            Subject::Column(table, column) => format!("{}.{}", table.name, column.name),
+        }
+    }
+
+    /// As it is written.
+    pub fn title(&self) -> String {
+        match self {
+            Subject::Term(term) => term.title.clone(),
+            other => other.name(),
+        }
+    }
+
+    /// What it is.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Subject::Term(_) => "term",
+            Subject::Tool(_) => "tool",
+            Subject::Argument(..) => "argument",
+            Subject::Table(_) => "table",
+            Subject::Column(..) => "column",
+        }
+    }
+}
+
+/// What a name stands for: a term (`churn`), a tool or its argument (`set_prices`, `set_prices.A`), a table or its column
+/// (`ledger`, `ledger.amount`). A part of a tool that is no argument of its own is explained by the tool.
+pub fn subject(name: &str) -> Option<Subject> {
+    if let Some(term) = term(name) {
+        return Some(Subject::Term(term));
+    }
+    if let Some(tool) = tools::find(name) {
+        return Some(Subject::Tool(tool.spec()));
+    }
+    if let Some(table) = database::table(name) {
+        return Some(Subject::Table(table));
+    }
+    let (whole, part) = name.rsplit_once('.')?;
+    if let Some(table) = database::table(whole) {
+        let column = table.columns.iter().find(|column| column.name.eq_ignore_ascii_case(part))?;
+        return Some(Subject::Column(table, column));
+    }
+    let spec = tools::find(whole)?.spec();
+    let argument = spec.arguments.iter().find(|own| own.name == part || own.alias == Some(part));
+    Some(argument.map_or(Subject::Tool(spec), |argument| Subject::Argument(spec, argument)))
+}
+
+/// What words stand for, as people type them: case and dashes do not count, other words for a term do.
+///
+/// # Errors
+/// Nothing is called like this: names that look like it.
+pub fn find(words: &str) -> Result<Subject, Vec<&'static str>> {
+    let typed = plain(words);
+    let called = |term: &&Term| {
+        let names = std::iter::once(&term.id).chain(std::iter::once(&term.title)).chain(&term.aka);
+        names.into_iter().any(|name| plain(name) == typed)
+    };
+    let joined = words.trim().to_lowercase().replace([' ', '-'], "_");
+    terms()
+        .iter()
+        .find(called)
+        .map(Subject::Term)
+        .or_else(|| subject(words.trim()))
+        .or_else(|| subject(&joined))
+        .ok_or_else(|| near(&typed))
+}
+
+/// Names that look like one that does not exist; those that hold it first.
+fn near(typed: &str) -> Vec<&'static str> {
+    let names = || terms().iter().map(|term| term.id.as_str());
+    let mut found: Vec<&str> = if typed.len() < 3 {
+        Vec::new()
+    } else {
+        terms().iter().filter(|term| holds(term, typed)).map(|term| term.id.as_str()).take(5).collect()
+    };
+    if found.is_empty() {
+        let tools = tools::CATALOGUE.iter().map(|tool| tool.spec().name);
+        let tables = database::tables().iter().map(|table| table.name.as_str());
+        found = nearest(&typed.replace(' ', "-"), names());
+        found.extend(nearest(&typed.replace(' ', "_"), tools.chain(tables)));
+        found.truncate(5);
+    }
+    found
+}
+
+fn holds(term: &Term, typed: &str) -> bool {
+    std::iter::once(&term.id).chain(&term.aka).any(|name| plain(name).contains(typed))
+}
+
+fn plain(words: &str) -> String {
+    let spaced = words.to_lowercase().replace(['-', '_'], " ");
+    spaced.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_every_kind_are_found() {
+        for (name, kind) in [
+            ("churn", "term"),
+            ("set_prices", "tool"),
+            ("set_prices.A", "argument"),
+            ("pricing.set_prices", "tool"),
+            ("set_targeted_ad_spend.content_marketing", "tool"),
+            ("issues", "table"),
+            ("ledger.amount", "column"),
+            ("LEDGER.Amount", "column"),
+        ] {
+            assert_eq!(subject(name).map(|found| found.kind()), Some(kind), "{name}");
+        }
+        for name in ["", ".", "ledger.secret", "no_tool.A", "Churn", "customers.usage_demand"] {
+            assert!(subject(name).is_none(), "{name}");
+        }
+    }
+
+    #[test]
+    fn every_name_comes_back() {
+        let tools = tools::CATALOGUE.iter().map(|tool| tool.spec());
+        for spec in tools {
+            for argument in spec.arguments {
+                let name = Subject::Argument(spec, argument).name();
+                assert_eq!(subject(&name).map(|found| found.name()), Some(name));
+            }
+        }
+        for table in database::tables() {
+            for column in &table.columns {
+                let name = Subject::Column(table, column).name();
+                assert_eq!(subject(&name).map(|found| found.kind()), Some("column"), "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn words_are_found_as_people_type_them() {
+        for (words, name) in [
+            ("Delivered Quality", "delivered-quality"),
+            ("monthly recurring revenue", "mrr"),
+            ("  MRR ", "mrr"),
+            ("word of mouth", "network-source"),
+            ("r&d", "research-project"),
+            ("set prices", "set_prices"),
+            ("ledger.amount", "ledger.amount"),
+            ("Ledger", "ledger"),
+            ("95 % band", "band"),
+        ] {
+            assert_eq!(find(words).map(|found| found.name()), Ok(name.to_owned()), "{words}");
+        }
+        assert!(find("qualit").is_err_and(|near| near.contains(&"delivered-quality")));
+        assert!(find("runwy").is_err_and(|near| near.contains(&"runway")));
+        assert!(find("").is_err() && find("\u{301}.\n").is_err());
+    }
+}

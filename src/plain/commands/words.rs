@@ -1,0 +1,107 @@
+//! What words mean: `explain` and `glossary`.
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use crate::glossary::{self, Explanation, Subject, Term, terms};
+
+/// `explain TERM`, and `what TERM`.
+pub(super) fn explain(command: &str, words: &str) -> Answer {
+    let column = command.chars().count() + 2;
+    if words.is_empty() {
+        return Answer::usage(format!("{command} needs a term, for instance {command} runway"), column);
+    }
+    match glossary::find(words) {
+        Ok(found) => answer("explain", found),
+        Err(near) if near.is_empty() => {
+            Answer::usage(format!("there is nothing called {words}; glossary lists every term"), column)
+        }
+        Err(near) => {
+            Answer::usage(format!("there is nothing called {words}; near it: {}", near.join(", ")), column)
+        }
+    }
+}
+
+/// The explanation of a subject.
+pub(super) fn answer(command: &str, subject: Subject) -> Answer {
+    let told = Explanation::of(subject);
+    let sections: Vec<Value> =
+        told.sections.iter().map(|section| json!({ "name": section.name, "text": section.text })).collect();
+    let see: Vec<String> = told.related.iter().map(Subject::name).collect();
+    let data = json!({
+        "name": subject.name(),
+        "kind": subject.kind(),
+        "title": told.title,
+        "sections": sections,
+        "see": see,
+    });
+    Answer::done(command, told.as_text(), data)
+}
+
+/// `glossary [WORD]`.
+pub(super) fn glossary(word: &str) -> Answer {
+    let wanted = word.to_lowercase();
+    let holds = |term: &&Term| {
+        [&term.id, &term.title, &term.text].iter().any(|text| text.to_lowercase().contains(&wanted))
+            || term.aka.iter().any(|other| other.to_lowercase().contains(&wanted))
+    };
+    let found: Vec<&Term> = terms().iter().filter(holds).collect();
+    if found.is_empty() {
+        return Answer::usage(format!("no term has {word} in it; glossary lists them all"), 10);
+    }
+    let width = found.iter().map(|term| term.id.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    let mut topic = "";
+    for term in &found {
+        if term.topic != topic {
+            topic = &term.topic;
+            text += &format!("{topic}\n");
+        }
+        text += &format!("  {:<width$}  {}\n", term.id, term.text);
+    }
+    let count = if found.len() == 1 { "1 term".to_owned() } else { format!("{} terms", found.len()) };
+    Answer::done("glossary", format!("{text}({count}; explain TERM tells more)"), json!({ "terms": found }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_term_is_explained_in_words_and_as_data() {
+        let told = explain("what", "Delivered quality");
+        let text = told.as_text();
+        assert!(text.starts_with("Delivered quality (product)\n"), "{text}");
+        assert!(text.contains("\nmore: Base quality plus") && text.contains("\nsee: base-quality"), "{text}");
+        let object = told.as_json(3, 7);
+        assert_eq!((&object["command"], &object["data"]["kind"]), (&json!("explain"), &json!("term")));
+        assert!(explain("explain", "set_prices.A").is_ok());
+    }
+
+    #[test]
+    fn what_is_unknown_is_answered_with_what_is_near() {
+        for (words, part, column) in [
+            ("", "needs a term", 9),
+            ("runwey", "near it: runway", 9),
+            ("qqqqqqqqqqqq", "glossary lists every term", 9),
+        ] {
+            match explain("explain", words) {
+                Answer::Usage { problem, column: at } => {
+                    assert!(problem.contains(part), "{problem}");
+                    assert_eq!(at, column);
+                }
+                other => panic!("{words}: {other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn the_glossary_lists_terms_by_topic_and_with_a_word() {
+        let all = glossary("").as_text();
+        assert!(all.starts_with("money\n  cash ") && all.contains("\ncustomers\n"), "{all}");
+        assert!(all.lines().count() > 110);
+        let some = glossary("Churn").as_text();
+        assert!(some.contains("retention-thread") && !some.contains("runway"), "{some}");
+        assert!(!glossary("no such word").is_ok());
+    }
+}

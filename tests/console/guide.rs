@@ -1,0 +1,85 @@
+//! Stories of somebody who is new here.
+
+use novamind::session::{Ended, list_runs};
+
+use super::harness::Console;
+
+#[test]
+fn the_tour_goes_on_by_doing_and_is_resumed_where_it_stopped() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::start(runs.path(), (80, 24));
+    console.shows("New here?");
+    console.press("enter");
+    console.shows("Tour · 1 of 11 · What counts");
+    console.shows("day 0/500");
+    console.press("8");
+    console.shows("Tour · 2 of 11 · Prices");
+    console.press("enter '12' enter '25' enter '55' enter ctrl-s");
+    console.shows("Tour · 3 of 11 · Quotas");
+    console.press("f4 esc");
+    assert!(!console.screen().contains("Tour ·"), "it is closed");
+    console.press("1 : 'tour' enter");
+    console.shows("Tour · 3 of 11 · Quotas");
+    console.press("f3 f3 f3");
+    console.shows("Tour · 6 of 11 · A week");
+    console.press("n");
+    console.shows("Tour · 7 of 11 · Why");
+    console.press("enter 'curious' enter");
+    console.shows("Tour · 8 of 11 · Forecasts");
+    console.press("f enter");
+    console.shows("Tour · 9 of 11 · Report");
+    console.press("esc");
+    console.shows("Tour · 10 of 11 · What is this?");
+    console.press("f2 esc");
+    console.shows("Tour · 11 of 11 · On your own");
+    console.press("f3");
+    assert!(!console.screen().contains("Tour ·"), "it is over");
+    console.shows("that was the tour");
+}
+
+#[test]
+fn a_baseline_run_explains_but_has_no_tour() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::start(runs.path(), (120, 40));
+    console.press("n up up up up up left down down down down down enter");
+    console.shows("BASELINE");
+    console.press(": 'tour' enter");
+    console.shows("a baseline run has no tour");
+    console.press(": 'glossary' enter");
+    console.shows("Glossary");
+    console.press("/ 'word' _ 'of' _ 'mouth' enter enter");
+    console.shows("leads to");
+    console.shows("Network");
+    console.press("enter");
+    console.shows("Referral");
+    console.press("backspace");
+    console.shows("Network");
+    console.press("esc esc esc f2");
+    console.shows("leads to");
+}
+
+#[test]
+fn runs_are_compared_given_up_and_deleted_from_the_menu() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.week();
+    console.press("esc");
+    console.press(": 'start' _ 'menu' enter");
+    console.shows("Last run");
+    console.press("n enter");
+    console.shows("day 0/500");
+    console.press(": 'start' _ 'menu' enter");
+    console.press("down down down enter");
+    console.shows("Run ");
+    console.press("_ _ v");
+    console.shows("Where they stand");
+    console.press("esc x");
+    console.shows("has no score");
+    console.press("y");
+    console.shows("is given up");
+    let list = list_runs(runs.path()).expect("a list");
+    assert_eq!(list.iter().filter(|run| run.ended == Some(Ended::Abandoned)).count(), 1);
+    console.press("D esc D y");
+    console.shows("is deleted");
+    assert_eq!(list_runs(runs.path()).expect("a list").len(), 1);
+}

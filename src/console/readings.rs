@@ -36,6 +36,8 @@ readings! {
     OwnPosts "own_posts" "Our posts, the newest first: number, day, text, post it answers, views, numbers of comments."
     Knowledge "knowledge" "What is known of all groups: group, level, found on, studied on."
     Attempts "attempts" "Attempts at market research, the newest first: day, cost, found, group."
+    WeekNotices "week_notices" "Notices of the last week, the newest first: day, type, message."
+    Cohorts "cohorts" "Subscribers by group, week of signing and week of leaving (0 if none): group, week, week, customers."
     Economy "economy" "The published index: day measured, value, trend, change, phase, description."
 }
 

@@ -57,6 +57,32 @@ fn open_shop(session: &mut Session) {
     }
 }
 
+/// A run in which companies ask for offers.
+pub fn courted() -> Session {
+    let new =
+        NewRun { seed: Some(11), cash: Some(20_000_000.0), storage: Storage::Memory, ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
+        ("set_model_tiers", json!({"A": 4, "B": 4, "C": 4})),
+        ("set_usage_quotas", json!({"A": 300, "B": 30_000, "C": 1_000_000})),
+        ("set_targeted_dev_spend", json!({"E1": 4000, "E2": 5000, "E3": 5000})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"social_media": ads, "linkedin": ads}})),
+        ("set_capacity_tier", json!({"tier": 5})),
+    ] {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+    for _ in 0..20 {
+        if session.observe().waiting.len() >= 3 {
+            return session;
+        }
+        let forecasts = session.naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    }
+    panic!("nobody came in twenty weeks");
+}
+
 /// Answers of the database to what a screen asks.
 pub fn answers(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, Rows)> {
     let ask = |reading: &Reading| {
@@ -86,8 +112,25 @@ pub fn act(screen: &mut dyn Screen, action: Action, company: &Company) -> Vec<Ef
 
 /// Draws a screen in a window; the lines of text that are seen.
 pub fn picture(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> Vec<String> {
+    pictured(screen, company, (width, height), false)
+}
+
+/// The focused pane of a screen with the whole window, as one text.
+pub fn zoomed(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> String {
+    pictured(screen, company, (width, height), true).join("\n")
+}
+
+fn pictured(
+    screen: &dyn Screen,
+    company: &Company,
+    (width, height): (u16, u16),
+    zoomed: bool,
+) -> Vec<String> {
     let keys = Keys::shipped();
-    painted(width, height, |canvas, area| screen.draw(canvas, area, &Look { company, keys: &keys, page: 5 }))
+    painted(width, height, |canvas, area| {
+        canvas.zoomed = zoomed;
+        screen.draw(canvas, area, &Look { company, keys: &keys, page: 5 });
+    })
 }
 
 /// The same picture as one text.
@@ -102,6 +145,10 @@ pub fn sweep(screen: &mut dyn Screen, company: &Company) {
         let small = (0..=70).step_by(3).flat_map(|width| (0..=25).map(move |height| (width, height)));
         for (width, height) in small.chain([(80, 21), (110, 37), (200, 57), (300, 3), (3, 200), (140, 90)]) {
             drawn(screen, company, width, height);
+            // One size in six is enough to see that a pane alone fits as well.
+            if height % 6 == 0 || height > 25 {
+                zoomed(screen, company, width, height);
+            }
         }
     }
 }

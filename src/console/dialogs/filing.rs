@@ -11,11 +11,11 @@ use crate::console::canvas::{Align, Canvas, Click, centered, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens::{Look, overview};
-use crate::console::text::{number, short_dollars, wrapped};
+use crate::console::text::{number, wrapped};
 use crate::console::theme::Role;
-use crate::console::widgets::chart::zero_if_near;
+use crate::console::widgets::fan::draw_fan;
 use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
-use crate::console::widgets::{Axis, Editor, Field, Line, chart};
+use crate::console::widgets::{Editor, Field};
 use crate::notation::{dollars, grouped, percent};
 use crate::session::Forecasts;
 use crate::tools::Forecast;
@@ -457,25 +457,4 @@ impl Filing {
 
 fn cell_area(row: Rect, column: usize) -> Rect {
     Rect { x: row.x + 10 + column as u16 * 16, width: 14, ..row }
-}
-
-/// Cash so far and the fan of forecasts filed on a day.
-pub fn draw_fan(canvas: &mut Canvas<'_>, area: Rect, company: &Company, filed: u32, forecasts: &[Forecast]) {
-    let start = company.cash_by_day.get(filed as usize).copied().unwrap_or(company.seen.cash);
-    let through = |value: &dyn Fn(&Forecast) -> f64| {
-        let first = (f64::from(filed), start);
-        let later =
-            forecasts.iter().map(|forecast| (f64::from(filed + forecast.horizon_days), value(forecast)));
-        std::iter::once(first).chain(later).collect::<Vec<_>>()
-    };
-    let lines = [
-        Line::through(through(&|forecast| forecast.lower), Role::Fan),
-        Line::through(through(&|forecast| forecast.upper), Role::Fan),
-        Line::through(through(&|forecast| forecast.point), Role::Series(1)),
-        Line::of(&company.cash_by_day, Role::Series(0)),
-    ];
-    let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
-    let all = company.cash_by_day.iter().copied().chain(forecasts.iter().map(|forecast| forecast.lower));
-    let y = Axis { write: &short_dollars, holds: zero_if_near(all) };
-    chart(canvas, area, &lines, &x, &y);
 }

@@ -1,15 +1,19 @@
-//! Lines over days, with axes whose labels fit.
+//! Curves with axes whose labels are round and fit, a light grid, bands, and names at the ends of the curves.
 
 use ratatui::layout::Rect;
-use ratatui::style::Style;
-use ratatui::symbols::Marker;
-use ratatui::text::Span;
-use ratatui::widgets::{Axis as ChartAxis, Chart, Dataset, GraphType, Widget};
+use unicode_width::UnicodeWidthStr;
 
-use crate::console::canvas::Canvas;
+use super::raster::Raster;
+use super::scale::{ticks, widened};
+use crate::console::canvas::{Align, Canvas};
+use crate::console::text::arrow;
 use crate::console::theme::Role;
 
+/// Narrowest plot that leaves room for names at the ends of its curves.
+const ROOM_FOR_NAMES: u16 = 36;
+
 /// A line of a chart.
+#[derive(Debug, Clone)]
 pub struct Line {
     /// Points; those that are no numbers are left out.
     pub points: Vec<(f64, f64)>,
@@ -17,18 +21,47 @@ pub struct Line {
     pub role: Role,
     /// Single points instead of a line.
     pub scattered: bool,
+    /// Name at its end, where there is room; empty for none.
+    pub name: &'static str,
 }
 
 impl Line {
     /// A line of values at 0, 1, 2, …
     pub fn of(values: &[f64], role: Role) -> Line {
         let points = values.iter().enumerate().map(|(at, value)| (at as f64, *value)).collect();
-        Line { points, role, scattered: false }
+        Line::through(points, role)
     }
 
     /// A line through points.
     pub fn through(points: Vec<(f64, f64)>, role: Role) -> Line {
-        Line { points, role, scattered: false }
+        Line { points, role, scattered: false, name: "" }
+    }
+
+    /// The same, with a name at its end.
+    pub fn named(self, name: &'static str) -> Line {
+        Line { name, ..self }
+    }
+}
+
+/// What lies between two lines, shaded.
+#[derive(Debug, Clone)]
+pub struct Band {
+    /// Lower and upper end by place, in the order of the places.
+    pub ends: Vec<(f64, f64, f64)>,
+    /// Name, as that of a line.
+    pub name: &'static str,
+}
+
+impl Band {
+    /// Its ends at a place; none outside.
+    fn at(&self, x: f64) -> Option<(f64, f64)> {
+        let next = self.ends.iter().position(|end| end.0 >= x)?;
+        let (after, before) = (self.ends[next], self.ends[next.saturating_sub(1)]);
+        if x < before.0 {
+            return None;
+        }
+        let share = if after.0 > before.0 { (x - before.0) / (after.0 - before.0) } else { 0.0 };
+        Some((before.1 + (after.1 - before.1) * share, before.2 + (after.2 - before.2) * share))
     }
 }
 
@@ -40,52 +73,211 @@ pub struct Axis<'a> {
     pub holds: &'a [f64],
 }
 
-/// Draws lines; says so when there is nothing to draw yet.
-pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], x: &Axis<'_>, y: &Axis<'_>) {
-    if area.width < 16 || area.height < 4 {
-        return;
-    }
-    let points = || lines.iter().flat_map(|line| &line.points).filter(|point| point.1.is_finite());
-    if points().count() < 2 {
-        canvas.text(area, "nothing to draw yet: let a week pass (n)", Role::Dim);
-        return;
-    }
-    let bounds = |values: &mut dyn Iterator<Item = f64>, axis: &Axis<'_>| {
-        let (least, most) = values
-            .chain(axis.holds.iter().copied())
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
-                (least.min(value), most.max(value))
-            });
-        if most > least { [least, most] } else { [least - 1.0, most + 1.0] }
-    };
-    let x_bounds = bounds(&mut points().map(|point| point.0), x);
-    let y_bounds = rounded(bounds(&mut points().map(|point| point.1), y));
-    let datasets: Vec<Dataset<'_>> = lines.iter().map(|line| dataset(canvas, line)).collect();
-    let dim = canvas.style(Role::Dim);
-    let labels = |axis: &Axis<'_>, [from, to]: [f64; 2], count: usize| {
-        let label = |at: usize| {
-            let value = from + (to - from) * at as f64 / (count - 1) as f64;
-            Span::styled((axis.write)(value), dim)
-        };
-        (0..count).map(label).collect::<Vec<_>>()
-    };
-    let rows = if area.height >= 10 { 4 } else { 2 } + 1;
-    let columns = if area.width >= 60 { 5 } else { 3 };
-    let drawn = Chart::new(datasets)
-        .x_axis(ChartAxis::default().bounds(x_bounds).labels(labels(x, x_bounds, columns)).style(dim))
-        .y_axis(ChartAxis::default().bounds(y_bounds).labels(labels(y, y_bounds, rows)).style(dim))
-        // Names stand in the title of the pane: a legend would cover the curves.
-        .legend_position(None)
-        .style(Style::new());
-    drawn.render(area.intersection(canvas.buffer.area), canvas.buffer);
+/// A chart.
+pub struct Plot<'a> {
+    /// Curves; the last one lies on top.
+    pub lines: &'a [Line],
+    /// A band below them.
+    pub band: Option<&'a Band>,
+    /// Place that is marked by an upright line.
+    pub mark: Option<f64>,
+    /// The axis below.
+    pub x: &'a Axis<'a>,
+    /// The axis to the left.
+    pub y: &'a Axis<'a>,
 }
 
-fn dataset<'a>(canvas: &Canvas<'_>, line: &'a Line) -> Dataset<'a> {
-    Dataset::default()
-        .data(&line.points)
-        .marker(if line.scattered { Marker::Dot } else { canvas.marker })
-        .graph_type(if line.scattered { GraphType::Scatter } else { GraphType::Line })
-        .style(canvas.style(line.role))
+/// Draws lines; says so when there is nothing to draw yet.
+pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], x: &Axis<'_>, y: &Axis<'_>) {
+    Plot { lines, band: None, mark: None, x, y }.draw(canvas, area);
+}
+
+/// A label of the axis below: its column, the first column of its text, the text.
+type Label = (u16, u16, String);
+
+/// Where the values of a plot stand in its area.
+struct Frame {
+    inside: Rect,
+    x: [f64; 2],
+    y: [f64; 2],
+}
+
+impl Frame {
+    fn share([from, to]: [f64; 2], value: f64) -> f64 {
+        (value - from) / (to - from)
+    }
+
+    fn column(&self, x: f64) -> u16 {
+        let most = f64::from(self.inside.width.saturating_sub(1));
+        self.inside.x + (Frame::share(self.x, x).clamp(0.0, 1.0) * most).round() as u16
+    }
+
+    fn row(&self, y: f64) -> u16 {
+        let most = f64::from(self.inside.height.saturating_sub(1));
+        self.inside.y + ((1.0 - Frame::share(self.y, y).clamp(0.0, 1.0)) * most).round() as u16
+    }
+}
+
+impl Plot<'_> {
+    /// Draws it; says so when there is nothing to draw yet.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let area = area.intersection(canvas.buffer.area);
+        if area.width < 16 || area.height < 4 {
+            return;
+        }
+        let points = || self.lines.iter().flat_map(|line| &line.points).filter(|point| point.1.is_finite());
+        if points().count() < 2 {
+            canvas.text(area, "nothing to draw yet: let a week pass (n)", Role::Dim);
+            return;
+        }
+        let band = || self.band.iter().flat_map(|band| &band.ends);
+        let x = bounds(points().map(|point| point.0).chain(band().map(|end| end.0)), self.x.holds);
+        let ends = band().flat_map(|end| [end.1, end.2]);
+        let y = bounds(points().map(|point| point.1).chain(ends), self.y.holds);
+        let rows = ((area.height - 2) / 4).clamp(2, 6) as usize;
+        let y = widened(y, rows);
+        let marks = ticks(y, rows + 1);
+        let labels: Vec<String> = marks.iter().map(|value| (self.y.write)(*value)).collect();
+        let left = labels.iter().map(|label| label.width()).max().unwrap_or(0) as u16;
+        let left = left.min(area.width / 2);
+        let plot = area.width - left - 1;
+        let names = if plot >= ROOM_FOR_NAMES { self.longest_name() } else { 0 };
+        let inside = Rect {
+            x: area.x + left + 1,
+            y: area.y,
+            width: plot - if names > 0 { names + 1 } else { 0 },
+            height: area.height - 2,
+        };
+        let frame = Frame { inside, x, y };
+        draw_side(canvas, area, &frame, &marks, &labels);
+        self.draw_foot(canvas, area, &frame);
+        self.draw_band(canvas, &frame);
+        if let Some(mark) = self.mark.filter(|mark| *mark >= x[0] && *mark <= x[1]) {
+            for y in inside.top()..inside.bottom() {
+                canvas.text(Rect { x: frame.column(mark), y, width: 1, height: 1 }, "┊", Role::Dim);
+            }
+        }
+        self.draw_lines(canvas, &frame);
+        if names > 0 {
+            let place = Rect { x: inside.right() + 1, width: names, ..inside };
+            self.draw_names(canvas, place, &frame);
+        }
+    }
+
+    fn longest_name(&self) -> u16 {
+        let names = self.lines.iter().map(|line| line.name).chain(self.band.map(|band| band.name));
+        names.map(UnicodeWidthStr::width).max().unwrap_or(0) as u16
+    }
+
+    /// The axis below with as many round labels as fit.
+    fn draw_foot(&self, canvas: &mut Canvas<'_>, area: Rect, frame: &Frame) {
+        let inside = frame.inside;
+        let line = Rect { x: inside.x - 1, y: inside.bottom(), width: inside.width + 1, height: 1 };
+        canvas.text(line, &format!("└{}", "─".repeat(inside.width as usize)), Role::Border);
+        let row = Rect { y: inside.bottom() + 1, height: 1, ..area };
+        let place = |value: f64| {
+            let (label, column) = ((self.x.write)(value), frame.column(value));
+            let width = label.width() as u16;
+            let x = column.saturating_sub(width / 2).max(area.x);
+            (column, x.min(area.right().saturating_sub(width)), label)
+        };
+        let clear = |left: &Label, right: &Label| left.1 + (left.2.width() as u16) + 1 < right.1;
+        // Labels that stand apart and differ: two that read the same are one too many.
+        let fits = |labels: &Vec<Label>| {
+            labels.windows(2).all(|pair| clear(&pair[0], &pair[1]) && pair[0].2 != pair[1].2)
+        };
+        let placed = |count: usize| ticks(frame.x, count).into_iter().map(place).collect::<Vec<Label>>();
+        let mut labels = (1..=12).rev().map(placed).find(fits).unwrap_or_default();
+        for value in self.x.holds.iter().filter(|value| **value >= frame.x[0] && **value <= frame.x[1]) {
+            let held = place(*value);
+            labels.retain(|label| clear(label, &held) || clear(&held, label));
+            labels.push(held);
+        }
+        for (column, x, label) in labels {
+            canvas.text(Rect { x: column, width: 1, ..line }, "┬", Role::Border);
+            canvas.text(Rect { x, width: area.right() - x, ..row }, &label, Role::Dim);
+        }
+    }
+
+    fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &Frame) {
+        let Some(band) = self.band else { return };
+        for at in 0..frame.inside.width {
+            let share = f64::from(at) / f64::from(frame.inside.width.saturating_sub(1).max(1));
+            let x = frame.x[0] + (frame.x[1] - frame.x[0]) * share;
+            let Some((lower, upper)) = band.at(x) else { continue };
+            for y in frame.row(upper)..=frame.row(lower) {
+                let cell = Rect { x: frame.inside.x + at, y, width: 1, height: 1 };
+                canvas.text(cell, "░", Role::Fan);
+            }
+        }
+    }
+
+    fn draw_lines(&self, canvas: &mut Canvas<'_>, frame: &Frame) {
+        let mut raster = Raster::new(canvas.marker, frame.inside.width, frame.inside.height);
+        for line in self.lines.iter().filter(|line| !line.scattered) {
+            let place = |point: &(f64, f64)| (Frame::share(frame.x, point.0), Frame::share(frame.y, point.1));
+            let points: Vec<(f64, f64)> =
+                line.points.iter().filter(|point| point.1.is_finite()).map(place).collect();
+            points.windows(2).for_each(|pair| raster.line(pair[0], pair[1], line.role));
+        }
+        raster.paint(canvas, frame.inside);
+        for line in self.lines.iter().filter(|line| line.scattered) {
+            for point in line.points.iter().filter(|point| point.1.is_finite()) {
+                let cell = Rect { x: frame.column(point.0), y: frame.row(point.1), width: 1, height: 1 };
+                canvas.text(cell, "•", line.role);
+            }
+        }
+    }
+
+    /// Names beside the last points, each in the nearest free row.
+    fn draw_names(&self, canvas: &mut Canvas<'_>, place: Rect, frame: &Frame) {
+        let of_line = |line: &Line| {
+            let last = line.points.iter().rev().find(|point| point.1.is_finite())?;
+            Some((line.name, frame.row(last.1), line.role))
+        };
+        let of_band = |band: &Band| Some((band.name, frame.row(band.ends.last()?.2), Role::Fan));
+        let mut taken: Vec<u16> = Vec::new();
+        let lines = self.lines.iter().rev().filter_map(of_line);
+        for (name, wanted, role) in lines.chain(self.band.and_then(of_band)).filter(|own| !own.0.is_empty()) {
+            let free = (place.top()..place.bottom()).filter(|row| !taken.contains(row));
+            let Some(y) = free.min_by_key(|row| row.abs_diff(wanted)) else { return };
+            taken.push(y);
+            canvas.text(Rect { y, height: 1, ..place }, name, role);
+        }
+    }
+}
+
+fn bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {
+    let all = values.chain(holds.iter().copied());
+    let (least, most) = all
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
+    if most > least { [least, most] } else { [least - 1.0, most + 1.0] }
+}
+
+/// The axis to the left and the grid; the line of zero is whole.
+fn draw_side(canvas: &mut Canvas<'_>, area: Rect, frame: &Frame, marks: &[f64], labels: &[String]) {
+    let inside = frame.inside;
+    let axis = inside.x - 1;
+    for y in inside.top()..inside.bottom() {
+        canvas.text(Rect { x: axis, y, width: 1, height: 1 }, "│", Role::Border);
+    }
+    let mut free = inside.bottom();
+    for (value, label) in marks.iter().zip(labels) {
+        let y = frame.row(*value);
+        if y >= free {
+            continue;
+        }
+        free = y;
+        let grid = if *value == 0.0 { "─".repeat(inside.width as usize) } else { grid(inside.width) };
+        canvas.text(Rect { y, height: 1, ..inside }, &grid, Role::Border);
+        canvas.text(Rect { x: axis, y, width: 1, height: 1 }, "┤", Role::Border);
+        let place = Rect { x: area.x, y, width: axis - area.x, height: 1 };
+        canvas.aligned(place, label, Role::Dim, Align::Right);
+    }
+}
+
+fn grid(width: u16) -> String {
+    (0..width).map(|at| if at % 4 == 3 { '┈' } else { ' ' }).collect()
 }
 
 /// Zero, where a curve comes near it: far above it, zero would only flatten the curve.
@@ -95,23 +287,28 @@ pub fn zero_if_near(values: impl Iterator<Item = f64> + Clone) -> &'static [f64]
     if least < 0.5 * most { &[0.0] } else { &[] }
 }
 
-/// Bounds widened to numbers that read well.
-fn rounded([least, most]: [f64; 2]) -> [f64; 2] {
-    let magnitude = libm::pow(10.0, libm::floor(libm::log10(most - least)));
-    let step = magnitude / 2.0;
-    // A hair of rounding must not add a whole step.
-    [(least / step + 1e-9).floor() * step, (most / step - 1e-9).ceil() * step]
+/// A chart in words: the last value, its change, the least and the most; as much of it as has room.
+pub fn summary(values: &[f64], write: &dyn Fn(f64) -> String, room: usize) -> String {
+    let Some(now) = values.last() else { return "nothing yet".to_owned() };
+    let mut words = write(*now);
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let before = values.len().checked_sub(2).map(|at| values[at]);
+    let change = before.map(|before| format!(" {}", arrow(now - before, &write((now - before).abs()))));
+    let extremes = format!(" · least {} · most {}", write(least), write(most));
+    for part in change.into_iter().chain([extremes]) {
+        if words.width() + part.width() > room {
+            break;
+        }
+        words += &part;
+    }
+    words
+}
+
+/// Room for a note in the upper border of a pane beside its title.
+pub fn note_room(area: Rect, title: &str) -> usize {
+    (area.width as usize).saturating_sub(title.width() + 9)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bounds_end_at_round_numbers() {
-        assert_eq!(rounded([0.0, 980.0]), [0.0, 1000.0]);
-        assert_eq!(rounded([-35.0, 1_040_000.0]), [-500_000.0, 1_500_000.0]);
-        let [least, most] = rounded([0.12, 0.14]);
-        assert!((least - 0.12).abs() < 1e-12 && (most - 0.14).abs() < 1e-12);
-    }
-}
+mod tests;

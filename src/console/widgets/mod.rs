@@ -2,11 +2,14 @@
 
 pub mod chart;
 pub mod editor;
+pub mod fan;
 pub mod field;
+pub mod raster;
+pub mod scale;
 pub mod spark;
 pub mod table;
 
-pub use chart::{Axis, Line, chart};
+pub use chart::{Axis, Band, Line, Plot, chart};
 pub use editor::Editor;
 pub use field::Field;
 pub use spark::spark;

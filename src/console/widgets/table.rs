@@ -281,7 +281,12 @@ impl Table {
             let role = if focused && *at == self.column { Role::Title } else { Role::Header };
             canvas.aligned(cell, &column.title, role, column.align);
         }
-        // Says that more columns stand to the right.
+        // Says that more columns stand to the left, or to the right.
+        if let [_, (second, (x, _)), ..] = columns[..]
+            && second > 1
+        {
+            canvas.text(Rect { x: head.x + x - 1, width: 1, ..head }, "‹", Role::Key);
+        }
         if let Some((last, (x, width))) = columns.last()
             && last + 1 < self.columns.len()
             && x + width < area.width

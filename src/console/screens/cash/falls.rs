@@ -3,12 +3,14 @@
 use ratatui::layout::Rect;
 
 use super::model::{Step, money};
-use crate::console::canvas::{Align, Canvas, rows_of};
+use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
+use crate::console::widgets::table::first_row;
 
 /// Draws steps, one in a row. The bars begin at the lowest level on the way, or changes would be too small to see.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step]) {
+pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step], selected: Option<usize>, pane: usize) {
+    let from = first_row(selected.unwrap_or(0), area.height as usize, steps.len());
     if steps.is_empty() {
         canvas.text(area, "nothing has moved yet: let a week pass (n)", Role::Dim);
         return;
@@ -25,15 +27,21 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step]) {
     let room = f64::from(bars.saturating_sub(2));
     // A sliver is left for the lowest level, so that it is seen as one.
     let place = |level: f64| 1 + ((level - floor) / span * (room - 1.0).max(0.0)).round() as u16;
-    for (row, step) in rows_of(area).zip(steps) {
+    for (row, (at, step)) in rows_of(area).zip(steps.iter().enumerate().skip(from)) {
+        let here = selected == Some(at);
+        canvas.click(row, Click::Row(pane, at));
         let (value, sign, role) = match (step.is_level, step.to - step.from) {
             (true, _) => (step.to, "", Role::Strong),
             (false, change) if change < 0.0 => (change, "", Role::Bad),
             (false, change) => (change, "+", Role::Good),
         };
-        canvas.text(Rect { width: names, ..row }, &step.name, Role::Text);
+        if here {
+            canvas.clear(Rect { width: names + figures, ..row }, Role::Selection);
+        }
+        let shown = |role: Role| if here { Role::Selection } else { role };
+        canvas.text(Rect { width: names, ..row }, &step.name, shown(Role::Text));
         let figure = Rect { x: row.x + names, width: figures, ..row };
-        canvas.aligned(figure, &format!("{sign}{}", money(value)), role, Align::Right);
+        canvas.aligned(figure, &format!("{sign}{}", money(value)), shown(role), Align::Right);
         if bars < 4 {
             continue;
         }
@@ -47,7 +55,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step]) {
         let bar = Rect { x: x + from, width, height: 1, ..row }.intersection(area);
         canvas.text(bar, &glyph.repeat(bar.width as usize), role);
     }
-    let below = area.y + steps.len() as u16;
+    let below = area.y.saturating_add((steps.len() - from) as u16);
     if floor != 0.0 && below < area.bottom() && bars >= 24 {
         let row = Rect { x: area.x + names + figures + 1, y: below, width: bars - 1, height: 1 };
         canvas.text(row, &format!("bars begin at {}", short_dollars(floor)), Role::Dim);

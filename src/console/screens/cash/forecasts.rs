@@ -6,10 +6,10 @@ use super::model::{Filed, filed};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click};
 use crate::console::company::Company;
-use crate::console::screens::Look;
+use crate::console::screens::{Figure, Look};
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Cell, Column, Line, Table, chart};
+use crate::console::widgets::{Axis, Band, Cell, Column, Line, Plot, Table};
 use crate::notation::percent;
 
 /// Forecasts of one horizon.
@@ -50,9 +50,7 @@ impl Outlook {
             Column::numbers("miss"),
             Column::words("95 %"),
         ];
-        // What is known comes first, the newest at the top; what is still open follows.
-        let (known, open): (Vec<&Filed>, Vec<&Filed>) = self.shown().partition(|one| one.outcome.is_some());
-        let rows = known.into_iter().rev().chain(open).map(row_of).collect();
+        let rows = self.listed().map(row_of).collect();
         self.table.set(columns, rows);
     }
 
@@ -75,6 +73,25 @@ impl Outlook {
     /// Selects a row.
     pub fn select_place(&mut self, row: usize) {
         self.table.select_place(row);
+    }
+
+    /// Forecasts in the order of the table: what is known comes first, the newest at the top; what is still open
+    /// follows.
+    fn listed(&self) -> impl Iterator<Item = &Filed> {
+        let known = self.shown().filter(|one| one.outcome.is_some()).rev();
+        known.chain(self.shown().filter(|one| one.outcome.is_none()))
+    }
+
+    /// The forecast that is selected.
+    pub fn figure(&self) -> Option<Figure> {
+        let filed = self.listed().nth(self.table.selected()?)?;
+        let sql = format!(
+            "SELECT p.*, (SELECT sum(amount) FROM ledger WHERE day <= p.submit_day + p.horizon_days) AS cash\n\
+             FROM predictions p\nWHERE submit_day = {} AND horizon_days = {}",
+            filed.day, filed.horizon
+        );
+        let title = format!("forecast of day {} for day {}", filed.day, filed.due());
+        Some(Figure { title, term: "forecast", sql: Some(sql) })
     }
 
     /// Draws the pane.
@@ -115,20 +132,25 @@ impl Outlook {
     fn draw_curve(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
         // Open forecasts of far horizons would flatten what has happened.
         let until = f64::from(company.seen.day) * 1.15 + 14.0;
-        let through = |value: fn(&Filed) -> f64| -> Vec<(f64, f64)> {
-            let points = self.shown().map(|filed| (f64::from(filed.due()), value(filed)));
-            points.filter(|point| point.0 <= until).collect()
-        };
+        let near = || self.shown().filter(|filed| f64::from(filed.due()) <= until);
+        let day = |filed: &Filed| f64::from(filed.due());
+        let band =
+            Band { ends: near().map(|filed| (day(filed), filed.lower, filed.upper)).collect(), name: "95 %" };
+        let points = near().map(|filed| (day(filed), filed.point)).collect();
         let cash: Vec<(f64, f64)> =
             company.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();
         let lines = [
-            Line::through(through(|filed| filed.lower), Role::Fan),
-            Line::through(through(|filed| filed.upper), Role::Fan),
-            Line { scattered: true, ..Line::through(through(|filed| filed.point), Role::Series(1)) },
-            Line::through(cash, Role::Series(0)),
+            Line { scattered: true, ..Line::through(points, Role::Series(1)).named("expected") },
+            Line::through(cash, Role::Series(0)).named("cash"),
         ];
-        let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
-        chart(canvas, area, &lines, &x, &Axis { write: &short_dollars, holds: &[] });
+        let plot = Plot {
+            lines: &lines,
+            band: Some(&band),
+            mark: None,
+            x: &Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] },
+            y: &Axis { write: &short_dollars, holds: &[] },
+        };
+        plot.draw(canvas, area);
     }
 }
 

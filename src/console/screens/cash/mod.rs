@@ -1,6 +1,7 @@
 //! Where money comes from and goes to: the books by category and week, the way of the cash, forecasts.
 
 mod bars;
+mod curve;
 mod falls;
 mod forecasts;
 mod model;
@@ -11,8 +12,8 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use self::forecasts::Outlook;
-use self::model::{Amounts, Books, CATEGORIES, Subject, money, side, statement, waterfall};
-use super::{Look, Screen};
+use self::model::{Amounts, Books, CATEGORIES, Step, Subject, money, side, statement, waterfall};
+use super::{Figure, Look, Screen};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click};
 use crate::console::company::Company;
@@ -28,6 +29,10 @@ use crate::session::Rows;
 const TABLE: usize = 0;
 const WEEKS: usize = 1;
 const FORECASTS: usize = 2;
+const FALLS: usize = 3;
+const CURVE: usize = 4;
+/// Narrowest window in which the way of the cash and its curve stand beside the books.
+const WIDE: u16 = 176;
 
 /// The screen.
 #[derive(Default)]
@@ -40,6 +45,8 @@ pub struct Cash {
     /// What the rows of the table are about.
     subjects: Vec<Subject>,
     outlook: Outlook,
+    /// Step of the way from week to week that is selected.
+    step: usize,
 }
 
 impl Cash {
@@ -53,12 +60,14 @@ impl Cash {
         let Some(books) = &self.books else { return };
         let week = self.week();
         let (columns, subjects, rows) = table_of(books, week);
-        let first = self.subjects.is_empty();
-        self.table.set(columns, rows);
-        self.subjects = subjects;
-        if first {
-            self.table.act(Action::First, 1);
+        if self.subjects.is_empty() {
+            self.table = Table::new(Vec::new()).by_cell();
+            self.table.set(columns, rows);
+            self.table.act(Action::Right, 1);
+        } else {
+            self.table.set(columns, rows);
         }
+        self.subjects = subjects;
     }
 
     fn move_week(&mut self, step: i64) {
@@ -69,9 +78,48 @@ impl Cash {
         self.refresh();
     }
 
-    fn drill(&self) -> Vec<Effect> {
-        let subject = self.table.selected().and_then(|row| self.subjects.get(row));
-        subject.map(|subject| Effect::EditSql(statement(subject, self.week()))).into_iter().collect()
+    /// What is selected in the panes of the books: the subject, its weeks, and words for both.
+    fn selected(&self, company: &Company) -> Option<(Subject, (u32, u32))> {
+        let week = self.week();
+        if self.focus == CURVE {
+            return Some((Subject::Net, (week, week)));
+        }
+        if self.focus == FALLS {
+            let steps = self.steps(company);
+            let subject = steps.get(self.step.min(steps.len().saturating_sub(1)))?.subject;
+            return Some((subject, (week, week)));
+        }
+        let subject = self.table.selected().and_then(|row| self.subjects.get(row)).copied()?;
+        let weeks = match (self.focus, self.table.selected_column()) {
+            (TABLE, 2) => (week.saturating_sub(1), week),
+            (TABLE, 3) => (week.saturating_sub(1), week.saturating_sub(1)),
+            (TABLE, 4) => (week.saturating_sub(3).max(1.min(week)), week),
+            (TABLE, 5) => (0, self.books.as_ref().map_or(week, Books::last)),
+            _ => (week, week),
+        };
+        Some((subject, weeks))
+    }
+
+    /// The steps from the cash of the week before to that of the week.
+    fn steps(&self, company: &Company) -> Vec<Step> {
+        let all = |books| waterfall(books, company, self.week(), usize::MAX);
+        self.books.as_ref().map(all).unwrap_or_default()
+    }
+
+    fn drill(&self, company: &Company) -> Vec<Effect> {
+        let selected = self.selected(company);
+        selected.map(|(subject, weeks)| Effect::EditSql(statement(&subject, weeks))).into_iter().collect()
+    }
+
+    fn move_step(&mut self, action: Action, company: &Company) {
+        let last = self.steps(company).len().saturating_sub(1);
+        self.step = match action {
+            Action::Up => self.step.min(last).saturating_sub(1),
+            Action::Down => (self.step + 1).min(last),
+            Action::First => 0,
+            Action::Last => last,
+            _ => self.step,
+        };
     }
 }
 
@@ -101,18 +149,12 @@ fn table_of(books: &Books, week: u32) -> (Vec<Column>, Vec<Subject>, Vec<Vec<Cel
 }
 
 fn row_of(subject: &Subject, all: &[Amounts; 4], week: u32) -> Vec<Cell> {
-    let of = |amounts: &Amounts| match subject {
-        Subject::Category(at) => amounts[*at],
-        Subject::Income => side(amounts, true),
-        Subject::Costs => side(amounts, false),
-        Subject::Net => amounts.iter().sum(),
-    };
-    let [now, before, mean, total] = [of(&all[0]), of(&all[1]), of(&all[2]), of(&all[3])];
-    let (name, income, role) = match subject {
-        Subject::Category(at) => (CATEGORIES[*at].name, CATEGORIES[*at].income, Role::Text),
-        Subject::Income => ("income", true, Role::Strong),
-        Subject::Costs => ("costs", false, Role::Strong),
-        Subject::Net => ("net", true, Role::Strong),
+    let [now, before, mean, total] = [0, 1, 2, 3].map(|at| subject.of(&all[at]));
+    let name = subject.name();
+    let (income, role) = match subject {
+        Subject::Category(at) => (CATEGORIES[*at].income, Role::Text),
+        Subject::Costs => (false, Role::Strong),
+        Subject::Income | Subject::Net => (true, Role::Strong),
     };
     // More of a cost is more, not less: its change goes by its size.
     let change = if income { now - before } else { before - now };
@@ -156,7 +198,7 @@ impl Screen for Cash {
     }
 
     fn panes(&self) -> usize {
-        3
+        5
     }
 
     fn focus(&self) -> usize {
@@ -164,7 +206,21 @@ impl Screen for Cash {
     }
 
     fn set_focus(&mut self, pane: usize) {
-        self.focus = pane.min(FORECASTS);
+        self.focus = pane.min(CURVE);
+    }
+
+    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
+        if self.focus == FORECASTS {
+            return self.outlook.figure();
+        }
+        let (subject, (from, to)) = self.selected(look.company)?;
+        let weeks = match (from, to) {
+            (0, _) => "the whole run".to_owned(),
+            (from, to) if from == to => format!("week {to}"),
+            (from, to) => format!("weeks {from} to {to}"),
+        };
+        let title = format!("{} of {weeks}", subject.name());
+        Some(Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))) })
     }
 
     fn readings(&self) -> &'static [Reading] {
@@ -182,13 +238,17 @@ impl Screen for Cash {
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
         match (self.focus, action) {
-            (TABLE | WEEKS, Action::Open) => return self.drill(),
             (FORECASTS, Action::Open) => return vec![Effect::Do(Action::Journal)],
-            (WEEKS, Action::Left) => self.move_week(-1),
-            (WEEKS, Action::Right) => self.move_week(1),
-            (WEEKS, Action::First) => self.move_week(-i64::from(u16::MAX)),
-            (WEEKS, Action::Last | Action::Close) => self.move_week(i64::from(u16::MAX)),
+            (_, Action::Open) => return self.drill(look.company),
             (FORECASTS, action) => self.outlook.act(action, look.page),
+            (WEEKS | FALLS | CURVE, Action::Left) => self.move_week(-1),
+            (WEEKS | FALLS | CURVE, Action::Right) => self.move_week(1),
+            (WEEKS | CURVE, Action::First) => self.move_week(-i64::from(u16::MAX)),
+            (WEEKS | CURVE, Action::Last | Action::Close) => self.move_week(i64::from(u16::MAX)),
+            (FALLS, Action::Up | Action::Down | Action::First | Action::Last) => {
+                self.move_step(action, look.company);
+            }
+            (CURVE, _) => {}
             (_, Action::Close) if self.week.is_some() => self.move_week(i64::from(u16::MAX)),
             (_, action) => {
                 self.table.act(action, look.page);
@@ -209,15 +269,17 @@ impl Screen for Cash {
         Vec::new()
     }
 
-    fn click(&mut self, pane: usize, row: usize, _: &Look<'_>) -> Vec<Effect> {
+    fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
         match pane {
             TABLE => {
                 let before = self.table.selected();
                 self.table.select_place(row);
                 if before == self.table.selected() {
-                    return self.drill();
+                    return self.drill(look.company);
                 }
             }
+            FALLS => self.step = row,
+            CURVE => {}
             WEEKS => self.move_week(row as i64 - i64::from(self.week())),
             _ => self.outlook.select_place(row),
         }
@@ -225,44 +287,66 @@ impl Screen for Cash {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let rows = self.table.rows().len() as u16 + 3;
-        if area.width >= 104 && area.height >= 30 {
-            let lower = area.height / 2;
-            let [top, below] = Layout::vertical([
-                Constraint::Length(rows.clamp(10, area.height - lower)),
-                Constraint::Min(0),
-            ])
-            .areas(area);
-            let halves = |area: Rect, left: u16| {
-                Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas::<2>(area)
-            };
-            let left = (area.width / 2).max(82.min(area.width * 2 / 3));
-            let [table, falls] = halves(top, left);
-            let [weeks, outlook] = halves(below, (area.width * 11 / 20).max(60));
-            self.draw_table(canvas, table, look);
-            self.draw_falls(canvas, falls, look.company);
-            self.draw_weeks(canvas, weeks, look);
-            self.outlook.draw(canvas, outlook, look, self.focus == FORECASTS, FORECASTS);
-            return;
+        if canvas.zoomed {
+            return self.draw_pane(canvas, area, look, self.focus);
         }
-        let upper = rows.min(area.height.saturating_sub(7)).max(area.height / 3);
-        let [table, below] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(area);
-        if self.focus == TABLE {
-            self.draw_table(canvas, table, look);
-            return self.draw_falls(canvas, below, look.company);
+        if area.width >= 104 && area.height >= 30 {
+            return self.draw_large(canvas, area, look);
         }
         // In a small window the pane with the focus gets the larger part.
-        let [table, below] =
-            Layout::vertical([Constraint::Length(area.height / 3), Constraint::Min(0)]).areas(area);
-        self.draw_table(canvas, table, look);
-        match self.focus {
-            WEEKS => self.draw_weeks(canvas, below, look),
-            _ => self.outlook.draw(canvas, below, look, true, FORECASTS),
-        }
+        let rows = self.table.rows().len() as u16 + 3;
+        let upper = match self.focus {
+            TABLE => rows.min(area.height.saturating_sub(7)).max(area.height / 3),
+            _ => area.height / 3,
+        };
+        let [table, below] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(area);
+        self.draw_pane(canvas, table, look, TABLE);
+        self.draw_pane(canvas, below, look, if self.focus == TABLE { FALLS } else { self.focus });
     }
 }
 
 impl Cash {
+    /// Books, way and curve above, weeks and forecasts below.
+    fn draw_large(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let rows = self.table.rows().len() as u16 + 3;
+        let [top, below] = Layout::vertical([
+            Constraint::Length(rows.clamp(10, area.height - area.height / 2)),
+            Constraint::Min(0),
+        ])
+        .areas(area);
+        let halves = |area: Rect, left: u16| {
+            Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas::<2>(area)
+        };
+        let [table, beside] = halves(top, 82.min(area.width * 2 / 3));
+        let [weeks, outlook] = halves(below, (area.width * 11 / 20).max(60));
+        self.draw_pane(canvas, table, look, TABLE);
+        if area.width >= WIDE {
+            let [falls, curve] = halves(beside, beside.width / 2);
+            self.draw_pane(canvas, falls, look, FALLS);
+            self.draw_pane(canvas, curve, look, CURVE);
+        } else {
+            // The curve comes to the front with the focus.
+            self.draw_pane(canvas, beside, look, if self.focus == CURVE { CURVE } else { FALLS });
+        }
+        self.draw_pane(canvas, weeks, look, WEEKS);
+        self.draw_pane(canvas, outlook, look, FORECASTS);
+    }
+
+    fn draw_pane(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>, pane: usize) {
+        let focused = self.focus == pane;
+        match pane {
+            TABLE => self.draw_table(canvas, area, look),
+            WEEKS => self.draw_weeks(canvas, area, look),
+            FORECASTS => self.outlook.draw(canvas, area, look, focused, FORECASTS),
+            FALLS => self.draw_falls(canvas, area, look),
+            _ => {
+                canvas.click(area, Click::Pane(CURVE));
+                curve::draw(canvas, area, look.company, self.week(), focused);
+                self.week_keys(canvas, area, look, focused);
+            }
+        }
+    }
+
     fn draw_table(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let note = match self.table.note() {
             note if note.is_empty() => format!("{} now", dollars(look.company.seen.cash)),
@@ -283,22 +367,41 @@ impl Cash {
         }
     }
 
-    fn draw_falls(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
-        let week = self.week();
+    fn draw_falls(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let (week, company) = (self.week(), look.company);
+        canvas.click(area, Click::Pane(FALLS));
+        let focused = self.focus == FALLS;
         let change = model::cash_around(company, week).map_or(0.0, |(before, after)| after - before);
         let note = arrow(change, &dollars(change.abs()));
-        let inside =
-            canvas.pane(area, &format!("From week {} to {week}", week.saturating_sub(1)), &note, false);
+        let title = format!("From week {} to {week}", week.saturating_sub(1));
+        let inside = canvas.pane(area, &title, &note, focused);
         let Some(books) = &self.books else { return };
-        falls::draw(canvas, inside, &waterfall(books, company, week, inside.height as usize));
+        // Without the focus all of the way is seen, small steps together; with it every step can be reached.
+        let most = if focused { usize::MAX } else { inside.height as usize };
+        let steps = waterfall(books, company, week, most);
+        let selected = focused.then(|| self.step.min(steps.len().saturating_sub(1)));
+        falls::draw(canvas, inside, &steps, selected, FALLS);
+        self.week_keys(canvas, area, look, focused);
     }
 
     fn draw_weeks(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         canvas.click(area, Click::Pane(WEEKS));
         let focused = self.focus == WEEKS;
-        let inside = canvas.pane(area, "Weeks", "income above the line, costs below", focused);
+        let subject = self.table.selected().and_then(|row| self.subjects.get(row));
+        let note = match (&self.books, subject) {
+            (Some(books), Some(subject)) => {
+                let amount = subject.of(&books.week(self.week()));
+                format!("week {}: {} {}", self.week(), subject.name(), money(amount))
+            }
+            _ => String::new(),
+        };
+        let inside = canvas.pane(area, "Weeks, income above costs", &note, focused);
         let Some(books) = &self.books else { return };
         bars::draw(canvas, inside, books, self.week(), WEEKS);
+        self.week_keys(canvas, area, look, focused);
+    }
+
+    fn week_keys(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>, focused: bool) {
         if focused {
             let label = |action| look.keys.label(action).unwrap_or_default();
             let keys = format!("{} {} another week", label(Action::Left), label(Action::Right));

@@ -170,6 +170,8 @@ pub struct Step {
     pub to: f64,
     /// The cash at the start or at the end.
     pub is_level: bool,
+    /// What is behind it.
+    pub subject: Subject,
 }
 
 /// The way from last week's cash to that of a week in at most so many rows: income first, then the costs from the
@@ -183,20 +185,23 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
         let (left, right) = (order(left), order(right));
         left.0.cmp(&right.0).then(left.1.total_cmp(&right.1))
     });
-    let level = |name: String, cash: f64| Step { name, from: cash, to: cash, is_level: true };
+    let level =
+        |name: String, cash: f64| Step { name, from: cash, to: cash, is_level: true, subject: Subject::Net };
     let mut steps = vec![level(format!("day {}", 7 * (week - 1)), before)];
     let mut cash = before;
     let room = most.saturating_sub(2).max(1);
     let own = if moved.len() > room { room - 1 } else { moved.len() };
     for at in &moved[..own] {
         let to = cash + amounts[*at];
-        steps.push(Step { name: CATEGORIES[*at].name.to_owned(), from: cash, to, is_level: false });
+        let (name, subject) = (CATEGORIES[*at].name.to_owned(), Subject::Category(*at));
+        steps.push(Step { name, from: cash, to, is_level: false, subject });
         cash = to;
     }
     if own < moved.len() {
         let rest: f64 = moved[own..].iter().map(|at| amounts[*at]).sum();
         let name = if own == 0 { "all".to_owned() } else { format!("{} others", moved.len() - own) };
-        steps.push(Step { name, from: cash, to: cash + rest, is_level: false });
+        let subject = if own == 0 { Subject::Net } else { Subject::Costs };
+        steps.push(Step { name, from: cash, to: cash + rest, is_level: false, subject });
     }
     steps.push(level(format!("day {}", (7 * week).min(company.seen.day)), after));
     steps
@@ -258,17 +263,18 @@ pub fn money(value: f64) -> String {
     format!("{sign}${}", grouped(value.abs(), 0))
 }
 
-/// The statement behind a category, or a side of the books, and a week.
-pub fn statement(what: &Subject, week: u32) -> String {
-    let (from, to) = days_of(week);
+/// The statement behind a category, or a side of the books, from one week to another.
+pub fn statement(what: &Subject, (first, last): (u32, u32)) -> String {
+    let (from, to) = (days_of(first).0, days_of(last).1);
     let condition = match what {
         Subject::Category(at) => format!("\n    AND category = '{}'", CATEGORIES[*at].id),
         Subject::Income => "\n    AND amount > 0".to_owned(),
         Subject::Costs => "\n    AND amount < 0".to_owned(),
         Subject::Net => String::new(),
     };
+    let weeks = if first == last { format!("week {last}") } else { format!("weeks {first} to {last}") };
     format!(
-        "-- week {week}\nSELECT day, category, amount, note\nFROM ledger\nWHERE day BETWEEN {from} AND {to}{condition}\n\
+        "-- {weeks}\nSELECT day, category, amount, note\nFROM ledger\nWHERE day BETWEEN {from} AND {to}{condition}\n\
          ORDER BY id"
     )
 }
@@ -284,4 +290,36 @@ pub enum Subject {
     Costs,
     /// What is left.
     Net,
+}
+
+impl Subject {
+    /// Name on screen.
+    pub fn name(self) -> &'static str {
+        match self {
+            Subject::Category(at) => CATEGORIES[at].name,
+            Subject::Income => "income",
+            Subject::Costs => "costs",
+            Subject::Net => "net",
+        }
+    }
+
+    /// What explains it.
+    pub fn term(self) -> &'static str {
+        match self {
+            Subject::Category(PAYMENTS) => "payments",
+            Subject::Category(LEADS) => "lead-costs",
+            Subject::Category(_) => "ledger.category",
+            Subject::Income | Subject::Costs | Subject::Net => "ledger.amount",
+        }
+    }
+
+    /// Its dollars.
+    pub fn of(self, amounts: &Amounts) -> f64 {
+        match self {
+            Subject::Category(at) => amounts[at],
+            Subject::Income => side(amounts, true),
+            Subject::Costs => side(amounts, false),
+            Subject::Net => amounts.iter().sum(),
+        }
+    }
 }

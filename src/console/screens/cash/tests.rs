@@ -66,6 +66,81 @@ fn a_category_leads_to_its_ledger_rows() {
 }
 
 #[test]
+fn every_figure_of_the_books_is_made_of_its_rows() {
+    let mut session = played(6);
+    let company = Company::of(&session);
+    let mut screen: Cash = shown(&mut session, &company);
+    let keys = crate::console::keys::Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 5 };
+    let books = screen.books.clone().expect("books");
+    for row in 0..screen.subjects.len() {
+        let subject = screen.subjects[row];
+        for (column, amounts) in [(1, books.week(6)), (3, books.week(5)), (5, books.total())] {
+            assert_eq!((screen.table.selected(), screen.table.selected_column()), (Some(row), 1));
+            for _ in 1..column {
+                act(&mut screen, Action::Right, &company);
+            }
+            let figure = screen.figure(&look).expect("a figure");
+            let sql = format!("SELECT coalesce(sum(amount), 0.0) FROM ({})", figure.sql.expect("rows"));
+            let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+            let made = crate::console::readings::number_at(&rows.rows[0], 0);
+            let shown = subject.of(&amounts);
+            assert!((made - shown).abs() < 0.2, "{}: {shown}, rows make {made}", figure.title);
+            for _ in 1..column {
+                act(&mut screen, Action::Left, &company);
+            }
+        }
+        act(&mut screen, Action::Down, &company);
+    }
+}
+
+#[test]
+fn every_pane_says_which_figure_is_selected() {
+    let mut session = played(5);
+    let company = Company::of(&session);
+    let mut screen: Cash = shown(&mut session, &company);
+    let keys = crate::console::keys::Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 5 };
+    let title = |screen: &Cash| screen.figure(&look).expect("a figure").title;
+    screen.set_focus(FALLS);
+    assert_eq!(title(&screen), "net of week 5");
+    act(&mut screen, Action::Down, &company);
+    assert_eq!(title(&screen), "payments of week 5");
+    act(&mut screen, Action::Left, &company);
+    assert_eq!(title(&screen), "payments of week 4");
+    act(&mut screen, Action::Last, &company);
+    assert_eq!(title(&screen), "net of week 4");
+    screen.set_focus(CURVE);
+    assert_eq!(title(&screen), "net of week 4");
+    screen.set_focus(WEEKS);
+    act(&mut screen, Action::Down, &company);
+    assert_eq!(title(&screen), "income of week 4");
+    screen.set_focus(FORECASTS);
+    assert_eq!(title(&screen), "forecast of day 28 for day 35");
+    let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
+    assert_eq!(session.query(&sql).expect("an answer").rows.len(), 1);
+}
+
+#[test]
+fn a_pane_can_have_the_whole_screen() {
+    let mut session = played(5);
+    let company = Company::of(&session);
+    let mut screen: Cash = shown(&mut session, &company);
+    for (pane, words) in [
+        (TABLE, "Books of week 5"),
+        (WEEKS, "Weeks"),
+        (FORECASTS, "Forecasts 1 week"),
+        (FALLS, "From week 4"),
+        (CURVE, "week 5: $"),
+    ] {
+        screen.set_focus(pane);
+        let text = crate::console::test_kit::zoomed(&screen, &company, 80, 21);
+        assert!(text.lines().next().is_some_and(|line| line.contains(words)), "{words} in\n{text}");
+        assert_eq!(text.matches('┌').count(), 1, "{text}");
+    }
+}
+
+#[test]
 fn forecasts_are_compared_once_their_day_has_come() {
     let forecast = Filed { day: 7, horizon: 7, point: 1.0, lower: 0.0, upper: 2.0, outcome: None };
     for (outcome, verdict) in

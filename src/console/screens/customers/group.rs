@@ -1,33 +1,54 @@
-//! A group opened: its weeks, plans and sources, and the way to its tools.
+//! A group opened: its weeks, cohorts, plans and sources, what its study says, and the way to its tools.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::model::{Facts, Flow, Market, ad_budgets, development_budget};
+use super::cohorts::{self, Cohorts};
+use super::columns::flow_statement;
+use super::facts::{Fact, facts};
+use super::model::{Facts, Flow, Market};
+use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
-use crate::console::screens::{Look, ScreenId};
+use crate::console::screens::market::model::{level_of, name_of};
+use crate::console::screens::market::report;
+use crate::console::screens::{Figure, Look, ScreenId};
+use crate::console::text::arrow;
 use crate::console::theme::Role;
-use crate::console::widgets::spark::bar;
-use crate::console::widgets::{Axis, Line, chart};
-use crate::notation::{cents, compact, dollars, grouped, percent};
-use crate::world::identifiers::{Group, Plan};
+use crate::console::widgets::chart::{note_room, summary, zero_if_near};
+use crate::console::widgets::table::first_row;
+use crate::console::widgets::{Axis, Line, Plot};
+use crate::notation::{compact, grouped, percent};
+use crate::world::identifiers::Group;
+
+/// Panes of an open group.
+pub const WAYS: usize = 0;
+const FACTS: usize = 1;
+const WEEKS: usize = 2;
+const COHORTS: usize = 3;
+const REPORT: usize = 4;
+/// Number of panes.
+pub const PANES: usize = 5;
 
 /// Tools of a group, and what they do for it.
 pub const TOOLS: [(&str, &str); 6] = [
-    ("set_targeted_ad_spend", "advertising"),
+    ("set_targeted_ad_spend", "ads"),
     ("set_targeted_dev_spend", "development"),
     ("set_targeted_ops_spend", "support"),
     ("set_promotion", "discounts"),
-    ("set_lead_promotion", "discounts for leads"),
+    ("set_lead_promotion", "for leads"),
     ("set_ads_strength", "ads shown"),
 ];
 
 /// Ways that are no tools: the insight report, and the customers themselves.
-const WAYS: [(&str, &str); 2] = [("Market", "its insight report"), ("SQL", "its customers by plan")];
+const OTHERS: [(&str, &str); 2] = [("Market", "order a study"), ("SQL", "its customers")];
 
 /// Number of things that can be chosen: the tools and the other ways.
-pub const CHOICES: usize = TOOLS.len() + WAYS.len();
+pub const CHOICES: usize = TOOLS.len() + OTHERS.len();
+
+/// Flows that can be selected: leads, new, cancelled.
+const FLOWS: [(&str, &str); 3] =
+    [("leads", "lead"), ("new customers", "conversion"), ("cancellations", "churn")];
 
 /// What a choice leads to.
 pub fn choose(choice: usize, group: Group) -> Effect {
@@ -43,125 +64,307 @@ pub fn choose(choice: usize, group: Group) -> Effect {
     }
 }
 
-/// Draws a group into the whole screen; the choice is none for a preview.
-pub fn draw(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    look: &Look<'_>,
-    market: &Market,
-    group: Group,
-    choice: Option<usize>,
-) {
-    let facts = market.of(group);
-    let right = if choice.is_some() { 42.min(area.width / 2) } else { 46.min(area.width / 2) };
-    let [curves, side] = Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
-    draw_curves(canvas, curves, look.company, &facts, group);
-    match choice {
-        Some(choice) => {
-            let [about, tools] =
-                Layout::vertical([Constraint::Min(0), Constraint::Length(CHOICES as u16 + 2)]).areas(side);
-            draw_facts(canvas, about, look.company, market, &facts, group);
-            draw_choices(canvas, tools, choice);
+/// What the screen knows of the groups.
+#[derive(Clone, Copy)]
+pub struct Known<'a> {
+    /// The company.
+    pub company: &'a Company,
+    /// What the readings say.
+    pub market: &'a Market,
+    /// Who stayed.
+    pub cohorts: &'a Cohorts,
+}
+
+/// Where the person is in an open group.
+#[derive(Debug, Default)]
+pub struct Opened {
+    /// The pane that has the focus.
+    pub focus: usize,
+    /// The way that is chosen.
+    pub choice: usize,
+    fact: usize,
+    /// Weeks before the last one, and the flow that is selected.
+    back: u32,
+    flow: usize,
+    place: cohorts::Place,
+    /// First line of the report.
+    from: usize,
+}
+
+impl Opened {
+    /// Does an action that stays in the group.
+    pub fn act(&mut self, action: Action, known: Known<'_>, group: Group) {
+        let moved = |at: usize, last: usize| match action {
+            Action::Up => at.min(last).saturating_sub(1),
+            Action::Down => (at + 1).min(last),
+            Action::First => 0,
+            Action::Last => last,
+            _ => at,
+        };
+        match self.focus {
+            WAYS => self.choice = moved(self.choice, CHOICES - 1),
+            FACTS => self.move_fact(action, known, group),
+            WEEKS => {
+                let most = super::model::WEEKS.min(known.company.seen.week).saturating_sub(1);
+                match action {
+                    Action::Left => self.back = (self.back + 1).min(most),
+                    Action::Right => self.back = self.back.saturating_sub(1),
+                    _ => self.flow = moved(self.flow, FLOWS.len() - 1),
+                }
+            }
+            COHORTS => self.place.act(action, known.cohorts, group, known.company.seen.week),
+            _ => self.from = moved(self.from, report::lines(known.company, group).len().saturating_sub(1)),
         }
-        None => draw_facts(canvas, side, look.company, market, &facts, group),
+    }
+
+    /// Moves to the next line that holds a figure.
+    fn move_fact(&mut self, action: Action, known: Known<'_>, group: Group) {
+        let lines = lines(known, group, 0);
+        let held: Vec<usize> = (0..lines.len()).filter(|at| lines[*at].figure.is_some()).collect();
+        let place = held.iter().position(|at| *at >= self.fact).unwrap_or(0);
+        let place = match action {
+            Action::Up => place.saturating_sub(1),
+            Action::Down if held.get(place) == Some(&self.fact) => place + 1,
+            Action::First => 0,
+            Action::Last => held.len(),
+            _ => place,
+        };
+        self.fact = held.get(place.min(held.len().saturating_sub(1))).copied().unwrap_or(0);
+    }
+
+    /// A row of a pane was clicked.
+    pub fn click(&mut self, row: usize) {
+        match self.focus {
+            WAYS => self.choice = row.min(CHOICES - 1),
+            FACTS => self.fact = row,
+            COHORTS => self.place = cohorts::Place { cohort: row / 1000, since: row % 1000 },
+            _ => {}
+        }
+    }
+
+    /// The figure that is selected.
+    pub fn figure(&self, known: Known<'_>, group: Group) -> Option<Figure> {
+        match self.focus {
+            FACTS => lines(known, group, 0).into_iter().nth(self.fact)?.figure,
+            WEEKS => {
+                let week = known.company.seen.week.saturating_sub(self.back);
+                let (name, term) = FLOWS[self.flow];
+                let sql = Some(flow_statement(self.flow, group, week));
+                Some(Figure { title: format!("{name} of {group} in week {week}"), term, sql })
+            }
+            COHORTS => self.place.figure(known.cohorts, group),
+            REPORT => {
+                let title = format!("what the study of {group} says");
+                Some(Figure { title, term: "info-level", sql: None })
+            }
+            _ => None,
+        }
+    }
+
+    /// Draws the group into the whole screen.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>, known: Known<'_>, group: Group) {
+        let mut draw = |area: Rect, pane: usize| self.draw_pane(canvas, area, look, known, group, pane);
+        let split = |area: Rect, first: u16| {
+            Layout::vertical([Constraint::Length(first), Constraint::Min(0)]).areas::<2>(area)
+        };
+        let columns = |constraints: [Constraint; 3]| Layout::horizontal(constraints).areas::<3>(area);
+        let ways = CHOICES as u16 + 2;
+        if area.width >= 150 && area.height >= 30 {
+            let [left, middle, right] =
+                columns([Constraint::Percentage(40), Constraint::Min(0), Constraint::Length(44)]);
+            let [above, below] = split(middle, (area.height / 2).min(20));
+            let [facts, go] = split(right, area.height - ways);
+            for (area, pane) in [(left, WEEKS), (above, COHORTS), (below, REPORT), (facts, FACTS), (go, WAYS)]
+            {
+                draw(area, pane);
+            }
+        } else if area.width >= 104 && area.height >= 30 {
+            let [left, _, right] =
+                columns([Constraint::Min(0), Constraint::Length(0), Constraint::Length(44)]);
+            let [above, below] = split(left, area.height * 3 / 5);
+            let [facts, go] = split(right, area.height - ways);
+            draw(above, WEEKS);
+            draw(below, if self.focus == REPORT { REPORT } else { COHORTS });
+            draw(facts, FACTS);
+            draw(go, WAYS);
+        } else {
+            let [left, _, right] =
+                columns([Constraint::Min(0), Constraint::Length(0), Constraint::Percentage(50)]);
+            let [facts, go] = split(right, area.height.saturating_sub(ways));
+            draw(left, if self.focus >= WEEKS { self.focus } else { WEEKS });
+            draw(facts, FACTS);
+            draw(go, WAYS);
+        }
+    }
+
+    /// Draws one of its panes.
+    pub fn draw_pane(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        look: &Look<'_>,
+        known: Known<'_>,
+        group: Group,
+        pane: usize,
+    ) {
+        canvas.click(area, Click::Pane(pane));
+        let focused = self.focus == pane;
+        match pane {
+            WAYS => draw_choices(canvas, area, self.choice, focused),
+            FACTS => draw_facts(canvas, area, known, group, focused.then_some(self.fact)),
+            WEEKS => {
+                draw_weeks(canvas, area, known, group, focused.then_some((self.back, self.flow)));
+                if focused {
+                    let label = |action| look.keys.label(action).unwrap_or_default();
+                    let [left, right] = [Action::Left, Action::Right].map(label);
+                    let [up, down] = [Action::Up, Action::Down].map(label);
+                    let keys = format!("{left} {right} another week · {up} {down} another figure");
+                    canvas.pane_keys(area, &keys);
+                }
+            }
+            COHORTS => draw_cohorts(canvas, area, known, group, focused.then_some(self.place)),
+            _ => draw_report(canvas, area, known.company, group, self.from, focused),
+        }
     }
 }
 
-fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, company: &Company, facts: &Facts, group: Group) {
-    let words = if group.is_enterprise() { "accounts" } else { "subscribers" };
-    let now = grouped(facts.sum(|held| held.customers), 0);
-    let week = company.seen.week;
-    let points =
-        |values: Vec<(u32, f64)>| values.iter().map(|(at, value)| (f64::from(*at), *value)).collect();
-    let x = Axis { write: &|week| format!("week {week:.0}"), holds: &[] };
-    let y = Axis { write: &compact, holds: &[0.0] };
+/// Draws what a group is beside the list of all groups.
+pub fn draw_preview(canvas: &mut Canvas<'_>, area: Rect, known: Known<'_>, group: Group) {
+    let middle = if area.width >= 150 { area.width * 3 / 10 } else { 0 };
+    let right = Constraint::Length(46.min(area.width / 2));
+    let [curves, kept, side] =
+        Layout::horizontal([Constraint::Min(0), Constraint::Length(middle), right]).areas(area);
+    draw_weeks(canvas, curves, known, group, None);
+    if middle > 0 {
+        draw_cohorts(canvas, kept, known, group, None);
+    }
+    draw_facts(canvas, side, known, group, None);
+}
+
+fn lines(known: Known<'_>, group: Group, bars: usize) -> Vec<Fact> {
+    facts(known.company, known.market, &known.market.of(group), group, bars)
+}
+
+/// Customers and flows by week; the week and the flow that are selected.
+fn draw_weeks(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    known: Known<'_>,
+    group: Group,
+    selected: Option<(u32, usize)>,
+) {
+    let own = known.market.of(group);
+    let week = known.company.seen.week;
+    let mark = selected.map(|(back, _)| f64::from(week.saturating_sub(back)));
     let [stock, flows] = Layout::vertical([Constraint::Percentage(50), Constraint::Min(0)]).areas(area);
-    let inside = canvas.pane(stock, &format!("{group} {words}"), &format!("{now} now"), false);
-    chart(canvas, inside, &[Line::through(points(facts.stock(week)), Role::Series(0))], &x, &y);
-    let trend = |figure: fn(&Flow) -> f64| points(facts.trend(week, figure));
-    let inside = canvas.pane(flows, "Leads, new and cancelled by week", &flow_words(facts, week), false);
+    let points = |values: Vec<(u32, f64)>| -> Vec<(f64, f64)> {
+        values.iter().map(|(at, value)| (f64::from(*at), *value)).collect()
+    };
+    let held = points(own.stock(week));
+    let values: Vec<f64> = held.iter().map(|point| point.1).collect();
+    let title = format!("{group} {}", if group.is_enterprise() { "companies" } else { "subscribers" });
+    let words = summary(&values, &|value| grouped(value, 0), note_room(stock, &title));
+    let inside = canvas.pane(stock, &title, &words, false);
+    let x = Axis { write: &|week| format!("wk {week:.0}"), holds: &[] };
+    let zero = zero_if_near(values.iter().copied());
+    let lines = [Line::through(held, Role::Series(0))];
+    Plot { lines: &lines, band: None, mark, x: &x, y: &Axis { write: &compact, holds: zero } }
+        .draw(canvas, inside);
+    let (back, flow) = selected.unwrap_or((0, usize::MAX));
+    let title = "By week";
+    let words = flow_words(&own, week.saturating_sub(back), flow, note_room(flows, title));
+    let inside = canvas.pane(flows, title, &words, selected.is_some());
+    let trend = |figure: fn(&Flow) -> f64| points(own.trend(week, figure));
     let lines = [
-        Line::through(trend(|flow| flow.leads), Role::Series(2)),
-        Line::through(trend(|flow| flow.signed), Role::Good),
-        Line { scattered: true, ..Line::through(trend(|flow| flow.cancelled), Role::Bad) },
+        Line::through(trend(|flow| flow.leads), Role::Series(2)).named("leads"),
+        Line::through(trend(|flow| flow.signed), Role::Good).named("new"),
+        Line { scattered: true, ..Line::through(trend(|flow| flow.cancelled), Role::Bad).named("left") },
     ];
-    chart(canvas, inside, &lines, &x, &y);
+    Plot { lines: &lines, band: None, mark, x: &x, y: &Axis { write: &compact, holds: &[0.0] } }
+        .draw(canvas, inside);
 }
 
-fn flow_words(facts: &Facts, week: u32) -> String {
-    let flow = facts.week(week);
+/// A week in words: the selected flow with its change, or all of them.
+fn flow_words(facts: &Facts, week: u32, flow: usize, room: usize) -> String {
+    let (now, before) = (facts.week(week), facts.week(week.saturating_sub(1)));
+    let of = |own: &Flow| [own.leads, own.signed, own.cancelled];
     let whole = |value: f64| grouped(value, 0);
-    format!("{} leads · +{} · -{}", whole(flow.leads), whole(flow.signed), whole(flow.cancelled))
+    if let Some((name, _)) = FLOWS.get(flow) {
+        let (now, before) = (of(&now)[flow], of(&before)[flow]);
+        return format!(
+            "week {week}: {} {name} {}",
+            whole(now),
+            arrow(now - before, &whole((now - before).abs()))
+        );
+    }
+    let full =
+        format!("{} leads · {} new · {} left", whole(now.leads), whole(now.signed), whole(now.cancelled));
+    if full.len() <= room { full } else { format!("+{} -{}", compact(now.signed), compact(now.cancelled)) }
 }
 
-/// A line of the facts: words, bar, figure.
-type Fact = (String, String, Role);
+fn draw_cohorts(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    known: Known<'_>,
+    group: Group,
+    place: Option<cohorts::Place>,
+) {
+    let week = known.company.seen.week;
+    let title = "Still there, %";
+    let words = known.cohorts.summary(group, week);
+    let inside = canvas.pane(area, title, &words, place.is_some());
+    cohorts::draw(canvas, inside, known.cohorts, (group, week), place, COHORTS);
+}
 
-fn draw_facts(
+fn draw_report(
     canvas: &mut Canvas<'_>,
     area: Rect,
     company: &Company,
-    market: &Market,
-    facts: &Facts,
     group: Group,
+    from: usize,
+    focused: bool,
 ) {
+    let level = level_of(company, group);
+    let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
+    let note = format!("level {level} · ±{}", percent(noise, 0));
+    let inside = canvas.pane(area, &format!("Study of {group}"), &note, focused);
+    report::draw_estimates(canvas, inside, company, group, from);
+}
+
+fn draw_facts(canvas: &mut Canvas<'_>, area: Rect, known: Known<'_>, group: Group, selected: Option<usize>) {
     let segment = if group.is_enterprise() { "enterprise" } else { "individual" };
-    let inside = canvas.pane(area, &format!("{group} · {segment}"), "", false);
+    let title = format!("{group} · {segment}");
+    let inside = canvas.pane(area, &title, name_of(known.company, group), selected.is_some());
     let bars = (inside.width as usize).saturating_sub(32).min(16);
-    let mut lines: Vec<Fact> = Vec::new();
-    let head = |words: &str| (words.to_owned(), String::new(), Role::Header);
-    // A small window has room for the parts that change most; money comes last.
-    lines.push(head("plans now"));
-    let customers = facts.sum(|held| held.customers).max(1.0);
-    for (plan, held) in Plan::ALL.iter().zip(&facts.plans) {
-        let share = held.customers / customers;
-        let figures = format!("{:>9} {:>6}", grouped(held.customers, 0), percent(share, 0));
-        lines.push((format!("  {plan} {}", bar(share, bars)), figures, Role::Text));
-    }
-    let heads = format!("{:>8} {:>5} {:>6}", "leads", "share", "conv.");
-    lines.push(("sources, 12 weeks".to_owned(), heads, Role::Header));
-    let mut sources: Vec<_> = facts.sources.iter().collect();
-    sources.sort_by(|left, right| right.1.0.total_cmp(&left.1.0));
-    let leads = sources.iter().map(|(_, (leads, _))| leads).sum::<f64>().max(1.0);
-    for (source, (own, signed)) in sources {
-        let conversion = if *own > 0.0 { percent(signed / own, 0) } else { "–".to_owned() };
-        let share = percent(own / leads, 0);
-        let figures = format!("{:>8} {share:>5} {conversion:>6}", compact(*own));
-        lines.push((format!("  {source}"), figures, Role::Text));
-    }
-    lines.push(head("money"));
-    let or_none = |value: Option<f64>, write: fn(f64) -> String| value.map_or("–".to_owned(), write);
-    let quality = company.quality.iter().find(|quality| quality.group == group);
-    if let Some(quality) = quality {
-        let [a, b, c] = quality.by_plan.0;
-        lines.push(("  quality A B C".to_owned(), format!("{a:.2} {b:.2} {c:.2}"), Role::Text));
-    }
-    for (name, value) in [
-        ("  revenue a month", dollars(facts.sum(|held| held.monthly))),
-        ("  per seat", or_none(facts.revenue_per_seat(), cents)),
-        ("  left in 30 days", or_none(facts.churn(), |share| percent(share, 1))),
-        ("  ads a day", dollars(ad_budgets(company, group))),
-        ("  ads of 28 days", dollars(market.ad_spend(group))),
-        ("  development a day", dollars(development_budget(company, group))),
-    ] {
-        lines.push((name.to_owned(), value, Role::Text));
-    }
-    for (row, (words, figures, role)) in rows_of(inside).zip(&lines) {
-        canvas.text(row, words, *role);
-        canvas.aligned(row, figures, *role, Align::Right);
+    let lines = lines(known, group, bars);
+    let from = first_row(selected.unwrap_or(0), inside.height as usize, lines.len());
+    for (row, (at, fact)) in rows_of(inside).zip(lines.iter().enumerate().skip(from)) {
+        let here = selected == Some(at) && fact.figure.is_some();
+        let role = if here { Role::Selection } else { fact.role };
+        if here {
+            canvas.clear(row, role);
+        }
+        canvas.text(row, &fact.words, role);
+        canvas.aligned(row, &fact.figures, role, Align::Right);
+        canvas.click(row, Click::Row(FACTS, at));
     }
 }
 
-fn draw_choices(canvas: &mut Canvas<'_>, area: Rect, choice: usize) {
-    let inside = canvas.pane(area, "Go to", "", true);
-    for (at, row) in rows_of(inside).enumerate().take(CHOICES) {
-        let role = if at == choice { Role::Selection } else { Role::Text };
+fn draw_choices(canvas: &mut Canvas<'_>, area: Rect, choice: usize, focused: bool) {
+    let inside = canvas.pane(area, "Go to", "", focused);
+    let from = first_row(choice, inside.height as usize, CHOICES);
+    for (at, row) in (from..CHOICES).zip(rows_of(inside)) {
+        let role = match (at == choice, focused) {
+            (true, true) => Role::Selection,
+            (true, false) => Role::SelectionIdle,
+            _ => Role::Text,
+        };
         canvas.clear(row, role);
-        let (name, purpose) = TOOLS.iter().chain(&WAYS).nth(at).copied().unwrap_or_default();
+        let (name, purpose) = TOOLS.iter().chain(&OTHERS).nth(at).copied().unwrap_or_default();
         canvas.text(row, name, role);
         let purpose_role = if at == choice { role } else { Role::Dim };
         let place = Rect { x: row.x + 23, width: row.width.saturating_sub(23), ..row };
         canvas.aligned(place, purpose, purpose_role, Align::Right);
-        canvas.click(row, Click::Row(0, at));
+        canvas.click(row, Click::Row(WAYS, at));
     }
 }

@@ -6,6 +6,7 @@ use super::model::{Market, ad_budget};
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click};
 use crate::console::company::Company;
+use crate::console::screens::Figure;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{dollars, grouped};
@@ -113,6 +114,19 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, value: Option<f64>, best: f64,
     let shown = if selected { Role::Selection } else { role };
     canvas.aligned(Rect { width: CELL - 2, ..cell }, &grouped(value, decimals), shown, Align::Right);
     canvas.text(Rect { x: cell.x + CELL - 1, width: 1, ..cell }, glyph, role);
+}
+
+/// The selected figure and its rows.
+pub fn figure(company: &Company, place: Place) -> Option<Figure> {
+    let (channel, group) = (Channel::ALL.get(place.channel)?, company.seen.known_groups.get(place.group)?);
+    let sql = format!(
+        "SELECT day, leads_generated, spend\nFROM ad_channel_leads\nWHERE channel_id = '{}' AND group_id = '{group}'\n    \
+         AND day > {}\nORDER BY day DESC",
+        channel.id(),
+        i64::from(company.seen.day) - 28
+    );
+    let title = format!("leads of {group} through {} per $1,000 in 28 days", channel.id());
+    Some(Figure { title, term: "leads-per-thousand", sql: Some(sql) })
 }
 
 /// The selected pair in words.

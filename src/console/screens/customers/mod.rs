@@ -1,5 +1,8 @@
 //! The customer groups: a table, what advertising brings, and each group opened.
 
+mod cohorts;
+mod columns;
+mod facts;
 mod group;
 mod heat;
 mod model;
@@ -9,16 +12,18 @@ mod tests;
 use crossterm::event::KeyEvent;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use self::model::{Facts, Market, ad_budgets, development_budget};
-use super::{Look, Screen};
+use self::cohorts::Cohorts;
+use self::columns::{columns, row_of};
+use self::group::{Known, Opened};
+use self::model::Market;
+use super::{Figure, Look, Screen};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::readings::Reading;
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Table, spark};
-use crate::notation::{cents, compact, dollars, grouped, percent};
+use crate::console::widgets::Table;
+use crate::notation::grouped;
 use crate::session::Rows;
 use crate::world::identifiers::Group;
 
@@ -33,84 +38,10 @@ pub struct Customers {
     market: Market,
     table: Table,
     place: heat::Place,
+    cohorts: Cohorts,
     /// The group that is open, by its number among the known ones.
     open: Option<usize>,
-    choice: usize,
-}
-
-/// Columns of the table, in the order of what is looked at first.
-fn columns() -> Vec<Column> {
-    let mut columns = vec![Column::words("group"), Column::words("kind")];
-    columns.extend(
-        [
-            "subs",
-            "seats",
-            "leads",
-            "new",
-            "conv.",
-            "left",
-            "churn 30d",
-            "MRR",
-            "per seat",
-            "use/day",
-            "ads/day",
-            "ad $/new",
-            "dev/day",
-        ]
-        .map(Column::numbers),
-    );
-    columns.push(Column::words("new by week"));
-    columns
-}
-
-fn row_of(group: Group, facts: &Facts, company: &Company, market: &Market) -> Vec<Cell> {
-    let week = company.seen.week;
-    let flow = facts.week(week);
-    let before = facts.week(week.saturating_sub(1));
-    let count = |value: f64| match value {
-        0.0 => Cell::number(0.0, "–").role(Role::Dim),
-        value => Cell::number(value, grouped(value, 0)),
-    };
-    let optional = |value: Option<f64>, write: &dyn Fn(f64) -> String| match value {
-        Some(value) => Cell::number(value, write(value)),
-        None => Cell::words("–").role(Role::Dim),
-    };
-    let budget = |value: f64| optional((value > 0.0).then_some(value), &dollars);
-    let converted = (flow.leads > 0.0).then(|| flow.signed / flow.leads);
-    // Companies sign weeks after they came: a share of this week's leads would mean nothing.
-    let converted = converted.filter(|_| !group.is_enterprise());
-    let (spend, signed) = (market.ad_spend(group), facts.last(week, 4, |flow| flow.signed));
-    let seats = if group.is_enterprise() { Some(facts.sum(|held| held.seats)) } else { None };
-    let trend: Vec<f64> = facts.trend(week, |flow| flow.signed).into_iter().map(|(_, new)| new).collect();
-    let new_role = match flow.signed - before.signed {
-        change if change > 0.0 => Role::Good,
-        change if change < 0.0 => Role::Bad,
-        _ => Role::Text,
-    };
-    let moved = match flow.signed - before.signed {
-        change if change > 0.0 => "▲",
-        change if change < 0.0 => "▼",
-        _ => "",
-    };
-    vec![
-        Cell::words(group.id()).role(Role::Strong),
-        Cell::words(if group.is_enterprise() { "comp." } else { "indiv." }).role(Role::Dim),
-        count(facts.sum(|held| held.customers)),
-        optional(seats, &|seats| grouped(seats, 0)),
-        count(flow.leads),
-        Cell::number(flow.signed, format!("{moved} {}", grouped(flow.signed, 0))).role(new_role),
-        optional(converted, &|share| percent(share, 1)),
-        count(flow.cancelled),
-        optional(facts.churn(), &|share| percent(share, 1)),
-        Cell::number(facts.sum(|held| held.monthly), dollars(facts.sum(|held| held.monthly))),
-        optional(facts.revenue_per_seat(), &cents),
-        optional(facts.usage(), &compact),
-        budget(ad_budgets(company, group)),
-        optional((spend > 0.0 && signed > 0.0).then(|| spend / signed), &cents),
-        budget(development_budget(company, group)),
-        Cell::words(if trend.iter().any(|new| *new > 0.0) { spark(&trend, 12) } else { String::new() })
-            .role(Role::Series(0)),
-    ]
+    opened: Opened,
 }
 
 impl Customers {
@@ -118,7 +49,7 @@ impl Customers {
     pub fn show(&mut self, group: Group, company: &Company) {
         self.focus = GROUPS;
         self.open = company.seen.known_groups.iter().position(|own| *own == group);
-        self.choice = 0;
+        self.opened = Opened::default();
         if let Some(open) = self.open {
             self.table.select(open);
         }
@@ -127,28 +58,37 @@ impl Customers {
     fn refresh(&mut self, company: &Company) {
         let groups = &company.seen.known_groups;
         let row = |group: &Group| row_of(*group, &self.market.of(*group), company, &self.market);
-        let rows = groups.iter().map(row).collect();
+        let rows: Vec<_> = groups.iter().map(row).collect();
+        if self.table.rows().is_empty() {
+            self.table = Table::new(Vec::new()).by_cell();
+        }
         self.table.set(columns(), rows);
         let last = groups.len().saturating_sub(1);
         self.open = self.open.map(|open| open.min(last)).filter(|_| !groups.is_empty());
         self.place.group = self.place.group.min(last);
     }
 
+    fn known<'a>(&'a self, company: &'a Company) -> Known<'a> {
+        Known { company, market: &self.market, cohorts: &self.cohorts }
+    }
+
     fn act_open(&mut self, open: usize, action: Action, look: &Look<'_>) -> Vec<Effect> {
         let groups = &look.company.seen.known_groups;
-        match action {
-            Action::Up => self.choice = self.choice.saturating_sub(1),
-            Action::Down => self.choice = (self.choice + 1).min(group::CHOICES - 1),
-            Action::First => self.choice = 0,
-            Action::Last => self.choice = group::CHOICES - 1,
-            Action::Left => self.open = Some(open.saturating_sub(1)),
-            Action::Right => self.open = Some((open + 1).min(groups.len().saturating_sub(1))),
-            Action::Close => self.open = None,
-            Action::Open => {
-                let chosen = groups.get(open).map(|group| group::choose(self.choice, *group));
-                return chosen.into_iter().collect();
+        let Some(group) = groups.get(open).copied() else { return Vec::new() };
+        let last = groups.len().saturating_sub(1);
+        match (self.opened.focus, action) {
+            (_, Action::Close) => self.open = None,
+            (group::WAYS, Action::Left) => self.open = Some(open.saturating_sub(1)),
+            (group::WAYS, Action::Right) => self.open = Some((open + 1).min(last)),
+            (group::WAYS, Action::Open) => return vec![group::choose(self.opened.choice, group)],
+            (_, Action::Open) => {
+                let figure = self.opened.figure(self.known(look.company), group);
+                return figure.and_then(|figure| figure.sql).map(Effect::EditSql).into_iter().collect();
             }
-            _ => {}
+            _ => {
+                let known = Known { company: look.company, market: &self.market, cohorts: &self.cohorts };
+                self.opened.act(action, known, group);
+            }
         }
         if let Some(open) = self.open {
             self.table.select(open);
@@ -167,23 +107,39 @@ impl Screen for Customers {
 
     fn hints(&self) -> Vec<Action> {
         match (self.open, self.focus) {
-            (Some(_), _) => vec![Action::Open, Action::Left, Action::Right, Action::Close],
+            (Some(_), _) => vec![Action::Open, Action::FocusNext, Action::Close],
             (None, GROUPS) => vec![Action::Open, Action::Sort, Action::Filter],
             (None, _) => vec![Action::Open],
         }
     }
 
     fn panes(&self) -> usize {
-        if self.open.is_some() { 1 } else { 2 }
+        if self.open.is_some() { group::PANES } else { 2 }
     }
 
     fn focus(&self) -> usize {
-        if self.open.is_some() { 0 } else { self.focus }
+        if self.open.is_some() { self.opened.focus } else { self.focus }
     }
 
     fn set_focus(&mut self, pane: usize) {
-        if self.open.is_none() {
-            self.focus = pane.min(CHANNELS);
+        match self.open {
+            Some(_) => self.opened.focus = pane.min(group::PANES - 1),
+            None => self.focus = pane.min(CHANNELS),
+        }
+    }
+
+    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
+        let company = look.company;
+        let groups = &company.seen.known_groups;
+        if let Some(group) = self.open.and_then(|open| groups.get(open)) {
+            return self.opened.figure(self.known(company), *group);
+        }
+        match self.focus {
+            GROUPS => {
+                let group = groups.get(self.table.selected()?)?;
+                columns::figure(*group, self.table.selected_column(), company)
+            }
+            _ => heat::figure(company, self.place),
         }
     }
 
@@ -194,11 +150,15 @@ impl Screen for Customers {
             Reading::Departures,
             Reading::LeadsByChannel,
             Reading::Usage,
+            Reading::Cohorts,
         ]
     }
 
     fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
-        self.market.take(reading, rows);
+        match reading {
+            Reading::Cohorts => self.cohorts = Cohorts::of(rows),
+            reading => self.market.take(reading, rows),
+        }
         self.refresh(look.company);
     }
 
@@ -211,7 +171,10 @@ impl Screen for Customers {
             return self.act_open(open, action, look);
         }
         match (self.focus, action) {
-            (GROUPS, Action::Open) => self.open = self.table.selected(),
+            (GROUPS, Action::Open) => {
+                self.open = self.table.selected();
+                self.opened = Opened::default();
+            }
             (CHANNELS, Action::Open) => return vec![Effect::ShowTool("set_targeted_ad_spend")],
             (CHANNELS, action) => {
                 self.place.act(action, look.company.seen.known_groups.len());
@@ -237,8 +200,10 @@ impl Screen for Customers {
 
     fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
         if self.open.is_some() {
-            let again = self.choice == row;
-            self.choice = row.min(group::CHOICES - 1);
+            let before = self.opened.choice;
+            self.set_focus(pane);
+            self.opened.click(row);
+            let again = pane == group::WAYS && before == self.opened.choice;
             return if again { self.act(Action::Open, look) } else { Vec::new() };
         }
         if pane == CHANNELS {
@@ -253,12 +218,21 @@ impl Screen for Customers {
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let groups = &look.company.seen.known_groups;
+        let known = self.known(look.company);
         if let Some(group) = self.open.and_then(|open| groups.get(open)) {
-            group::draw(canvas, area, look, &self.market, *group, Some(self.choice));
-            return;
+            return match canvas.zoomed {
+                true => self.opened.draw_pane(canvas, area, look, known, *group, self.opened.focus),
+                false => self.opened.draw(canvas, area, look, known, *group),
+            };
+        }
+        if canvas.zoomed {
+            return match self.focus {
+                GROUPS => self.draw_table(canvas, area, look),
+                _ => self.draw_channels(canvas, area, look),
+            };
         }
         let map = (heat::HEIGHT + 2).min(area.height / 2);
-        let list = (groups.len() as u16 + 4).min(area.height - map);
+        let list = (groups.len() as u16 + 3).min(area.height - map);
         let rest = area.height - map - list;
         // What room is left shows the selected group; without it the list takes it all.
         let (list, rest) = if rest >= 14 { (list, rest) } else { (list + rest, 0) };
@@ -269,7 +243,7 @@ impl Screen for Customers {
         self.draw_channels(canvas, channels, look);
         let selected = self.table.selected().and_then(|row| groups.get(row));
         if let Some(group) = selected.filter(|_| rest > 0) {
-            group::draw(canvas, preview, look, &self.market, *group, None);
+            group::draw_preview(canvas, preview, known, *group);
         }
     }
 }

@@ -1,7 +1,7 @@
 use super::model::*;
 use super::*;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
-use crate::session::Cell as Value;
+use crate::session::{Cell as Value, Session};
 use crate::world::identifiers::Channel;
 
 fn group(id: &str) -> Group {
@@ -69,7 +69,7 @@ fn a_group_opens_and_leads_to_its_tools() {
     let mut screen: Customers = shown(&mut session, &company);
     act(&mut screen, Action::Down, &company);
     act(&mut screen, Action::Open, &company);
-    assert_eq!((screen.open, screen.panes()), (Some(1), 1));
+    assert_eq!((screen.open, screen.panes()), (Some(1), group::PANES));
     let text = drawn(&screen, &company, 80, 21);
     assert!(text.contains("S2 · individual") && text.contains("set_targeted_dev_spend"), "{text}");
     act(&mut screen, Action::Down, &company);
@@ -100,6 +100,123 @@ fn a_group_opens_and_leads_to_its_tools() {
     sweep(&mut screen, &company);
     act(&mut screen, Action::Close, &company);
     assert_eq!(screen.open, None);
+}
+
+fn made(session: &mut Session, sql: &str, what: &str) -> f64 {
+    let sql = format!("SELECT coalesce({what}, 0) FROM ({sql})");
+    let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+    crate::console::readings::number_at(&rows.rows[0], 0)
+}
+
+#[test]
+fn every_figure_of_the_table_is_made_of_its_rows() {
+    let mut session = played(7);
+    let company = Company::of(&session);
+    let screen: Customers = shown(&mut session, &company);
+    for group in &company.seen.known_groups {
+        let facts = screen.market.of(*group);
+        let flow = facts.week(7);
+        for (head, shown, what) in [
+            ("subs", facts.sum(|held| held.customers), "count(*)"),
+            ("seats", facts.sum(|held| held.seats), "sum(seat_count)"),
+            ("MRR", facts.sum(|held| held.monthly), "sum(amount)"),
+            ("leads", flow.leads, "count(*)"),
+            ("new", flow.signed, "count(*)"),
+            ("left", flow.cancelled, "count(*)"),
+            ("ads/day", screen.market.ad_spend(*group), "sum(spend)"),
+            ("churn 30d", facts.sum(|held| held.since_30_days) + facts.lost_in_30_days, "count(*)"),
+            ("use/day", facts.sum(|held| held.units), "sum(usage_units)"),
+        ] {
+            let sql =
+                columns::figure_named(head, *group, &company).and_then(|figure| figure.sql).expect(head);
+            let made = made(&mut session, &sql, what);
+            assert!((made - shown).abs() < 0.02, "{head} of {group}: {shown}, rows make {made}: {sql}");
+        }
+    }
+}
+
+#[test]
+fn the_triangle_is_made_of_customers_who_stayed() {
+    let mut session = played(9);
+    let company = Company::of(&session);
+    let mut screen: Customers = shown(&mut session, &company);
+    let keys = crate::console::keys::Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 5 };
+    screen.show(group("S1"), &company);
+    screen.set_focus(3);
+    act(&mut screen, Action::Last, &company);
+    for _ in 0..9 {
+        let figure = screen.figure(&look).expect("a figure");
+        let sql = figure.sql.expect("rows");
+        let kept = made(&mut session, &sql, "count(*)");
+        let size = made(
+            &mut session,
+            &sql.split("\n    AND (s.status").next().expect("words").to_owned(),
+            "count(*)",
+        );
+        let share = crate::notation::percent(kept / size, 1);
+        assert!(
+            figure.title.starts_with(&format!("{share} of the S1 customers")),
+            "{}: {share}",
+            figure.title
+        );
+        act(&mut screen, Action::Right, &company);
+    }
+    let text = drawn(&screen, &company, 120, 37);
+    for words in ["Still there, %", "signed", "+0", "100█", "all", "after 4 weeks"] {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+}
+
+#[test]
+fn every_pane_of_a_group_has_its_figures() {
+    let mut session = played(8);
+    let company = Company::of(&session);
+    let mut screen: Customers = shown(&mut session, &company);
+    let keys = crate::console::keys::Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 5 };
+    screen.show(group("S1"), &company);
+    let mut rows = 0;
+    for pane in 1..screen.panes() {
+        screen.set_focus(pane);
+        act(&mut screen, Action::First, &company);
+        for _ in 0..20 {
+            if let Some(sql) = screen.figure(&look).and_then(|figure| figure.sql) {
+                session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+                rows += 1;
+            }
+            act(&mut screen, Action::Down, &company);
+        }
+    }
+    assert!(rows > 40, "{rows}");
+    screen.set_focus(2);
+    let title = |screen: &Customers| screen.figure(&look).expect("a figure").title;
+    act(&mut screen, Action::First, &company);
+    act(&mut screen, Action::Left, &company);
+    assert_eq!(title(&screen), "leads of S1 in week 7");
+    let text = drawn(&screen, &company, 200, 57);
+    for words in ["Study of S1", "the truth is in", "Still there, %", "Go to", "sources, 12 weeks", "week 7:"]
+    {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+}
+
+#[test]
+fn all_columns_are_there_and_a_mark_says_where() {
+    let mut session = played(3);
+    let company = Company::of(&session);
+    let mut screen: Customers = shown(&mut session, &company);
+    let wide = drawn(&screen, &company, 250, 57);
+    for head in ["of market", "level", "ad $/new", "per seat", "churn 30d", "name", "dev/day"] {
+        assert!(wide.contains(head), "{head} in\n{wide}");
+    }
+    let narrow = drawn(&screen, &company, 80, 21);
+    assert!(narrow.contains('›') && !narrow.contains("dev/day"), "{narrow}");
+    for _ in 0..14 {
+        act(&mut screen, Action::Right, &company);
+    }
+    let moved = drawn(&screen, &company, 80, 21);
+    assert!(moved.contains("dev/day") && moved.contains("group") && moved.contains('‹'), "{moved}");
 }
 
 #[test]

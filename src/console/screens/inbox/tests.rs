@@ -3,35 +3,9 @@ use serde_json::{Value, json};
 use super::model::Turn;
 use super::*;
 use crate::console::keys::{Chord, Keys};
-use crate::console::test_kit::{act, company, drawn, shown, sweep};
-use crate::session::{Cell as Datum, Configuration, NewRun, Session, Storage, Via, WaitingThread};
+use crate::console::test_kit::{act, company, courted, drawn, shown, sweep};
+use crate::session::{Cell as Datum, Via, WaitingThread};
 use crate::world::identifiers::Plan;
-
-/// A run in which companies ask for offers.
-fn courted() -> Session {
-    let new =
-        NewRun { seed: Some(11), cash: Some(20_000_000.0), storage: Storage::Memory, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-    let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
-    for (tool, arguments) in [
-        ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
-        ("set_model_tiers", json!({"A": 4, "B": 4, "C": 4})),
-        ("set_usage_quotas", json!({"A": 300, "B": 30_000, "C": 1_000_000})),
-        ("set_targeted_dev_spend", json!({"E1": 4000, "E2": 5000, "E3": 5000})),
-        ("set_targeted_ad_spend", json!({"targeted_spend": {"social_media": ads, "linkedin": ads}})),
-        ("set_capacity_tier", json!({"tier": 5})),
-    ] {
-        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
-    }
-    for _ in 0..20 {
-        if session.observe().waiting.len() >= 3 {
-            return session;
-        }
-        let forecasts = session.naive_forecasts();
-        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
-    }
-    panic!("nobody came in twenty weeks");
-}
 
 /// A company with 200 waiting threads: every third is a subscriber with a price of its own.
 fn crowded() -> (Company, Rows, Rows) {

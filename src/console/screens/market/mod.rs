@@ -1,8 +1,8 @@
 //! The market: groups and studies, finding others, the economy, and what the press tells of rivals.
 
 mod economy;
-mod model;
-mod report;
+pub mod model;
+pub mod report;
 #[cfg(test)]
 mod tests;
 

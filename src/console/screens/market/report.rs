@@ -177,12 +177,19 @@ pub fn draw(
         if running { Role::Warning } else { Role::Strong },
     );
     let rest = Rect { y: inside.y + 1, height: inside.height - 1, ..inside };
-    let lines = lines(company, group);
     if focused {
         canvas.page = rest.height.max(1);
     }
-    let from = from.min(lines.len().saturating_sub(rest.height as usize));
-    for (row, line) in rows_of(rest).zip(&lines[from..]) {
+    draw_estimates(canvas, rest, company, group, from);
+    let keys = [Action::StudyGroup, Action::LevelUp, Action::LevelDown];
+    canvas.pane_keys(area, &look.hints(&keys));
+}
+
+/// Draws the estimates of a known group from one of their lines on.
+pub fn draw_estimates(canvas: &mut Canvas<'_>, area: Rect, company: &Company, group: Group, from: usize) {
+    let lines = lines(company, group);
+    let from = from.min(lines.len().saturating_sub(area.height as usize));
+    for (row, line) in rows_of(area).zip(&lines[from..]) {
         canvas.text(row, &line.words, line.role);
         let taken = line.words.width() as u16 + 2;
         // Half a range would be a wrong one.
@@ -190,8 +197,6 @@ pub fn draw(
             canvas.aligned(row, &line.figures, line.role, Align::Right);
         }
     }
-    let keys = [Action::StudyGroup, Action::LevelUp, Action::LevelDown];
-    canvas.pane_keys(area, &look.hints(&keys));
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 mod capacity;
 mod issues;
-mod model;
+pub mod model;
 mod plans;
 mod research;
 #[cfg(test)]

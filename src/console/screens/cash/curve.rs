@@ -1,0 +1,81 @@
+//! Cash by day with the week that is looked at, and how much each week changed it.
+
+use ratatui::layout::{Constraint, Layout, Rect};
+
+use super::model::{cash_around, days_of};
+use crate::console::canvas::{Align, Canvas};
+use crate::console::company::Company;
+use crate::console::text::{arrow, short_dollars};
+use crate::console::theme::Role;
+use crate::console::widgets::chart::{note_room, summary, zero_if_near};
+use crate::console::widgets::{Axis, Line, Plot};
+use crate::notation::dollars;
+
+/// Width of the figures beside the bars of the weeks.
+const SIDE: u16 = 8;
+
+/// Draws the curve, and below it the change of every week where there is room.
+pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, week: u32, focused: bool) {
+    let title = "Cash";
+    let words = match cash_around(company, week) {
+        Some((before, after)) => {
+            let change = after - before;
+            format!("week {week}: {} {}", dollars(after), arrow(change, &dollars(change.abs())))
+        }
+        None => summary(&company.cash_by_day, &short_dollars, note_room(area, title)),
+    };
+    let inside = canvas.pane(area, title, &words, focused);
+    let changes = if inside.height >= 11 { inside.height / 3 } else { 0 };
+    let [above, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(changes)]).areas(inside);
+    let cash = &company.cash_by_day;
+    let plot = Plot {
+        lines: &[Line::of(cash, Role::Series(0))],
+        band: None,
+        mark: focused.then(|| f64::from(days_of(week).1)),
+        x: &Axis { write: &|day| format!("day {day:.0}"), holds: &[] },
+        y: &Axis { write: &short_dollars, holds: zero_if_near(cash.iter().copied()) },
+    };
+    plot.draw(canvas, above);
+    draw_changes(canvas, below, company, week);
+}
+
+/// Bars of the weekly changes, the newest at the right: gains above the line, losses below.
+fn draw_changes(canvas: &mut Canvas<'_>, area: Rect, company: &Company, selected: u32) {
+    if area.height < 3 || area.width < SIDE + 8 {
+        return;
+    }
+    let room = ((area.width - SIDE) / 2) as usize;
+    let weeks = &company.weeks[company.weeks.len().saturating_sub(room)..];
+    let gain = weeks.iter().map(|week| week.cash_change).fold(0.0, f64::max);
+    let loss = -weeks.iter().map(|week| week.cash_change).fold(0.0, f64::min);
+    if gain + loss <= 0.0 {
+        return;
+    }
+    let rows = f64::from(area.height);
+    let above = ((rows * gain / (gain + loss)).round() as u16)
+        .clamp(u16::from(gain > 0.0), area.height - u16::from(loss > 0.0));
+    let label = |canvas: &mut Canvas<'_>, y: u16, value: f64| {
+        let place = Rect { y, height: 1, width: SIDE - 1, ..area };
+        canvas.aligned(place, &short_dollars(value), Role::Dim, Align::Right);
+    };
+    if gain > 0.0 {
+        label(canvas, area.y, gain);
+    }
+    if loss > 0.0 && above < area.height {
+        label(canvas, area.bottom() - 1, -loss);
+    }
+    for (at, week) in weeks.iter().enumerate() {
+        let x = area.x + SIDE + 2 * at as u16;
+        let (rows, most, role) = match week.cash_change {
+            change if change < 0.0 => (area.height - above, loss, Role::Bad),
+            _ => (above, gain, Role::Good),
+        };
+        let filled = (week.cash_change.abs() / most.max(1e-9) * f64::from(rows)).round() as u16;
+        let here = week.day.div_ceil(7) == selected;
+        for step in 0..filled.max(1).min(rows) {
+            let y = if week.cash_change < 0.0 { area.y + above + step } else { area.y + above - 1 - step };
+            let glyph = if here { "█" } else { "▒" };
+            canvas.text(Rect { x, y, width: 1, height: 1 }, glyph, role);
+        }
+    }
+}

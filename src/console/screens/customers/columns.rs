@@ -1,0 +1,253 @@
+//! The table of the groups: its columns, and the rows behind every figure in it.
+
+use serde_json::Value;
+
+use super::model::{Facts, Market, ad_budgets, development_budget};
+use crate::console::company::Company;
+use crate::console::screens::Figure;
+use crate::console::screens::market::model::{level_of, name_of};
+use crate::console::theme::Role;
+use crate::console::widgets::{Cell, Column, spark};
+use crate::notation::{cents, compact, dollars, grouped, percent};
+use crate::world::identifiers::Group;
+
+/// What a column is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum What {
+    Group,
+    Segment,
+    Level,
+    Customers,
+    Seats,
+    Market,
+    Leads,
+    New,
+    Conversion,
+    Left,
+    Churn,
+    Monthly,
+    PerSeat,
+    Usage,
+    Ads,
+    CostOfNew,
+    Development,
+    Trend,
+    Name,
+}
+
+/// Columns with their heads and what explains them, in the order of what is looked at first.
+static COLUMNS: [(What, &str, &str); 19] = [
+    (What::Group, "group", "customer-group"),
+    (What::Segment, "kind", "customer-group"),
+    (What::Customers, "subs", "subscribers"),
+    (What::Seats, "seats", "seats"),
+    (What::Leads, "leads", "lead"),
+    (What::New, "new", "conversion"),
+    (What::Conversion, "conv.", "conversion"),
+    (What::Left, "left", "churn"),
+    (What::Churn, "churn 30d", "churn"),
+    (What::Monthly, "MRR", "mrr"),
+    (What::PerSeat, "per seat", "arpu"),
+    (What::Usage, "use/day", "usage"),
+    (What::Ads, "ads/day", "set_targeted_ad_spend"),
+    (What::CostOfNew, "ad $/new", "cost-per-new-customer"),
+    (What::Development, "dev/day", "set_targeted_dev_spend"),
+    (What::Level, "level", "info-level"),
+    (What::Market, "of market", "market-cap"),
+    (What::Trend, "new by week", "conversion"),
+    (What::Name, "name", "customer-group"),
+];
+
+/// Columns of the table.
+pub fn columns() -> Vec<Column> {
+    let column = |(what, head, _): &(What, &str, &str)| match what {
+        What::Group | What::Segment | What::Trend => Column::words(*head),
+        What::Name => Column::words(*head).at_most(28),
+        _ => Column::numbers(*head),
+    };
+    COLUMNS.iter().map(column).collect()
+}
+
+/// Share of the market as its study estimates it: customers of the individual and companies of the others.
+fn of_market(group: Group, facts: &Facts, company: &Company) -> Option<f64> {
+    let estimates = company.insights.get(&group)?.get("estimates")?;
+    let market = estimates.get("market_cap").and_then(Value::as_f64).filter(|market| *market > 0.0)?;
+    Some(facts.sum(|held| held.customers) / market)
+}
+
+/// The row of a group.
+pub fn row_of(group: Group, facts: &Facts, company: &Company, market: &Market) -> Vec<Cell> {
+    COLUMNS.iter().map(|(what, ..)| cell_of(*what, group, facts, company, market)).collect()
+}
+
+fn count(value: f64) -> Cell {
+    match value {
+        0.0 => Cell::number(0.0, "–").role(Role::Dim),
+        value => Cell::number(value, grouped(value, 0)),
+    }
+}
+
+fn optional(value: Option<f64>, write: &dyn Fn(f64) -> String) -> Cell {
+    match value {
+        Some(value) => Cell::number(value, write(value)),
+        None => Cell::words("–").role(Role::Dim),
+    }
+}
+
+fn cell_of(what: What, group: Group, facts: &Facts, company: &Company, market: &Market) -> Cell {
+    let week = company.seen.week;
+    let flow = facts.week(week);
+    let budget = |value: f64| optional((value > 0.0).then_some(value), &dollars);
+    let large = group.is_enterprise();
+    match what {
+        What::Group => Cell::words(group.id()).role(Role::Strong),
+        What::Segment => Cell::words(if large { "comp." } else { "indiv." }).role(Role::Dim),
+        What::Level => {
+            let level = level_of(company, group);
+            let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
+            Cell::number(f64::from(level), format!("{level} ±{}", percent(noise, 0)))
+        }
+        What::Customers => count(facts.sum(|held| held.customers)),
+        What::Seats => optional(large.then(|| facts.sum(|held| held.seats)), &|seats| grouped(seats, 0)),
+        What::Market => optional(of_market(group, facts, company), &|share| percent(share, 1)),
+        What::Leads => count(flow.leads),
+        What::New => new_cell(facts, week),
+        // Companies sign weeks after they came: a share of this week's leads would mean nothing.
+        What::Conversion => {
+            let converted = (flow.leads > 0.0 && !large).then(|| flow.signed / flow.leads);
+            optional(converted, &|share| percent(share, 1))
+        }
+        What::Left => count(flow.cancelled),
+        What::Churn => optional(facts.churn(), &|share| percent(share, 1)),
+        What::Monthly => {
+            let monthly = facts.sum(|held| held.monthly);
+            optional((monthly > 0.0).then_some(monthly), &dollars)
+        }
+        What::PerSeat => optional(facts.revenue_per_seat(), &cents),
+        What::Usage => optional(facts.usage(), &compact),
+        What::Ads => budget(ad_budgets(company, group)),
+        What::CostOfNew => {
+            let (spend, signed) = (market.ad_spend(group), facts.last(week, 4, |flow| flow.signed));
+            optional((spend > 0.0 && signed > 0.0).then(|| spend / signed), &cents)
+        }
+        What::Development => budget(development_budget(company, group)),
+        What::Trend => {
+            let trend: Vec<f64> =
+                facts.trend(week, |flow| flow.signed).into_iter().map(|(_, new)| new).collect();
+            let some = trend.iter().any(|new| *new > 0.0);
+            Cell::words(if some { spark(&trend, 12) } else { String::new() }).role(Role::Series(0))
+        }
+        What::Name => Cell::words(name_of(company, group)).role(Role::Dim),
+    }
+}
+
+fn new_cell(facts: &Facts, week: u32) -> Cell {
+    let now = facts.week(week).signed;
+    let change = now - facts.week(week.saturating_sub(1)).signed;
+    let (glyph, role) = match change {
+        change if change > 0.0 => ("▲ ", Role::Good),
+        change if change < 0.0 => ("▼ ", Role::Bad),
+        _ => ("", Role::Text),
+    };
+    Cell::number(now, format!("{glyph}{}", grouped(now, 0))).role(role)
+}
+
+/// The figure of a group in a column, and the rows behind it.
+pub fn figure(group: Group, column: usize, company: &Company) -> Option<Figure> {
+    let (what, head, term) = *COLUMNS.get(column)?;
+    let week = company.seen.week;
+    let name = match what {
+        What::Group | What::Segment | What::Name => "customers",
+        What::Customers if group.is_enterprise() => "companies",
+        What::Customers => "subscribers",
+        What::New | What::Trend => "new customers",
+        What::Left => "cancellations",
+        What::Leads => "leads",
+        _ => head,
+    };
+    let title = match what {
+        What::Leads | What::New | What::Left | What::Conversion => {
+            format!("{name} of {group} in week {week}")
+        }
+        _ => format!("{name} of {group}"),
+    };
+    Some(Figure { title, term, sql: statement(what, group, week, company.seen.day) })
+}
+
+/// Customers with their subscriptions, under a condition.
+fn customers(group: Group, condition: &str) -> String {
+    format!(
+        "SELECT c.customer_id, c.acquisition_source, c.created_day, s.plan, s.status, s.seat_count, s.effective_price,\n    \
+         s.effective_price * s.seat_count AS amount, s.start_day, s.end_day\nFROM customers c\n\
+         JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}' AND {condition}"
+    )
+}
+
+/// Those who signed in days: individuals on the day they came, companies on the day of their deal.
+fn signed(group: Group, (from, to): (u32, u32)) -> String {
+    let day = if group.is_enterprise() { "s.start_day" } else { "c.created_day" };
+    customers(
+        group,
+        &format!("{day} BETWEEN {from} AND {to}\n    AND s.status IN ('subscribed', 'cancelled')"),
+    )
+}
+
+/// The rows of the leads, new customers or cancellations of a week.
+pub fn flow_statement(flow: usize, group: Group, week: u32) -> String {
+    let days = ((7 * week).saturating_sub(6), 7 * week);
+    match flow {
+        0 => customers(group, &format!("c.created_day BETWEEN {} AND {}", days.0, days.1)),
+        1 => signed(group, days),
+        _ => customers(
+            group,
+            &format!(
+                "s.status = 'cancelled'\n    AND min(s.end_day, (SELECT max(day) FROM service_day)) BETWEEN {} AND {}",
+                days.0, days.1
+            ),
+        ),
+    }
+}
+
+fn statement(what: What, group: Group, week: u32, day: u32) -> Option<String> {
+    let month = day.saturating_sub(27);
+    Some(match what {
+        What::Group | What::Segment | What::Name => customers(group, "TRUE"),
+        What::Customers | What::Seats | What::Monthly | What::PerSeat => {
+            customers(group, "s.status = 'subscribed'")
+        }
+        What::Leads | What::Conversion => flow_statement(0, group, week),
+        What::New => flow_statement(1, group, week),
+        What::Trend => signed(group, ((7 * week).saturating_sub(83), 7 * week)),
+        What::Left => flow_statement(2, group, week),
+        What::Churn => customers(
+            group,
+            &format!(
+                "s.start_day <= {}\n    AND (s.status = 'subscribed' OR s.status = 'cancelled' AND s.end_day > {})",
+                day.saturating_sub(30),
+                day.saturating_sub(30)
+            ),
+        ),
+        What::Usage => format!(
+            "SELECT u.customer_id, s.plan, s.seat_count, u.usage_units\nFROM daily_usage u\nCROSS JOIN subscriptions s\n\
+             CROSS JOIN customers c\nWHERE u.day = {day} AND s.customer_id = u.customer_id AND s.status = 'subscribed'\n    \
+             AND c.customer_id = u.customer_id AND c.group_id = '{group}'"
+        ),
+        What::Ads | What::CostOfNew => format!(
+            "SELECT day, channel_id, leads_generated, spend\nFROM ad_channel_leads\n\
+             WHERE group_id = '{group}' AND day BETWEEN {month} AND {day}\nORDER BY day DESC"
+        ),
+        What::Level | What::Market => {
+            format!("SELECT *\nFROM group_info_levels\nWHERE group_id = '{group}'")
+        }
+        What::Development => format!(
+            "SELECT day, tool_name, settings_json\nFROM config_overrides\n\
+             WHERE tool_name = 'set_targeted_dev_spend'\nORDER BY day DESC"
+        ),
+    })
+}
+
+/// The figure of a group in the column of a name.
+pub fn figure_named(head: &str, group: Group, company: &Company) -> Option<Figure> {
+    let column = COLUMNS.iter().position(|(_, own, _)| *own == head)?;
+    figure(group, column, company)
+}

@@ -1,0 +1,289 @@
+//! The figures of the week: how each is read, written and judged, and the rows behind it.
+
+use crate::console::company::Company;
+use crate::console::screens::Figure;
+use crate::console::text::arrow;
+use crate::console::theme::Role;
+use crate::console::widgets::{Cell, Column, spark};
+use crate::notation::{dollars, grouped, percent};
+use crate::session::WeekFigures;
+
+/// A figure of the week.
+pub struct Metric {
+    /// Name.
+    pub name: &'static str,
+    /// What explains it.
+    pub term: &'static str,
+    /// How it is read.
+    pub read: fn(&WeekFigures) -> f64,
+    /// How it is written.
+    pub write: fn(f64) -> String,
+    /// Whether more of it is better.
+    pub more_is_better: bool,
+    /// Where its rows are.
+    source: Source,
+}
+
+/// Where the rows behind a figure are.
+enum Source {
+    /// In the ledger, under a condition.
+    Ledger(&'static str),
+    /// Subscriptions that are active now, under a condition; they are those of the last week only.
+    Active(&'static str),
+    /// Customers and subscriptions, under a condition on a day.
+    Customers(&'static str, &'static str),
+    /// The days of the service, by a column.
+    Service(&'static str),
+    /// Threads of companies that have begun.
+    Leads,
+    /// No table tells them.
+    None,
+}
+
+const fn metric(
+    name: &'static str,
+    term: &'static str,
+    read: fn(&WeekFigures) -> f64,
+    write: fn(f64) -> String,
+    more_is_better: bool,
+    source: Source,
+) -> Metric {
+    Metric { name, term, read, write, more_is_better, source }
+}
+
+fn whole(value: f64) -> String {
+    grouped(value, 0)
+}
+
+fn share(value: f64) -> String {
+    percent(value, 1)
+}
+
+fn none_or_percent(value: f64) -> String {
+    if value > 0.0 { percent(value, 1) } else { "none".to_owned() }
+}
+
+/// Conversion of the week's individual leads, 0 without leads.
+fn conversion(week: &WeekFigures) -> f64 {
+    f64::from(week.new_individual_subscribers) / f64::from(week.new_individual_leads.max(1))
+}
+
+const SMALL: &str = "c.customer_type = 'small'";
+const SIGNED: &str = "c.customer_type = 'small' AND s.status IN ('subscribed', 'cancelled')";
+const LEFT: &str = "c.customer_type = 'small' AND s.status = 'cancelled'";
+const DEALS: &str = "c.customer_type = 'large' AND s.status IN ('subscribed', 'cancelled')";
+
+/// All figures, in their order on the screen.
+pub static METRICS: [Metric; 22] = [
+    metric("cash", "cash", |week| week.cash, dollars, true, Source::Ledger("TRUE")),
+    metric("recurring revenue", "mrr", |week| week.recurring_revenue, dollars, true, Source::Active("TRUE")),
+    metric(
+        "payments",
+        "payments",
+        |week| week.payments,
+        dollars,
+        true,
+        Source::Ledger("category = 'subscription_payment'"),
+    ),
+    metric(
+        "running costs",
+        "running-costs",
+        |week| week.costs,
+        dollars,
+        false,
+        Source::Ledger("category IN ('compute', 'capacity', 'operations', 'development', 'advertising')"),
+    ),
+    metric(
+        "subscribers",
+        "subscribers",
+        |week| f64::from(week.individual_subscribers),
+        whole,
+        true,
+        Source::Active(SMALL),
+    ),
+    metric(
+        "individual leads",
+        "lead",
+        |week| f64::from(week.new_individual_leads),
+        whole,
+        true,
+        Source::Customers("c.created_day", SMALL),
+    ),
+    metric(
+        "new subscribers",
+        "conversion",
+        |week| f64::from(week.new_individual_subscribers),
+        whole,
+        true,
+        Source::Customers("c.created_day", SIGNED),
+    ),
+    metric("conversion", "conversion", conversion, share, true, Source::Customers("c.created_day", SMALL)),
+    metric(
+        "cancellations",
+        "churn",
+        |week| f64::from(week.cancellations),
+        whole,
+        false,
+        Source::Customers("s.end_day", LEFT),
+    ),
+    metric("upgrades", "plan-switch", |week| f64::from(week.upgrades), whole, true, Source::None),
+    metric("downgrades", "plan-switch", |week| f64::from(week.downgrades), whole, false, Source::None),
+    metric(
+        "seats",
+        "seats",
+        |week| f64::from(week.enterprise_seats),
+        whole,
+        true,
+        Source::Active("c.customer_type = 'large'"),
+    ),
+    metric(
+        "enterprise leads",
+        "thread",
+        |week| f64::from(week.new_enterprise_leads),
+        whole,
+        true,
+        Source::Leads,
+    ),
+    metric(
+        "new seats",
+        "seats",
+        |week| f64::from(week.new_enterprise_seats),
+        whole,
+        true,
+        Source::Customers("s.start_day", DEALS),
+    ),
+    metric("seats lost", "churn", |week| f64::from(week.seats_lost), whole, false, Source::None),
+    metric(
+        "usage, units",
+        "usage",
+        |week| week.usage as f64,
+        whole,
+        true,
+        Source::Service("total_usage_units"),
+    ),
+    metric(
+        "overload, peak",
+        "overload",
+        |week| week.overload_peak,
+        none_or_percent,
+        false,
+        Source::Service("max(0.0, 1.0 * total_usage_units / capacity_units - 1) AS overload"),
+    ),
+    metric(
+        "outage, minutes",
+        "outage",
+        |week| f64::from(week.downtime_minutes),
+        whole,
+        false,
+        Source::Service("downtime_minutes"),
+    ),
+    metric("latency, peak ms", "latency", |week| week.p95_ms_peak, whole, false, Source::Service("p95_ms")),
+    metric(
+        "error rate, peak",
+        "error-rate",
+        |week| week.error_rate_peak,
+        |value| percent(value, 2),
+        false,
+        Source::Service("error_rate"),
+    ),
+    metric("open issues", "issues", |week| f64::from(week.open_issues), whole, false, Source::None),
+    metric("companies lost", "churn", |week| f64::from(week.companies_lost), whole, false, Source::None),
+];
+
+/// Columns of the table; those that can be left out come last.
+pub fn columns() -> Vec<Column> {
+    let numbers = ["this week", "change"].map(Column::numbers);
+    let last = ["last week", "4-wk mean"].map(Column::numbers);
+    let name = [Column::words("figure")];
+    name.into_iter().chain(numbers).chain([Column::words("trend")]).chain(last).collect()
+}
+
+/// Weeks a column speaks of, as distances from the last one, the farthest first.
+fn weeks_of(column: usize) -> (u32, u32) {
+    match column {
+        2 => (1, 0),
+        3 => (11, 0),
+        4 => (1, 1),
+        5 => (3, 0),
+        _ => (0, 0),
+    }
+}
+
+/// The row of a figure.
+pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
+    let trend = company.trend(12, metric.read);
+    let now = trend.last().copied();
+    let before = trend.len().checked_sub(2).map(|at| trend[at]);
+    let cell = |value: Option<f64>| match value {
+        Some(value) => Cell::number(value, (metric.write)(value)),
+        None => Cell::words("–"),
+    };
+    let change = now.zip(before).map(|(now, before)| now - before);
+    let moved = match change {
+        Some(change) => {
+            let tone = match change {
+                0.0 => Role::Dim,
+                change if (change > 0.0) == metric.more_is_better => Role::Good,
+                _ => Role::Bad,
+            };
+            let size = change.abs();
+            let size = if size == 0.0 { String::new() } else { (metric.write)(size) };
+            Cell::number(change, arrow(change, &size)).role(tone)
+        }
+        None => Cell::words("–").role(Role::Dim),
+    };
+    vec![
+        Cell::words(metric.name),
+        cell(now).role(Role::Strong),
+        moved,
+        Cell::words(spark(&trend, 12)).role(Role::Series(0)),
+        cell(before).role(Role::Dim),
+        cell(company.mean_of_four(metric.read)).role(Role::Dim),
+    ]
+}
+
+/// The figure in a column, and the rows behind it.
+pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
+    let week = company.seen.week;
+    let (from, to) = weeks_of(column);
+    let (from, to) = (week.saturating_sub(from).max(1.min(week)), week.saturating_sub(to));
+    let weeks = if from == to { format!("week {to}") } else { format!("weeks {from} to {to}") };
+    let days = ((7 * from).saturating_sub(6), 7 * to);
+    let now = to == week;
+    Figure {
+        title: format!("{} of {weeks}", metric.name),
+        term: metric.term,
+        sql: statement(&metric.source, days, now),
+    }
+}
+
+/// The rows of days; those that hold only now are left out for other weeks.
+fn statement(source: &Source, (from, to): (u32, u32), now: bool) -> Option<String> {
+    let between = |day: &str| format!("{day} BETWEEN {from} AND {to}");
+    Some(match source {
+        Source::Ledger(condition) => format!(
+            "SELECT day, category, amount, note\nFROM ledger\nWHERE {} AND {condition}\nORDER BY id",
+            between("day")
+        ),
+        Source::Active(condition) if now => format!(
+            "SELECT s.customer_id, c.group_id, s.plan, s.seat_count, s.effective_price,\n    \
+             s.effective_price * s.seat_count AS amount, s.start_day\nFROM subscriptions s\n\
+             CROSS JOIN customers c\nWHERE s.status = 'subscribed' AND c.customer_id = s.customer_id AND {condition}"
+        ),
+        Source::Customers(day, condition) => format!(
+            "SELECT c.customer_id, c.group_id, c.acquisition_source, c.created_day, s.plan, s.status, s.seat_count,\n    \
+             s.effective_price, s.start_day, s.end_day\nFROM customers c\n\
+             JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE {} AND {condition}",
+            between(day)
+        ),
+        Source::Service(column) => {
+            format!("SELECT day, {column}\nFROM service_day\nWHERE {}\nORDER BY day", between("day"))
+        }
+        Source::Leads => format!(
+            "SELECT customer_id, day, seat_count\nFROM enterprise_turns\n\
+             WHERE thread_type = 'new_lead' AND turn_number = 0 AND {}",
+            between("day")
+        ),
+        Source::Active(_) | Source::None => return None,
+    })
+}

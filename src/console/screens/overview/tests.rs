@@ -1,0 +1,153 @@
+use super::alerts::Kind;
+use super::*;
+use crate::console::test_kit::{act, courted, drawn, played, shown, sweep};
+use crate::session::{Cell as Value, Session};
+
+fn sum_of(session: &mut Session, sql: &str, column: &str) -> f64 {
+    let rows = session.query(&format!("SELECT {column} FROM ({sql})")).expect("an answer");
+    match rows.rows[0][0] {
+        Value::Integer(number) => number as f64,
+        Value::Real(number) => number,
+        _ => 0.0,
+    }
+}
+
+#[test]
+fn every_figure_of_the_week_is_made_of_its_rows() {
+    let mut session = played(7);
+    let company = Company::of(&session);
+    let week = company.seen.last_week.expect("a week");
+    let before = company.weeks[company.weeks.len() - 2];
+    for (name, column) in [
+        ("recurring revenue", "sum(amount)"),
+        ("payments", "sum(amount)"),
+        ("running costs", "-sum(amount)"),
+        ("subscribers", "count(*)"),
+        ("individual leads", "count(*)"),
+        ("new subscribers", "count(*)"),
+        ("cancellations", "count(*)"),
+        ("seats", "coalesce(sum(seat_count), 0)"),
+        ("enterprise leads", "count(*)"),
+        ("new seats", "coalesce(sum(seat_count), 0)"),
+        ("usage, units", "sum(total_usage_units)"),
+        ("overload, peak", "max(overload)"),
+        ("outage, minutes", "sum(downtime_minutes)"),
+        ("latency, peak ms", "max(p95_ms)"),
+        ("error rate, peak", "max(error_rate)"),
+    ] {
+        let metric = METRICS.iter().find(|metric| metric.name == name).expect("a figure");
+        for (place, figures) in [(1, &week), (4, &before)] {
+            let Some(sql) = figures::figure(metric, place, &company).sql else {
+                assert!(place == 4, "{name}");
+                continue;
+            };
+            let (shown, made) = ((metric.read)(figures), sum_of(&mut session, &sql, column));
+            assert!(
+                (shown - made).abs() < 0.02,
+                "{name} in column {place}: {shown}, rows make {made}: {sql}"
+            );
+        }
+    }
+    let moved = figures::figure(&METRICS[0], 1, &company).sql.expect("rows");
+    let change = sum_of(&mut session, &moved, "sum(amount)");
+    assert!((change - company.seen.cash_change).abs() < 0.02);
+}
+
+#[test]
+fn the_selected_figure_names_figure_and_weeks() {
+    let mut session = played(6);
+    let company = Company::of(&session);
+    let mut screen: Overview = shown(&mut session, &company);
+    let keys = crate::console::keys::Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 5 };
+    screen.set_focus(WEEK);
+    let title = |screen: &Overview| screen.figure(&look).expect("a figure").title;
+    assert_eq!(title(&screen), "cash of week 6");
+    for _ in 0..4 {
+        act(&mut screen, Action::Right, &company);
+    }
+    act(&mut screen, Action::Down, &company);
+    assert_eq!(title(&screen), "recurring revenue of weeks 3 to 6");
+    screen.set_focus(QUALITY);
+    assert_eq!(title(&screen), "delivered quality of E1 on plan A");
+    screen.set_focus(CASH);
+    assert_eq!(title(&screen), "cash of week 6");
+    for pane in 0..screen.panes() {
+        screen.set_focus(pane);
+        for _ in 0..METRICS.len() {
+            if let Some(sql) = screen.figure(&look).and_then(|figure| figure.sql) {
+                session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+            }
+            act(&mut screen, Action::Down, &company);
+        }
+    }
+}
+
+#[test]
+fn what_waits_stands_first_and_every_alert_leads_somewhere() {
+    let mut session = courted();
+    let company = Company::of(&session);
+    let mut screen: Overview = shown(&mut session, &company);
+    assert_eq!(screen.alerts[0].kind, Kind::Threads);
+    assert!(screen.alerts[0].text.contains("by day"), "{}", screen.alerts[0].text);
+    for at in 0..screen.alerts.len() {
+        let effects = act(&mut screen, Action::Open, &company);
+        assert!(matches!(effects[..], [Effect::Show(_) | Effect::ShowTool(_)]), "{effects:?}");
+        let figure = screen.alerts[at].figure(company.seen.day);
+        if let Some(sql) = figure.sql {
+            session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+        }
+        act(&mut screen, Action::Down, &company);
+    }
+    let kinds: Vec<(bool, Kind)> = screen.alerts.iter().map(|alert| (!alert.urgent, alert.kind)).collect();
+    assert!(kinds.is_sorted(), "{kinds:?}");
+}
+
+#[test]
+fn the_waiting_threads_are_the_rows_of_their_alert() {
+    let mut session = courted();
+    let company = Company::of(&session);
+    let alert = alerts(&company).into_iter().find(|alert| alert.kind == Kind::Threads).expect("talks");
+    let sql = alert.figure(company.seen.day).sql.expect("rows");
+    let open = sum_of(&mut session, &sql, "count(*)");
+    assert_eq!(open, company.seen.waiting.len() as f64);
+}
+
+#[test]
+fn a_new_company_is_told_to_set_prices() {
+    let mut session = played(0);
+    let company = Company::of(&session);
+    let mut screen: Overview = shown(&mut session, &company);
+    assert!(screen.alerts[0].text.contains("no plan has a price"));
+    let effects = act(&mut screen, Action::Open, &company);
+    assert!(matches!(effects[..], [Effect::ShowTool("set_prices")]), "{effects:?}");
+}
+
+#[test]
+fn no_word_of_an_alert_is_cut_while_there_is_room() {
+    let mut session = courted();
+    let company = Company::of(&session);
+    let screen: Overview = shown(&mut session, &company);
+    for (width, height) in [(80, 21), (120, 37), (200, 57)] {
+        let text = drawn(&screen, &company, width, height);
+        let last = screen.alerts[0].text.split_whitespace().next_back().expect("a word");
+        assert!(text.contains(last), "{last} in\n{text}");
+        for words in ["This week", "Needs you", "Cash", "individual leads", "→ Inbox"] {
+            assert!(text.contains(words), "{words} in\n{text}");
+        }
+    }
+    let large = drawn(&screen, &company, 200, 57);
+    for words in ["Usage against capacity", "4-wk mean", "Delivered quality", "expected", "95 %"] {
+        assert!(large.contains(words), "{words} in\n{large}");
+    }
+}
+
+#[test]
+fn it_is_drawn_in_every_window_with_and_without_data() {
+    for weeks in [0, 1, 9] {
+        let mut session = played(weeks);
+        let company = Company::of(&session);
+        sweep(&mut Overview::default(), &company);
+        sweep(&mut shown::<Overview>(&mut session, &company), &company);
+    }
+}

@@ -1,0 +1,95 @@
+use ratatui::buffer::Buffer;
+use ratatui::symbols::Marker;
+
+use super::*;
+use crate::console::text::short_dollars;
+use crate::console::theme::Theme;
+use crate::session::Configuration;
+
+fn drawn(plot: &Plot<'_>, width: u16, height: u16, marker: Marker) -> Vec<String> {
+    let area = Rect::new(0, 0, width, height);
+    let mut buffer = Buffer::empty(area);
+    let theme = Theme::find("mono", &Configuration::shipped()).expect("a theme");
+    let mut canvas = Canvas::new(&mut buffer, &theme);
+    canvas.marker = marker;
+    plot.draw(&mut canvas, area);
+    let line = |y: u16| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+    (0..height).map(|y| line(y).trim_end().to_owned()).collect()
+}
+
+fn plot<'a>(lines: &'a [Line], band: Option<&'a Band>) -> Plot<'a> {
+    let x = &Axis { write: &day, holds: &[] };
+    let y = &Axis { write: &short_dollars, holds: &[] };
+    Plot { lines, band, mark: None, x, y }
+}
+
+fn day(day: f64) -> String {
+    format!("day {day:.0}")
+}
+
+#[test]
+fn labels_are_round_lie_on_the_axis_and_end_with_the_data() {
+    let rising: Vec<f64> = (0..=252).map(|day| f64::from(day) * 40_000.0).collect();
+    let lines = [Line::of(&rising, Role::Text).named("cash")];
+    let picture = drawn(&plot(&lines, None), 60, 14, Marker::Braille);
+    let text = picture.join("\n");
+    let days =
+        |picture: &[String]| picture.last().expect("a row").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(days(&picture), "day 0 day 50 day 100 day 150 day 200 day 250", "{text}");
+    for label in ["$0┤", "$5.00M┤", "$10.0M┤"] {
+        assert!(picture.iter().any(|line| line.trim_start().starts_with(label)), "{label} in\n{text}");
+    }
+    assert!(picture[0].ends_with("cash"), "{text}");
+    let small = drawn(&plot(&lines, None), 24, 6, Marker::Braille);
+    assert_eq!(days(&small), "day 0 day 200", "{}", small.join("\n"));
+}
+
+#[test]
+fn every_marker_draws_the_same_curve() {
+    let lines = [Line::of(&[0.0, 1.0], Role::Text)];
+    for (marker, glyphs) in
+        [(Marker::Braille, "⡠⠊⠔⠁⢀⠈⠑⠤⠒⡔⠜⠎"), (Marker::HalfBlock, "▀▄█"), (Marker::Dot, "•")]
+    {
+        let picture = drawn(&plot(&lines, None), 30, 8, marker);
+        let count = |line: &String| line.chars().filter(|glyph| glyphs.contains(*glyph)).count();
+        assert!(picture.iter().map(count).sum::<usize>() >= 6, "{}", picture.join("\n"));
+    }
+}
+
+#[test]
+fn a_band_is_shaded_where_it_is_and_names_never_share_a_row() {
+    let lines = [
+        Line::of(&[1.0, 2.0, 3.0], Role::Text).named("one"),
+        Line::of(&[1.0, 2.0, 3.0], Role::Text).named("two"),
+    ];
+    let band = Band { ends: vec![(1.0, 1.0, 2.0), (2.0, 2.0, 4.0)], name: "95 %" };
+    let picture = drawn(&plot(&lines, Some(&band)), 60, 12, Marker::Braille);
+    let text = picture.join("\n");
+    assert!(picture.iter().any(|line| line.contains("░░░")), "{text}");
+    assert!(!picture.iter().any(|line| line.chars().take(20).any(|glyph| glyph == '░')), "{text}");
+    for name in ["one", "two", "95 %"] {
+        assert_eq!(picture.iter().filter(|line| line.ends_with(name)).count(), 1, "{text}");
+    }
+    assert_eq!((band.at(0.5), band.at(1.5), band.at(2.5)), (None, Some((1.5, 3.0)), None));
+}
+
+#[test]
+fn nothing_is_drawn_without_points_and_no_value_is_too_strange() {
+    let nothing = drawn(&plot(&[], None), 60, 8, Marker::Braille);
+    assert!(nothing[0].starts_with("nothing to draw yet"));
+    for values in [[f64::NAN, 1.0, 1.0], [1e300, -1e300, 0.0], [0.0, 1e-300, 0.0], [5.0, 5.0, 5.0]] {
+        for (width, height) in [(16, 4), (17, 5), (60, 20), (300, 60)] {
+            drawn(&plot(&[Line::of(&values, Role::Text)], None), width, height, Marker::Braille);
+        }
+    }
+}
+
+#[test]
+fn a_chart_in_words_says_as_much_as_has_room() {
+    let values = [3.0, 1.0, 2.0];
+    let write = |value: f64| format!("{value:.0}");
+    assert_eq!(summary(&values, &write, 80), "2 ▲ 1 · least 1 · most 3");
+    assert_eq!(summary(&values, &write, 8), "2 ▲ 1");
+    assert_eq!(summary(&values, &write, 2), "2");
+    assert_eq!(summary(&[], &write, 80), "nothing yet");
+}

@@ -1,0 +1,86 @@
+//! Curves as dots in the cells of a terminal: several dots in a cell where the marker has them.
+
+use ratatui::layout::Rect;
+use ratatui::symbols::Marker;
+
+use crate::console::canvas::Canvas;
+use crate::console::theme::Role;
+
+/// Bits of the dots of a braille character, by column and row.
+const BRAILLE: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
+
+/// Dots over an area of cells.
+pub struct Raster {
+    marker: Marker,
+    columns: usize,
+    rows: usize,
+    /// Dots that are set in a cell, and the meaning of the last one.
+    cells: Vec<(u8, Role)>,
+}
+
+impl Raster {
+    /// An empty raster over so many cells.
+    pub fn new(marker: Marker, columns: u16, rows: u16) -> Raster {
+        let (columns, rows) = (columns as usize, rows as usize);
+        Raster { marker, columns, rows, cells: vec![(0, Role::Text); columns * rows] }
+    }
+
+    /// Dots of a cell, across and down.
+    fn dots(&self) -> (usize, usize) {
+        match self.marker {
+            Marker::Braille => (2, 4),
+            Marker::HalfBlock => (1, 2),
+            _ => (1, 1),
+        }
+    }
+
+    /// Sets the dot at a share of the width and of the height, counted from above.
+    fn set(&mut self, x: usize, y: usize, role: Role) {
+        let (across, down) = self.dots();
+        let (column, row) = (x / across, y / down);
+        if column >= self.columns || row >= self.rows {
+            return;
+        }
+        let bit = match self.marker {
+            Marker::Braille => BRAILLE[x % 2][y % 4],
+            Marker::HalfBlock => 1 << (y % 2),
+            _ => 1,
+        };
+        let cell = &mut self.cells[row * self.columns + column];
+        *cell = (cell.0 | bit, role);
+    }
+
+    /// A line between two places, given as shares of width and height from the lower left corner.
+    pub fn line(&mut self, from: (f64, f64), to: (f64, f64), role: Role) {
+        let (from, to) = (self.dot_at(from), self.dot_at(to));
+        let steps = (to.0 - from.0).abs().max((to.1 - from.1).abs()).ceil().max(1.0);
+        for step in 0..=steps as usize {
+            let share = step as f64 / steps;
+            let (x, y) = (from.0 + (to.0 - from.0) * share, from.1 + (to.1 - from.1) * share);
+            self.set(x.round() as usize, y.round() as usize, role);
+        }
+    }
+
+    fn dot_at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let (across, down) = self.dots();
+        let most = |dots: usize| dots.saturating_sub(1) as f64;
+        (x.clamp(0.0, 1.0) * most(self.columns * across), (1.0 - y.clamp(0.0, 1.0)) * most(self.rows * down))
+    }
+
+    /// Paints the dots that are set over what is there.
+    pub fn paint(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        for (at, (bits, role)) in self.cells.iter().enumerate().filter(|(_, (bits, _))| *bits != 0) {
+            let glyph = match self.marker {
+                Marker::Braille => char::from_u32(0x2800 + u32::from(*bits)).unwrap_or('⣿'),
+                Marker::HalfBlock => ['▀', '▄', '█'][usize::from(*bits - 1).min(2)],
+                Marker::Block => '█',
+                Marker::Bar => '▄',
+                Marker::Custom(own) => own,
+                _ => '•',
+            };
+            let (x, y) = (area.x + (at % self.columns) as u16, area.y + (at / self.columns) as u16);
+            let cell = Rect { x, y, width: 1, height: 1 };
+            canvas.text(cell, glyph.encode_utf8(&mut [0; 4]), *role);
+        }
+    }
+}

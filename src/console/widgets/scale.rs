@@ -1,0 +1,75 @@
+//! Round numbers between two bounds, for the axes of charts.
+
+/// Round values between two bounds, at most so many: multiples of 1, 2 or 5 times a power of ten.
+pub fn ticks([from, to]: [f64; 2], most: usize) -> Vec<f64> {
+    let step = step([from, to], most);
+    let (first, last) = ((from / step - 1e-9).ceil(), (to / step + 1e-9).floor());
+    if !step.is_finite() || step <= 0.0 || last < first {
+        return Vec::new();
+    }
+    // Zero has no sign.
+    (0..=(last - first) as usize).map(|at| (first + at as f64) * step + 0.0).collect()
+}
+
+/// The round distance of at most so many ticks; not finite if there is none.
+fn step([from, to]: [f64; 2], most: usize) -> f64 {
+    let span = to - from;
+    if !span.is_finite() || span <= 0.0 || most == 0 {
+        return f64::NAN;
+    }
+    let mut magnitude = libm::pow(10.0, libm::floor(libm::log10(span / most as f64)));
+    loop {
+        for factor in [1.0, 2.0, 5.0] {
+            let step = factor * magnitude;
+            let count = (to / step + 1e-9).floor() - (from / step - 1e-9).ceil() + 1.0;
+            if count <= most as f64 {
+                return step;
+            }
+        }
+        magnitude *= 10.0;
+        if !magnitude.is_finite() {
+            return f64::NAN;
+        }
+    }
+}
+
+/// Bounds widened to the next ticks where those are near, so that a curve ends below a label and not above it.
+pub fn widened([from, to]: [f64; 2], most: usize) -> [f64; 2] {
+    let step = step([from, to], most);
+    if !step.is_finite() {
+        return [from, to];
+    }
+    let (below, above) = ((from / step + 1e-9).floor() * step, (to / step - 1e-9).ceil() * step);
+    let near = |distance: f64| distance <= 0.3 * (to - from);
+    let mut wide = [if near(from - below) { below } else { from }, if near(above - to) { above } else { to }];
+    // One label alone says nothing about the scale.
+    if ticks(wide, most + 1).len() < 2 {
+        wide = [below, above];
+    }
+    wide
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        assert_eq!(ticks([0.0, 252.0], 6), [0.0, 50.0, 100.0, 150.0, 200.0, 250.0]);
+        assert_eq!(ticks([0.0, 252.0], 3), [0.0, 100.0, 200.0]);
+        assert_eq!(ticks([25.0, 36.0], 4), [25.0, 30.0, 35.0]);
+        assert_eq!(ticks([-0.4, 1.0], 3), [0.0, 0.5, 1.0]);
+        assert_eq!(ticks([3.0, 3.0], 4), Vec::<f64>::new());
+        assert_eq!(ticks([0.0, f64::INFINITY], 4), Vec::<f64>::new());
+        assert_eq!(ticks([0.0, 9.0], 0), Vec::<f64>::new());
+    }
+
+    #[test]
+    fn bounds_reach_to_the_next_round_number_if_it_is_near() {
+        assert_eq!(widened([0.0, 980.0], 5), [0.0, 1000.0]);
+        assert_eq!(widened([300_000.0, 13_500_000.0], 4), [0.0, 15_000_000.0]);
+        assert_eq!(widened([48.3, 51.1], 3), [48.0, 51.1], "the next one above is far");
+        let [from, to] = widened([99.0, 101.0], 2);
+        assert!(ticks([from, to], 3).len() >= 2, "{from} {to}");
+    }
+}

@@ -37,7 +37,7 @@ use super::screens::tools::Tools;
 use super::screens::{Look, Screen, ScreenId};
 use super::theme::Theme;
 use super::worker::{Job, Question};
-use crate::session::Configuration;
+use crate::session::{Configuration, Library};
 
 /// Something for the outside of the console.
 pub enum Order {
@@ -51,6 +51,8 @@ pub enum Order {
     Copy(String),
     /// Write a file.
     Write(PathBuf, Vec<u8>),
+    /// Save a query: its name, its title, the statement.
+    SaveQuery(Configuration, [String; 3]),
     /// List the runs.
     ListRuns,
     /// Draw everything again.
@@ -186,6 +188,8 @@ pub struct App {
     /// Draw with ASCII only.
     pub ascii: bool,
     configuration: Configuration,
+    /// Named queries.
+    library: Library,
     runs: PathBuf,
     /// Where the person is.
     pub stage: Stage,
@@ -236,7 +240,9 @@ impl App {
     /// The console in its start menu.
     pub fn new(settings: Settings) -> App {
         let menu = Box::new(Menu::new(&settings.configuration));
+        let library = Library::of(&settings.configuration);
         App {
+            library,
             theme: settings.theme,
             keys: settings.keys,
             ascii: settings.ascii,

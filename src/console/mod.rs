@@ -13,6 +13,7 @@ pub mod dialogs;
 pub mod effect;
 mod files;
 pub mod frame;
+pub mod fuzzy;
 pub mod keys;
 pub mod message;
 pub mod readings;
@@ -94,6 +95,9 @@ impl Console {
                 }
                 Order::Copy(text) => self.screen.copy(&text),
                 Order::Write(path, contents) => files::write_behind(path, contents, self.sender.clone()),
+                Order::SaveQuery(configuration, query) => {
+                    files::save_query_behind(configuration, query, self.sender.clone());
+                }
                 Order::ListRuns => self.workers.send(Job::List(self.runs.clone())),
                 Order::Redraw => self.screen.clear()?,
                 Order::Exit(code, text) => return Ok(Some((code, text))),

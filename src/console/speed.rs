@@ -102,7 +102,11 @@ impl Rehearsal {
                 Order::Exit(_, text) => {
                     return Err(io::Error::other(text.unwrap_or_else(|| "the console left".to_owned())));
                 }
-                Order::CancelQuery | Order::Copy(_) | Order::Write(..) | Order::Redraw => {}
+                Order::CancelQuery
+                | Order::Copy(_)
+                | Order::Write(..)
+                | Order::SaveQuery(..)
+                | Order::Redraw => {}
             }
         }
         let app = &self.app;

@@ -1,11 +1,12 @@
 //! The console without a terminal: the real application and its threads, drawn into a buffer.
 
 use std::path::Path;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use crossterm::event::Event;
 use novamind::console::app::{App, Order, Settings};
+use novamind::console::files::save_query_behind;
 use novamind::console::frame;
 use novamind::console::keys::{Chord, Keys};
 use novamind::console::message::{Message, News};
@@ -20,6 +21,7 @@ pub struct Console {
     /// The application.
     pub app: App,
     workers: Option<Workers>,
+    news: Sender<Message>,
     messages: Receiver<Message>,
     /// Width and height of the window.
     pub size: (u16, u16),
@@ -34,9 +36,13 @@ pub struct Console {
 impl Console {
     /// A console in its start menu.
     pub fn start(runs: &Path, size: (u16, u16)) -> Console {
-        let configuration = Configuration::shipped();
+        Console::start_with(Configuration::shipped(), runs, size)
+    }
+
+    /// The same with the configuration of a person.
+    pub fn start_with(configuration: Configuration, runs: &Path, size: (u16, u16)) -> Console {
         let (sender, messages) = channel();
-        let workers = Workers::start(sender, configuration.clone());
+        let workers = Workers::start(sender.clone(), configuration.clone());
         let settings = Settings {
             theme: Theme::find("dark", &configuration).expect("a theme"),
             keys: Keys::shipped(),
@@ -47,6 +53,7 @@ impl Console {
         let mut console = Console {
             app: App::new(settings),
             workers: Some(workers),
+            news: sender,
             messages,
             size,
             waiting: 0,
@@ -122,6 +129,10 @@ impl Console {
             }
             Order::Copy(text) => self.copied.push(text),
             Order::Write(path, contents) => std::fs::write(path, contents).expect("written"),
+            Order::SaveQuery(configuration, query) => {
+                self.waiting += 1;
+                save_query_behind(configuration, query, self.news.clone());
+            }
             Order::Exit(code, _) => self.left = Some(code),
             Order::CancelQuery | Order::Redraw => {}
         }

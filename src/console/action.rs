@@ -187,8 +187,8 @@ actions! {
         Export "export" "export" "Write the result to a file, or copy all of it."
     }
     Chart {
-        ChartX "chart-x" "x" "Draw along another column."
-        ChartY "chart-y" "y" "Draw another column of numbers."
+        ChartX "chart-x" "along" "Draw along another column."
+        ChartY "chart-y" "values" "Draw another column of numbers."
         MoreSeries "more-series" "more" "Draw one more column of numbers."
         FewerSeries "fewer-series" "fewer" "Draw one column less."
         ChartKind "chart-kind" "lines or bars" "Draw bars instead of lines, or lines instead of bars."

@@ -331,16 +331,17 @@ mod tests {
 
     #[test]
     fn every_shipped_query_is_answered_in_every_phase() {
-        let new = NewRun { seed: Some(3), ..NewRun::default() };
+        let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
         all_answer(&mut session);
+        let ads = json!({"S1": 750, "E1": 4000, "E2": 4000, "E3": 4000});
         for (tool, arguments) in [
-            ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+            ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
+            ("set_model_tiers", json!({"A": 4, "B": 4, "C": 4})),
             ("set_usage_quotas", json!({"A": 60_000, "B": 250_000, "C": 1_200_000})),
-            (
-                "set_targeted_ad_spend",
-                json!({"targeted_spend": {"content_marketing": {"S1": 750}, "linkedin": {"E1": 800}}}),
-            ),
+            ("set_targeted_dev_spend", json!({"E1": 4000, "E2": 5000, "E3": 5000})),
+            ("set_targeted_ad_spend", json!({"targeted_spend": {"content_marketing": ads, "linkedin": ads}})),
+            ("set_capacity_tier", json!({"tier": 5})),
             ("set_ads_strength", json!({"global_strength": 0.2})),
             ("post_social_media", json!({"content": "We are here."})),
         ] {
@@ -348,9 +349,14 @@ mod tests {
         }
         play(&mut session, 3);
         all_answer(&mut session);
-        play(&mut session, 6);
-        let companies = session.query("SELECT count(*) FROM enterprise_turns").expect("an answer");
-        assert_ne!(companies.rows[0][0], crate::session::Cell::Integer(0), "there must be talks");
+        while session.observe().waiting.is_empty() && session.day() < 140 {
+            play(&mut session, 1);
+        }
+        let waiting = session.observe().waiting;
+        assert!(!waiting.is_empty(), "there must be talks");
+        let deals = json!({"deals": [[waiting[0].customer, [["C", 30.0], ["B", 20.0]]]]});
+        session.call("send_enterprise_deal", &deals, Via::Script).expect("an offer");
+        play(&mut session, 1);
         all_answer(&mut session);
     }
 }

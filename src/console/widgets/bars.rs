@@ -13,6 +13,8 @@ pub const SIGNS: [&str; 4] = ["█", "▒", "━", "•"];
 pub struct Bar<'a> {
     /// What it stands for; empty below another bar of the same thing.
     pub name: &'a str,
+    /// Side to which names are pushed: numbers stand right.
+    pub side: Align,
     /// Value; none leaves the bar out.
     pub value: Option<f64>,
     /// Value as it is written.
@@ -75,7 +77,8 @@ impl Scale {
         if bar.selected {
             canvas.clear(name, Role::Selection);
         }
-        canvas.text(name, bar.name, if bar.selected { Role::Selection } else { Role::Text });
+        let role = if bar.selected { Role::Selection } else { Role::Text };
+        canvas.aligned(name, bar.name, role, bar.side);
         let value = Rect { x: row.x + self.names + 1, width: self.values, ..row };
         let role = if bar.value.is_some_and(|value| value < 0.0) { Role::Bad } else { Role::Text };
         canvas.aligned(value.intersection(row), bar.shown, role, Align::Right);
@@ -97,6 +100,7 @@ mod tests {
     fn scale(values: &[f64], width: u16) -> Scale {
         let bar = |value: &f64| Bar {
             name: "name",
+            side: Align::Left,
             value: Some(*value),
             shown: "-1.00",
             series: 0,

@@ -149,7 +149,7 @@ impl Sql {
             sql: query.sql.clone(),
         };
         let items = self.library.queries().iter().map(item).collect();
-        self.over = Some(Over::Library(Picker::new("Library", items)));
+        self.over = Some(Over::Library(Picker::new("Library", "runs it", items)));
     }
 
     fn save(&mut self) -> Vec<Effect> {
@@ -455,7 +455,7 @@ impl Sql {
 
     fn draw_over(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         match &self.over {
-            Some(Over::Earlier(picker) | Over::Library(picker)) => picker.draw(canvas, area, OVER, look),
+            Some(Over::Earlier(picker) | Over::Library(picker)) => picker.draw(canvas, area, OVER),
             Some(Over::Saving(saving)) => saving.draw(canvas, area, &self.library, look),
             Some(Over::TakeOut(list)) => {
                 list.draw(canvas, area, OVER, &self.results.what_is_taken(), look);

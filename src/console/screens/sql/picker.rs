@@ -9,7 +9,6 @@ use super::lexer::tokens;
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click, centered, rows_of};
 use crate::console::fuzzy::{self, Found};
-use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
@@ -36,6 +35,8 @@ pub struct Item {
 /// The list.
 pub struct Picker {
     title: &'static str,
+    /// What enter does, for the lower border.
+    enter: &'static str,
     items: Vec<Item>,
     /// What is searched besides the title: explanation and statement in one line.
     texts: Vec<String>,
@@ -61,12 +62,12 @@ pub fn in_a_line(text: &str) -> String {
 }
 
 impl Picker {
-    /// A list under a title.
-    pub fn new(title: &'static str, items: Vec<Item>) -> Picker {
+    /// A list under a title; `enter` says what follows from a choice.
+    pub fn new(title: &'static str, enter: &'static str, items: Vec<Item>) -> Picker {
         let text = |item: &Item| format!("{} {}", item.what, in_a_line(&item.preview));
         let texts = items.iter().map(text).collect();
         let mut picker =
-            Picker { title, items, texts, field: Field::default(), found: Vec::new(), selected: 0 };
+            Picker { title, enter, items, texts, field: Field::default(), found: Vec::new(), selected: 0 };
         picker.find();
         picker
     }
@@ -128,7 +129,7 @@ impl Picker {
     }
 
     /// Draws the list over the screen.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, look: &Look<'_>) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) {
         let own =
             centered(area, area.width.saturating_sub(4).clamp(20, 150), area.height.saturating_sub(2).max(5));
         canvas.clear(own, Role::Text);
@@ -147,8 +148,7 @@ impl Picker {
         };
         self.draw_list(canvas, list, pane);
         self.draw_preview(canvas, preview, own.width >= BESIDE);
-        let keys = [Action::CommitDown, Action::Commit, Action::Discard];
-        canvas.pane_keys(own, &format!("type to find · {}", look.hints(&keys)));
+        canvas.pane_keys(own, &format!("type to find · up/down choose · enter {} · esc close", self.enter));
     }
 
     fn draw_list(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) {
@@ -199,22 +199,32 @@ impl Picker {
                 rows.next();
             }
         }
-        for (row, line) in rows.zip(coloured(canvas, item.preview.trim())) {
+        for (row, line) in rows.zip(coloured(canvas, item.preview.trim(), inside.width.into())) {
             canvas.line(row, &line);
         }
     }
 }
 
-/// A statement in lines, in the colours of the editor.
-fn coloured(canvas: &Canvas<'_>, sql: &str) -> Vec<Line<'static>> {
+/// A statement in lines of at most a width, in the colours of the editor; what goes on in another line is indented.
+fn coloured(canvas: &Canvas<'_>, sql: &str, width: usize) -> Vec<Line<'static>> {
+    const INDENT: &str = "        ";
     let mut lines = vec![Line::default()];
+    let mut used = 0;
     let mut push = |text: &str, role: Role| {
         for (at, part) in text.split('\n').enumerate() {
             if at > 0 {
                 lines.push(Line::default());
+                used = 0;
             }
-            if let Some(line) = lines.last_mut() {
-                line.push_span(canvas.span(part.to_owned(), role));
+            for word in part.split_inclusive(' ') {
+                if used > INDENT.len() && used + word.trim_end().width() > width {
+                    lines.push(Line::from(INDENT));
+                    used = INDENT.len();
+                }
+                used += word.width();
+                if let Some(line) = lines.last_mut() {
+                    line.push_span(canvas.span(word.to_owned(), role));
+                }
             }
         }
     };
@@ -253,7 +263,7 @@ mod tests {
     fn typing_narrows_and_the_statement_is_searched_too() {
         let all =
             vec![item("first", "SELECT 1"), item("second", "SELECT day FROM ledger"), item("third", "x")];
-        let mut picker = Picker::new("All", all);
+        let mut picker = Picker::new("All", "takes", all);
         assert_eq!(picker.act(Action::Commit), Choice::Statement("SELECT 1".to_owned()));
         typed(&mut picker, "ledger");
         assert_eq!(picker.act(Action::Commit), Choice::Statement("SELECT day FROM ledger".to_owned()));
@@ -263,9 +273,20 @@ mod tests {
     }
 
     #[test]
+    fn long_lines_of_a_statement_go_on_below() {
+        let theme = crate::console::theme::Theme::find("dark", &crate::session::Configuration::shipped());
+        let mut buffer = ratatui::buffer::Buffer::empty(Rect::new(0, 0, 9, 9));
+        let theme = theme.expect("a theme");
+        let canvas = Canvas::new(&mut buffer, &theme);
+        let lines = coloured(&canvas, "SELECT day, amount, note FROM ledger\nWHERE 1", 20);
+        let text: Vec<String> = lines.iter().map(|line| line.to_string()).collect();
+        assert_eq!(text, ["SELECT day, amount, ", "        note FROM ", "        ledger", "WHERE 1"]);
+    }
+
+    #[test]
     fn the_list_is_walked_by_one_by_page_and_round() {
         let all: Vec<Item> = (0..12).map(|at| item(&format!("q{at}"), &at.to_string())).collect();
-        let mut picker = Picker::new("All", all);
+        let mut picker = Picker::new("All", "takes", all);
         picker.act(Action::CommitPrevious);
         picker.key(&KeyEvent::new(KeyCode::PageDown, KeyModifiers::NONE), 5);
         picker.act(Action::CommitDown);

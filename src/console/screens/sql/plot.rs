@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 
 use super::RESULTS;
 use super::values::{decimals_shown, is_numeric};
-use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::text::{arrow, number};
 use crate::console::theme::Role;
 use crate::console::widgets::bars::{Bar, SIGNS, Scale};
@@ -169,11 +169,14 @@ impl Plot {
             return format!("{name}: no numbers");
         };
         let decimals = decimals_shown(rows, column);
-        let written = |value: f64| grouped(value, decimals);
-        let along = self.x.map_or("row", |at| rows.columns[at].as_str());
+        // Large numbers in three digits: the words must fit above the chart, the rows have every digit.
+        let written = |value: f64| match value.abs() {
+            large if large >= 100_000.0 => compact(value),
+            _ => grouped(value, decimals),
+        };
         let at = |row: usize| match self.kind {
-            ChartKind::Line => format!("{along} {}", self.name(table, row)),
-            ChartKind::Bar => self.name(table, row),
+            ChartKind::Line => format!("at {}", self.name(table, row)),
+            ChartKind::Bar => format!("({})", self.name(table, row)),
         };
         let (first, last) = (known[0].1, known[known.len() - 1].1);
         let end = match self.kind {
@@ -183,11 +186,12 @@ impl Plot {
             }
             ChartKind::Bar => {
                 let total: f64 = known.iter().map(|(_, value)| value).sum();
-                format!("total {} · average {}", written(total), number(total / known.len() as f64))
+                let average = format!("average {}", written(total / known.len() as f64));
+                if can_be_added(name) { format!("total {} · {average}", written(total)) } else { average }
             }
         };
         format!(
-            "{name}: least {} ({}) · most {} ({}) · {end}",
+            "{name}: least {} {} · most {} {} · {end}",
             written(least.1),
             at(least.0),
             written(most.1),
@@ -252,10 +256,13 @@ impl Plot {
         let shown = table.shown();
         let names: Vec<String> = shown.iter().map(|row| self.name(table, *row)).collect();
         let selected = table.selected();
+        let numbers = self.x.is_none_or(|x| is_numeric(rows, x));
+        let side = if numbers { Align::Right } else { Align::Left };
         let bar = |place: usize, series: usize| {
             let (row, column) = (shown[place], self.ys[series]);
             Bar {
                 name: if series == 0 { &names[place] } else { "" },
+                side,
                 value: value(rows, row, column),
                 shown: table.rows()[row].get(column).map_or("", |cell| &cell.text),
                 series,
@@ -276,6 +283,12 @@ impl Plot {
             canvas.click(row, Click::Row(RESULTS, place));
         }
     }
+}
+
+/// Whether the sum of a column of this name says something: shares and prices are not added.
+fn can_be_added(name: &str) -> bool {
+    const NEVER: [&str; 6] = ["percent", "share", "rate", "average", "price", "per"];
+    !name.to_lowercase().split(|letter: char| !letter.is_alphanumeric()).any(|word| NEVER.contains(&word))
 }
 
 /// Lines alternate with dots: two series are told apart without colour.
@@ -362,17 +375,20 @@ mod tests {
         let rows = leads();
         let table = shown(&rows);
         let mut plot = Plot::of(&rows, None).expect("a chart");
-        assert_eq!(
-            plot.summary(&rows, &table, 1),
-            "leads: least -3 (b) · most 8 (c) · total 10 · average 3.33"
-        );
+        assert_eq!(plot.summary(&rows, &table, 1), "leads: least -3 (b) · most 8 (c) · total 10 · average 3");
         plot.other_kind();
         assert_eq!(
             plot.summary(&rows, &table, 2),
-            "spend: least 0.25 (channel c) · most 2.00 (channel b) · last 0.25 · change ▼ 1.25"
+            "spend: least 0.25 at c · most 2.00 at b · last 0.25 · change ▼ 1.25"
         );
         let empty = result(&["t", "n"], vec![vec![Cell::Text("x".to_owned()), Cell::Null]]);
         assert_eq!(plot.summary(&empty, &shown(&empty), 1), "n: no numbers");
+    }
+
+    #[test]
+    fn shares_and_prices_are_not_added() {
+        assert!(can_be_added("leads") && can_be_added("persons") && can_be_added("dollars_a_month"));
+        assert!(!can_be_added("left_percent") && !can_be_added("Average price"));
     }
 
     #[test]

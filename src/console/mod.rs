@@ -11,7 +11,7 @@ pub mod canvas;
 pub mod company;
 pub mod dialogs;
 pub mod effect;
-mod files;
+pub mod files;
 pub mod frame;
 pub mod fuzzy;
 pub mod keys;

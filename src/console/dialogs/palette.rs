@@ -52,6 +52,12 @@ impl Palette {
     fn find(&mut self) {
         let all = self.entries.iter().map(|entry| (entry.title.as_str(), entry.doc.as_str()));
         self.found = fuzzy::find(self.field.text(), all);
+        // What acts on the company comes before what only asks about it; a word of an explanation counts least.
+        self.found.sort_by_key(|(at, letters)| match (letters.is_empty(), self.entries[*at].kind) {
+            (true, _) => 2,
+            (false, "query") => 1,
+            (false, _) => 0,
+        });
         self.selected = 0;
     }
 

@@ -186,7 +186,9 @@ impl Plot {
             }
             ChartKind::Bar => {
                 let total: f64 = known.iter().map(|(_, value)| value).sum();
-                let average = format!("average {}", written(total / known.len() as f64));
+                let average = total / known.len() as f64;
+                let average = if average.abs() >= 100_000.0 { compact(average) } else { number(average) };
+                let average = format!("average {average}");
                 if can_be_added(name) { format!("total {} · {average}", written(total)) } else { average }
             }
         };
@@ -375,7 +377,10 @@ mod tests {
         let rows = leads();
         let table = shown(&rows);
         let mut plot = Plot::of(&rows, None).expect("a chart");
-        assert_eq!(plot.summary(&rows, &table, 1), "leads: least -3 (b) · most 8 (c) · total 10 · average 3");
+        assert_eq!(
+            plot.summary(&rows, &table, 1),
+            "leads: least -3 (b) · most 8 (c) · total 10 · average 3.33"
+        );
         plot.other_kind();
         assert_eq!(
             plot.summary(&rows, &table, 2),

@@ -285,3 +285,22 @@ fn words_are_explained() {
     }
     assert_eq!(said.matches("Runway (money)").count(), 2, "help knows terms too");
 }
+
+#[test]
+fn named_queries_are_listed_and_answered() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let own = runs.path().join("configuration/queries");
+    std::fs::create_dir_all(&own).expect("a folder");
+    std::fs::write(own.join("mine.sql"), "SELECT 42 AS answer").expect("a file");
+    let lines = "queries\nqueries mine\nqueries cash-by-week\nqueries cash-by-wek\nhelp queries\n";
+    let (text, code) = play(runs.path(), &["--json", "--days", "28", "--seed", "7"], lines);
+    assert_eq!(code, 0);
+    let said = objects(&text);
+    let names = said[1]["data"]["queries"].as_array().expect("a list");
+    assert!(names.len() > 24);
+    assert_eq!((&names[0]["name"], &names[0]["title"]), (&"mine".into(), &"mine".into()));
+    assert_eq!(said[2]["data"]["rows"][0]["answer"], 42);
+    assert_eq!(said[3]["data"]["rows"][0]["cash"], 1_000_000.0);
+    assert!(said[4]["error"].as_str().is_some_and(|error| error.contains("near it: cash-by-week")), "{text}");
+    assert!(said[5]["data"]["command"].as_str().is_some_and(|line| line.starts_with("queries [NAME]")));
+}

@@ -11,7 +11,7 @@ use crate::console::effect::Effect;
 use crate::console::glyphs::Glyphs;
 use crate::console::keys::Keys;
 use crate::console::theme::Theme;
-use crate::session::{Access, Mode, NewRun, Session, Storage, find_run};
+use crate::session::{Access, Library, Mode, NewRun, Session, Storage, find_run};
 
 /// Options of `play`.
 #[derive(Debug, Args, Clone, Default)]
@@ -111,7 +111,7 @@ fn open(options: &Options, context: &Context) -> Result<Session, Failure> {
 
 fn play_plain(options: &Options, context: &Context) -> Result<(), Failure> {
     let style = crate::plain::Style { json: options.json, echo: options.echo, strict: options.strict };
-    let code = crate::plain::play(open(options, context)?, style)
+    let code = crate::plain::play(open(options, context)?, Library::of(&context.configuration), style)
         .map_err(|error| Failure::failed(error.to_string()))?;
     if code == 0 { Ok(()) } else { Err(Failure::code_only(code)) }
 }

@@ -11,6 +11,8 @@ pub struct Options {
     /// Run, or `latest`: the newest.
     run: String,
     /// One read-only statement.
+    // A statement may begin with a comment, which begins with hyphens.
+    #[arg(allow_hyphen_values = true)]
     sql: String,
     /// Format of the result.
     #[arg(long, value_enum, default_value = "table")]

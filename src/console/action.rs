@@ -19,6 +19,10 @@ pub enum Scope {
     Query,
     /// Results of queries.
     Result,
+    /// Charts of results.
+    Chart,
+    /// Ways to take a result out.
+    Export,
     /// Negotiations.
     Inbox,
     /// The dialog before a week.
@@ -37,12 +41,14 @@ pub enum Scope {
 
 impl Scope {
     /// All scopes, in the order of the help.
-    pub const ALL: [Scope; 15] = [
+    pub const ALL: [Scope; 17] = [
         Scope::Global,
         Scope::List,
         Scope::Form,
         Scope::Query,
         Scope::Result,
+        Scope::Chart,
+        Scope::Export,
         Scope::Inbox,
         Scope::Filing,
         Scope::Editor,
@@ -66,6 +72,8 @@ impl Scope {
             Scope::Editor => "editor",
             Scope::Query => "query",
             Scope::Result => "result",
+            Scope::Chart => "chart",
+            Scope::Export => "export",
             Scope::Inbox => "inbox",
             Scope::Filing => "filing",
             Scope::Dialog => "dialog",
@@ -87,6 +95,8 @@ impl Scope {
             Scope::Editor => "Editors of several lines",
             Scope::Query => "SQL editor",
             Scope::Result => "Results of queries",
+            Scope::Chart => "Chart of a result",
+            Scope::Export => "Export of a result",
             Scope::Inbox => "Inbox",
             Scope::Filing => "Before a week",
             Scope::Dialog => "Dialogs",
@@ -148,7 +158,7 @@ actions! {
         Sql "sql" "SQL" "Ask the database."
         Journal "journal" "Journal" "Show what was done and how forecasts turned out."
         NextWeek "next-week" "next week" "Review the changes, say why, forecast, and let the week pass."
-        Palette "palette" "palette" "Find screens, tools, groups, tables and commands by typing."
+        Palette "palette" "palette" "Find screens, tools, groups, queries, tables and commands by typing."
         Help "help" "help" "Show every key that works here."
         Changes "changes" "changes" "Show the settings changed since the last week."
         Undo "undo" "undo" "Take back the last setting of this week."
@@ -197,7 +207,9 @@ actions! {
     Query {
         RunQuery "run-query" "run" "Run the statement."
         Complete "complete" "complete" "Take the suggested completion."
-        History "history" "history" "Show earlier statements."
+        History "history" "history" "Find an earlier statement by typing."
+        Library "library" "library" "Find a named query by typing, and run it."
+        SaveQuery "save-query" "save" "Save the statement under a name into your own queries."
         EditQuery "edit-query" "edit" "Go to the editor."
         ClearQuery "clear-query" "clear" "Empty the editor."
     }
@@ -205,8 +217,23 @@ actions! {
         WholeCell "whole-cell" "whole cell" "Show the whole value of the cell."
         CopyCell "copy-cell" "copy cell" "Copy the value of the cell."
         CopyRow "copy-row" "copy row" "Copy the row."
-        ExportCsv "export-csv" "export CSV" "Write the result as CSV."
-        ExportJson "export-json" "export JSON" "Write the result as JSON."
+        Chart "chart" "chart" "Draw the result as lines or bars."
+        Export "export" "export" "Write the result to a file, or copy all of it."
+    }
+    Chart {
+        ChartX "chart-x" "along" "Draw along another column."
+        ChartY "chart-y" "values" "Draw another column of numbers."
+        MoreSeries "more-series" "more" "Draw one more column of numbers."
+        FewerSeries "fewer-series" "fewer" "Draw one column less."
+        ChartKind "chart-kind" "lines or bars" "Draw bars instead of lines, or lines instead of bars."
+        CloseChart "close-chart" "table" "Go back to the rows."
+    }
+    Export {
+        ExportCsv "export-csv" "CSV" "Write the result as CSV."
+        ExportJson "export-json" "JSON" "Write the result as JSON."
+        ExportMarkdown "export-markdown" "Markdown" "Write the result as a table of Markdown."
+        CopyTabs "copy-tabs" "copy" "Copy the result with tabs, for a spreadsheet."
+        CopyMarkdown "copy-markdown" "copy Markdown" "Copy the result as a table of Markdown."
     }
     Inbox {
         SendOffer "send-offer" "send" "Send the offer to the marked companies, or to the selected one."

@@ -40,7 +40,7 @@ use super::screens::{Look, Screen, ScreenId};
 use super::theme::Theme;
 use super::tour::Tour;
 use super::worker::{Job, Question};
-use crate::session::Configuration;
+use crate::session::{Configuration, Library};
 
 /// Screens that back remembers.
 const SCREENS_KEPT: usize = 50;
@@ -57,6 +57,8 @@ pub enum Order {
     Copy(String),
     /// Write a file.
     Write(PathBuf, Vec<u8>),
+    /// Save a query: its name, its title, the statement.
+    SaveQuery(Configuration, [String; 3]),
     /// List the runs.
     ListRuns,
     /// Draw everything again.
@@ -206,6 +208,8 @@ pub struct App {
     pub mouse: bool,
     themes: Vec<Theme>,
     configuration: Configuration,
+    /// Named queries.
+    library: Library,
     runs: PathBuf,
     /// Where the person is.
     pub stage: Stage,
@@ -264,7 +268,9 @@ impl App {
     /// The console in its start menu.
     pub fn new(settings: Settings) -> App {
         let menu = Box::new(Menu::new(&settings.configuration));
+        let library = Library::of(&settings.configuration);
         App {
+            library,
             theme: settings.theme,
             keys: settings.keys,
             glyphs: settings.glyphs,

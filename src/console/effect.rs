@@ -69,6 +69,17 @@ pub enum Effect {
     ShowGroup(ScreenId, Group),
     /// Put a statement into the SQL editor.
     EditSql(String),
+    /// Put a statement into the SQL editor and run it.
+    RunSql(String),
+    /// Save a statement into the person's own queries.
+    SaveQuery {
+        /// Name of its file.
+        name: String,
+        /// Title, if the statement has none.
+        title: String,
+        /// Statement.
+        sql: String,
+    },
     /// Ask once before a call that cannot be taken back.
     ConfirmCall {
         /// Tool.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 
 use super::message::{Message, News};
+use crate::session::{Configuration, Library, library};
 
 /// Writes a file on a thread of its own and reports where it is.
 pub fn write_behind(path: PathBuf, contents: Vec<u8>, news: Sender<Message>) {
@@ -15,6 +16,21 @@ pub fn write_behind(path: PathBuf, contents: Vec<u8>, news: Sender<Message>) {
             Err(error) => Err(format!("{}: {error}", path.display())),
         };
         let _ = news.send(Message::News(News::Written(written)));
+    });
+}
+
+/// Saves a person's own query on a thread of its own and reports what the library holds then.
+pub fn save_query_behind(
+    configuration: Configuration,
+    [name, title, sql]: [String; 3],
+    news: Sender<Message>,
+) {
+    std::thread::spawn(move || {
+        let saved = match library::save(&configuration, &name, &title, &sql) {
+            Ok(path) => Ok((format!("saved: {}", path.display()), Library::of(&configuration))),
+            Err(error) => Err(error.to_string()),
+        };
+        let _ = news.send(Message::News(News::QuerySaved(saved)));
     });
 }
 

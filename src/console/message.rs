@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::company::Company;
 use super::readings::Reading;
-use crate::session::{Change, Interrupt, Preview, Refusal, Rows, Week};
+use crate::session::{Change, Interrupt, Library, Preview, Refusal, Rows, Week};
 
 /// Something that arrives.
 pub enum Message {
@@ -48,6 +48,8 @@ pub enum News {
     Read(Reading, u64, Result<Rows, Refusal>),
     /// The notes were kept.
     MemoKept(Result<(), Refusal>, Arc<Company>),
+    /// A query was saved: a sentence and all queries, or what went wrong.
+    QuerySaved(Result<(String, Library), String>),
     /// A file was written: a sentence, or what went wrong.
     Written(Result<String, String>),
     /// The run was saved and closed; what went wrong, if something did.

@@ -13,6 +13,7 @@ pub mod dialogs;
 pub mod effect;
 mod files;
 pub mod frame;
+pub mod fuzzy;
 pub mod glyphs;
 pub mod keys;
 pub mod manual;
@@ -101,6 +102,9 @@ impl Console {
                 }
                 Order::Copy(text) => self.screen.copy(&text),
                 Order::Write(path, contents) => files::write_behind(path, contents, self.sender.clone()),
+                Order::SaveQuery(configuration, query) => {
+                    files::save_query_behind(configuration, query, self.sender.clone());
+                }
                 Order::ListRuns => self.workers.send(Job::List(self.runs.clone())),
                 Order::Redraw => self.screen.clear()?,
                 Order::Mouse(taken) => self.screen.mouse(taken),

@@ -178,6 +178,10 @@ impl Rehearsal {
                     self.waiting += 1;
                     files::write_behind(path, contents, self.sender.clone());
                 }
+                Order::SaveQuery(configuration, query) => {
+                    self.waiting += 1;
+                    files::save_query_behind(configuration, query, self.sender.clone());
+                }
                 Order::Copy(text) => self.copied.push(text),
                 Order::Exit(code, text) => self.left = Some((code, text)),
                 Order::CancelQuery | Order::Redraw | Order::Mouse(_) => {}

@@ -17,12 +17,14 @@ use super::next;
 use super::signals::{Phase, Watch};
 use crate::database::text::table;
 use crate::notation::nearest;
-use crate::session::{Mode, Refusal, Session, Via, rows_as_json};
+use crate::session::library::NamedQuery;
+use crate::session::{Library, Mode, Refusal, Session, Via, rows_as_json};
 use crate::tools::{self, Kind, Module, Tool};
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 21] = [
+const COMMANDS: [(&str, &str); 22] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
+    ("queries", "queries [NAME]           the library of queries, or the answer to one of them"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, let a week pass (also: next-week)"),
     ("dashboard", "dashboard                the dashboard of the last week"),
     ("status", "status                   run, day, cash, runway, subscribers and what waits"),
@@ -49,14 +51,15 @@ const COMMANDS: [(&str, &str); 21] = [
 pub struct Desk {
     /// The run.
     pub session: Session,
+    library: Library,
     watch: Watch,
     prompts: bool,
 }
 
 impl Desk {
-    /// A desk; `prompts` says that a person types and can be asked.
-    pub fn new(session: Session, watch: Watch, prompts: bool) -> Desk {
-        Desk { session, watch, prompts }
+    /// A desk with named queries; `prompts` says that a person types and can be asked.
+    pub fn new(session: Session, library: Library, watch: Watch, prompts: bool) -> Desk {
+        Desk { session, library, watch, prompts }
     }
 
     /// Does what a line says; none for empty lines and comments.
@@ -96,6 +99,32 @@ impl Desk {
             Ok(rows) => Answer::done("sql", table(&rows), Value::Object(rows_as_json(&rows))),
             Err(refusal) => Answer::refused("sql", refusal),
         }
+    }
+
+    fn queries(&self) -> Answer {
+        let queries = self.library.queries();
+        let width = queries.iter().map(|query| query.name.chars().count()).max().unwrap_or(0);
+        let line = |query: &NamedQuery| format!("{:<width$}  {}", query.name, query.title);
+        let lines: Vec<String> = queries.iter().map(line).collect();
+        let one =
+            |query: &NamedQuery| json!({ "name": query.name, "title": query.title, "what": query.what });
+        let data: Vec<Value> = queries.iter().map(one).collect();
+        let text = format!("{}\nqueries NAME answers one of them", lines.join("\n"));
+        Answer::done("queries", text, json!({ "queries": data }))
+    }
+
+    fn named_query(&mut self, name: &str, arguments: &[Argument]) -> Result<Answer, Problem> {
+        let Some(query) = self.library.find(name) else {
+            let near = self.library.near(name);
+            let help = if near.is_empty() {
+                "queries lists them".to_owned()
+            } else {
+                format!("near it: {}", near.join(", "))
+            };
+            return Err(problem(arguments, &format!("there is no query {name}; {help}")));
+        };
+        let sql = query.sql.clone();
+        Ok(self.query(&sql))
     }
 
     fn show_memo(&self) -> Answer {
@@ -147,6 +176,10 @@ impl Desk {
             "vars" => none(arguments).map(|()| self.call_named("get_vars", &json!({}))),
             "help" => name(arguments).and_then(|name| readings::help(name, arguments)),
             "tools" => name(arguments).and_then(|name| readings::tools(name, arguments)),
+            "queries" => name(arguments).and_then(|name| match name {
+                Some(name) => self.named_query(name, arguments),
+                None => Ok(self.queries()),
+            }),
             "tables" => name(arguments).and_then(|name| readings::tables(name, arguments)),
             "history" => count(arguments).map(|count| self.history(count.unwrap_or(20))),
             "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),

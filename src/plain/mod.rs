@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 pub use crate::database::text::{cell_text, table};
 
-use crate::session::Session;
+use crate::session::{Library, Session};
 use answers::Answer;
 use commands::Desk;
 use input::{Input, Read};
@@ -65,10 +65,10 @@ impl End {
 ///
 /// # Errors
 /// Standard input or output fails.
-pub fn play(session: Session, style: Style) -> io::Result<u8> {
+pub fn play(session: Session, library: Library, style: Style) -> io::Result<u8> {
     let prompts = io::stdin().is_terminal();
     let watch = Watch::start();
-    let mut desk = Desk::new(session, watch.clone(), prompts);
+    let mut desk = Desk::new(session, library, watch.clone(), prompts);
     let mut out = io::stdout();
     greet(&mut out, &desk.session, style)?;
     let mut input = Input::new(io::stdin().lock());

@@ -108,12 +108,17 @@ impl Configuration {
         }
     }
 
-    /// Names of the files in a folder of this person's configuration, without their ending, sorted.
+    /// Names of the settings in a folder of this person's configuration, sorted.
     pub fn names(&self, folder: &str) -> Vec<String> {
+        self.names_ending(folder, ".toml")
+    }
+
+    /// Names of the files of a kind in a folder of this person's configuration, without their ending, sorted.
+    pub fn names_ending(&self, folder: &str, ending: &str) -> Vec<String> {
         let Some(own) = &self.folder else { return Vec::new() };
         let entries = std::fs::read_dir(own.join(folder)).into_iter().flatten().flatten();
         let mut names: Vec<String> = entries
-            .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(".toml")?.to_owned()))
+            .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(ending)?.to_owned()))
             .collect();
         names.sort_unstable();
         names

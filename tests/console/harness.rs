@@ -34,7 +34,11 @@ impl DerefMut for Console {
 impl Console {
     /// A console in its start menu.
     pub fn start(runs: &Path, size: (u16, u16)) -> Console {
-        let configuration = Configuration::shipped();
+        Console::start_with(Configuration::shipped(), runs, size)
+    }
+
+    /// A console of a person with a configuration.
+    pub fn start_with(configuration: Configuration, runs: &Path, size: (u16, u16)) -> Console {
         let settings = Settings {
             theme: Theme::find("dark", &configuration).expect("a theme"),
             keys: Keys::shipped(),

@@ -1,6 +1,6 @@
 //! Whole stories.
 
-use novamind::session::{list_runs, verify};
+use novamind::session::{Configuration, list_runs, verify};
 
 use super::harness::Console;
 
@@ -185,4 +185,34 @@ fn a_group_is_studied_and_one_walks_between_its_report_and_its_customers() {
     console.shows("S2 · individual");
     console.press("7 m y");
     console.shows("of 1 found · $25,000 · next");
+}
+
+#[test]
+fn a_named_query_is_run_drawn_taken_out_and_saved_as_ones_own() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let folder = runs.path().join("configuration");
+    let configuration = Configuration { folder: Some(folder.clone()) };
+    let mut console = Console::start_with(configuration, runs.path(), (120, 40));
+    console.press("n enter");
+    open_shop(&mut console);
+    console.week();
+    console.press("esc 9 ctrl-o 'cashweek' enter");
+    console.shows("Query · Cash by week");
+    console.shows("Result · 2 rows");
+    console.press("esc .");
+    console.shows("⎯ cash by week");
+    console.press("b");
+    console.shows("█ cash by week");
+    console.press("esc e t");
+    assert!(console.copied[0].starts_with("week\tincome\tcost\tnet\tcash\n0\t"), "{:?}", console.copied);
+    console.press("i ctrl-s 'Mine' enter");
+    console.shows("saved: ");
+    let text = std::fs::read_to_string(folder.join("queries/mine.sql")).expect("a file");
+    assert!(text.starts_with("-- title: Cash by week"));
+    console.press("ctrl-n ctrl-o");
+    console.shows("own Cash by week");
+    console.press("esc esc : 'economy' down");
+    console.shows("The economy");
+    console.press("esc i ctrl-r");
+    console.shows("1 of 1");
 }

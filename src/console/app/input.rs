@@ -212,7 +212,7 @@ impl App {
         match action {
             Action::Palette => {
                 if let Stage::Run(run) = &self.stage {
-                    let palette = Palette::new(&self.keys, &run.company);
+                    let palette = Palette::new(&self.keys, &run.company, &self.library);
                     self.open(palette);
                 }
             }

@@ -65,6 +65,14 @@ impl App {
                 );
                 self.orders.push(Order::Exit(1, Some(text)));
             }
+            News::QuerySaved(Ok((text, library))) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    run.screens.sql.learn(library.clone());
+                }
+                self.library = library;
+                self.say(text);
+            }
+            News::QuerySaved(Err(problem)) => self.complain(problem),
             News::Written(Ok(text)) => self.say(text),
             News::Written(Err(problem)) => self.complain(problem),
             other => self.heard(other),
@@ -172,6 +180,9 @@ impl App {
             tour,
             explained: false,
         }));
+        if let Stage::Run(run) = &mut self.stage {
+            run.screens.sql.learn(self.library.clone());
+        }
         self.renew();
         if over {
             self.layers.push(Layer::Dialog(Box::new(FinalPage)));

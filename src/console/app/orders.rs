@@ -88,6 +88,15 @@ impl App {
                 }
                 self.show(ScreenId::Sql);
             }
+            Effect::RunSql(sql) => {
+                let effects = match &mut self.stage {
+                    Stage::Run(run) => run.screens.sql.edit_and_run(&sql),
+                    Stage::Menu(_) => Vec::new(),
+                };
+                self.show(ScreenId::Sql);
+                self.follow(effects);
+            }
+            Effect::SaveQuery { name, title, sql } => self.save_query([name, title, sql]),
             Effect::ConfirmCall { tool, arguments, text } => {
                 let confirm = Confirm::new(tool, text, vec![Effect::Call { tool, arguments }]);
                 self.layers.push(Layer::Dialog(Box::new(confirm)));
@@ -135,6 +144,13 @@ impl App {
         let days = Some((from, run.company.next_decision_day, from));
         self.busy = Some(Busy { what: "the week runs", days, since: Instant::now() });
         self.orders.push(Order::Job(Job::Advance(rationale, forecasts)));
+    }
+
+    fn save_query(&mut self, query: [String; 3]) {
+        match self.configuration.folder {
+            Some(_) => self.orders.push(Order::SaveQuery(self.configuration.clone(), query)),
+            None => self.complain("there is no configuration folder to save queries in"),
+        }
     }
 
     fn write(&mut self, name: &str, contents: Vec<u8>) {

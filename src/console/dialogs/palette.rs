@@ -1,8 +1,6 @@
-//! The palette: screens, tools, groups, tables and commands, found by typing parts of their names.
+//! The palette: screens, tools, groups, queries, tables and commands, found by typing parts of their names.
 
 use crossterm::event::KeyEvent;
-use nucleo_matcher::pattern::{CaseMatching, Normalization, Pattern};
-use nucleo_matcher::{Config, Matcher, Utf32Str};
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
@@ -10,6 +8,7 @@ use crate::console::action::{ACTIONS, Action, Scope};
 use crate::console::canvas::{Align, Canvas, Click, centered, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
+use crate::console::fuzzy::{self, Found};
 use crate::console::keys::Keys;
 use crate::console::screens::Look;
 use crate::console::theme::Role;
@@ -17,6 +16,7 @@ use crate::console::widgets::Field;
 use crate::console::widgets::table::first_row;
 use crate::database;
 use crate::glossary::{self, Subject};
+use crate::session::Library;
 use crate::tools::{CATALOGUE, Kind};
 
 /// Something that can be chosen.
@@ -33,15 +33,15 @@ pub struct Palette {
     entries: Vec<Entry>,
     field: Field,
     /// Entries that match, the best first, with the letters that matched.
-    found: Vec<(usize, Vec<u32>)>,
+    found: Vec<Found>,
     selected: usize,
 }
 
 impl Palette {
     /// Everything that can be chosen now.
-    pub fn new(keys: &Keys, company: &Company) -> Palette {
+    pub fn new(keys: &Keys, company: &Company, library: &Library) -> Palette {
         let mut palette = Palette {
-            entries: entries(keys, company),
+            entries: entries(keys, company, library),
             field: Field::default(),
             found: Vec::new(),
             selected: 0,
@@ -51,21 +51,14 @@ impl Palette {
     }
 
     fn find(&mut self) {
-        let pattern = Pattern::parse(self.field.text(), CaseMatching::Smart, Normalization::Smart);
-        let mut matcher = Matcher::new(Config::DEFAULT);
-        let mut scored: Vec<(u32, usize, Vec<u32>)> = Vec::new();
-        let mut letters = Vec::new();
-        for (at, entry) in self.entries.iter().enumerate() {
-            let mut places = Vec::new();
-            let title = Utf32Str::new(&entry.title, &mut letters);
-            if let Some(score) = pattern.indices(title, &mut matcher, &mut places) {
-                scored.push((score * 2 + 1, at, places));
-            } else if let Some(score) = pattern.score(Utf32Str::new(&entry.doc, &mut letters), &mut matcher) {
-                scored.push((score, at, Vec::new()));
-            }
-        }
-        scored.sort_by(|left, right| right.0.cmp(&left.0).then(left.1.cmp(&right.1)));
-        self.found = scored.into_iter().map(|(_, at, places)| (at, places)).collect();
+        let all = self.entries.iter().map(|entry| (entry.title.as_str(), entry.doc.as_str()));
+        self.found = fuzzy::find(self.field.text(), all);
+        // What acts on the company comes before what only asks about it; a word of an explanation counts least.
+        self.found.sort_by_key(|(at, letters)| match (letters.is_empty(), self.entries[*at].kind) {
+            (true, _) => 2,
+            (false, "query") => 1,
+            (false, _) => 0,
+        });
         self.selected = 0;
     }
 
@@ -77,7 +70,7 @@ impl Palette {
     }
 }
 
-fn entries(keys: &Keys, company: &Company) -> Vec<Entry> {
+fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
     let commands =
         ACTIONS.iter().filter(|entry| entry.scope == Scope::Global && entry.action != Action::Palette);
     let mut list: Vec<Entry> = commands
@@ -113,6 +106,13 @@ fn entries(keys: &Keys, company: &Company) -> Vec<Entry> {
         doc: term.text.clone(),
         keys: String::new(),
         effect: Effect::Explain(Subject::Term(term)),
+    }));
+    list.extend(library.queries().iter().map(|query| Entry {
+        kind: "query",
+        title: query.title.clone(),
+        doc: query.what.clone(),
+        keys: String::new(),
+        effect: Effect::RunSql(query.sql.clone()),
     }));
     list.extend(database::tables().iter().map(|table| Entry {
         kind: "table",
@@ -164,7 +164,8 @@ impl Dialog for Palette {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, _: &Look<'_>) {
-        let own = centered(area, 96.min(area.width.saturating_sub(2)), 24.min(area.height.saturating_sub(2)));
+        let own =
+            centered(area, 120.min(area.width.saturating_sub(2)), 24.min(area.height.saturating_sub(2)));
         canvas.clear(own, Role::Text);
         let note = format!("{} of {}", self.found.len(), self.entries.len());
         let inside = canvas.pane(own, "Palette", &note, true);
@@ -193,15 +194,10 @@ impl Palette {
             canvas.buffer.set_style(row.intersection(canvas.buffer.area), style);
         }
         canvas.text(Rect { width: 8.min(row.width), ..row }, entry.kind, role(Role::Dim));
-        let title = Rect { x: row.x + 9, width: 24.min(row.width.saturating_sub(9)), ..row };
-        canvas.text(title, &entry.title, role(Role::Text));
-        for (column, letter) in entry.title.chars().enumerate() {
-            let cell = Rect { x: title.x + column as u16, width: 1, ..title };
-            if letters.contains(&(column as u32)) && (column as u16) < title.width {
-                canvas.text(cell, &letter.to_string(), role(Role::Key));
-            }
-        }
-        let doc = Rect { x: row.x + 34, width: row.width.saturating_sub(44), ..row };
+        let titles = if row.width >= 100 { 36 } else { 24 };
+        let title = Rect { x: row.x + 9, width: titles.min(row.width.saturating_sub(9)), ..row };
+        fuzzy::draw_title(canvas, title, &entry.title, letters, [role(Role::Text), role(Role::Key)]);
+        let doc = Rect { x: row.x + titles + 10, width: row.width.saturating_sub(titles + 20), ..row };
         canvas.text(doc, &entry.doc, role(Role::Dim));
         let keys = Rect { x: row.right().saturating_sub(9), width: 9.min(row.width), ..row };
         canvas.aligned(keys, &entry.keys, role(Role::Key), Align::Right);

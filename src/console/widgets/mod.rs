@@ -1,5 +1,6 @@
 //! Parts that several screens are made of.
 
+pub mod bars;
 pub mod chart;
 pub mod editor;
 pub mod fan;

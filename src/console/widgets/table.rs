@@ -139,6 +139,11 @@ impl Table {
         self.column
     }
 
+    /// Selects a column, as far as there is one.
+    pub fn select_column(&mut self, column: usize) {
+        self.column = column.min(self.columns.len().saturating_sub(1));
+    }
+
     /// Selects a row by its number among all rows.
     pub fn select(&mut self, row: usize) {
         if let Some(place) = self.shown.iter().position(|shown| *shown == row) {

@@ -98,6 +98,11 @@ impl QueryEditor {
         self.mark = Some(place);
     }
 
+    /// Goes to its first letter.
+    pub fn to_top(&mut self) {
+        self.text.move_to(0, 0);
+    }
+
     /// Takes a key.
     pub fn key(&mut self, key: &KeyEvent) {
         if let Some(completion) = &mut self.completion {

@@ -5,7 +5,11 @@ mod completion;
 mod editor;
 mod history;
 mod lexer;
+mod picker;
+mod plot;
 mod results;
+mod saving;
+mod takeout;
 #[cfg(test)]
 mod tests;
 pub mod values;
@@ -19,17 +23,22 @@ use crate::console::canvas::{Canvas, Click};
 use crate::console::effect::Effect;
 use crate::console::message::News;
 use crate::console::widgets::Field;
+use crate::session::Library;
+use crate::session::library::Head;
 use browser::Browser;
 use editor::{QueryEditor, Statement};
-use history::{Choice, History};
+use history::History;
+use picker::{Choice, Item, Picker};
 use results::Results;
+use saving::Saving;
+use takeout::TakeOut;
 
 /// Panes by number.
 const EDITOR: usize = 0;
 const RESULTS: usize = 1;
 const BROWSER: usize = 2;
-/// Clicks on the list of earlier statements.
-const HISTORY: usize = 3;
+/// Clicks on a list that lies over the panes.
+const OVER: usize = 3;
 
 /// Below this width the tables are shown only while they are used.
 const WIDE: u16 = 90;
@@ -40,25 +49,69 @@ struct Running {
     statement: Statement,
 }
 
+/// What lies over the panes.
+enum Over {
+    /// Statements asked before.
+    Earlier(Picker),
+    /// Named queries.
+    Library(Picker),
+    /// The name of a statement that is saved.
+    Saving(Saving),
+    /// Ways to take a result out.
+    TakeOut(TakeOut),
+}
+
 /// The screen.
-#[derive(Default)]
 pub struct Sql {
     editor: QueryEditor,
     results: Results,
     browser: Browser,
     history: History,
+    library: Library,
+    over: Option<Over>,
     focus: usize,
     running: Option<Running>,
     /// The last thing that happened was a column put in from the tables: another one follows after a comma.
     column_put_in: bool,
 }
 
+impl Default for Sql {
+    fn default() -> Self {
+        Sql {
+            editor: QueryEditor::default(),
+            results: Results::default(),
+            browser: Browser::default(),
+            history: History::default(),
+            library: Library::shipped(),
+            over: None,
+            focus: EDITOR,
+            running: None,
+            column_put_in: false,
+        }
+    }
+}
+
 impl Sql {
-    /// Puts a statement into the editor.
+    /// Takes the named queries.
+    pub fn learn(&mut self, library: Library) {
+        self.library = library;
+    }
+
+    /// Puts a statement into the editor; what was in it is kept among the earlier ones.
     pub fn edit(&mut self, sql: &str) {
+        if self.editor.text().trim() != sql.trim() {
+            self.history.remember_draft(&self.editor.text());
+        }
         self.editor.replace(sql);
-        self.history.close();
+        self.over = None;
         self.focus = EDITOR;
+    }
+
+    /// Puts a statement into the editor and runs it.
+    pub fn edit_and_run(&mut self, sql: &str) -> Vec<Effect> {
+        self.edit(sql);
+        self.editor.to_top();
+        self.run()
     }
 
     fn run(&mut self) -> Vec<Effect> {
@@ -75,26 +128,116 @@ impl Sql {
         vec![Effect::Ask(sql)]
     }
 
-    /// The field that is being typed into, if one is.
-    fn field(&mut self) -> Option<&mut Field> {
-        if self.history.is_open() {
-            return self.history.typing();
-        }
-        match self.focus {
-            RESULTS => self.results.table().typing(),
-            BROWSER => self.browser.typing(),
-            _ => None,
+    fn find_earlier(&mut self, look: &Look<'_>) -> Vec<Effect> {
+        self.editor.hide_completion();
+        match self.history.picker(&look.company.asked) {
+            Some(picker) => {
+                self.over = Some(Over::Earlier(picker));
+                Vec::new()
+            }
+            None => vec![Effect::Say("nothing was asked in this run yet: f5 runs a statement".to_owned())],
         }
     }
 
-    /// Applies a filter as far as it is typed.
-    fn filter_typed(&mut self) {
-        if let Some(table) = self.history.table() {
-            return table.typed();
+    fn find_named(&mut self) {
+        self.editor.hide_completion();
+        let item = |query: &crate::session::library::NamedQuery| Item {
+            tag: if query.own { "own" } else { "" },
+            title: query.title.clone(),
+            what: query.what.clone(),
+            preview: query.body().to_owned(),
+            sql: query.sql.clone(),
+        };
+        let items = self.library.queries().iter().map(item).collect();
+        self.over = Some(Over::Library(Picker::new("Library", "runs it", items)));
+    }
+
+    fn save(&mut self) -> Vec<Effect> {
+        self.editor.hide_completion();
+        match self.editor.statement() {
+            Some(statement) => self.over = Some(Over::Saving(Saving::of(statement.sql))),
+            None => {
+                return vec![Effect::Complain("there is no statement to save: type one first".to_owned())];
+            }
         }
-        match self.focus {
-            RESULTS => self.results.table().typed(),
-            _ => self.browser.typed(),
+        Vec::new()
+    }
+
+    fn take_out(&mut self) -> Vec<Effect> {
+        if !self.results.has_rows() {
+            return vec![Effect::Complain(
+                "there is no result to take out: run a statement first".to_owned(),
+            )];
+        }
+        self.over = Some(Over::TakeOut(TakeOut::default()));
+        Vec::new()
+    }
+
+    /// Does an action in what lies over the panes.
+    fn act_over(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        match &mut self.over {
+            // The same key again goes on to the next one; the other one changes the list.
+            Some(Over::Earlier(picker)) if action == Action::History => picker.next(),
+            Some(Over::Library(picker)) if action == Action::Library => picker.next(),
+            Some(Over::Earlier(_)) if action == Action::Library => self.find_named(),
+            Some(Over::Library(_)) if action == Action::History => return self.find_earlier(look),
+            Some(Over::Earlier(picker) | Over::Library(picker)) => {
+                let choice = picker.act(action);
+                return self.choose(choice);
+            }
+            Some(Over::Saving(saving)) => match action {
+                Action::Commit => {
+                    if let Some(effect) = saving.commit(&self.library) {
+                        self.over = None;
+                        return vec![effect];
+                    }
+                }
+                Action::Discard => self.over = None,
+                _ => {}
+            },
+            Some(Over::TakeOut(list)) => {
+                let way = list.act(action);
+                if way.is_some() || action == Action::Close {
+                    self.over = None;
+                }
+                return way.map_or_else(Vec::new, |way| self.results.take_out(way));
+            }
+            None => {}
+        }
+        Vec::new()
+    }
+
+    /// An earlier statement is put into the editor; a named query is run too.
+    fn choose(&mut self, choice: Choice) -> Vec<Effect> {
+        let named = matches!(self.over, Some(Over::Library(_)));
+        match choice {
+            Choice::None => {}
+            Choice::Closed => self.over = None,
+            Choice::Statement(sql) if named => return self.edit_and_run(&sql),
+            Choice::Statement(sql) => self.edit(&sql),
+        }
+        Vec::new()
+    }
+
+    /// The field that is being typed into, if one is.
+    fn field(&mut self) -> Option<&mut Field> {
+        match (&mut self.over, self.focus) {
+            (Some(Over::Earlier(picker) | Over::Library(picker)), _) => Some(picker.field()),
+            (Some(Over::Saving(saving)), _) => Some(&mut saving.field),
+            (Some(Over::TakeOut(_)), _) => None,
+            (None, RESULTS) => self.results.table().typing(),
+            (None, BROWSER) => self.browser.typing(),
+            (None, _) => None,
+        }
+    }
+
+    /// Looks for what is typed, as far as it is typed.
+    fn filter_typed(&mut self) {
+        match (&mut self.over, self.focus) {
+            (Some(Over::Earlier(picker) | Over::Library(picker)), _) => picker.find(),
+            (Some(_), _) => {}
+            (None, RESULTS) => self.results.table().typed(),
+            (None, _) => self.browser.typed(),
         }
     }
 
@@ -130,7 +273,7 @@ impl Sql {
     }
 
     fn act_in_results(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        if action == Action::Close && self.running.is_some() {
+        if matches!(action, Action::Close | Action::CloseChart) && self.running.is_some() {
             return vec![Effect::CancelQuery];
         }
         self.results.act(action, look.page)
@@ -146,26 +289,33 @@ impl Sql {
 
 impl Screen for Sql {
     fn scopes(&self) -> Vec<Scope> {
-        if self.history.is_open() {
-            return vec![if self.history.is_typing() { Scope::Field } else { Scope::List }];
-        }
-        match self.focus {
-            EDITOR => vec![Scope::Editor, Scope::Query],
-            RESULTS if self.results.is_typing() => vec![Scope::Field],
-            RESULTS => vec![Scope::Result, Scope::List, Scope::Query],
-            _ if self.browser.is_typing() => vec![Scope::Field],
-            _ => vec![Scope::List, Scope::Query],
+        match (&self.over, self.focus) {
+            (Some(Over::Earlier(_) | Over::Library(_)), _) => vec![Scope::Field, Scope::Query],
+            (Some(Over::Saving(_)), _) => vec![Scope::Field],
+            (Some(Over::TakeOut(_)), _) => vec![Scope::Export, Scope::List],
+            (None, EDITOR) => vec![Scope::Editor, Scope::Query],
+            (None, RESULTS) if self.results.is_typing() => vec![Scope::Field],
+            (None, RESULTS) if self.results.is_chart() => {
+                vec![Scope::Chart, Scope::Result, Scope::List, Scope::Query]
+            }
+            (None, RESULTS) => vec![Scope::Result, Scope::List, Scope::Query],
+            (None, _) if self.browser.is_typing() => vec![Scope::Field],
+            (None, _) => vec![Scope::List, Scope::Query],
         }
     }
 
     fn hints(&self) -> Vec<Action> {
-        if self.history.is_open() {
-            return vec![Action::Open, Action::Filter, Action::Close];
-        }
-        match self.focus {
-            EDITOR => vec![Action::RunQuery, Action::Complete, Action::History, Action::LeaveEditor],
-            RESULTS => vec![Action::WholeCell, Action::CopyCell, Action::ExportCsv, Action::EditQuery],
-            _ => vec![Action::Open, Action::Filter, Action::RunQuery, Action::EditQuery],
+        match (&self.over, self.focus) {
+            (Some(Over::TakeOut(_)), _) => vec![Action::Open, Action::Close],
+            (Some(_), _) => vec![Action::Commit, Action::Discard],
+            (None, EDITOR) => {
+                vec![Action::RunQuery, Action::Complete, Action::SaveQuery, Action::LeaveEditor]
+            }
+            (None, RESULTS) if self.results.is_chart() => {
+                vec![Action::ChartY, Action::ChartKind, Action::CloseChart, Action::EditQuery]
+            }
+            (None, RESULTS) => vec![Action::WholeCell, Action::Chart, Action::Export, Action::EditQuery],
+            (None, _) => vec![Action::Open, Action::Filter, Action::RunQuery, Action::EditQuery],
         }
     }
 
@@ -195,16 +345,13 @@ impl Screen for Sql {
         {
             self.editor.mark(running.statement.from + place);
         }
-        self.results.take(answer.clone(), *took);
+        self.results.take(&running.statement.sql, answer.clone(), *took);
         Vec::new()
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        if self.history.is_open() {
-            if let Choice::Statement(sql) = self.history.act(action, look.page) {
-                self.edit(&sql);
-            }
-            return Vec::new();
+        if self.over.is_some() {
+            return self.act_over(action, look);
         }
         if action != Action::Open {
             self.column_put_in = false;
@@ -216,12 +363,10 @@ impl Screen for Sql {
             Action::EditQuery => self.focus = EDITOR,
             Action::ClearQuery => self.edit(""),
             Action::LeaveEditor => return self.leave_editor(),
-            Action::History => {
-                self.editor.hide_completion();
-                if !self.history.open(&look.company.asked) {
-                    return vec![Effect::Say("nothing was asked in this run yet".to_owned())];
-                }
-            }
+            Action::History => return self.find_earlier(look),
+            Action::Library => self.find_named(),
+            Action::SaveQuery => return self.save(),
+            Action::Export => return self.take_out(),
             Action::Up | Action::Down if self.focus == EDITOR => self.scroll_editor(action),
             other if self.focus == RESULTS => return self.act_in_results(other, look),
             other if self.focus == BROWSER => return self.act_in_browser(other, look),
@@ -230,12 +375,14 @@ impl Screen for Sql {
         Vec::new()
     }
 
-    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
-        if let Some(field) = self.field() {
+    fn key(&mut self, key: &KeyEvent, look: &Look<'_>) -> Vec<Effect> {
+        if let Some(Over::Earlier(picker) | Over::Library(picker)) = &mut self.over {
+            picker.key(key, look.page);
+        } else if let Some(field) = self.field() {
             if field.key(key) {
                 self.filter_typed();
             }
-        } else if self.focus == EDITOR && !self.history.is_open() {
+        } else if self.focus == EDITOR && self.over.is_none() {
             if key.code == KeyCode::BackTab {
                 return vec![Effect::Do(Action::FocusPrevious)];
             }
@@ -249,23 +396,24 @@ impl Screen for Sql {
         if let Some(field) = self.field() {
             field.insert(text);
             self.filter_typed();
-        } else if self.focus == EDITOR && !self.history.is_open() {
+        } else if self.focus == EDITOR && self.over.is_none() {
             self.editor.paste(text);
         }
         Vec::new()
     }
 
     fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
-        match pane {
-            HISTORY => {
-                if let Some(table) = self.history.table() {
-                    table.select_place(row);
-                    return self.act(Action::Open, look);
-                }
+        match (&mut self.over, pane) {
+            (Some(Over::Earlier(picker) | Over::Library(picker)), OVER) => {
+                let choice = picker.click(row);
+                return self.choose(choice);
             }
-            RESULTS => return self.results.click(row, look.page),
-            BROWSER if self.browser.select(row) => return self.act(Action::Right, look),
-            _ => {}
+            (Some(Over::TakeOut(list)), OVER) => {
+                let way = list.click(row);
+                return self.act_over(way, look);
+            }
+            (Some(_), _) => {}
+            (None, pane) => return self.click_pane(pane, row, look),
         }
         Vec::new()
     }
@@ -289,23 +437,46 @@ impl Screen for Sql {
         let [above, below] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(rest);
         self.draw_editor(canvas, above, look);
         self.results.draw(canvas, below, self.focus == RESULTS, self.running.is_some(), look);
-        if self.focus == EDITOR && !self.history.is_open() {
+        if self.focus == EDITOR && self.over.is_none() {
             self.editor.draw_completion(canvas, rest);
         }
-        self.history.draw(canvas, area, HISTORY, look);
+        self.draw_over(canvas, area, look);
     }
 }
 
 impl Sql {
+    fn click_pane(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        match pane {
+            RESULTS => self.results.click(row, look.page),
+            BROWSER if self.browser.select(row) => self.act(Action::Right, look),
+            _ => Vec::new(),
+        }
+    }
+
+    fn draw_over(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        match &self.over {
+            Some(Over::Earlier(picker) | Over::Library(picker)) => picker.draw(canvas, area, OVER),
+            Some(Over::Saving(saving)) => saving.draw(canvas, area, &self.library, look),
+            Some(Over::TakeOut(list)) => {
+                list.draw(canvas, area, OVER, &self.results.what_is_taken(), look);
+            }
+            None => {}
+        }
+    }
+
     fn draw_editor(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let focused = self.focus == EDITOR;
         canvas.click(area, Click::Pane(EDITOR));
         let (number, count) = self.editor.count();
-        let title =
-            if count > 1 { format!("Query · statement {number} of {count}") } else { "Query".to_owned() };
-        let note = look.hints(&[Action::RunQuery, Action::History]);
+        let named = self.editor.statement().and_then(|statement| Head::of(&statement.sql).title);
+        let title = match named {
+            _ if count > 1 => format!("Query · statement {number} of {count}"),
+            Some(title) => format!("Query · {title}"),
+            None => "Query".to_owned(),
+        };
+        let note = look.hints(&[Action::RunQuery, Action::History, Action::Library]);
         let inside = canvas.pane(area, &title, &note, focused);
-        let editing = focused && !self.history.is_open();
+        let editing = focused && self.over.is_none();
         let hint = if focused { "type a statement" } else { "i or a click types here" };
         self.editor.draw(canvas, inside, editing, hint);
     }

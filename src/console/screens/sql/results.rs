@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use ratatui::layout::Rect;
 
-use super::{RESULTS, values};
+use super::plot::Plot;
+use super::{RESULTS, takeout, values};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::effect::Effect;
@@ -12,7 +13,7 @@ use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Table;
-use crate::notation::grouped;
+use crate::session::library::{ChartLine, Head};
 use crate::session::{Cell, Refusal, Rows};
 
 /// What came of the last statement.
@@ -32,10 +33,14 @@ pub enum Answer {
 pub struct Results {
     answer: Answer,
     table: Table,
+    /// How the statement wants its result to be drawn.
+    proposed: Option<ChartLine>,
+    /// The chart, while it is shown instead of the rows.
+    plot: Option<Plot>,
 }
 
 /// What to try first.
-const LESSON: &str = "Examples; type one, or choose a table on the left (shift-tab, then enter):
+const LESSON: &str = "ctrl-o opens the library of queries. Or type one of these, or choose a table on the left (shift-tab, then enter):
 
 SELECT category, round(sum(amount)) AS dollars FROM ledger GROUP BY category ORDER BY dollars
 
@@ -54,8 +59,9 @@ pub fn place_of(refusal: &Refusal) -> Option<usize> {
 }
 
 impl Results {
-    /// Takes an answer.
-    pub fn take(&mut self, answer: Result<Rows, Refusal>, took: Duration) {
+    /// Takes the answer to a statement.
+    pub fn take(&mut self, sql: &str, answer: Result<Rows, Refusal>, took: Duration) {
+        let proposed = Head::of(sql).chart;
         match answer {
             Ok(rows) => {
                 let columns = values::columns(&rows);
@@ -63,7 +69,11 @@ impl Results {
                 if !same {
                     self.table = Table::new(columns.clone()).by_cell();
                 }
+                if !same || proposed != self.proposed {
+                    self.plot = None;
+                }
                 self.table.set(columns, values::cells(&rows));
+                self.proposed = proposed;
                 self.answer = Answer::Rows(rows, took);
             }
             Err(refusal) => self.answer = Answer::Refused(refusal),
@@ -78,6 +88,80 @@ impl Results {
     /// Whether a filter is being typed.
     pub fn is_typing(&self) -> bool {
         self.table.is_typing()
+    }
+
+    /// Whether a chart is shown.
+    pub fn is_chart(&self) -> bool {
+        self.plot.is_some() && self.rows().is_some()
+    }
+
+    /// Whether there are rows to take somewhere.
+    pub fn has_rows(&self) -> bool {
+        self.rows().is_some()
+    }
+
+    /// The rows as they are shown: filtered and sorted.
+    fn rows_as_shown(&self) -> Option<Rows> {
+        let all = self.rows()?;
+        let rows = self.table.shown().iter().map(|row| all.rows[*row].clone()).collect();
+        Some(Rows { columns: all.columns.clone(), rows, ..Rows::default() })
+    }
+
+    /// What would be taken out: `12 of 300 rows, as shown`.
+    pub fn what_is_taken(&self) -> String {
+        let Some(rows) = self.rows() else { return String::new() };
+        match (self.table.shown().len(), rows.rows.len()) {
+            (shown, all) if shown < all => format!("{shown} of {}, as filtered", takeout::count(all)),
+            (_, all) if rows.truncated => format!("the first {}; more exist", takeout::count(all)),
+            (_, all) => takeout::count(all),
+        }
+    }
+
+    /// Takes the rows out as they are shown.
+    pub fn take_out(&self, way: Action) -> Vec<Effect> {
+        self.rows_as_shown().map_or_else(Vec::new, |rows| takeout::take(way, &rows))
+    }
+
+    fn open_chart(&mut self) -> Vec<Effect> {
+        self.plot = self.rows().and_then(|rows| Plot::of(rows, self.proposed.as_ref()));
+        match (&self.plot, self.rows()) {
+            (Some(_), _) => Vec::new(),
+            (None, Some(_)) => {
+                vec![Effect::Complain("no column of this result holds numbers to draw".to_owned())]
+            }
+            (None, None) => {
+                vec![Effect::Complain("there is no result to draw: run a statement first".to_owned())]
+            }
+        }
+    }
+
+    /// Changes the chart; what concerns the rows goes to them.
+    fn act_in_chart(&mut self, action: Action, page: u16) -> Vec<Effect> {
+        let (Some(plot), Answer::Rows(rows, _)) = (&mut self.plot, &self.answer) else { return Vec::new() };
+        match action {
+            Action::ChartX => plot.next_x(rows),
+            Action::ChartY => plot.next_y(rows),
+            Action::MoreSeries if !plot.more(rows) => {
+                return vec![Effect::Complain(
+                    "there is no other column of numbers, or no room for it".to_owned(),
+                )];
+            }
+            Action::MoreSeries | Action::Left | Action::Right => {}
+            Action::FewerSeries => plot.fewer(),
+            Action::ChartKind => plot.other_kind(),
+            Action::Sort => {
+                let column = plot.first_y();
+                self.table.select_column(column);
+                self.table.act(Action::Sort, page);
+            }
+            Action::CloseChart | Action::Close => self.plot = None,
+            Action::Filter => {
+                self.plot = None;
+                self.table.act(Action::Filter, page);
+            }
+            other => return self.act_in_rows(other, page),
+        }
+        Vec::new()
     }
 
     fn rows(&self) -> Option<&Rows> {
@@ -98,47 +182,44 @@ impl Results {
         Some((self.rows()?.columns.get(at)?, self.row()?.get(at)?))
     }
 
-    /// Walks, sorts, filters, copies and exports.
+    /// Walks, sorts, filters, copies, draws.
     pub fn act(&mut self, action: Action, page: u16) -> Vec<Effect> {
+        match action {
+            _ if self.is_chart() => self.act_in_chart(action, page),
+            Action::Chart => self.open_chart(),
+            other => self.act_in_rows(other, page),
+        }
+    }
+
+    fn act_in_rows(&mut self, action: Action, page: u16) -> Vec<Effect> {
         let nothing = || vec![Effect::Complain("there is no result to take anything from".to_owned())];
         match action {
             Action::WholeCell => {
                 let read = |(name, cell): (&str, &Cell)| Effect::ShowText(name.to_owned(), readable(cell));
-                return self.cell().map(read).map_or_else(nothing, |effect| vec![effect]);
+                self.cell().map(read).map_or_else(nothing, |effect| vec![effect])
             }
             Action::CopyCell => {
                 let copy = |(_, cell)| vec![Effect::Copy(values::whole(cell))];
-                return self.cell().map_or_else(nothing, copy);
+                self.cell().map_or_else(nothing, copy)
             }
-            Action::CopyRow => {
-                return self.row().map_or_else(nothing, |row| vec![Effect::Copy(values::tabbed(row))]);
-            }
-            Action::ExportCsv => {
-                let Some(rows) = self.rows() else { return nothing() };
-                return vec![match values::csv(rows) {
-                    Ok(bytes) => Effect::Write("query-0001.csv".to_owned(), bytes),
-                    Err(problem) => Effect::Complain(problem),
-                }];
-            }
-            Action::ExportJson => {
-                let Some(rows) = self.rows() else { return nothing() };
-                return vec![Effect::Write("query-0001.json".to_owned(), values::json(rows))];
-            }
+            Action::CopyRow => self.row().map_or_else(nothing, |row| vec![Effect::Copy(values::tabbed(row))]),
             Action::CommitNext | Action::CommitPrevious => {
                 self.table.act(Action::Commit, page);
+                Vec::new()
             }
             other => {
                 self.table.act(other, page);
+                Vec::new()
             }
         }
-        Vec::new()
     }
 
     /// A row was clicked; a second time opens its cell.
     pub fn click(&mut self, place: usize, page: u16) -> Vec<Effect> {
         let before = self.table.selected();
         self.table.select_place(place);
-        if before == self.table.selected() { self.act(Action::WholeCell, page) } else { Vec::new() }
+        let again = before == self.table.selected() && !self.is_chart();
+        if again { self.act(Action::WholeCell, page) } else { Vec::new() }
     }
 
     /// Draws the pane.
@@ -154,19 +235,14 @@ impl Results {
                 ("Result · stopped".to_owned(), String::new())
             }
             Answer::Refused(_) => ("Result · refused".to_owned(), String::new()),
-            Answer::Rows(rows, took) => (title(rows, *took), self.table.note()),
+            Answer::Rows(rows, took) => {
+                let drawn = self.plot.as_ref().map(|plot| format!(" · {}", plot.title(rows)));
+                (title(rows, *took) + &drawn.unwrap_or_default(), self.table.note())
+            }
         };
         let inside = canvas.pane(area, &title, &note, focused);
         if focused {
-            let keys = [
-                Action::WholeCell,
-                Action::Sort,
-                Action::Filter,
-                Action::CopyCell,
-                Action::ExportCsv,
-                Action::ExportJson,
-            ];
-            canvas.pane_keys(area, &look.hints(&keys));
+            canvas.pane_keys(area, &look.hints(self.keys()));
         }
         if running {
             canvas.text(
@@ -210,22 +286,47 @@ impl Results {
             None => 0,
         };
         let below = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
-        self.table.draw(canvas, below, focused, RESULTS);
+        match &self.plot {
+            Some(plot) => plot.draw(canvas, below, rows, &self.table, focused),
+            None => self.table.draw(canvas, below, focused, RESULTS),
+        }
+    }
+
+    /// What can be done with what is shown.
+    fn keys(&self) -> &'static [Action] {
+        match self.is_chart() {
+            true => &[
+                Action::ChartX,
+                Action::ChartY,
+                Action::MoreSeries,
+                Action::FewerSeries,
+                Action::ChartKind,
+                Action::Sort,
+                Action::CloseChart,
+            ],
+            false => &[
+                Action::WholeCell,
+                Action::Sort,
+                Action::Filter,
+                Action::Chart,
+                Action::Export,
+                Action::CopyCell,
+                Action::CopyRow,
+            ],
+        }
     }
 }
 
 /// `Result · 3 rows · 12 ms`.
 fn title(rows: &Rows, took: Duration) -> String {
-    let count = rows.rows.len();
     let of = if rows.truncated { "first " } else { "" };
-    let noun = if count == 1 { "row" } else { "rows" };
     let milliseconds = took.as_secs_f64() * 1e3;
     let time = match milliseconds {
         slow if slow >= 1000.0 => format!("{:.2} s", slow / 1e3),
         quick if quick >= 1.0 => format!("{quick:.0} ms"),
         _ => "under 1 ms".to_owned(),
     };
-    format!("Result · {of}{} {noun} · {time}", grouped(count as f64, 0))
+    format!("Result · {of}{} · {time}", takeout::count(rows.rows.len()))
 }
 
 /// A value to read in a window of its own; JSON is laid out.

@@ -95,12 +95,26 @@ fn results_are_copied_and_exported_in_full() {
     assert!(matches!(copied, Some(Effect::Copy(text)) if text == "28114"));
     let whole = one(act(&mut screen, &company, Action::WholeCell));
     assert!(matches!(whole, Some(Effect::ShowText(title, text)) if title == "subs" && text == "28114"));
+    act(&mut screen, &company, Action::Export);
+    assert_eq!(screen.scopes(), [Scope::Export, Scope::List]);
+    let lines = picture(&screen, &company, 80, 21);
+    assert!(holds(&lines, "Take out") && holds(&lines, "3 rows"), "{lines:#?}");
     let csv = one(act(&mut screen, &company, Action::ExportCsv));
     assert!(matches!(csv, Some(Effect::Write(name, bytes)) if name == "query-0001.csv" && bytes.len() > 60));
+    act(&mut screen, &company, Action::Export);
     let json = one(act(&mut screen, &company, Action::ExportJson));
     assert!(
         matches!(json, Some(Effect::Write(name, bytes)) if name == "query-0001.json" && bytes[0] == b'[')
     );
+    act(&mut screen, &company, Action::Filter);
+    write(&mut screen, &company, "net");
+    act(&mut screen, &company, Action::Commit);
+    act(&mut screen, &company, Action::Export);
+    assert!(holds(&picture(&screen, &company, 80, 21), "1 of 3 rows, as filtered"));
+    let copied = act(&mut screen, &company, Action::CopyMarkdown);
+    assert!(matches!(&copied[..], [Effect::Copy(text), Effect::Say(said)]
+        if text.ends_with("| network | 28114 | 12.0 |\n") && said.starts_with("copied 1 row as Markdown")));
+    assert_eq!(screen.scopes()[0], Scope::Result, "the list is gone");
 }
 
 #[test]
@@ -134,18 +148,133 @@ fn the_lesson_of_an_empty_result_works() {
 }
 
 #[test]
-fn earlier_statements_are_chosen_from_a_list() {
+fn earlier_statements_are_found_by_typing_and_esc_loses_nothing() {
     let mut company = company();
     company.asked = vec!["SELECT 'of yesterday'".to_owned()];
     let mut screen = Sql::default();
     write(&mut screen, &company, "SELECT 1");
     act(&mut screen, &company, Action::RunQuery);
+    write(&mut screen, &company, " + half");
     act(&mut screen, &company, Action::History);
-    assert_eq!(screen.scopes(), [Scope::List]);
-    assert!(holds(&picture(&screen, &company, 80, 21), "SELECT 'of yesterday'"));
-    act(&mut screen, &company, Action::Down);
-    act(&mut screen, &company, Action::Open);
+    assert_eq!(screen.scopes()[0], Scope::Field);
+    write(&mut screen, &company, "yester");
+    let lines = picture(&screen, &company, 80, 21);
+    assert!(holds(&lines, "SELECT 'of yesterday'") && holds(&lines, "1 of 2"), "{lines:#?}");
+    act(&mut screen, &company, Action::Discard);
+    assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT 1 + half", EDITOR));
+    act(&mut screen, &company, Action::History);
+    act(&mut screen, &company, Action::History);
+    act(&mut screen, &company, Action::Commit);
     assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT 'of yesterday'", EDITOR));
+    act(&mut screen, &company, Action::History);
+    let lines = picture(&screen, &company, 80, 21);
+    assert!(holds(&lines, "draft SELECT 1 + half"), "what was replaced is not lost: {lines:#?}");
+}
+
+#[test]
+fn a_named_query_is_put_in_and_run() {
+    let company = company();
+    let mut screen = Sql::default();
+    act(&mut screen, &company, Action::Library);
+    write(&mut screen, &company, "revplan");
+    let lines = picture(&screen, &company, 120, 37);
+    assert!(holds(&lines, "› revplan") && holds(&lines, "What each plan brings in a month"), "{lines:#?}");
+    assert!(holds(&lines, "FROM subscriptions"), "the statement is shown: {lines:#?}");
+    let asked = act(&mut screen, &company, Action::Commit);
+    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql.starts_with("-- title: Revenue by plan")));
+    assert!(holds(&picture(&screen, &company, 120, 37), "Query · Revenue by plan"));
+}
+
+#[test]
+fn a_statement_is_saved_under_a_name() {
+    let company = company();
+    let mut screen = Sql::default();
+    let nothing = act(&mut screen, &company, Action::SaveQuery);
+    assert!(matches!(&nothing[..], [Effect::Complain(_)]));
+    write(&mut screen, &company, "SELECT 1;\nSELECT 2");
+    act(&mut screen, &company, Action::SaveQuery);
+    write(&mut screen, &company, "My two");
+    assert!(holds(&picture(&screen, &company, 80, 21), "queries/my-two.sql"));
+    let saved = act(&mut screen, &company, Action::Commit);
+    assert!(matches!(&saved[..], [Effect::SaveQuery { name, title, sql }]
+        if name == "my-two" && title == "My two" && sql == "SELECT 2"));
+    assert_eq!(screen.scopes()[0], Scope::Editor);
+}
+
+fn with_result(company: &Company, sql: &str, rows: Rows) -> Sql {
+    let mut screen = Sql::default();
+    screen.edit(sql);
+    act(&mut screen, company, Action::RunQuery);
+    hear(&mut screen, company, Ok(rows));
+    screen.set_focus(RESULTS);
+    screen
+}
+
+#[test]
+fn a_result_is_drawn_as_bars_with_words_and_zero() {
+    let company = company();
+    let mut screen = with_result(&company, "SELECT 1", three_rows());
+    assert!(act(&mut screen, &company, Action::Chart).is_empty());
+    assert_eq!(screen.scopes()[0], Scope::Chart);
+    let lines = picture(&screen, &company, 80, 21);
+    assert!(holds(&lines, "█ subs by acquisition_source"), "{lines:#?}");
+    assert!(holds(&lines, "subs: least 9 (search_ads) · most 28,114 (network) · total 41,959"), "{lines:#?}");
+    assert!(holds(&lines, "network           28,114 │████████"), "{lines:#?}");
+    assert!(holds(&lines, "search_ads             9 │█ "), "a small bar is seen: {lines:#?}");
+    act(&mut screen, &company, Action::MoreSeries);
+    let lines = picture(&screen, &company, 80, 21);
+    assert!(holds(&lines, "█ subs · ▒ price by acquisition_source"), "{lines:#?}");
+    assert!(holds(&lines, "12.25 │▒"), "{lines:#?}");
+    let more = act(&mut screen, &company, Action::MoreSeries);
+    assert!(matches!(&more[..], [Effect::Complain(_)]));
+    act(&mut screen, &company, Action::CloseChart);
+    assert_eq!(screen.scopes()[0], Scope::Result);
+    act(&mut screen, &company, Action::Chart);
+    act(&mut screen, &company, Action::Filter);
+    assert_eq!(screen.scopes(), [Scope::Field], "filtering goes back to the rows");
+}
+
+#[test]
+fn a_statement_says_how_its_result_is_drawn() {
+    let company = company();
+    let rows = Rows {
+        columns: ["cash", "week", "cost"].map(str::to_owned).to_vec(),
+        rows: (0..20)
+            .map(|week| vec![Cell::Integer(1000 + 10 * week), Cell::Integer(week), Cell::Integer(-week)])
+            .collect(),
+        ..Rows::default()
+    };
+    let mut screen = with_result(&company, "-- chart: line week cash cost\nSELECT 1", rows.clone());
+    act(&mut screen, &company, Action::Chart);
+    let lines = picture(&screen, &company, 120, 37);
+    assert!(holds(&lines, "⎯ cash · • cost by week"), "{lines:#?}");
+    assert!(holds(&lines, "cash: least 1,000 at 0 · most 1,190 at 19"), "{lines:#?}");
+    assert!(holds(&lines, "last 1,190 · change ▲ 190"), "{lines:#?}");
+    act(&mut screen, &company, Action::ChartKind);
+    assert!(holds(&picture(&screen, &company, 120, 37), "1,000 "));
+    act(&mut screen, &company, Action::RunQuery);
+    hear(&mut screen, &company, Ok(rows));
+    assert_eq!(screen.scopes()[0], Scope::Chart, "asked again, it stays a chart");
+    act(&mut screen, &company, Action::RunQuery);
+    hear(&mut screen, &company, Ok(three_rows()));
+    assert_eq!(screen.scopes()[0], Scope::Result, "other columns are shown as rows first");
+}
+
+#[test]
+fn words_alone_cannot_be_drawn() {
+    let company = company();
+    let rows = Rows {
+        columns: vec!["name".to_owned()],
+        rows: vec![vec![Cell::Text("x".to_owned())]],
+        ..Rows::default()
+    };
+    let mut screen = with_result(&company, "SELECT 1", rows);
+    assert!(matches!(&act(&mut screen, &company, Action::Chart)[..], [Effect::Complain(_)]));
+    let mut empty = Sql::default();
+    empty.set_focus(RESULTS);
+    for action in [Action::Chart, Action::Export] {
+        assert!(matches!(&act(&mut empty, &company, action)[..], [Effect::Complain(_)]));
+    }
 }
 
 #[test]
@@ -187,6 +316,8 @@ fn no_size_is_too_small() {
     let company = company();
     let mut screen = Sql::default();
     sweep(&mut screen, &company);
+    // A sweep leaves the focus on the last pane.
+    screen.set_focus(EDITOR);
     write(&mut screen, &company, "SELECT * FROM ledger WHERE am");
     sweep(&mut screen, &company);
     act(&mut screen, &company, Action::RunQuery);
@@ -195,9 +326,23 @@ fn no_size_is_too_small() {
         screen.set_focus(focus);
         act(&mut screen, &company, Action::Right);
         act(&mut screen, &company, Action::Filter);
+        assert_eq!(screen.scopes(), [Scope::Field]);
         sweep(&mut screen, &company);
+        screen.set_focus(focus);
         act(&mut screen, &company, Action::Discard);
     }
-    act(&mut screen, &company, Action::History);
-    sweep(&mut screen, &company);
+    screen.set_focus(RESULTS);
+    act(&mut screen, &company, Action::Chart);
+    for change in [Action::MoreSeries, Action::ChartKind] {
+        screen.set_focus(RESULTS);
+        act(&mut screen, &company, change);
+        assert_eq!(screen.scopes()[0], Scope::Chart);
+        sweep(&mut screen, &company);
+    }
+    for over in [Action::Export, Action::History, Action::Library, Action::SaveQuery] {
+        screen.over = None;
+        act(&mut screen, &company, over);
+        assert!(screen.over.is_some(), "{over:?}");
+        sweep(&mut screen, &company);
+    }
 }

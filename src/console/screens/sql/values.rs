@@ -10,16 +10,22 @@ use crate::session::{Cell, Rows, rows_as_json};
 /// Widest column on the screen; longer values can be opened.
 const WIDEST: u16 = 48;
 
+/// Whether a column holds numbers and nothing else.
+pub fn is_numeric(rows: &Rows, at: usize) -> bool {
+    let mut said = rows.rows.iter().filter_map(|row| row.get(at)).filter(|cell| **cell != Cell::Null);
+    let is_number = |cell: &Cell| matches!(cell, Cell::Integer(_) | Cell::Real(_));
+    said.next().is_some_and(is_number) && said.all(is_number)
+}
+
+/// Decimals with which the numbers of a column are shown.
+pub fn decimals_shown(rows: &Rows, at: usize) -> usize {
+    Style::of(rows, at).decimals
+}
+
 /// Columns of a result as the screen shows them.
 pub fn columns(rows: &Rows) -> Vec<Column> {
-    let numeric = |at: usize| {
-        let mut said = rows.rows.iter().filter_map(|row| row.get(at)).filter(|cell| **cell != Cell::Null);
-        let first = said.next();
-        let is_number = |cell: &Cell| matches!(cell, Cell::Integer(_) | Cell::Real(_));
-        first.is_some_and(is_number) && said.all(is_number)
-    };
     let column = |(at, name): (usize, &String)| {
-        if numeric(at) { Column::numbers(name.as_str()) } else { Column::words(name.as_str()) }
+        if is_numeric(rows, at) { Column::numbers(name.as_str()) } else { Column::words(name.as_str()) }
     };
     rows.columns.iter().enumerate().map(column).map(|column| column.at_most(WIDEST)).collect()
 }
@@ -123,6 +129,28 @@ pub fn tabbed(row: &[Cell]) -> String {
     row.iter().map(clean).collect::<Vec<_>>().join("\t")
 }
 
+/// A result with its head, with tabs between the values.
+pub fn all_tabbed(rows: &Rows) -> String {
+    let mut text = rows.columns.join("\t") + "\n";
+    for row in &rows.rows {
+        text += &(tabbed(row) + "\n");
+    }
+    text
+}
+
+/// A result as a table of Markdown; numbers stand right.
+pub fn markdown(rows: &Rows) -> String {
+    let clean = |text: &str| text.replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r', '\t'], " ");
+    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let mut text = line(rows.columns.iter().map(|name| clean(name)).collect());
+    let side = |at: usize| if is_numeric(rows, at) { "---:" } else { "---" }.to_owned();
+    text += &line((0..rows.columns.len()).map(side).collect());
+    for row in &rows.rows {
+        text += &line(row.iter().map(|cell| clean(&whole(cell))).collect());
+    }
+    text
+}
+
 /// A result as CSV with a head.
 ///
 /// # Errors
@@ -198,6 +226,13 @@ mod tests {
         let value: Value = serde_json::from_slice(&json(&rows)).expect("JSON");
         assert_eq!(value[0]["a"], 0.1 + 0.2);
         assert_eq!(value[1]["b"], Value::Null);
+        assert_eq!(
+            markdown(&rows),
+            "| a | b | a |\n| ---: | --- | ---: |\n| 0.30000000000000004 | say \"no\", twice  | 7 |\n|  |  | 2.0 |\n"
+        );
+        let sign = result(&["x"], vec![vec![Cell::Text("a|b\\".to_owned())]]);
+        assert_eq!(markdown(&sign), "| x |\n| --- |\n| a\\|b\\\\ |\n");
+        assert!(all_tabbed(&rows).starts_with("a\tb\ta\n0.3"));
         assert_eq!(tabbed(&rows.rows[0]), "0.30000000000000004\tsay \"no\", twice \t7");
     }
 }

@@ -1,0 +1,12 @@
+-- title: Discounts in force
+-- what: How many pay less than the list price through a promotion, and what that gives away a month.
+-- chart: bar plan given_away_a_month
+SELECT plan, count(*) AS subscribers, sum(promotion > 0) AS with_discount,
+    round(avg(CASE WHEN promotion > 0 THEN promotion END), 2) AS average_discount,
+    round(sum((listed_price - effective_price) * seat_count)) AS given_away_a_month,
+    round(100.0 * sum((listed_price - effective_price) * seat_count) / sum(listed_price * seat_count), 1)
+        AS percent_of_list
+FROM subscriptions
+WHERE status = 'subscribed'
+GROUP BY 1
+ORDER BY 1

@@ -1,0 +1,24 @@
+-- title: Retention by plan and tenure
+-- what: Of the subscribers who could have stayed so many months, the share who did, for each plan.
+-- chart: line months plan_A_percent plan_B_percent plan_C_percent
+WITH today AS (SELECT max(day) AS day FROM service_day),
+months AS (SELECT value AS months FROM json_each('[1, 2, 3, 4, 5, 6, 9, 12]')),
+stays AS (
+    SELECT s.plan, (t.day - s.start_day) / 30 AS possible, (coalesce(s.end_day, t.day) - s.start_day) / 30 AS stayed,
+        count(*) AS customers
+    FROM subscriptions s
+    CROSS JOIN today t
+    WHERE s.status IN ('subscribed', 'cancelled')
+    GROUP BY 1, 2, 3
+)
+SELECT m.months, sum(customers) AS could_have_stayed,
+    round(100.0 * sum((stayed >= months AND plan = 'A') * customers) / sum((plan = 'A') * customers), 1)
+        AS plan_A_percent,
+    round(100.0 * sum((stayed >= months AND plan = 'B') * customers) / sum((plan = 'B') * customers), 1)
+        AS plan_B_percent,
+    round(100.0 * sum((stayed >= months AND plan = 'C') * customers) / sum((plan = 'C') * customers), 1)
+        AS plan_C_percent
+FROM months m
+JOIN stays s ON s.possible >= m.months
+GROUP BY 1
+ORDER BY 1

@@ -1,0 +1,68 @@
+//! Finding by typing parts of names: what matches, the best first, and which letters did.
+
+use nucleo_matcher::pattern::{CaseMatching, Normalization, Pattern};
+use nucleo_matcher::{Config, Matcher, Utf32Str};
+use ratatui::layout::Rect;
+use unicode_segmentation::UnicodeSegmentation;
+use unicode_width::UnicodeWidthStr;
+
+use super::canvas::Canvas;
+use super::theme::Role;
+
+/// Something that matches: its number among all, and the letters of its title that matched.
+pub type Found = (usize, Vec<u32>);
+
+/// What matches, the best first; a match in the title counts more than one in the explanation. Without anything
+/// typed, everything in its order.
+pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<Found> {
+    let pattern = Pattern::parse(typed, CaseMatching::Smart, Normalization::Smart);
+    let mut matcher = Matcher::new(Config::DEFAULT);
+    let mut scored: Vec<(u32, usize, Vec<u32>)> = Vec::new();
+    let mut letters = Vec::new();
+    for (at, (title, doc)) in all.enumerate() {
+        let mut places = Vec::new();
+        let title = Utf32Str::new(title, &mut letters);
+        if let Some(score) = pattern.indices(title, &mut matcher, &mut places) {
+            scored.push((score * 2 + 1, at, places));
+        } else if let Some(score) = pattern.score(Utf32Str::new(doc, &mut letters), &mut matcher) {
+            scored.push((score, at, Vec::new()));
+        }
+    }
+    scored.sort_by(|left, right| right.0.cmp(&left.0).then(left.1.cmp(&right.1)));
+    scored.into_iter().map(|(_, at, places)| (at, places)).collect()
+}
+
+/// Writes a title with the letters that matched in another meaning.
+pub fn draw_title(canvas: &mut Canvas<'_>, area: Rect, title: &str, letters: &[u32], roles: [Role; 2]) {
+    canvas.text(area, title, roles[0]);
+    // Where the title is cut, an ellipsis stands in the last column.
+    let cut = title.width() > area.width as usize;
+    let room = area.width.saturating_sub(u16::from(cut));
+    let mut column = 0;
+    for (at, letter) in title.graphemes(true).enumerate() {
+        let width = letter.width() as u16;
+        if column + width > room {
+            break;
+        }
+        if letters.contains(&(at as u32)) {
+            canvas.text(Rect { x: area.x + column, width, ..area }, letter, roles[1]);
+        }
+        column += width;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn titles_count_more_than_explanations() {
+        let all = [("cash by week", "nothing"), ("nothing", "cash by week"), ("crash", "x"), ("zero", "y")];
+        let found = find("cash", all.into_iter());
+        let order: Vec<usize> = found.iter().map(|(at, _)| *at).collect();
+        assert_eq!(order, [0, 2, 1]);
+        assert_eq!(found[0].1, [0, 1, 2, 3]);
+        assert_eq!(find("", all.into_iter()).len(), 4);
+        assert!(find("qqq", all.into_iter()).is_empty());
+    }
+}

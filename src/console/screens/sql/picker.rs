@@ -1,0 +1,301 @@
+//! A list to choose a statement from: found by typing, the chosen one shown in full.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::text::Line;
+use unicode_width::UnicodeWidthStr;
+
+use super::lexer::tokens;
+use crate::console::action::Action;
+use crate::console::canvas::{Canvas, Click, centered, rows_of};
+use crate::console::fuzzy::{self, Found};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::Field;
+use crate::console::widgets::table::first_row;
+
+/// Below this width the chosen statement stands under the list instead of beside it.
+const BESIDE: u16 = 110;
+
+/// Something to choose.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Item {
+    /// Where it comes from, in a word; empty for most.
+    pub tag: &'static str,
+    /// What is listed and searched first.
+    pub title: String,
+    /// What one learns from it.
+    pub what: String,
+    /// What is shown of the statement.
+    pub preview: String,
+    /// The statement.
+    pub sql: String,
+}
+
+/// The list.
+pub struct Picker {
+    title: &'static str,
+    /// What enter does, for the lower border.
+    enter: &'static str,
+    items: Vec<Item>,
+    /// What is searched besides the title: explanation and statement in one line.
+    texts: Vec<String>,
+    field: Field,
+    found: Vec<Found>,
+    selected: usize,
+}
+
+/// What came of an action.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// Nothing yet.
+    None,
+    /// The list is left without a choice.
+    Closed,
+    /// This statement.
+    Statement(String),
+}
+
+/// A text in one line.
+pub fn in_a_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+impl Picker {
+    /// A list under a title; `enter` says what follows from a choice.
+    pub fn new(title: &'static str, enter: &'static str, items: Vec<Item>) -> Picker {
+        let text = |item: &Item| format!("{} {}", item.what, in_a_line(&item.preview));
+        let texts = items.iter().map(text).collect();
+        let mut picker =
+            Picker { title, enter, items, texts, field: Field::default(), found: Vec::new(), selected: 0 };
+        picker.find();
+        picker
+    }
+
+    /// The field that is typed into.
+    pub fn field(&mut self) -> &mut Field {
+        &mut self.field
+    }
+
+    /// Looks for what is typed.
+    pub fn find(&mut self) {
+        let all = self.items.iter().zip(&self.texts);
+        self.found =
+            fuzzy::find(self.field.text(), all.map(|(item, text)| (item.title.as_str(), text.as_str())));
+        self.selected = 0;
+    }
+
+    /// The next one; after the last the first.
+    pub fn next(&mut self) {
+        self.selected = if self.selected + 1 < self.found.len() { self.selected + 1 } else { 0 };
+    }
+
+    fn chosen(&self) -> Option<&Item> {
+        self.found.get(self.selected).map(|(at, _)| &self.items[*at])
+    }
+
+    /// Walks and chooses.
+    pub fn act(&mut self, action: Action) -> Choice {
+        let last = self.found.len().saturating_sub(1);
+        match action {
+            Action::Commit => {
+                return self.chosen().map_or(Choice::None, |item| Choice::Statement(item.sql.clone()));
+            }
+            Action::Discard => return Choice::Closed,
+            Action::CommitDown | Action::CommitNext | Action::Down => {
+                self.selected = (self.selected + 1).min(last);
+            }
+            Action::CommitPrevious | Action::Up => self.selected = self.selected.saturating_sub(1),
+            _ => {}
+        }
+        Choice::None
+    }
+
+    /// Takes a key that is typed; pages are walked.
+    pub fn key(&mut self, key: &KeyEvent, page: u16) {
+        let (page, last) = (page.max(1) as usize, self.found.len().saturating_sub(1));
+        match key.code {
+            KeyCode::PageUp => self.selected = self.selected.saturating_sub(page),
+            KeyCode::PageDown => self.selected = (self.selected + page).min(last),
+            _ if self.field.key(key) => self.find(),
+            _ => {}
+        }
+    }
+
+    /// A row was clicked.
+    pub fn click(&mut self, row: usize) -> Choice {
+        self.selected = row.min(self.found.len().saturating_sub(1));
+        self.act(Action::Commit)
+    }
+
+    /// Draws the list over the screen.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) {
+        let own =
+            centered(area, area.width.saturating_sub(4).clamp(20, 150), area.height.saturating_sub(2).max(5));
+        canvas.clear(own, Role::Text);
+        canvas.clicks.clear();
+        let note = format!("{} of {}", self.found.len(), self.items.len());
+        let inside = canvas.pane(own, self.title, &note, true);
+        let line = Rect { height: 1.min(inside.height), ..inside };
+        canvas.text(line, "›", Role::Key);
+        self.field.draw(canvas, Rect { x: line.x + 2, width: line.width.saturating_sub(2), ..line });
+        let rest = Rect { y: inside.y + 1, height: inside.height.saturating_sub(1), ..inside };
+        let [list, preview] = if own.width >= BESIDE {
+            Layout::horizontal([Constraint::Percentage(45), Constraint::Percentage(55)]).areas(rest)
+        } else {
+            let shown = if rest.height >= 9 { rest.height / 2 } else { 0 };
+            Layout::vertical([Constraint::Min(0), Constraint::Length(shown)]).areas(rest)
+        };
+        self.draw_list(canvas, list, pane);
+        self.draw_preview(canvas, preview, own.width >= BESIDE);
+        canvas.pane_keys(own, &format!("type to find · up/down choose · enter {} · esc close", self.enter));
+    }
+
+    fn draw_list(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) {
+        canvas.page = area.height.max(1);
+        if self.found.is_empty() {
+            canvas.text(area, "nothing holds these letters; backspace widens the search", Role::Dim);
+        }
+        let tags = self.items.iter().map(|item| item.tag.width()).max().unwrap_or(0) as u16;
+        let from = first_row(self.selected, area.height as usize, self.found.len());
+        for (row, (place, (at, letters))) in rows_of(area).zip(self.found.iter().enumerate().skip(from)) {
+            let (item, selected) = (&self.items[*at], place == self.selected);
+            let role = |other| if selected { Role::Selection } else { other };
+            if selected {
+                let style = canvas.style(Role::Selection);
+                canvas.buffer.set_style(row.intersection(canvas.buffer.area), style);
+            }
+            let left = if tags > 0 { tags + 1 } else { 0 };
+            canvas.text(Rect { width: tags.min(row.width), ..row }, item.tag, role(Role::Dim));
+            let title = Rect { x: row.x + left, width: row.width.saturating_sub(left + 1), ..row };
+            fuzzy::draw_title(canvas, title, &item.title, letters, [role(Role::Text), role(Role::Key)]);
+            canvas.click(row, Click::Row(pane, place));
+        }
+    }
+
+    fn draw_preview(&self, canvas: &mut Canvas<'_>, area: Rect, beside: bool) {
+        let Some(item) = self.chosen() else { return };
+        if area.width < 4 || area.height < 2 {
+            return;
+        }
+        let inside = if beside {
+            for row in rows_of(area) {
+                canvas.text(Rect { width: 1, ..row }, "│", Role::Border);
+            }
+            Rect { x: area.x + 2, width: area.width - 2, ..area }
+        } else {
+            let line = "─".repeat(area.width as usize);
+            canvas.text(Rect { height: 1, ..area }, &line, Role::Border);
+            Rect { y: area.y + 1, height: area.height - 1, ..area }
+        };
+        let mut rows = rows_of(inside);
+        if !item.what.is_empty() {
+            for line in wrapped(&item.what, inside.width as usize) {
+                let Some(row) = rows.next() else { return };
+                canvas.text(row, &line, Role::Strong);
+            }
+            // A blank row where there is room for it.
+            if inside.height > 8 {
+                rows.next();
+            }
+        }
+        for (row, line) in rows.zip(coloured(canvas, item.preview.trim(), inside.width.into())) {
+            canvas.line(row, &line);
+        }
+    }
+}
+
+/// A statement in lines of at most a width, in the colours of the editor; what goes on in another line is indented.
+fn coloured(canvas: &Canvas<'_>, sql: &str, width: usize) -> Vec<Line<'static>> {
+    const INDENT: &str = "        ";
+    let mut lines = vec![Line::default()];
+    let mut used = 0;
+    let mut push = |text: &str, role: Role| {
+        for (at, part) in text.split('\n').enumerate() {
+            if at > 0 {
+                lines.push(Line::default());
+                used = 0;
+            }
+            for word in part.split_inclusive(' ') {
+                if used > INDENT.len() && used + word.trim_end().width() > width {
+                    lines.push(Line::from(INDENT));
+                    used = INDENT.len();
+                }
+                used += word.width();
+                if let Some(line) = lines.last_mut() {
+                    line.push_span(canvas.span(word.to_owned(), role));
+                }
+            }
+        }
+    };
+    let mut done = 0;
+    for token in tokens(sql) {
+        push(&sql[done..token.place.start], Role::Text);
+        push(&sql[token.place.clone()], token.kind.role());
+        done = token.place.end;
+    }
+    push(&sql[done..], Role::Text);
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crossterm::event::KeyModifiers;
+
+    fn item(title: &str, sql: &str) -> Item {
+        Item {
+            tag: "",
+            title: title.to_owned(),
+            what: String::new(),
+            preview: sql.to_owned(),
+            sql: sql.to_owned(),
+        }
+    }
+
+    fn typed(picker: &mut Picker, text: &str) {
+        for letter in text.chars() {
+            picker.key(&KeyEvent::new(KeyCode::Char(letter), KeyModifiers::NONE), 5);
+        }
+    }
+
+    #[test]
+    fn typing_narrows_and_the_statement_is_searched_too() {
+        let all =
+            vec![item("first", "SELECT 1"), item("second", "SELECT day FROM ledger"), item("third", "x")];
+        let mut picker = Picker::new("All", "takes", all);
+        assert_eq!(picker.act(Action::Commit), Choice::Statement("SELECT 1".to_owned()));
+        typed(&mut picker, "ledger");
+        assert_eq!(picker.act(Action::Commit), Choice::Statement("SELECT day FROM ledger".to_owned()));
+        typed(&mut picker, "zzz");
+        assert_eq!(picker.act(Action::Commit), Choice::None);
+        assert_eq!(picker.act(Action::Discard), Choice::Closed);
+    }
+
+    #[test]
+    fn long_lines_of_a_statement_go_on_below() {
+        let theme = crate::console::theme::Theme::find("dark", &crate::session::Configuration::shipped());
+        let mut buffer = ratatui::buffer::Buffer::empty(Rect::new(0, 0, 9, 9));
+        let theme = theme.expect("a theme");
+        let canvas = Canvas::new(&mut buffer, &theme);
+        let lines = coloured(&canvas, "SELECT day, amount, note FROM ledger\nWHERE 1", 20);
+        let text: Vec<String> = lines.iter().map(|line| line.to_string()).collect();
+        assert_eq!(text, ["SELECT day, amount, ", "        note FROM ", "        ledger", "WHERE 1"]);
+    }
+
+    #[test]
+    fn the_list_is_walked_by_one_by_page_and_round() {
+        let all: Vec<Item> = (0..12).map(|at| item(&format!("q{at}"), &at.to_string())).collect();
+        let mut picker = Picker::new("All", "takes", all);
+        picker.act(Action::CommitPrevious);
+        picker.key(&KeyEvent::new(KeyCode::PageDown, KeyModifiers::NONE), 5);
+        picker.act(Action::CommitDown);
+        assert_eq!(picker.selected, 6);
+        for _ in 0..6 {
+            picker.next();
+        }
+        assert_eq!(picker.selected, 0);
+        picker.key(&KeyEvent::new(KeyCode::PageUp, KeyModifiers::NONE), 5);
+        assert_eq!(picker.click(99), Choice::Statement("11".to_owned()));
+    }
+}

@@ -1,0 +1,127 @@
+//! The name under which a statement is saved into a person's own queries.
+
+use ratatui::layout::Rect;
+
+use crate::console::canvas::{Canvas, centered};
+use crate::console::effect::Effect;
+use crate::console::screens::Look;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::{action::Action, widgets::Field};
+use crate::session::Library;
+use crate::session::library::{Head, file_name};
+
+/// A statement that is being named.
+pub struct Saving {
+    /// The name as it is typed.
+    pub field: Field,
+    sql: String,
+    /// The name that the person was warned about: it is taken.
+    warned: Option<String>,
+}
+
+/// What stands at a name.
+enum Place {
+    /// It cannot be a name.
+    Wrong,
+    /// Nothing.
+    Free(String),
+    /// A query of the person.
+    Own(String),
+    /// A query that came with the program.
+    Shipped(String),
+}
+
+impl Saving {
+    /// Asks for a name; the title of the statement is proposed.
+    pub fn of(sql: String) -> Saving {
+        let title = Head::of(&sql).title.unwrap_or_default();
+        Saving { field: Field::to_replace(title), sql, warned: None }
+    }
+
+    fn place(&self, library: &Library) -> Place {
+        let Some(name) = file_name(self.field.text()) else { return Place::Wrong };
+        match library.find(&name) {
+            None => Place::Free(name),
+            Some(query) if query.own => Place::Own(name),
+            Some(_) => Place::Shipped(name),
+        }
+    }
+
+    /// What taking the name asks for; nothing as long as the person has to think again.
+    pub fn commit(&mut self, library: &Library) -> Option<Effect> {
+        let name = match self.place(library) {
+            Place::Wrong => return None,
+            Place::Own(name) | Place::Shipped(name) if self.warned.as_ref() != Some(&name) => {
+                self.warned = Some(name);
+                return None;
+            }
+            Place::Free(name) | Place::Own(name) | Place::Shipped(name) => name,
+        };
+        let title = self.field.text().trim().to_owned();
+        Some(Effect::SaveQuery { name, title, sql: self.sql.clone() })
+    }
+
+    fn remark(&self, library: &Library) -> (String, Role) {
+        let again = |name: &str| self.warned.as_deref() == Some(name);
+        match self.place(library) {
+            Place::Wrong if self.field.is_empty() => {
+                ("Type a name; the statement at the cursor is saved under it.".to_owned(), Role::Dim)
+            }
+            Place::Wrong => {
+                ("A name is made of letters, digits, blanks, - and _; at most 60.".to_owned(), Role::Warning)
+            }
+            Place::Free(name) => (format!("Becomes queries/{name}.sql in your configuration."), Role::Dim),
+            Place::Own(name) if again(&name) => {
+                (format!("! {name} is yours already: enter again replaces it."), Role::Warning)
+            }
+            Place::Own(name) => (format!("{name} is yours already; enter asks once more."), Role::Warning),
+            Place::Shipped(name) if again(&name) => (
+                format!("! {name} came with the program: enter again puts yours in its place."),
+                Role::Warning,
+            ),
+            Place::Shipped(name) => {
+                (format!("{name} came with the program; enter asks once more."), Role::Warning)
+            }
+        }
+    }
+
+    /// Draws the question over the screen.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, library: &Library, look: &Look<'_>) {
+        let own = centered(area, 72, 6);
+        canvas.clear(own, Role::Text);
+        canvas.clicks.clear();
+        let inside = canvas.pane(own, "Save the query as", "", true);
+        let line = Rect { height: 1.min(inside.height), ..inside };
+        self.field.draw(canvas, Rect { x: line.x + 1, width: line.width.saturating_sub(2), ..line });
+        let (text, role) = self.remark(library);
+        let below = Rect { y: inside.y + 2, height: inside.height.saturating_sub(2), ..line };
+        let rows = crate::console::canvas::rows_of(Rect { height: inside.height.saturating_sub(2), ..below });
+        for (row, line) in rows.zip(wrapped(&text, inside.width.saturating_sub(2).into())) {
+            canvas.text(Rect { x: row.x + 1, width: row.width.saturating_sub(2), ..row }, &line, role);
+        }
+        canvas.pane_keys(own, &look.hints(&[Action::Commit, Action::Discard]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_taken_name_is_asked_for_twice() {
+        let library = Library::shipped();
+        let mut saving = Saving::of("-- title: Economy\nSELECT 1".to_owned());
+        assert_eq!(saving.field.text(), "Economy");
+        assert!(saving.commit(&library).is_none());
+        assert!(saving.remark(&library).0.contains("enter again"));
+        assert!(matches!(saving.commit(&library), Some(Effect::SaveQuery { name, .. }) if name == "economy"));
+        saving.field = Field::of("a/b");
+        assert!(saving.commit(&library).is_none() && saving.remark(&library).0.starts_with("A name"));
+        saving.field = Field::of("My own");
+        let saved = saving.commit(&library);
+        assert!(
+            matches!(saved, Some(Effect::SaveQuery { name, title, .. }) if (name.as_str(), title.as_str()) == ("my-own", "My own"))
+        );
+    }
+}

@@ -1,0 +1,137 @@
+//! Horizontal bars with their names and values, on one scale that keeps zero in sight.
+
+use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
+
+use crate::console::canvas::{Align, Canvas};
+use crate::console::theme::Role;
+
+/// Signs that bars of several series are made of: told apart without colour, and in ASCII too.
+pub const SIGNS: [&str; 4] = ["█", "▒", "━", "•"];
+
+/// One bar.
+pub struct Bar<'a> {
+    /// What it stands for; empty below another bar of the same thing.
+    pub name: &'a str,
+    /// Side to which names are pushed: numbers stand right.
+    pub side: Align,
+    /// Value; none leaves the bar out.
+    pub value: Option<f64>,
+    /// Value as it is written.
+    pub shown: &'a str,
+    /// Number of its series.
+    pub series: usize,
+    /// Whether it is selected.
+    pub selected: bool,
+}
+
+/// Where bars, their names and their values stand in a row, and what a cell is worth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    names: u16,
+    values: u16,
+    /// Cells for bars.
+    room: u16,
+    /// Cell of zero, among those.
+    zero: u16,
+    /// Cells for a unit.
+    per_unit: f64,
+}
+
+impl Scale {
+    /// A scale on which all of some bars can be compared, in rows of a width.
+    pub fn of<'a>(bars: impl Iterator<Item = Bar<'a>>, width: u16) -> Scale {
+        let (mut names, mut values, mut least, mut most) = (1, 1, 0.0_f64, 0.0_f64);
+        for bar in bars {
+            names = names.max(bar.name.width());
+            values = values.max(bar.shown.width());
+            let value = bar.value.filter(|value| value.is_finite()).unwrap_or(0.0);
+            (least, most) = (least.min(value), most.max(value));
+        }
+        let third = (width / 3).max(1);
+        let names = (names.min(u16::MAX as usize) as u16).min(third.max(12)).min(width);
+        let values = (values.min(u16::MAX as usize) as u16).min(third);
+        // Two blanks, and the line of zero.
+        let room = width.saturating_sub(names + values + 3);
+        let span = most - least;
+        let per_unit = if span > 0.0 { f64::from(room) / span } else { 0.0 };
+        let zero = (-least * per_unit).round() as u16;
+        Scale { names, values, room, zero: zero.min(room), per_unit }
+    }
+
+    /// First cell and number of cells of a bar, left or right of the line of zero. What is not zero is seen.
+    fn cells(&self, value: f64) -> (u16, u16) {
+        let length = (value.abs() * self.per_unit).round() as u16;
+        let length = if value == 0.0 { 0 } else { length.max(1) };
+        if value < 0.0 {
+            let length = length.min(self.zero);
+            (self.zero - length, length)
+        } else {
+            (self.zero + 1, length.min(self.room - self.zero))
+        }
+    }
+
+    /// Draws a bar into a row.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, row: Rect, bar: &Bar<'_>) {
+        let name = Rect { width: self.names.min(row.width), ..row };
+        if bar.selected {
+            canvas.clear(name, Role::Selection);
+        }
+        let role = if bar.selected { Role::Selection } else { Role::Text };
+        canvas.aligned(name, bar.name, role, bar.side);
+        let value = Rect { x: row.x + self.names + 1, width: self.values, ..row };
+        let role = if bar.value.is_some_and(|value| value < 0.0) { Role::Bad } else { Role::Text };
+        canvas.aligned(value.intersection(row), bar.shown, role, Align::Right);
+        let left = row.x + self.names + self.values + 2;
+        let zero = Rect { x: left + self.zero, width: 1, ..row };
+        canvas.text(zero.intersection(row), "│", Role::Dim);
+        let Some(number) = bar.value.filter(|value| value.is_finite()) else { return };
+        let (from, length) = self.cells(number);
+        let cells = Rect { x: left + from, width: length, ..row };
+        let sign = SIGNS[bar.series % SIGNS.len()];
+        canvas.text(cells.intersection(row), &sign.repeat(length as usize), Role::Series(bar.series));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scale(values: &[f64], width: u16) -> Scale {
+        let bar = |value: &f64| Bar {
+            name: "name",
+            side: Align::Left,
+            value: Some(*value),
+            shown: "-1.00",
+            series: 0,
+            selected: false,
+        };
+        Scale::of(values.iter().map(bar).collect::<Vec<_>>().into_iter(), width)
+    }
+
+    #[test]
+    fn zero_stands_left_of_positive_bars_and_between_both_signs() {
+        // 4 for the name, 5 for the value, 3 between: 20 for the bars.
+        let positive = scale(&[10.0, 5.0, 0.01, 0.0], 32);
+        assert_eq!(positive.cells(10.0), (1, 20));
+        assert_eq!(positive.cells(5.0), (1, 10));
+        assert_eq!(positive.cells(0.01), (1, 1), "what is not zero is seen");
+        assert_eq!(positive.cells(0.0), (1, 0));
+        let both = scale(&[-10.0, 30.0], 32);
+        assert_eq!(both.cells(-10.0), (0, 5));
+        assert_eq!(both.cells(30.0), (6, 15));
+        let negative = scale(&[-2.0, -1.0], 32);
+        assert_eq!(negative.cells(-2.0), (0, 20));
+        assert_eq!(negative.cells(-1.0), (10, 10));
+    }
+
+    #[test]
+    fn nothing_breaks_without_room_or_numbers() {
+        for width in 0..20 {
+            let narrow = scale(&[-3.0, f64::NAN, f64::INFINITY, 1e300], width);
+            let (from, length) = narrow.cells(1e300);
+            assert!(from + length <= narrow.room + 1, "{width}");
+        }
+        assert_eq!(scale(&[0.0], 32).cells(0.0), (1, 0));
+    }
+}

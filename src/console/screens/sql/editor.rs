@@ -99,7 +99,7 @@ impl QueryEditor {
     }
 
     /// Goes to its first letter.
-    pub fn to_top(&mut self) {
+    pub fn go_to_top(&mut self) {
         self.text.move_to(0, 0);
     }
 

@@ -110,7 +110,7 @@ impl Sql {
     /// Puts a statement into the editor and runs it.
     pub fn edit_and_run(&mut self, sql: &str) -> Vec<Effect> {
         self.edit(sql);
-        self.editor.to_top();
+        self.editor.go_to_top();
         self.run()
     }
 

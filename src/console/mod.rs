@@ -15,6 +15,7 @@ mod files;
 pub mod frame;
 pub mod keys;
 pub mod message;
+pub mod posts;
 pub mod readings;
 pub mod screens;
 pub mod speed;

@@ -85,10 +85,20 @@ pub fn act(screen: &mut dyn Screen, action: Action, company: &Company) -> Vec<Ef
 
 /// Draws a screen in a window; the lines of text that are seen.
 pub fn picture(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> Vec<String> {
+    painted(screen, company, (width, height), false)
+}
+
+/// What is seen of a screen whose focused pane has the whole window, as one text.
+pub fn zoomed(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> String {
+    painted(screen, company, (width, height), true).join("\n")
+}
+
+fn painted(screen: &dyn Screen, company: &Company, (width, height): (u16, u16), zoomed: bool) -> Vec<String> {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);
     let theme = Theme::find("mono", &Configuration::shipped()).expect("a theme");
     let mut canvas = Canvas::new(&mut buffer, &theme);
+    canvas.zoomed = zoomed;
     let keys = Keys::shipped();
     screen.draw(&mut canvas, area, &Look { company, keys: &keys, page: 5 });
     let line = |y: u16| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
@@ -107,6 +117,7 @@ pub fn sweep(screen: &mut dyn Screen, company: &Company) {
         let small = (0..=70).step_by(3).flat_map(|width| (0..=25).map(move |height| (width, height)));
         for (width, height) in small.chain([(80, 21), (110, 37), (200, 57), (300, 3), (3, 200), (140, 90)]) {
             drawn(screen, company, width, height);
+            zoomed(screen, company, width, height);
         }
     }
 }

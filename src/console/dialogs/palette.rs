@@ -21,6 +21,8 @@ use crate::tools::{CATALOGUE, Kind};
 /// Something that can be chosen.
 struct Entry {
     kind: &'static str,
+    /// What finds it at once when it is typed whole; empty if it has none.
+    code: &'static str,
     title: String,
     doc: String,
     keys: String,
@@ -57,7 +59,9 @@ impl Palette {
         for (at, entry) in self.entries.iter().enumerate() {
             let mut places = Vec::new();
             let title = Utf32Str::new(&entry.title, &mut letters);
-            if let Some(score) = pattern.indices(title, &mut matcher, &mut places) {
+            if !entry.code.is_empty() && entry.code.eq_ignore_ascii_case(self.field.text().trim()) {
+                scored.push((u32::MAX, at, places));
+            } else if let Some(score) = pattern.indices(title, &mut matcher, &mut places) {
                 scored.push((score * 2 + 1, at, places));
             } else if let Some(score) = pattern.score(Utf32Str::new(&entry.doc, &mut letters), &mut matcher) {
                 scored.push((score, at, Vec::new()));
@@ -82,6 +86,7 @@ fn entries(keys: &Keys, company: &Company) -> Vec<Entry> {
     let mut list: Vec<Entry> = commands
         .map(|entry| Entry {
             kind: "command",
+            code: "",
             title: entry.title.to_owned(),
             doc: entry.doc.to_owned(),
             keys: keys.label(entry.action).unwrap_or_default(),
@@ -91,13 +96,15 @@ fn entries(keys: &Keys, company: &Company) -> Vec<Entry> {
     let callable = CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind != Kind::Time);
     list.extend(callable.map(|spec| Entry {
         kind: "tool",
+        code: spec.code,
         title: spec.name.to_owned(),
         doc: spec.summary.to_owned(),
-        keys: String::new(),
+        keys: spec.code.to_owned(),
         effect: Effect::ShowTool(spec.name),
     }));
     list.extend(company.seen.known_groups.iter().map(|group| Entry {
         kind: "group",
+        code: "",
         title: group.id().to_owned(),
         doc: "customers of this group by status".to_owned(),
         keys: String::new(),
@@ -108,6 +115,7 @@ fn entries(keys: &Keys, company: &Company) -> Vec<Entry> {
     }));
     list.extend(database::tables().iter().map(|table| Entry {
         kind: "table",
+        code: "",
         title: table.name.clone(),
         doc: table.description.clone(),
         keys: String::new(),
@@ -197,5 +205,28 @@ impl Palette {
         canvas.text(doc, &entry.doc, role(Role::Dim));
         let keys = Rect { x: row.right().saturating_sub(9), width: 9.min(row.width), ..row };
         canvas.aligned(keys, &entry.keys, role(Role::Key), Align::Right);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::company;
+
+    #[test]
+    fn a_code_finds_its_tool_before_anything_else() {
+        let mut palette = Palette::new(&Keys::shipped(), &company());
+        for spec in CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind != Kind::Time) {
+            for typed in [spec.code.to_owned(), format!(" {} ", spec.code.to_lowercase())] {
+                palette.field = Field::of(typed);
+                palette.find();
+                let first = palette.found.first().map(|(at, _)| palette.entries[*at].title.as_str());
+                assert_eq!(first, Some(spec.name));
+            }
+        }
+        palette.field = Field::of("sql");
+        palette.find();
+        let first = palette.found.first().map(|(at, _)| palette.entries[*at].title.as_str());
+        assert_eq!(first, Some("SQL"), "a screen keeps its name");
     }
 }

@@ -16,7 +16,11 @@ use crate::console::theme::Role;
 use crate::console::widgets::Field;
 use crate::console::widgets::table::first_row;
 use crate::database;
-use crate::tools::{CATALOGUE, Kind};
+use crate::session::JournalEntry;
+use crate::tools::{CATALOGUE, Kind, find};
+
+/// Tools that stand first before anything is typed.
+const RECENT: usize = 5;
 
 /// Something that can be chosen.
 struct Entry {
@@ -32,6 +36,8 @@ struct Entry {
 /// The palette.
 pub struct Palette {
     entries: Vec<Entry>,
+    /// Tools that were called last, the newest first.
+    recent: Vec<&'static str>,
     field: Field,
     /// Entries that match, the best first, with the letters that matched.
     found: Vec<(usize, Vec<u32>)>,
@@ -43,6 +49,7 @@ impl Palette {
     pub fn new(keys: &Keys, company: &Company) -> Palette {
         let mut palette = Palette {
             entries: entries(keys, company),
+            recent: recent(company),
             field: Field::default(),
             found: Vec::new(),
             selected: 0,
@@ -67,7 +74,14 @@ impl Palette {
                 scored.push((score, at, Vec::new()));
             }
         }
-        scored.sort_by(|left, right| right.0.cmp(&left.0).then(left.1.cmp(&right.1)));
+        // Before anything is typed, the tools that were used last come first.
+        let recent = |at: usize| match self.field.is_empty() {
+            true => self.recent.iter().position(|name| *name == self.entries[at].title),
+            false => None,
+        };
+        scored.sort_by_key(|(score, at, _)| {
+            (recent(*at).unwrap_or(usize::MAX), std::cmp::Reverse(*score), *at)
+        });
         self.found = scored.into_iter().map(|(_, at, places)| (at, places)).collect();
         self.selected = 0;
     }
@@ -77,6 +91,33 @@ impl Palette {
             Some((at, _)) => Outcome::close_with(vec![self.entries[*at].effect.clone()]),
             None => Outcome::stay(),
         }
+    }
+}
+
+/// Tools that were called last, the newest first, each once.
+fn recent(company: &Company) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for entry in company.journal.iter().rev() {
+        let JournalEntry::Call { tool, .. } = entry else { continue };
+        let Some(name) = find(tool).map(|tool| tool.spec().name) else { continue };
+        if !names.contains(&name) {
+            names.push(name);
+        }
+        if names.len() == RECENT {
+            break;
+        }
+    }
+    names
+}
+
+/// Why an entry can do nothing now.
+fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
+    let acts = |tool: &str| find(tool).is_some_and(|tool| tool.spec().kind.acts());
+    match effect {
+        Effect::Do(Action::NextWeek | Action::Undo) if !company.is_running() => Some("the run is over"),
+        Effect::Do(Action::Report) if company.weeks.is_empty() => Some("no week has passed yet"),
+        Effect::ShowTool(tool) if acts(tool) && !company.is_running() => Some("the run is over"),
+        _ => None,
     }
 }
 
@@ -121,6 +162,11 @@ fn entries(keys: &Keys, company: &Company) -> Vec<Entry> {
         keys: String::new(),
         effect: Effect::EditSql(format!("SELECT * FROM {} LIMIT 100", table.name)),
     }));
+    for entry in &mut list {
+        if let Some(why) = why_not(&entry.effect, company) {
+            entry.doc = format!("not now, {why}: {}", entry.doc);
+        }
+    }
     list
 }
 
@@ -228,5 +274,21 @@ mod tests {
         palette.find();
         let first = palette.found.first().map(|(at, _)| palette.entries[*at].title.as_str());
         assert_eq!(first, Some("SQL"), "a screen keeps its name");
+    }
+
+    #[test]
+    fn tools_used_last_stand_first_and_what_cannot_be_done_says_why() {
+        let mut session = crate::console::test_kit::session();
+        let fresh = Palette::new(&Keys::shipped(), &Company::of(&session));
+        let report = fresh.entries.iter().find(|entry| entry.title == "last week").expect("a command");
+        assert!(report.doc.starts_with("not now, no week has passed yet: "), "{}", report.doc);
+        for (tool, arguments) in [("set_prices", r#"{"A": 12}"#), ("set_capacity_tier", r#"{"tier": 2}"#)] {
+            let arguments = serde_json::from_str(arguments).expect("JSON");
+            session.call(tool, &arguments, crate::session::Via::Form).expect(tool);
+        }
+        let palette = Palette::new(&Keys::shipped(), &Company::of(&session));
+        let first: Vec<&str> =
+            palette.found.iter().take(2).map(|(at, _)| palette.entries[*at].title.as_str()).collect();
+        assert_eq!(first, ["set_capacity_tier", "set_prices"]);
     }
 }

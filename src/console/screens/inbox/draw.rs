@@ -327,7 +327,8 @@ fn money_notes(
             }
         }
     } else {
-        notes.push((format!("compute est.: {} units/seat and day, {source}", grouped(units, 1)), Role::Dim));
+        let text = format!("compute est.: {} units/seat/day, {source}", grouped(units, 0));
+        notes.push((text, Role::Dim));
     }
     notes
 }

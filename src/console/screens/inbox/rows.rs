@@ -1,7 +1,7 @@
 //! The list of threads: its columns, and a thread as a row.
 
 use super::View;
-use super::model::{PATIENCE, State, Thread};
+use super::model::{State, Thread};
 use super::offer::in_words;
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column};
@@ -9,7 +9,7 @@ use crate::notation::grouped;
 
 /// Columns of the list.
 pub(super) fn columns(view: View) -> Vec<Column> {
-    let day = if view == View::Waiting { "waited" } else { "since" };
+    let day = if view == View::Waiting { "left" } else { "since" };
     vec![
         Column::words("✓"),
         Column::numbers(day),
@@ -26,13 +26,12 @@ pub(super) fn columns(view: View) -> Vec<Column> {
 pub(super) fn row_of(thread: &Thread, marked: bool) -> Vec<Cell> {
     let day = match (thread.state, thread.turns.last()) {
         (State::Waiting(left), _) => {
-            let waited = PATIENCE.saturating_sub(left);
-            let role = match waited {
-                0..=1 => Role::Text,
-                2..=4 => Role::Warning,
-                _ => Role::Bad,
+            let (mark, role) = match left {
+                0..=2 => ("! ", Role::Bad),
+                3..=5 => ("", Role::Warning),
+                _ => ("", Role::Text),
             };
-            Cell::number(f64::from(waited), format!("{waited}/{PATIENCE} d")).role(role)
+            Cell::number(f64::from(left), format!("{mark}{left} d")).role(role)
         }
         (_, Some(turn)) => Cell::number(f64::from(turn.day), format!("day {}", turn.day)).role(Role::Dim),
         (_, None) => Cell::words("–").role(Role::Dim),

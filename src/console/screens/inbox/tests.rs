@@ -224,8 +224,7 @@ fn pictures_hold_list_thread_offer_and_preview() {
     let (mut screen, company) = crowded_screen();
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        for words in
-            ["200 wait for you", "waited", "company", "new lead", "retention", "Your offer", "a seat"]
+        for words in ["200 wait for you", "left", "company", "new lead", "retention", "Your offer", "a seat"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
@@ -306,7 +305,7 @@ fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() 
     let margin = crate::notation::percent(money.margin().expect("a margin"), 0);
     let compute = crate::notation::dollars(money.compute.expect("compute"));
     let text = drawn(&screen, &company, 120, 37);
-    for words in ["compute", "margin", &margin, &compute, "units/seat and day", "days left"] {
+    for words in ["compute", "margin", &margin, &compute, "units/seat/day", " left "] {
         assert!(text.contains(words), "{words} in\n{text}");
     }
     assert!(drawn(&screen, &company, 200, 57).contains("vs. ask"));

@@ -83,10 +83,13 @@ impl Group<'_> {
         let mut lines = vec![line(day, head.clone(), Role::Strong)];
         if let Some(week) = self.figures {
             lines[0].term = "cash-change";
+            // What is bought on a decision day is paid before the week that follows it.
             lines[0].sql = Some(format!(
-                "SELECT category, sum(amount) AS amount FROM ledger\nWHERE day > {} AND day <= {} GROUP BY 1 ORDER BY 2",
-                week.day - week.days_run,
-                week.day
+                "SELECT category, sum(amount) AS amount FROM ledger\nWHERE category <> 'initial_funding' AND CASE\n    \
+                 WHEN category IN ('market_research', 'group_research', 'research_project') THEN day >= {from} AND day < {to}\n    \
+                 ELSE day > {from} AND day <= {to} END\nGROUP BY 1 ORDER BY 2",
+                from = week.day - week.days_run,
+                to = week.day
             ));
         }
         if let Some(filed) = &self.filed {

@@ -13,7 +13,7 @@ use crate::console::widgets::{Axis, Line, chart};
 use crate::notation::grouped;
 use crate::session::Terms;
 
-/// Marks of one to three news of rivals in a column, and of more.
+/// Marks of how many news of rivals a column holds, beside the fullest one.
 const MARKS: [&str; 4] = ["▁", "▃", "▅", "█"];
 
 /// Day on which the next measurement is published.
@@ -120,10 +120,12 @@ fn draw_curve(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &Vie
         }
         canvas.text(Rect { x: to, width: 1, ..told }, "◆", role);
     }
-    for (x, count) in (plot.left()..plot.right()).map(|x| (x, count_at(view.news, |day| column(day) == x))) {
-        if count > 0 {
-            canvas.text(Rect { x, width: 1, ..rivals }, MARKS[count.min(MARKS.len()) - 1], Role::Series(1));
-        }
+    let counts: Vec<(u16, usize)> =
+        (plot.left()..plot.right()).map(|x| (x, count_at(view.news, |day| column(day) == x))).collect();
+    let most = counts.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
+    for (x, count) in counts.into_iter().filter(|(_, count)| *count > 0) {
+        let level = (count * MARKS.len()).div_ceil(most) - 1;
+        canvas.text(Rect { x, width: 1, ..rivals }, MARKS[level.min(MARKS.len() - 1)], Role::Series(1));
     }
 }
 

@@ -146,8 +146,8 @@ fn draw_offers(
     pane: usize,
 ) {
     let head =
-        format!("{:>4} {:<18}{:>9}{:>6}{:>8}{:>9}  ", "tier", "project", "cost", "days", "quality", "$/0.01");
-    canvas.text(area, &head, Role::Header);
+        format!("{:>4} {:<17}{:>9}{:>6}{:>8}{:>9}  ", "tier", "project", "cost", "days", "quality", "$/0.01");
+    canvas.text(area, head.trim_end(), Role::Header);
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
     if selected.is_some() {
         canvas.page = below.height.max(1);
@@ -172,17 +172,23 @@ fn draw_offers(
         if !affordable {
             remarks.push("! beyond cash".to_owned());
         }
+        // Where words do not fit, a sign says that it costs more than there is.
+        let remarks = match row.width < 70 {
+            true if !affordable => "!".to_owned(),
+            true => String::new(),
+            false => remarks.join(", "),
+        };
         canvas.clear(row, role);
         let text = format!(
-            "{:>4} {:<18}{:>9}{:>6}{:>+8.3}{each:>9}  {}",
+            "{:>4} {:<17}{:>9}{:>6}{:>+8.3}{each:>9} {}",
             offer.tier,
-            fit(&offer.name, 18),
+            fit(&offer.name, 17),
             format!("${}", compact(offer.cost)),
             grouped(offer.days, 0),
             offer.boost,
-            remarks.join(", ")
+            remarks
         );
-        canvas.text(row, &text, role);
+        canvas.text(row, text.trim_end(), role);
         canvas.click(row, Click::Row(pane, before + at));
     }
 }

@@ -174,6 +174,22 @@ mod tests {
     }
 
     #[test]
+    fn a_thread_is_our_post_its_comments_and_what_it_answers() {
+        let filter = Filter { thread: Some((2, Some(6))), ..Filter::default() };
+        for (kind, number, answers, belongs) in [
+            (Kind::Own, 2, Some(6), true),
+            (Kind::Own, 6, None, false),
+            (Kind::Comments, 9, Some(2), true),
+            (Kind::Comments, 2, Some(1), false),
+            (Kind::Customers, 6, None, true),
+            (Kind::Press, 2, None, false),
+        ] {
+            assert_eq!(filter.takes(&post(kind, number, 7, answers)), belongs, "{kind:?} {number}");
+        }
+        assert_eq!(filter.words(), "thread of our post 2");
+    }
+
+    #[test]
     fn weeks_without_posts_count_as_none() {
         let posts = [post(Kind::Press, 1, 1, None), post(Kind::Press, 2, 15, None)];
         assert_eq!(by_week(&posts, 3, |_| true), [(1.0, 1.0), (2.0, 0.0), (3.0, 1.0)]);

@@ -102,7 +102,7 @@ fn a_post_opens_with_its_comments() {
     assert!(act(&mut screen, Action::Open, &company).is_empty());
     assert_eq!((screen.focus, screen.shown.len() as u32), (FEED, screen.own[0].comments + 1));
     let seen = drawn(&screen, &company, 120, 37);
-    assert!(seen.contains("thread of our post 1: ") && seen.contains("↳ "), "{seen}");
+    assert!(seen.contains("thread of our post 1: ") && seen.contains("our post 1 · "), "{seen}");
     let effects = act(&mut screen, Action::Open, &company);
     let [Effect::ShowText(title, text)] = &effects[..] else { panic!("{effects:?}") };
     assert!(

@@ -109,7 +109,7 @@ fn draw_form(
 ) {
     let spec = form.spec;
     canvas.click(area, Click::Pane(1));
-    let title = format!("{} · {} · {}", spec.name, spec.code, spec.module.id());
+    let title = format!("{} · {} · {}", spec.name, spec.module.id(), spec.code);
     let inside = canvas.pane(area, &title, when(spec), focused);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let summary = wrapped(&format!("{}.", spec.summary), inside.width as usize);

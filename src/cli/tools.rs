@@ -25,7 +25,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             format!("{all:#}\n")
         }
         (Some(name), json) => {
-            let tool = find(name).ok_or_else(|| {
+            let tool = find(name).or_else(|| catalogue::find_code(name)).ok_or_else(|| {
                 Failure::usage(format!(
                     "there is no tool {name}; near it: {}",
                     catalogue::nearest(name).join(", ")

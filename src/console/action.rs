@@ -161,7 +161,7 @@ actions! {
         Palette "palette" "palette" "Find screens, tools, groups, queries, tables and commands by typing."
         Help "help" "help" "Show every key that works here."
         Changes "changes" "changes" "Show the settings changed since the last week."
-        Undo "undo" "undo" "Take back the last setting of this week."
+        Undo "undo" "undo" "Take back the last setting of this week, and say what it was and is again; c lists the changes."
         FocusNext "focus-next" "next pane" "Move to the next pane."
         FocusPrevious "focus-previous" "previous pane" "Move to the previous pane."
         Report "report" "last week" "Show the report of the last week again."
@@ -203,6 +203,7 @@ actions! {
         ClearCell "clear-cell" "0" "Set the cell to nothing."
         ResetForm "reset-form" "reset" "Forget the draft and show the present values."
         CopyCall "copy-call" "copy call" "Copy the equivalent call."
+        SaveCalls "save-calls" "calls to file" "Write the calls of this week and those of drafts to calls.txt in the folder of the run."
     }
     Query {
         RunQuery "run-query" "run" "Run the statement."

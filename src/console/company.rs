@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
+use super::posts::{self, Posts};
 use crate::session::{
     DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Observation, RunningStudy, Session,
     Terms, WeekFigures,
@@ -45,8 +46,8 @@ pub struct Company {
     pub costs: Value,
     /// Answer of list_research_projects.
     pub projects: Value,
-    /// Answer of get_social_posts: everything that people have written.
-    pub posts: Value,
+    /// Everything that people have written, as get_social_posts tells it.
+    pub posts: Posts,
     /// Answer of get_market_overview.
     pub market: Value,
     /// Answers of get_group_insights for every known group.
@@ -62,6 +63,11 @@ pub struct Company {
 impl Company {
     /// What a session shows now.
     pub fn of(session: &Session) -> Company {
+        Company::after(session, None)
+    }
+
+    /// The same, with what an earlier look at this run has read already.
+    pub fn after(session: &Session, before: Option<&Company>) -> Company {
         let settings =
             CATALOGUE.iter().map(|tool| tool.spec().name).map(|name| (name, session.current(name)));
         let read = |tool: &str| session.look_up(tool, &Value::Object(Map::new())).unwrap_or(Value::Null);
@@ -81,7 +87,7 @@ impl Company {
             settings: settings.collect(),
             costs: read("get_cost_info"),
             projects: read("list_research_projects"),
-            posts: session.look_up("get_social_posts", &json!({ "limit": -1 })).unwrap_or(Value::Null),
+            posts: posts::read(session, before.map(|company| &company.posts)),
             market: read("get_market_overview"),
             insights: insights(session),
             terms: session.terms(),

@@ -19,6 +19,7 @@ pub mod keys;
 pub mod manual;
 pub mod message;
 pub mod photograph;
+pub mod posts;
 pub mod readings;
 pub mod rehearsal;
 pub mod screens;

@@ -122,7 +122,8 @@ impl Workers {
         };
         let for_session = desks.clone();
         let session = std::thread::spawn(move || {
-            let thread = SessionThread { session: None, news, desks: for_session, configuration };
+            let thread =
+                SessionThread { session: None, company: None, news, desks: for_session, configuration };
             thread.run(&todo);
         });
         Workers { jobs, desks, session: Some(session) }
@@ -152,6 +153,8 @@ impl Workers {
 
 struct SessionThread {
     session: Option<Session>,
+    /// The company as it was shown last.
+    company: Option<Arc<Company>>,
     news: Sender<Message>,
     desks: Desks,
     configuration: Configuration,
@@ -214,12 +217,12 @@ impl SessionThread {
             }
             Job::Close | Job::End => {
                 let problem = self.session.as_mut().and_then(|session| session.save().err());
-                self.session = None;
+                (self.session, self.company) = (None, None);
                 self.say(News::Closed(problem.map(|error| error.to_string())));
             }
             other => {
                 if let Some(session) = &mut self.session {
-                    let news = Self::with_run(session, other, &self.news, &self.desks);
+                    let news = Self::with_run(session, &mut self.company, other, &self.news, &self.desks);
                     if let Some(news) = news {
                         self.say(news);
                     }
@@ -249,22 +252,34 @@ impl SessionThread {
             }
         }
         let company = Arc::new(Company::of(&session));
+        self.company = Some(company.clone());
         self.session = Some(session);
         self.say(News::Opened(company, interrupt));
     }
 
-    fn with_run(session: &mut Session, job: Job, news: &Sender<Message>, desks: &Desks) -> Option<News> {
+    fn with_run(
+        session: &mut Session,
+        shown: &mut Option<Arc<Company>>,
+        job: Job,
+        news: &Sender<Message>,
+        desks: &Desks,
+    ) -> Option<News> {
+        let mut company = |session: &Session| {
+            let company = Arc::new(Company::after(session, shown.as_deref()));
+            *shown = Some(company.clone());
+            company
+        };
         match job {
             Job::Check(number, tool, arguments) => {
                 Some(News::Checked(number, session.check(tool, &arguments)))
             }
             Job::Call(tool, arguments) => {
                 let answer = session.call(tool, &arguments, Via::Form);
-                Some(News::Called(tool, answer, Arc::new(Company::of(session))))
+                Some(News::Called(tool, answer, company(session)))
             }
             Job::Undo => {
                 let back = session.undo(Via::Palette);
-                Some(News::Undone(back, Arc::new(Company::of(session))))
+                Some(News::Undone(back, company(session)))
             }
             Job::Advance(rationale, forecasts) => {
                 let mut told = Instant::now();
@@ -274,7 +289,7 @@ impl SessionThread {
                         let _ = news.send(Message::News(News::Day(report.figures.day, report.week_end)));
                     }
                 });
-                Some(News::Advanced(week.map(Box::new), Arc::new(Company::of(session))))
+                Some(News::Advanced(week.map(Box::new), company(session)))
             }
             Job::Ask(question) => {
                 // A database that cannot be written answers with what it has; the desk says so if it cannot.
@@ -292,7 +307,7 @@ impl SessionThread {
             }
             Job::SetMemo(text) => {
                 let kept = session.set_memo(&text);
-                Some(News::MemoKept(kept, Arc::new(Company::of(session))))
+                Some(News::MemoKept(kept, company(session)))
             }
             Job::List(_)
             | Job::Course(..)

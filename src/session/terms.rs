@@ -33,6 +33,8 @@ pub struct Terms {
     pub economy_every_days: u32,
     /// Days from a measurement to its publication.
     pub economy_lag_days: u32,
+    /// Names under which rivals appear in the news.
+    pub rivals: Vec<String>,
 }
 
 impl Terms {
@@ -71,6 +73,7 @@ impl Session {
             targets: (params.group_research.min_target_level, params.group_research.max_target_level),
             economy_every_days: params.economy.macro_pmi_update_interval_days,
             economy_lag_days: params.economy.macro_pmi_publication_delay_days,
+            rivals: params.competitor.competitor_names.clone(),
         }
     }
 

@@ -66,6 +66,11 @@ pub fn find(name: &str) -> Option<&'static dyn Tool> {
     })
 }
 
+/// The tool with this code; case does not count.
+pub fn find_code(code: &str) -> Option<&'static dyn Tool> {
+    CATALOGUE.into_iter().find(|tool| tool.spec().code.eq_ignore_ascii_case(code.trim()))
+}
+
 /// Up to three names of tools that look like a name that does not exist.
 pub fn nearest(name: &str) -> Vec<&'static str> {
     crate::notation::nearest(name, CATALOGUE.iter().map(|tool| tool.spec().name))
@@ -130,6 +135,22 @@ mod tests {
         let missing: Vec<&&str> = EXPECTED.iter().filter(|name| !own.contains(name)).collect();
         let surplus: Vec<&&str> = own.iter().filter(|name| !EXPECTED.contains(name)).collect();
         assert!(missing.is_empty() && surplus.is_empty(), "missing: {missing:?}, surplus: {surplus:?}");
+    }
+
+    #[test]
+    fn codes_are_short_capitals_and_unique() {
+        let mut codes: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().code).collect();
+        for code in &codes {
+            assert!(
+                (3..=5).contains(&code.len()) && code.bytes().all(|it| it.is_ascii_uppercase()),
+                "{code}"
+            );
+        }
+        codes.sort_unstable();
+        codes.dedup();
+        assert_eq!(codes.len(), CATALOGUE.len());
+        assert_eq!(find_code(" prc ").map(|tool| tool.spec().name), Some("set_prices"));
+        assert!(find_code("PR").is_none() && find_code("set_prices").is_none());
     }
 
     #[test]

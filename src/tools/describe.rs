@@ -29,7 +29,7 @@ pub fn overview() -> String {
     for module in Module::ALL {
         let _ = writeln!(text, "{}", module.id());
         for spec in super::CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.module == module) {
-            let _ = writeln!(text, "  {:<24} {}", spec.name, spec.summary);
+            let _ = writeln!(text, "  {:<5} {:<26} {}", spec.code, spec.name, spec.summary);
         }
     }
     text
@@ -37,7 +37,7 @@ pub fn overview() -> String {
 
 /// Everything about one tool.
 pub fn manual(spec: &Spec) -> String {
-    let mut text = format!("{}.{}: {}\n", spec.module.id(), spec.name, spec.summary);
+    let mut text = format!("{}.{} ({}): {}\n", spec.module.id(), spec.name, spec.code, spec.summary);
     for argument in spec.arguments {
         let _ = writeln!(text, "  {}", argument_line(argument));
     }
@@ -88,6 +88,7 @@ pub fn as_json(tool: &dyn Tool) -> Value {
         .collect();
     json!({
         "name": spec.name,
+        "code": spec.code,
         "module": spec.module.id(),
         "kind": spec.kind.id(),
         "summary": spec.summary,

@@ -6,6 +6,8 @@
 pub struct Spec {
     /// Name, for instance `set_prices`.
     pub name: &'static str,
+    /// Three to five capitals by which it is found at once, for instance `PRC`.
+    pub code: &'static str,
     /// Module of the client library it belongs to.
     pub module: Module,
     /// What calling it means.

@@ -112,7 +112,7 @@ fn a_purchase_asks_once_and_a_refusal_stands_at_its_cell() {
     console.press("'1' enter");
     console.shows("tier 1 is already running");
     console.press("y");
-    assert_eq!(console.copied, [r#"research.start_research_project({"tier":1})"#]);
+    assert_eq!(console.copied, [r#"research.start_research_project({"tier": 1})"#]);
 }
 
 #[test]

@@ -11,9 +11,10 @@ use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::report::Report;
 use crate::console::message::News;
 use crate::console::screens::{Look, ScreenId};
+use crate::console::text::number;
 use crate::console::tour::Tour;
 use crate::notation::{dollars, signed_dollars};
-use crate::session::{Interrupt, Refusal, Week};
+use crate::session::{Change, Interrupt, Refusal, Week};
 
 impl App {
     pub(super) fn news(&mut self, news: News) {
@@ -104,8 +105,7 @@ impl App {
                 self.changed(company.clone());
                 match back {
                     Ok(changes) => {
-                        let names: Vec<&str> = changes.iter().map(|change| change.setting.as_str()).collect();
-                        self.say(format!("taken back: {}", names.join(", ")));
+                        self.say(format!("taken back: {}", in_words(changes)));
                     }
                     Err(refusal) => self.complain(refusal.to_string()),
                 }
@@ -240,5 +240,16 @@ impl App {
         } else {
             Layer::Dialog(Box::new(report))
         });
+    }
+}
+
+/// Changes in a sentence: what was set, from what to what.
+fn in_words(changes: &[Change]) -> String {
+    let one = |change: &Change| format!("{} {} → {}", change.setting, number(change.old), number(change.new));
+    match changes {
+        [first, second, rest @ ..] if !rest.is_empty() => {
+            format!("{}, {} and {} more", one(first), one(second), rest.len())
+        }
+        _ => changes.iter().map(one).collect::<Vec<_>>().join(", "),
     }
 }

@@ -16,12 +16,17 @@ use crate::console::widgets::Field;
 use crate::console::widgets::table::first_row;
 use crate::database;
 use crate::glossary::{self, Subject};
-use crate::session::Library;
-use crate::tools::{CATALOGUE, Kind};
+use crate::session::{JournalEntry, Library};
+use crate::tools::{CATALOGUE, Kind, find};
+
+/// Tools that stand first before anything is typed.
+const RECENT: usize = 5;
 
 /// Something that can be chosen.
 struct Entry {
     kind: &'static str,
+    /// What finds it at once when it is typed whole; empty if it has none.
+    code: &'static str,
     title: String,
     doc: String,
     keys: String,
@@ -31,6 +36,8 @@ struct Entry {
 /// The palette.
 pub struct Palette {
     entries: Vec<Entry>,
+    /// Tools that were called last, the newest first.
+    recent: Vec<&'static str>,
     field: Field,
     /// Entries that match, the best first, with the letters that matched.
     found: Vec<Found>,
@@ -42,6 +49,7 @@ impl Palette {
     pub fn new(keys: &Keys, company: &Company, library: &Library) -> Palette {
         let mut palette = Palette {
             entries: entries(keys, company, library),
+            recent: recent(company),
             field: Field::default(),
             found: Vec::new(),
             selected: 0,
@@ -51,13 +59,29 @@ impl Palette {
     }
 
     fn find(&mut self) {
+        let typed = self.field.text().trim();
         let all = self.entries.iter().map(|entry| (entry.title.as_str(), entry.doc.as_str()));
-        self.found = fuzzy::find(self.field.text(), all);
-        // What acts on the company comes before what only asks about it; a word of an explanation counts least.
-        self.found.sort_by_key(|(at, letters)| match (letters.is_empty(), self.entries[*at].kind) {
-            (true, _) => 2,
-            (false, "query") => 1,
-            (false, _) => 0,
+        self.found = fuzzy::find(typed, all);
+        let coded = self
+            .entries
+            .iter()
+            .position(|entry| !entry.code.is_empty() && entry.code.eq_ignore_ascii_case(typed));
+        if let Some(at) = coded.filter(|at| self.found.iter().all(|(found, _)| found != at)) {
+            self.found.push((at, Vec::new()));
+        }
+        // A code says exactly what is meant. What acts on the company comes before what only asks about it; a word of an
+        // explanation counts least. Before anything is typed, the tools that were used last come first.
+        let entries = &self.entries;
+        let recent = |at: usize| match typed.is_empty() {
+            true => self.recent.iter().position(|name| *name == entries[at].title),
+            false => None,
+        };
+        self.found.sort_by_key(|(at, letters)| match (letters.is_empty(), entries[*at].kind) {
+            _ if typed.is_empty() => recent(*at).unwrap_or(usize::MAX),
+            _ if entries[*at].code.eq_ignore_ascii_case(typed) => 0,
+            (true, _) => 3,
+            (false, "query") => 2,
+            (false, _) => 1,
         });
         self.selected = 0;
     }
@@ -70,12 +94,40 @@ impl Palette {
     }
 }
 
+/// Tools that were called last, the newest first, each once.
+fn recent(company: &Company) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for entry in company.journal.iter().rev() {
+        let JournalEntry::Call { tool, .. } = entry else { continue };
+        let Some(name) = find(tool).map(|tool| tool.spec().name) else { continue };
+        if !names.contains(&name) {
+            names.push(name);
+        }
+        if names.len() == RECENT {
+            break;
+        }
+    }
+    names
+}
+
+/// Why an entry can do nothing now.
+fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
+    let acts = |tool: &str| find(tool).is_some_and(|tool| tool.spec().kind.acts());
+    match effect {
+        Effect::Do(Action::NextWeek | Action::Undo) if !company.is_running() => Some("the run is over"),
+        Effect::Do(Action::Report) if company.weeks.is_empty() => Some("no week has passed yet"),
+        Effect::ShowTool(tool) if acts(tool) && !company.is_running() => Some("the run is over"),
+        _ => None,
+    }
+}
+
 fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
     let commands =
         ACTIONS.iter().filter(|entry| entry.scope == Scope::Global && entry.action != Action::Palette);
     let mut list: Vec<Entry> = commands
         .map(|entry| Entry {
             kind: "command",
+            code: "",
             title: entry.title.to_owned(),
             doc: entry.doc.to_owned(),
             keys: keys.label(entry.action).unwrap_or_default(),
@@ -85,13 +137,15 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
     let callable = CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind != Kind::Time);
     list.extend(callable.map(|spec| Entry {
         kind: "tool",
+        code: spec.code,
         title: spec.name.to_owned(),
         doc: spec.summary.to_owned(),
-        keys: String::new(),
+        keys: spec.code.to_owned(),
         effect: Effect::ShowTool(spec.name),
     }));
     list.extend(company.seen.known_groups.iter().map(|group| Entry {
         kind: "group",
+        code: "",
         title: group.id().to_owned(),
         doc: "customers of this group by status".to_owned(),
         keys: String::new(),
@@ -102,6 +156,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
     }));
     list.extend(glossary::terms().iter().map(|term| Entry {
         kind: "term",
+        code: "",
         title: term.title.clone(),
         doc: term.text.clone(),
         keys: String::new(),
@@ -109,6 +164,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
     }));
     list.extend(library.queries().iter().map(|query| Entry {
         kind: "query",
+        code: "",
         title: query.title.clone(),
         doc: query.what.clone(),
         keys: String::new(),
@@ -116,11 +172,17 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
     }));
     list.extend(database::tables().iter().map(|table| Entry {
         kind: "table",
+        code: "",
         title: table.name.clone(),
         doc: table.description.clone(),
         keys: String::new(),
         effect: Effect::EditSql(format!("SELECT * FROM {} LIMIT 100", table.name)),
     }));
+    for entry in &mut list {
+        if let Some(why) = why_not(&entry.effect, company) {
+            entry.doc = format!("not now, {why}: {}", entry.doc);
+        }
+    }
     list
 }
 
@@ -201,5 +263,44 @@ impl Palette {
         canvas.text(doc, &entry.doc, role(Role::Dim));
         let keys = Rect { x: row.right().saturating_sub(9), width: 9.min(row.width), ..row };
         canvas.aligned(keys, &entry.keys, role(Role::Key), Align::Right);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::company;
+
+    #[test]
+    fn a_code_finds_its_tool_before_anything_else() {
+        let mut palette = Palette::new(&Keys::shipped(), &company(), &Library::shipped());
+        for spec in CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind != Kind::Time) {
+            for typed in [spec.code.to_owned(), format!(" {} ", spec.code.to_lowercase())] {
+                palette.field = Field::of(typed);
+                palette.find();
+                let first = palette.found.first().map(|(at, _)| palette.entries[*at].title.as_str());
+                assert_eq!(first, Some(spec.name));
+            }
+        }
+        palette.field = Field::of("sql");
+        palette.find();
+        let first = palette.found.first().map(|(at, _)| palette.entries[*at].title.as_str());
+        assert_eq!(first, Some("SQL"), "a screen keeps its name");
+    }
+
+    #[test]
+    fn tools_used_last_stand_first_and_what_cannot_be_done_says_why() {
+        let mut session = crate::console::test_kit::session();
+        let fresh = Palette::new(&Keys::shipped(), &Company::of(&session), &Library::shipped());
+        let report = fresh.entries.iter().find(|entry| entry.title == "last week").expect("a command");
+        assert!(report.doc.starts_with("not now, no week has passed yet: "), "{}", report.doc);
+        for (tool, arguments) in [("set_prices", r#"{"A": 12}"#), ("set_capacity_tier", r#"{"tier": 2}"#)] {
+            let arguments = serde_json::from_str(arguments).expect("JSON");
+            session.call(tool, &arguments, crate::session::Via::Form).expect(tool);
+        }
+        let palette = Palette::new(&Keys::shipped(), &Company::of(&session), &Library::shipped());
+        let first: Vec<&str> =
+            palette.found.iter().take(2).map(|(at, _)| palette.entries[*at].title.as_str()).collect();
+        assert_eq!(first, ["set_capacity_tier", "set_prices"]);
     }
 }

@@ -157,6 +157,7 @@ pub(super) fn tools(name: Option<&str>, arguments: &[Argument]) -> Result<Answer
     };
     let tool = tools::find(name)
         .or_else(|| tool_called(name))
+        .or_else(|| tools::catalogue::find_code(name))
         .ok_or_else(|| problem(arguments, &not_there("no tool", name, tools::catalogue::nearest(name))))?;
     Ok(Answer::done("tools", describe::manual(tool.spec()), describe::as_json(tool)))
 }

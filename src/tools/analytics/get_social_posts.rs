@@ -15,6 +15,7 @@ const ANY: ArgumentKind =
 
 static SPEC: Spec = Spec {
     name: "get_social_posts",
+    code: "FEED",
     module: Module::Analytics,
     kind: Kind::Read,
     summary: "Read what people write in public, newest first",

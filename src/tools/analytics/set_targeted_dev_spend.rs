@@ -16,6 +16,7 @@ pub struct SetTargetedDevSpend;
 
 static SPEC: Spec = Spec {
     name: "set_targeted_dev_spend",
+    code: "DEV",
     module: Module::Analytics,
     kind: Kind::Setting,
     summary: "Set development budgets for single groups; replaces the whole map",

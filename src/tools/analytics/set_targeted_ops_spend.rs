@@ -25,6 +25,7 @@ const fn scope(
 
 static SPEC: Spec = Spec {
     name: "set_targeted_ops_spend",
+    code: "TOPS",
     module: Module::Analytics,
     kind: Kind::Setting,
     summary: "Aim extra support budgets at groups, plans or customers",

@@ -10,6 +10,7 @@ pub struct ListDailyCalculations;
 
 static SPEC: Spec = Spec {
     name: "list_daily_calculations",
+    code: "CALCS",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "List the names of the kept calculations",

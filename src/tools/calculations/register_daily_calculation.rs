@@ -11,6 +11,7 @@ pub struct RegisterDailyCalculation;
 
 static SPEC: Spec = Spec {
     name: "register_daily_calculation",
+    code: "CALC",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "Keep a named calculation: it runs before every week, its output stands on the dashboard",

@@ -12,6 +12,7 @@ pub struct RemoveDailyCalculation;
 
 static SPEC: Spec = Spec {
     name: "remove_daily_calculation",
+    code: "UNCAL",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "Drop a named calculation",

@@ -12,6 +12,7 @@ pub struct DescribeTables;
 
 static SPEC: Spec = Spec {
     name: "describe_tables",
+    code: "DESC",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "Describe tables with their columns",

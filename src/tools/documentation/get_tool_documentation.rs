@@ -13,6 +13,7 @@ pub struct GetToolDocumentation;
 
 static SPEC: Spec = Spec {
     name: "get_tool_documentation",
+    code: "DOC",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "Tell everything about tools: arguments, effect, cost, refusals, results",

@@ -9,6 +9,7 @@ pub struct ListAllTables;
 
 static SPEC: Spec = Spec {
     name: "list_all_tables",
+    code: "TABS",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "List the tables that can be asked, in a line each",

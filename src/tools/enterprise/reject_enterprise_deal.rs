@@ -11,6 +11,7 @@ pub struct RejectEnterpriseDeal;
 
 static SPEC: Spec = Spec {
     name: "reject_enterprise_deal",
+    code: "REJ",
     module: Module::Enterprise,
     kind: Kind::OneShot,
     summary: "End open threads with companies without a deal",

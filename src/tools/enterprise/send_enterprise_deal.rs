@@ -15,6 +15,7 @@ const EXAMPLE: &str = r#"[[207, [["B", 31.5], ["C", 54]]]]"#;
 
 static SPEC: Spec = Spec {
     name: "send_enterprise_deal",
+    code: "DEAL",
     module: Module::Enterprise,
     kind: Kind::OneShot,
     summary: "Offer companies plans at prices per seat; answers a thread that is open, opens one otherwise",

@@ -9,6 +9,7 @@ pub struct GetCostInfo;
 
 static SPEC: Spec = Spec {
     name: "get_cost_info",
+    code: "COST",
     module: Module::Infrastructure,
     kind: Kind::Read,
     summary: "Show unit cost and quality of the model tiers, and the capacity prices",

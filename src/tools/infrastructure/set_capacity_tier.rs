@@ -12,6 +12,7 @@ pub struct SetCapacityTier;
 
 static SPEC: Spec = Spec {
     name: "set_capacity_tier",
+    code: "CAP",
     module: Module::Infrastructure,
     kind: Kind::Setting,
     summary: "Rent a capacity tier; usage above it overloads the service",

@@ -13,6 +13,7 @@ pub struct GetGroupInsights;
 
 static SPEC: Spec = Spec {
     name: "get_group_insights",
+    code: "INS",
     module: Module::Market,
     kind: Kind::Read,
     summary: "Tell the estimates of a known group, as of its last study",

@@ -12,6 +12,7 @@ pub struct GetMarketOverview;
 
 static SPEC: Spec = Spec {
     name: "get_market_overview",
+    code: "MKT",
     module: Module::Market,
     kind: Kind::Read,
     summary: "Show the known groups, how many are still unknown, and the latest published index",

@@ -13,6 +13,7 @@ pub struct ResearchGroup;
 
 static SPEC: Spec = Spec {
     name: "research_group",
+    code: "STUDY",
     module: Module::Market,
     kind: Kind::Purchase,
     summary: "Order a study of a known group: better estimates, or fresh ones",

@@ -11,6 +11,7 @@ pub struct ResearchMarket;
 
 static SPEC: Spec = Spec {
     name: "research_market",
+    code: "FIND",
     module: Module::Market,
     kind: Kind::Purchase,
     summary: "Pay for one attempt to find an unknown customer group",

@@ -9,6 +9,7 @@ pub struct PostSocialMedia;
 
 static SPEC: Spec = Spec {
     name: "post_social_media",
+    code: "POST",
     module: Module::Marketing,
     kind: Kind::OneShot,
     summary: "Publish a post of the company, or answer somebody's post",

@@ -25,6 +25,7 @@ const fn level(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Arg
 
 static SPEC: Spec = Spec {
     name: "set_ads_strength",
+    code: "INAD",
     module: Module::Marketing,
     kind: Kind::Setting,
     summary: "Set how much advertising the product itself shows; the scopes add up",

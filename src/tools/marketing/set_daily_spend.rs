@@ -18,6 +18,7 @@ const fn budget(name: &'static str, doc: &'static str) -> Argument {
 
 static SPEC: Spec = Spec {
     name: "set_daily_spend",
+    code: "OPS",
     module: Module::Marketing,
     kind: Kind::Setting,
     summary: "Set the daily budgets of operations and development",

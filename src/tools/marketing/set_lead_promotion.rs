@@ -20,6 +20,7 @@ const fn scope(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Arg
 
 static SPEC: Spec = Spec {
     name: "set_lead_promotion",
+    code: "LPR",
     module: Module::Marketing,
     kind: Kind::Setting,
     summary: "Grant discounts on the first bill of new individuals; the scopes add up",

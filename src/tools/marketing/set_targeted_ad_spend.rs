@@ -17,6 +17,7 @@ pub struct SetTargetedAdSpend;
 
 static SPEC: Spec = Spec {
     name: "set_targeted_ad_spend",
+    code: "ADS",
     module: Module::Marketing,
     kind: Kind::Setting,
     summary: "Set the advertising budget per channel and group; replaces the whole matrix",

@@ -18,6 +18,7 @@ const fn tier(name: &'static str, doc: &'static str) -> Argument {
 
 static SPEC: Spec = Spec {
     name: "set_model_tiers",
+    code: "TIER",
     module: Module::Pricing,
     kind: Kind::Setting,
     summary: "Choose the model tier that serves each plan",

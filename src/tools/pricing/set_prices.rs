@@ -19,6 +19,7 @@ const fn price(name: &'static str, doc: &'static str) -> Argument {
 
 static SPEC: Spec = Spec {
     name: "set_prices",
+    code: "PRC",
     module: Module::Pricing,
     kind: Kind::Setting,
     summary: "Set the monthly list price of one or more plans",

@@ -20,6 +20,7 @@ const fn scope(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Arg
 
 static SPEC: Spec = Spec {
     name: "set_promotion",
+    code: "PRO",
     module: Module::Pricing,
     kind: Kind::Setting,
     summary: "Grant standing discounts to subscribers; the scopes add up",

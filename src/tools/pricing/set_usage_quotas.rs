@@ -18,6 +18,7 @@ const fn quota(name: &'static str, doc: &'static str) -> Argument {
 
 static SPEC: Spec = Spec {
     name: "set_usage_quotas",
+    code: "QUO",
     module: Module::Pricing,
     kind: Kind::Setting,
     summary: "Cap the daily usage of a customer; all three plans at once",

@@ -12,6 +12,7 @@ pub struct ListResearchProjects;
 
 static SPEC: Spec = Spec {
     name: "list_research_projects",
+    code: "PROJ",
     module: Module::Research,
     kind: Kind::Read,
     summary: "List the twenty R&D tiers with price, means and progress",

@@ -12,6 +12,7 @@ pub struct StartResearchProject;
 
 static SPEC: Spec = Spec {
     name: "start_research_project",
+    code: "RND",
     module: Module::Research,
     kind: Kind::Purchase,
     summary: "Buy an R&D project; its duration and gain are told at once",

@@ -12,6 +12,7 @@ pub struct DeleteScript;
 
 static SPEC: Spec = Spec {
     name: "delete_script",
+    code: "DELS",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "Delete a stored script",

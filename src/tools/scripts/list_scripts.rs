@@ -10,6 +10,7 @@ pub struct ListScripts;
 
 static SPEC: Spec = Spec {
     name: "list_scripts",
+    code: "SCRS",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "List the names of the stored scripts",

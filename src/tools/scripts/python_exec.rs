@@ -12,6 +12,7 @@ pub struct PythonExec;
 
 static SPEC: Spec = Spec {
     name: "python_exec",
+    code: "PYX",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "Run SQL statements over the visible tables; the name is that of agents, who run Python here",

@@ -11,6 +11,7 @@ pub struct RegisterScript;
 
 static SPEC: Spec = Spec {
     name: "register_script",
+    code: "SCR",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "Store a named script of SQL statements",

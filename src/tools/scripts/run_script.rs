@@ -10,6 +10,7 @@ pub struct RunScript;
 
 static SPEC: Spec = Spec {
     name: "run_script",
+    code: "RUN",
     module: Module::Time,
     kind: Kind::Engine,
     summary: "Run a stored script",

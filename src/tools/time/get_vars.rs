@@ -9,6 +9,7 @@ pub struct GetVars;
 
 static SPEC: Spec = Spec {
     name: "get_vars",
+    code: "VARS",
     module: Module::Time,
     kind: Kind::Read,
     summary: "Tell the current day",

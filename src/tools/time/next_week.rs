@@ -10,6 +10,7 @@ pub struct NextWeek;
 
 static SPEC: Spec = Spec {
     name: "next_week",
+    code: "NEXT",
     module: Module::Time,
     kind: Kind::Time,
     summary: "File a rationale and four forecasts of cash, then let seven days pass",

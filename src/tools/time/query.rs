@@ -9,6 +9,7 @@ pub struct Query;
 
 static SPEC: Spec = Spec {
     name: "query",
+    code: "QRY",
     module: Module::Time,
     kind: Kind::Read,
     summary: "Ask the company's database with one read-only SQL statement",

@@ -2,7 +2,8 @@
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::model::{Thread, Turn};
+use super::estimate::Money;
+use super::model::{State, Thread, Turn};
 use super::offer::{Choice, Offer, in_words};
 use super::post::{Planned, monthly, summary};
 use super::{Inbox, LIST, OFFER, THREAD, View, list_prices};
@@ -11,16 +12,34 @@ use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
-use crate::notation::{cents, dollars, grouped};
+use crate::notation::{cents, dollars, grouped, percent};
+use crate::world::identifiers::Plan;
 
 /// Height of the offer, with its border.
 const OFFER_HEIGHT: u16 = 10;
 
+/// Width in which a line of the offer has all its columns.
+const WORTH: u16 = 59;
+
+/// More width for the column that compares with what the company asks.
+const VERSUS: u16 = 10;
+
 /// Draws the screen.
 pub(super) fn draw(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     let batch = !inbox.marked.is_empty();
+    if canvas.zoomed {
+        match inbox.focus {
+            LIST => draw_list(inbox, canvas, area, look),
+            OFFER => draw_offer(inbox, canvas, area, look),
+            _ if batch => draw_preview(inbox, canvas, area, look),
+            _ => draw_thread(inbox, canvas, area, true),
+        }
+        return;
+    }
     if area.width >= 104 {
-        let [list, right] = Layout::horizontal([Constraint::Percentage(57), Constraint::Min(0)]).areas(area);
+        // The offer needs its columns; a list that loses its last column shows more with the right key.
+        let right = (area.width * 43 / 100).max(WORTH + 2);
+        let [list, right] = Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
         let [above, offer] =
             Layout::vertical([Constraint::Min(0), Constraint::Length(OFFER_HEIGHT)]).areas(right);
         draw_list(inbox, canvas, list, look);
@@ -106,7 +125,12 @@ fn draw_thread(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, own: bool) {
         return;
     };
     let title = format!("#{} {} · {}", thread.customer, thread.group, thread.kind_in_words());
-    let note = format!("{} seats · {}", grouped(thread.seats, 0), thread.state.words());
+    let state = match thread.state {
+        State::Waiting(1) => "1 day left".to_owned(),
+        State::Waiting(days) => format!("{days} days left"),
+        state => state.words().to_owned(),
+    };
+    let note = format!("{} seats · {state}", grouped(thread.seats, 0));
     let inside = canvas.pane(area, &title, &note, focused);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     if focused {
@@ -232,12 +256,18 @@ fn draw_offer(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_
         return;
     }
     if let Some(row) = rows.next() {
-        let worth = if batch { String::new() } else { format!(" {:>9} {:>9}", "a seat", "a month") };
+        let mut worth = if batch { String::new() } else { format!(" {:>8} {:>9}", "a seat", "a month") };
+        if !batch && inside.width >= WORTH {
+            worth += &format!(" {:>9} {:>7}", "compute", "margin");
+        }
+        if !batch && inside.width >= WORTH + VERSUS {
+            worth += &format!(" {:>9}", "vs. ask");
+        }
         canvas.text(row, &format!("plan   of     {:>8}{worth}", "value"), Role::Header);
     }
     for at in 0..offer.0.len() {
         let Some(row) = rows.next() else { return };
-        draw_term(inbox, canvas, row, &offer, at, lists);
+        draw_term(inbox, canvas, row, &offer, at, look);
     }
     rows.next();
     let list = ["A", "B", "C"].iter().zip(lists).map(|(plan, price)| format!("{plan} {}", cents(price)));
@@ -253,6 +283,7 @@ fn draw_offer(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_
         }
         Some((_, Err(why))) => notes.push((format!("not to be sent: {why}"), Role::Warning)),
         Some((thread, Ok(offers))) => {
+            notes.extend(money_notes(inbox, thread, offers, inside.width, look));
             if let Some((_, price)) = thread.asked() {
                 let best = offers.iter().map(|(_, own)| own - price).fold(f64::INFINITY, f64::min);
                 let sign = if best < 0.0 { "-" } else { "+" };
@@ -273,7 +304,37 @@ fn draw_offer(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_
     }
 }
 
-fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, row: Rect, offer: &Offer, at: usize, lists: [f64; 3]) {
+/// What the estimate of compute rests on; where its columns do not fit, the estimate itself.
+fn money_notes(
+    inbox: &Inbox,
+    thread: &Thread,
+    offers: &[(Plan, f64)],
+    width: u16,
+    look: &Look<'_>,
+) -> Vec<(String, Role)> {
+    let Some((units, source)) = inbox.usage.per_seat(look.company, &thread.group) else {
+        return vec![("compute unknown: nobody of the group uses it yet".to_owned(), Role::Dim)];
+    };
+    let mut notes = Vec::new();
+    if width < WORTH {
+        for (plan, price) in offers {
+            let money = Money::of(&inbox.usage, look.company, thread, (*plan, *price));
+            if let (Some(compute), Some(margin)) = (money.compute, money.margin()) {
+                let role = if margin < 0.0 { Role::Bad } else { Role::Text };
+                let text =
+                    format!("{plan} est. compute {}/mo, margin {}", dollars(compute), percent(margin, 0));
+                notes.push((text, role));
+            }
+        }
+    } else {
+        let text = format!("compute est.: {} units/seat/day, {source}", grouped(units, 0));
+        notes.push((text, Role::Dim));
+    }
+    notes
+}
+
+fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, row: Rect, offer: &Offer, at: usize, look: &Look<'_>) {
+    let lists = list_prices(look.company);
     let term = &offer.0[at];
     let here = inbox.focus == OFFER && inbox.term == at;
     let role = match (here, term.plan) {
@@ -287,8 +348,22 @@ fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, row: Rect, offer: &Offer, a
     let basis = if term.plan == Choice::Nothing && !here { "" } else { term.basis.words() };
     let mut text = format!("{:<6} {basis:<6} {value:>8}", term.plan_in_words());
     let single = inbox.here().filter(|_| inbox.marked.is_empty());
-    if let Some((thread, (_, price))) = single.and_then(|thread| Some((thread, term.price(thread, lists)?))) {
-        text += &format!(" {:>9} {:>9}", cents(price), dollars(price * thread.seats));
+    if let Some((thread, sold)) = single.and_then(|thread| Some((thread, term.price(thread, lists)?))) {
+        text += &format!(" {:>8} {:>9}", cents(sold.1), dollars(sold.1 * thread.seats));
+        if row.width >= WORTH {
+            let money = Money::of(&inbox.usage, look.company, thread, sold);
+            let compute = money.compute.map_or("–".to_owned(), dollars);
+            let margin = money.margin().map_or("–".to_owned(), |margin| percent(margin, 0));
+            let loses = if money.margin().is_some_and(|margin| margin < 0.0) { "!" } else { "" };
+            text += &format!(" {compute:>9} {:>7}", format!("{loses}{margin}"));
+        }
+        if row.width >= WORTH + VERSUS {
+            let versus = thread.asked().map_or("–".to_owned(), |(_, asked)| {
+                let sign = if sold.1 < asked { '-' } else { '+' };
+                format!("{sign}{}", cents((sold.1 - asked).abs()))
+            });
+            text += &format!(" {versus:>9}");
+        }
     }
     canvas.text(row, &text, role);
     if let Some(field) = inbox.typing.as_ref().filter(|_| here) {

@@ -1,9 +1,11 @@
 //! Negotiations with companies: who waits, what was said, and offers to one or to many by a rule.
 
 mod draw;
+mod estimate;
 mod model;
 mod offer;
 mod post;
+mod rows;
 #[cfg(test)]
 mod tests;
 
@@ -12,19 +14,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use self::model::{Letters, PATIENCE, State, Thread};
-use self::offer::{Choice, Offer, TERMS, in_words};
-use super::{Look, Screen, ScreenId};
+use self::estimate::Usage;
+use self::model::{Letters, State, Thread};
+use self::offer::{Choice, Offer, TERMS};
+use self::rows::{columns, row_of};
+use super::{Figure, Look, Screen, ScreenId};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::message::News;
 use crate::console::readings::Reading;
-use crate::console::theme::Role;
+use crate::console::widgets::Table;
 use crate::console::widgets::field::{Field, ONLY_NUMBERS, parse_number};
-use crate::console::widgets::{Cell, Column, Table};
-use crate::notation::grouped;
 use crate::session::Rows;
 use crate::world::identifiers::Group;
 
@@ -69,6 +71,8 @@ pub struct Inbox {
     focus: usize,
     view: View,
     letters: Letters,
+    /// What seats of companies use.
+    usage: Usage,
     table: Table,
     /// Threads of the rows of the table, as places among all threads.
     rows: Vec<usize>,
@@ -86,61 +90,6 @@ pub struct Inbox {
     typing: Option<Field>,
     /// Rows that the thread is scrolled back, or the preview forward.
     scroll: u16,
-}
-
-fn columns(view: View) -> Vec<Column> {
-    let day = if view == View::Waiting { "waited" } else { "since" };
-    vec![
-        Column::words("✓"),
-        Column::numbers(day),
-        Column::numbers("company"),
-        Column::words("group"),
-        Column::words("kind"),
-        Column::numbers("seats"),
-        Column::numbers("they ask"),
-        Column::words(if view == View::Over { "end" } else { "you offered" }).at_most(34),
-    ]
-}
-
-fn row_of(thread: &Thread, marked: bool) -> Vec<Cell> {
-    let day = match (thread.state, thread.turns.last()) {
-        (State::Waiting(left), _) => {
-            let waited = PATIENCE.saturating_sub(left);
-            let role = match waited {
-                0..=1 => Role::Text,
-                2..=4 => Role::Warning,
-                _ => Role::Bad,
-            };
-            Cell::number(f64::from(waited), format!("{waited}/{PATIENCE} d")).role(role)
-        }
-        (_, Some(turn)) => Cell::number(f64::from(turn.day), format!("day {}", turn.day)).role(Role::Dim),
-        (_, None) => Cell::words("–").role(Role::Dim),
-    };
-    let asked = match thread.asked() {
-        Some((plan, price)) => {
-            let plan = plan.map_or(String::new(), |plan| format!("{plan} "));
-            Cell::number(price, format!("{plan}${}", grouped(price, 2)))
-        }
-        None => Cell::words("–").role(Role::Dim),
-    };
-    let end = match thread.state {
-        state if !state.is_open() => {
-            let role = if state == State::Accepted { Role::Good } else { Role::Dim };
-            Cell::words(state.words()).role(role)
-        }
-        _ if thread.offered().is_empty() => Cell::words("–").role(Role::Dim),
-        _ => Cell::words(in_words(thread.offered())),
-    };
-    vec![
-        Cell::words(if marked { "●" } else { "" }).role(Role::Changed),
-        day,
-        Cell::number(f64::from(thread.customer), format!("#{}", thread.customer)),
-        Cell::words(&thread.group).role(Role::Strong),
-        Cell::words(thread.kind_in_words()),
-        Cell::number(thread.seats, grouped(thread.seats, 0)),
-        asked,
-        end,
-    ]
 }
 
 impl Inbox {
@@ -325,14 +274,15 @@ impl Screen for Inbox {
             _ if self.typing.is_some() => vec![Action::Commit, Action::SendOffer, Action::Discard],
             LIST if self.table.is_typing() => vec![Action::Commit, Action::Discard],
             LIST => vec![
+                Action::Open,
                 Action::SendOffer,
                 Action::TakeAsk,
                 Action::Mark,
                 Action::MarkAll,
+                Action::RejectOffer,
+                Action::OtherThreads,
                 Action::Filter,
                 Action::Sort,
-                Action::OtherThreads,
-                Action::RejectOffer,
                 Action::InboxGroup,
                 Action::InboxSql,
             ],
@@ -360,11 +310,26 @@ impl Screen for Inbox {
         self.typing = None;
     }
 
+    fn figure(&self, _: &Look<'_>) -> Option<Figure> {
+        let thread = self.here()?;
+        let figure = match (self.focus, self.table.selected_column()) {
+            (OFFER, _) => post::usage_figure(thread),
+            (LIST, 5) => post::figure(thread, "seats of", "seats"),
+            (LIST, 6) => post::figure(thread, "price asked by", "offer"),
+            _ => post::figure(thread, "talks with", "thread"),
+        };
+        Some(figure)
+    }
+
     fn readings(&self) -> &'static [Reading] {
-        &[Reading::EnterpriseTurns, Reading::Companies]
+        &[Reading::EnterpriseTurns, Reading::Companies, Reading::Usage]
     }
 
     fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
+        if reading == Reading::Usage {
+            self.usage = Usage::read(rows);
+            return;
+        }
         self.letters.take(reading, rows);
         self.refresh(look.company);
     }

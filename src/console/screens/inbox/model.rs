@@ -8,9 +8,6 @@ use crate::console::readings::{Reading, number_at, text_at};
 use crate::session::{Rows, WaitingThread};
 use crate::world::identifiers::Plan;
 
-/// Days after which an unanswered thread is lost (chapter 40 §11).
-pub const PATIENCE: u32 = 7;
-
 /// One row of a thread.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turn {

@@ -7,6 +7,7 @@ use super::offer::in_words;
 use super::{Inbox, list_prices};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
+use crate::console::screens::Figure;
 use crate::notation::{dollars, grouped};
 use crate::world::identifiers::Plan;
 
@@ -24,6 +25,30 @@ pub(super) fn statement(thread: &Thread) -> Effect {
          FROM enterprise_turns WHERE thread_id = {} ORDER BY message_id",
         thread.number
     ))
+}
+
+/// A figure of a thread, made of its turns.
+pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure {
+    let sql = match statement(thread) {
+        Effect::EditSql(sql) => Some(sql),
+        _ => None,
+    };
+    Figure { title: format!("{what} #{}", thread.customer), term, sql }
+}
+
+/// Usage behind the estimated compute of an offer: what the companies of the group used on the last day.
+pub(super) fn usage_figure(thread: &Thread) -> Figure {
+    let group = &thread.group;
+    Figure {
+        title: format!("estimated usage of a seat in {group}"),
+        term: "usage",
+        sql: Some(format!(
+            "SELECT u.day, u.customer_id, s.plan, s.seat_count AS seats, u.usage_units AS units\n\
+             FROM daily_usage u JOIN subscriptions s USING (customer_id) JOIN customers c USING (customer_id)\n\
+             WHERE c.group_id = '{group}' AND s.status = 'subscribed'\n    \
+             AND u.day = (SELECT max(day) FROM service_day) ORDER BY units DESC"
+        )),
+    }
 }
 
 /// Dollars a month that a company would pay, at most.

@@ -198,8 +198,7 @@ fn pictures_hold_list_thread_offer_and_preview() {
     let (mut screen, company) = crowded_screen();
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        for words in
-            ["200 wait for you", "waited", "company", "new lead", "retention", "Your offer", "a seat"]
+        for words in ["200 wait for you", "left", "company", "new lead", "retention", "Your offer", "a seat"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
@@ -268,4 +267,34 @@ fn a_real_company_is_answered_and_found_again() {
     assert_eq!(thread.seats, first.seats);
     let again = act(&mut screen, Action::SendOffer, &after);
     assert!(matches!(&again[..], [Effect::ConfirmCall { text, .. }] if text.contains("another turn")));
+}
+
+#[test]
+fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() {
+    let mut session = courted();
+    let company = Company::of(&session);
+    let mut screen: Inbox = shown(&mut session, &company);
+    let thread = screen.here().expect("a thread").clone();
+    let money = estimate::Money::of(&screen.usage, &company, &thread, (Plan::B, 32.0));
+    let margin = crate::notation::percent(money.margin().expect("a margin"), 0);
+    let compute = crate::notation::dollars(money.compute.expect("compute"));
+    let text = drawn(&screen, &company, 120, 37);
+    for words in ["compute", "margin", &margin, &compute, "units/seat/day", " left "] {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+    assert!(drawn(&screen, &company, 200, 57).contains("vs. ask"));
+    let small = drawn(&screen, &company, 80, 21);
+    assert!(small.contains(&format!("B est. compute {compute}/mo, margin {margin}")), "{small}");
+    let keys = Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 20 };
+    for focus in 0..screen.panes() {
+        screen.set_focus(focus);
+        let figure = screen.figure(&look).expect("a figure");
+        session
+            .query(&figure.sql.expect("rows"))
+            .unwrap_or_else(|refusal| panic!("{}: {refusal}", figure.title));
+    }
+    screen.set_focus(LIST);
+    let turns = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
+    assert_eq!(session.query(&turns).expect("rows").rows.len(), thread.turns.len());
 }

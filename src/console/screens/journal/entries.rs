@@ -1,5 +1,7 @@
 //! The journal as lines to walk: weeks with the newest first, in each what was done in its order.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use crate::console::company::Company;
@@ -7,7 +9,7 @@ use crate::console::text::{number, short_dollars};
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, signed_dollars};
 use crate::session::{JournalEntry, WeekFigures};
-use crate::tools::Forecast;
+use crate::tools::{Forecast, Kind, Spec, find};
 
 /// A line.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +24,10 @@ pub struct Line {
     pub title: String,
     /// The whole entry.
     pub whole: String,
+    /// What explains it.
+    pub term: &'static str,
+    /// The question for the rows behind it.
+    pub sql: Option<String>,
 }
 
 /// What was filed before a week.
@@ -35,7 +41,7 @@ struct Filed<'a> {
 /// A week: what was done before it, what was filed, how it went.
 #[derive(Default)]
 struct Group<'a> {
-    calls: Vec<&'a JournalEntry>,
+    calls: Vec<Line>,
     filed: Option<Filed<'a>>,
     figures: Option<&'a WeekFigures>,
 }
@@ -43,10 +49,11 @@ struct Group<'a> {
 /// All lines.
 pub fn lines(company: &Company) -> Vec<Line> {
     let mut groups = vec![Group::default()];
+    let mut settings = Settings::default();
     for entry in &company.journal {
         let Some(last) = groups.last_mut() else { continue };
         match entry {
-            JournalEntry::Call { .. } => last.calls.push(entry),
+            JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings)),
             JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
                 last.filed = Some(Filed { day: *day, rationale, forecasts, naively: *filled_naively });
             }
@@ -69,17 +76,33 @@ impl Group<'_> {
             role,
             title: head.clone(),
             whole: whole.clone(),
+            term: "decision-day",
+            sql: None,
         };
         let day = self.figures.map_or(company.seen.day, |week| week.day);
         let mut lines = vec![line(day, head.clone(), Role::Strong)];
+        if let Some(week) = self.figures {
+            lines[0].term = "cash-change";
+            // What is bought on a decision day is paid before the week that follows it.
+            lines[0].sql = Some(format!(
+                "SELECT category, sum(amount) AS amount FROM ledger\nWHERE category <> 'initial_funding' AND CASE\n    \
+                 WHEN category IN ('market_research', 'group_research', 'research_project') THEN day >= {from} AND day < {to}\n    \
+                 ELSE day > {from} AND day <= {to} END\nGROUP BY 1 ORDER BY 2",
+                from = week.day - week.days_run,
+                to = week.day
+            ));
+        }
         if let Some(filed) = &self.filed {
             let words: Vec<&str> = filed.rationale.split_whitespace().collect();
-            lines.push(line(filed.day, format!("  why  {}", words.join(" ")), Role::Text));
+            let why = line(filed.day, format!("  why  {}", words.join(" ")), Role::Text);
+            lines.push(Line { term: "rationale", ..why });
             if !filed.forecasts.is_empty() {
-                lines.push(line(filed.day, format!("  said {}", filed.in_a_line(company)), Role::Dim));
+                let said = line(filed.day, format!("  said {}", filed.in_a_line(company)), Role::Dim);
+                let sql = format!("SELECT * FROM predictions WHERE submit_day = {}", filed.day);
+                lines.push(Line { term: "forecast", sql: Some(sql), ..said });
             }
         }
-        lines.extend(self.calls.iter().filter_map(|entry| of_call(entry)));
+        lines.extend(self.calls.iter().cloned());
         lines
     }
 
@@ -115,8 +138,7 @@ impl Group<'_> {
             parts.push(format!("Why, on day {}:\n{}", filed.day, filed.rationale));
             parts.push(filed.in_full(company));
         }
-        let calls: Vec<String> =
-            self.calls.iter().filter_map(|entry| of_call(entry)).map(|line| line.text).collect();
+        let calls: Vec<&str> = self.calls.iter().map(|line| line.text.as_str()).collect();
         if !calls.is_empty() {
             parts.push(format!("Done before it:\n{}", calls.join("\n")));
         }
@@ -181,10 +203,15 @@ impl Filed<'_> {
     }
 }
 
-fn of_call(entry: &JournalEntry) -> Option<Line> {
+fn of_call(entry: &JournalEntry, settings: &mut Settings) -> Option<Line> {
     let JournalEntry::Call { day, tool, args, undoes } = entry else { return None };
     let back = if undoes.is_some() { "undo: " } else { "" };
-    let text = format!("  {back}{tool} {}", in_words(args)).trim_end().to_owned();
+    let spec = find(tool).map(|tool| tool.spec());
+    let words = match spec.filter(|spec| spec.kind == Kind::Setting) {
+        Some(spec) => settings.change(spec, args),
+        None => in_words(args),
+    };
+    let text = format!("  {back}{tool} {words}").trim_end().to_owned();
     let pretty = serde_json::to_string_pretty(args).unwrap_or_default();
     let undone = if undoes.is_some() { "\n\nThis took back an earlier call." } else { "" };
     Some(Line {
@@ -193,7 +220,72 @@ fn of_call(entry: &JournalEntry) -> Option<Line> {
         role: if undoes.is_some() { Role::Dim } else { Role::Text },
         title: format!("{tool} · day {day}"),
         whole: format!("{tool}\n\n{pretty}{undone}"),
+        term: spec.map_or("decision-day", |spec| spec.name),
+        sql: spec.and_then(|spec| kept_in(spec, *day)),
     })
+}
+
+/// Where the database keeps what a call has set.
+fn kept_in(spec: &Spec, day: u32) -> Option<String> {
+    let table = spec.writes.iter().find(|table| table.starts_with("config_"))?;
+    let tool = match *table {
+        "config_overrides" => format!(" AND tool_name = '{}'", spec.name),
+        _ => String::new(),
+    };
+    Some(format!("SELECT * FROM {table} WHERE day = {day}{tool}"))
+}
+
+/// What earlier calls have set, to tell old from new.
+#[derive(Default)]
+struct Settings(BTreeMap<String, f64>);
+
+impl Settings {
+    /// A call in words: what it changed as old → new; whatever was never set before as it is.
+    fn change(&mut self, spec: &Spec, args: &Value) -> String {
+        let mut leaves = Vec::new();
+        collect(args, "", &mut leaves);
+        let key = |path: &str| format!("{}/{path}", spec.name);
+        if leaves.is_empty() || leaves.iter().all(|(path, _)| !self.0.contains_key(&key(path))) {
+            self.0.extend(leaves.into_iter().map(|(path, value)| (key(&path), value)));
+            return in_words(args);
+        }
+        let mut changes = Vec::new();
+        for (path, value) in &leaves {
+            match self.0.insert(key(path), *value) {
+                Some(old) if old == *value => {}
+                Some(old) => changes.push(format!("{path} {} → {}", plain(old), plain(*value))),
+                None => changes.push(format!("{path} {}", plain(*value))),
+            }
+        }
+        // A map is replaced as a whole: what it does not name any more is set to nothing.
+        let maps = args.as_object().into_iter().flatten().filter(|(_, value)| value.is_object());
+        for (name, _) in maps {
+            let start = key(&format!("{name} "));
+            let gone =
+                |path: &String| path.starts_with(&start) && !leaves.iter().any(|leaf| key(&leaf.0) == *path);
+            let lost: Vec<String> = self.0.keys().filter(|path| gone(path)).cloned().collect();
+            for path in lost {
+                let old = self.0.remove(&path).unwrap_or(0.0);
+                let short = path.split_once('/').map_or("", |(_, rest)| rest).to_owned();
+                changes.push(format!("{short} {} → –", plain(old)));
+            }
+        }
+        if changes.is_empty() { "as before".to_owned() } else { changes.join(" · ") }
+    }
+}
+
+/// Numbers of a call with their paths: `targeted_spend linkedin E1`.
+fn collect(value: &Value, path: &str, leaves: &mut Vec<(String, f64)>) {
+    match value {
+        Value::Object(fields) => {
+            for (name, inner) in fields {
+                let path = if path.is_empty() { name.clone() } else { format!("{path} {name}") };
+                collect(inner, &path, leaves);
+            }
+        }
+        Value::Number(own) => leaves.extend(own.as_f64().map(|number| (path.to_owned(), number))),
+        _ => {}
+    }
 }
 
 /// Arguments of a call in few characters: `A 12 B 25`, `search_ads(S3 40)`.
@@ -236,5 +328,19 @@ mod tests {
         ] {
             assert_eq!(in_words(&args), words);
         }
+    }
+
+    #[test]
+    fn a_later_call_says_what_was_before() {
+        let mut settings = Settings::default();
+        let mut said = |tool: &str, args: Value| settings.change(find(tool).expect("a tool").spec(), &args);
+        assert_eq!(said("set_prices", json!({"A": 12})), "A 12");
+        assert_eq!(said("set_prices", json!({"A": 14, "B": 25})), "A 12 → 14 · B 25");
+        assert_eq!(said("set_prices", json!({"A": 14})), "as before");
+        let ads = "set_targeted_ad_spend";
+        let first = said(ads, json!({"targeted_spend": {"linkedin": {"E1": 200, "E2": 50}}}));
+        assert_eq!(first, "targeted_spend(linkedin(E1 200 E2 50))");
+        let second = said(ads, json!({"targeted_spend": {"linkedin": {"E1": 300}}}));
+        assert_eq!(second, "targeted_spend linkedin E1 200 → 300 · targeted_spend linkedin E2 50 → –");
     }
 }

@@ -1,23 +1,22 @@
 //! What was done and why, how the forecasts turned out, and the notes of the run.
 
 mod entries;
+mod scores;
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::{Look, Screen};
+use super::{Figure, Look, Screen};
 use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::company::Company;
+use crate::console::canvas::{Canvas, Click};
 use crate::console::effect::Effect;
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Editor, Table};
-use crate::notation::percent;
-use crate::session::ForecastScore;
 
 /// Panes by number.
 const LIST: usize = 0;
 const NOTES: usize = 1;
+const SCORES: usize = 2;
 
 /// The screen.
 pub struct Journal {
@@ -25,6 +24,10 @@ pub struct Journal {
     table: Table,
     /// Title and text of the whole entry behind every row.
     wholes: Vec<(String, String)>,
+    /// What every row is about.
+    figures: Vec<Figure>,
+    /// The selected horizon of the forecasts.
+    horizon: usize,
     notes: Editor,
     /// The notes as they are kept.
     kept: String,
@@ -38,6 +41,8 @@ impl Default for Journal {
             focus: LIST,
             table: Table::new(columns),
             wholes: Vec::new(),
+            figures: Vec::new(),
+            horizon: 0,
             notes: Editor::default(),
             kept: String::new(),
             editing: false,
@@ -70,8 +75,8 @@ impl Screen for Journal {
         match self.focus {
             _ if self.editing => vec![Scope::Editor, Scope::Memo],
             LIST if self.table.is_typing() => vec![Scope::Field],
-            LIST => vec![Scope::List, Scope::Memo],
-            _ => vec![Scope::Memo, Scope::List],
+            NOTES => vec![Scope::Memo, Scope::List],
+            _ => vec![Scope::List, Scope::Memo],
         }
     }
 
@@ -79,12 +84,13 @@ impl Screen for Journal {
         match self.focus {
             _ if self.editing => vec![Action::SaveMemo, Action::LeaveEditor],
             LIST => vec![Action::Open, Action::Filter, Action::EditMemo],
+            SCORES => vec![Action::Up, Action::Down, Action::Close],
             _ => vec![Action::EditMemo, Action::SaveMemo],
         }
     }
 
     fn panes(&self) -> usize {
-        2
+        3
     }
 
     fn focus(&self) -> usize {
@@ -92,18 +98,28 @@ impl Screen for Journal {
     }
 
     fn set_focus(&mut self, pane: usize) {
-        self.focus = pane.min(NOTES);
+        self.focus = pane.min(SCORES);
         self.editing = false;
+    }
+
+    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
+        match self.focus {
+            LIST => self.table.selected().and_then(|row| self.figures.get(row)).cloned(),
+            SCORES => scores::figure(look.company, self.horizon),
+            _ => None,
+        }
     }
 
     fn renew(&mut self, look: &Look<'_>) {
         let mut rows = Vec::new();
         self.wholes.clear();
+        self.figures.clear();
         for line in entries::lines(look.company) {
             rows.push(vec![
                 Cell::number(f64::from(line.day), line.day.to_string()).role(Role::Dim),
                 Cell::words(line.text).role(line.role),
             ]);
+            self.figures.push(Figure { title: line.title.clone(), term: line.term, sql: line.sql });
             self.wholes.push((line.title, line.whole));
         }
         self.table.set_rows(rows);
@@ -120,7 +136,13 @@ impl Screen for Journal {
             Action::EditMemo => (self.focus, self.editing) = (NOTES, true),
             Action::SaveMemo => return self.save(),
             Action::LeaveEditor => self.editing = false,
-            Action::Close if self.focus == NOTES => self.focus = LIST,
+            Action::Close if self.focus != LIST => self.focus = LIST,
+            Action::Up | Action::First if self.focus == SCORES => {
+                self.horizon = self.horizon.saturating_sub(1)
+            }
+            Action::Down | Action::Last if self.focus == SCORES => {
+                self.horizon = (self.horizon + 1).min(look.company.scores.len().saturating_sub(1));
+            }
             Action::Open if self.focus == LIST => return self.open(),
             Action::CommitNext | Action::CommitPrevious => {
                 self.table.act(Action::Commit, look.page);
@@ -156,7 +178,11 @@ impl Screen for Journal {
         Vec::new()
     }
 
-    fn click(&mut self, _: usize, row: usize, _: &Look<'_>) -> Vec<Effect> {
+    fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        if pane == SCORES {
+            self.horizon = row.min(look.company.scores.len().saturating_sub(1));
+            return Vec::new();
+        }
         let before = self.table.selected();
         self.table.select_place(row);
         if before == self.table.selected() { self.open() } else { Vec::new() }
@@ -168,25 +194,32 @@ impl Screen for Journal {
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let few = look.company.scores.len() as u16 + 4;
-        if area.width >= 104 && area.height >= 14 {
-            let right = (area.width / 3).clamp(42, 64);
+        let small = area.width < 60 || area.height < 14;
+        if canvas.zoomed || small {
+            return match self.focus {
+                NOTES => self.draw_notes(canvas, area, look),
+                SCORES => self.draw_scores(canvas, area, look),
+                _ => self.draw_list(canvas, area, look),
+            };
+        }
+        if area.width >= 104 {
+            let right = (area.width / 3).clamp(48, 64);
             let [list, side] =
                 Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
-            let [scores, notes] = Layout::vertical([Constraint::Length(few), Constraint::Min(0)]).areas(side);
+            // Single forecasts below the scores, where there is room for some of them.
+            let tall = (few + 9).min(side.height / 2).max(few);
+            let [scores, notes] =
+                Layout::vertical([Constraint::Length(tall), Constraint::Min(0)]).areas(side);
             self.draw_list(canvas, list, look);
-            draw_scores(canvas, scores, look.company);
+            self.draw_scores(canvas, scores, look);
             self.draw_notes(canvas, notes, look);
-        } else if area.width >= 60 && area.height >= 14 {
+        } else {
             let [list, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(few)]).areas(area);
             let [scores, notes] =
                 Layout::horizontal([Constraint::Length(40), Constraint::Min(0)]).areas(below);
             self.draw_list(canvas, list, look);
-            draw_scores(canvas, scores, look.company);
+            self.draw_scores(canvas, scores, look);
             self.draw_notes(canvas, notes, look);
-        } else if self.focus == NOTES {
-            self.draw_notes(canvas, area, look);
-        } else {
-            self.draw_list(canvas, area, look);
         }
     }
 }
@@ -200,6 +233,10 @@ impl Journal {
         if focused {
             canvas.pane_keys(area, &look.hints(&[Action::Open, Action::Filter]));
         }
+    }
+
+    fn draw_scores(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        scores::draw(canvas, area, look.company, self.horizon, self.focus == SCORES, SCORES);
     }
 
     fn draw_notes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
@@ -217,51 +254,10 @@ impl Journal {
     }
 }
 
-/// How the forecasts of every horizon did: inside the interval, typical miss, width of the interval.
-fn draw_scores(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
-    let inside = canvas.pane(area, "Forecasts", "95 in 100 inside?", false);
-    let head = format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "miss", "width");
-    let mut rows = rows_of(inside);
-    if let Some(row) = rows.next() {
-        canvas.text(row, &head, Role::Header);
-    }
-    for (score, row) in company.scores.iter().zip(rows.by_ref()) {
-        canvas.text(row, &score_line(score), score_role(score));
-    }
-    if let Some(row) = rows.next() {
-        let none = company.scores.iter().all(|score| score.scored == 0);
-        canvas.text(
-            row,
-            if none { "the first comes due in a week" } else { "miss, width: share of cash" },
-            Role::Dim,
-        );
-    }
-}
-
-fn score_line(score: &ForecastScore) -> String {
-    let weeks = score.horizon_days / 7;
-    let horizon = format!("{weeks} {}", if weeks == 1 { "week" } else { "weeks" });
-    if score.scored == 0 {
-        return format!("{horizon:<9}{:>10}{:>8}{:>8}", "–", "–", "–");
-    }
-    let inside = format!("{} of {}", score.covered, score.scored);
-    // Near zero cash any miss is a large share of it: beyond some size only that matters.
-    let share = |value: f64| if value < 10.0 { percent(value, 1) } else { "> 999%".to_owned() };
-    format!("{horizon:<9}{inside:>10}{:>8}{:>8}", share(score.mean_error), share(score.mean_sharpness))
-}
-
-/// Too few inside deserves a look once there are enough to judge.
-fn score_role(score: &ForecastScore) -> Role {
-    match score.scored {
-        0 => Role::Dim,
-        scored if scored >= 4 && f64::from(score.covered) < 0.8 * f64::from(scored) => Role::Warning,
-        _ => Role::Text,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::console::company::Company;
     use crate::console::keys::Keys;
     use crate::console::test_kit::{company, picture, session, sweep};
     use crate::session::Via;
@@ -313,12 +309,40 @@ mod tests {
         let screen = renewed(&company);
         let texts: Vec<String> = screen.table.rows().iter().map(|row| row[1].text.clone()).collect();
         assert_eq!(texts[0], "week 2 · now · 2 actions");
-        assert_eq!(texts[1], "  set_prices A 13");
-        assert!(texts[2].starts_with("  undo: set_prices A "), "{texts:#?}");
+        assert_eq!(texts[1], "  set_prices A 12 → 13");
+        assert_eq!(texts[2], "  undo: set_prices A 13 → 12");
         assert!(texts[3].starts_with("week 1 · day 7 · cash $"), "{texts:#?}");
         assert_eq!(texts[4], "  why  Cheaper than the others. See who comes.");
         assert!(texts[5].starts_with("  said naively 1 wk $"), "{texts:#?}");
         assert_eq!(texts[6], "  set_prices A 12 B 25 C 55");
+    }
+
+    #[test]
+    fn every_row_names_what_it_is_about_and_its_rows() {
+        let mut session = crate::console::test_kit::played(2);
+        let company = Company::of(&session);
+        let mut screen = renewed(&company);
+        let mut terms = Vec::new();
+        for _ in 0..screen.table.rows().len() {
+            let figure = with_look(&company, |look| screen.figure(look)).expect("a figure");
+            if let Some(sql) = &figure.sql {
+                let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows;
+                if figure.term == "cash-change" {
+                    let sum: f64 = rows.iter().map(|row| crate::console::readings::number_at(row, 1)).sum();
+                    let week = company.weeks.iter().find(|week| (week.cash_change - sum).abs() < 0.01);
+                    assert!(week.is_some(), "{sql}: {sum}");
+                }
+            }
+            terms.push(figure.term);
+            act(&mut screen, &company, Action::Down);
+        }
+        for term in ["cash-change", "rationale", "forecast", "set_prices", "set_targeted_ad_spend"] {
+            assert!(terms.contains(&term), "{term} in {terms:?}");
+        }
+        screen.set_focus(SCORES);
+        act(&mut screen, &company, Action::Down);
+        let figure = with_look(&company, |look| screen.figure(look)).expect("a figure");
+        assert!(figure.title.contains("4 weeks"), "{figure:?}");
     }
 
     #[test]

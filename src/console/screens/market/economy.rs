@@ -1,8 +1,10 @@
-//! The index of the economy as it was published, with the days that are measured but not told yet.
+//! The index of the economy as it was published: when it was measured, when it was told, and what is not told yet.
+//! News of rivals stand below it, day by day.
 
 use ratatui::layout::Rect;
 
 use super::model::Published;
+use super::news::Item;
 use crate::console::canvas::{Canvas, rows_of};
 use crate::console::company::Company;
 use crate::console::text::wrapped;
@@ -11,20 +13,40 @@ use crate::console::widgets::{Axis, Line, chart};
 use crate::notation::grouped;
 use crate::session::Terms;
 
+/// Marks of how many news of rivals a column holds, beside the fullest one.
+const MARKS: [&str; 4] = ["▁", "▃", "▅", "█"];
+
 /// Day on which the next measurement is published.
 pub fn next_day(economy: &[Published], terms: &Terms) -> u32 {
     let measured = economy.last().map_or(1, |last| last.day + terms.economy_every_days);
     measured + terms.economy_lag_days
 }
 
+/// What the pane shows.
+pub struct View<'a> {
+    /// Published measurements, the oldest first.
+    pub economy: &'a [Published],
+    /// The selected one.
+    pub point: Option<usize>,
+    /// News of the press, the newest first.
+    pub news: &'a [Item],
+}
+
+impl<'a> View<'a> {
+    /// The selected measurement, at first the last one.
+    pub fn selected(&self) -> Option<&'a Published> {
+        self.point.and_then(|at| self.economy.get(at)).or(self.economy.last())
+    }
+}
+
 /// Draws the pane.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, economy: &[Published]) {
+pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &View<'_>, focused: bool) {
     let terms = &company.terms;
-    let Some(last) = economy.last() else {
-        let inside = canvas.pane(area, "Economy", "", false);
+    let Some(here) = view.selected() else {
+        let inside = canvas.pane(area, "Economy", "", focused);
         let words = format!(
             "no index yet: the one of day 1 is published on day {}, {} days after it was measured",
-            next_day(economy, terms),
+            next_day(view.economy, terms),
             terms.economy_lag_days
         );
         for (row, line) in rows_of(inside).zip(wrapped(&words, inside.width as usize)) {
@@ -32,42 +54,101 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, economy: &[P
         }
         return;
     };
-    let sign = if last.change < 0.0 { '-' } else { '+' };
-    let figures = format!("PMI {} ({sign}{})", grouped(last.value, 1), grouped(last.change.abs(), 1));
-    let inside = canvas.pane(area, "Economy", &format!("{figures} · {}", last.words), false);
+    let sign = if here.change < 0.0 { '-' } else { '+' };
+    let figures = format!("PMI {} ({sign}{})", grouped(here.value, 1), grouped(here.change.abs(), 1));
+    let inside = canvas.pane(area, "Economy", &format!("{figures} · {}", here.words), focused);
+    let width = inside.width as usize;
     let lag = format!(
         "measured on day {}, told on day {}; next on day {}",
-        last.day,
-        last.day + terms.economy_lag_days,
-        next_day(economy, terms)
+        here.day,
+        here.day + terms.economy_lag_days,
+        next_day(view.economy, terms)
     );
-    let mut words = wrapped(&last.text, inside.width as usize);
-    words.push(lag);
+    let mut words = wrapped(&here.text, width);
+    words.extend(wrapped(&lag, width));
+    if inside.height >= 14 {
+        words.extend(wrapped("◆ told · ░ measured or to come, not told yet · ▁▃▅ news of rivals", width));
+    }
     let room = (inside.height / 2) as usize;
     let words = &words[words.len().saturating_sub(room.max(1))..];
     let above = inside.height.saturating_sub(words.len() as u16);
-    draw_curve(canvas, Rect { height: above, ..inside }, company, economy, last);
+    draw_curve(canvas, Rect { height: above, ..inside }, company, view, here);
     let below = Rect { y: inside.y + above, height: inside.height - above, ..inside };
     for (row, line) in rows_of(below).zip(words) {
         canvas.text(row, line, Role::Dim);
     }
 }
 
-fn draw_curve(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    company: &Company,
-    economy: &[Published],
-    last: &Published,
-) {
-    let points = economy.iter().map(|own| (f64::from(own.day), own.value)).collect();
-    // Dots run on at the last value over the days of which nothing is told yet.
-    let silent = (last.day..=company.seen.day).step_by(4).map(|day| (f64::from(day), last.value)).collect();
+/// The curve over the days of measurement, and below it two lanes: days of publication, news of rivals.
+fn draw_curve(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &View<'_>, here: &Published) {
+    let lanes = if area.height >= 9 { 2 } else { 0 };
+    let upper = Rect { height: area.height - lanes, ..area };
+    let today = company.seen.day.max(2);
+    let points = view.economy.iter().map(|own| (f64::from(own.day), own.value)).collect();
+    let selected = vec![(f64::from(here.day), here.value)];
     let lines = [
-        Line { scattered: true, ..Line::through(silent, Role::Dim) },
         Line::through(points, Role::Series(0)),
+        Line { scattered: true, ..Line::through(selected, Role::Strong) },
     ];
-    let today = [f64::from(company.seen.day)];
-    let x = Axis { write: &|day| format!("day {day:.0}"), holds: &today };
-    chart(canvas, area, &lines, &x, &Axis { write: &|value| grouped(value, 1), holds: &[50.0] });
+    let days = [1.0, f64::from(today)];
+    let x = Axis { write: &|day| format!("day {day:.0}"), holds: &days };
+    chart(canvas, upper, &lines, &x, &Axis { write: &|value| grouped(value, 1), holds: &[50.0] });
+    let Some(plot) = plot_of(canvas, upper) else { return };
+    let column = |day: u32| {
+        let share = f64::from(day.clamp(1, today) - 1) / f64::from(today - 1);
+        plot.x + (share * f64::from(plot.width - 1)).round() as u16
+    };
+    if let Some(last) = view.economy.last() {
+        shade(canvas, Rect { x: column(last.day) + 1, width: plot.right() - column(last.day) - 1, ..plot });
+    }
+    if lanes == 0 {
+        return;
+    }
+    let [told, rivals] = [0, 1].map(|lane| Rect { y: upper.bottom() + lane, height: 1, ..area });
+    let names = Rect { width: plot.x - area.x, ..told };
+    canvas.text(names, "told", Role::Dim);
+    canvas.text(Rect { y: rivals.y, ..names }, "news", Role::Dim);
+    for own in view.economy {
+        let (from, to) = (column(own.day), column(own.day + company.terms.economy_lag_days));
+        let role = if own.day == here.day { Role::Strong } else { Role::Series(0) };
+        if own.day == here.day && to > from {
+            canvas.text(
+                Rect { x: from, width: to - from, ..told },
+                &"─".repeat((to - from) as usize),
+                Role::Dim,
+            );
+        }
+        canvas.text(Rect { x: to, width: 1, ..told }, "◆", role);
+    }
+    let counts: Vec<(u16, usize)> =
+        (plot.left()..plot.right()).map(|x| (x, count_at(view.news, |day| column(day) == x))).collect();
+    let most = counts.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
+    for (x, count) in counts.into_iter().filter(|(_, count)| *count > 0) {
+        let level = (count * MARKS.len()).div_ceil(most) - 1;
+        canvas.text(Rect { x, width: 1, ..rivals }, MARKS[level.min(MARKS.len() - 1)], Role::Series(1));
+    }
+}
+
+fn count_at(news: &[Item], holds: impl Fn(u32) -> bool) -> usize {
+    news.iter().filter(|item| item.rival.is_some() && holds(item.post.day)).count()
+}
+
+/// Where the curve stands: right of the axis of values and above that of days, as the chart has drawn them.
+fn plot_of(canvas: &Canvas<'_>, area: Rect) -> Option<Rect> {
+    let area = area.intersection(canvas.area());
+    let below = area.bottom().checked_sub(2).filter(|_| area.height >= 4)?;
+    let axis = (area.left()..area.right()).find(|x| canvas.buffer[(*x, below)].symbol() == "└")?;
+    let width = area.right() - axis - 1;
+    (width > 3).then(|| Rect { x: axis + 1, y: area.y, width, height: area.height - 2 })
+}
+
+/// Marks the days of which nothing is told yet, where no curve is.
+fn shade(canvas: &mut Canvas<'_>, area: Rect) {
+    for row in rows_of(area.intersection(canvas.area())) {
+        for x in row.left()..row.right() {
+            if matches!(canvas.buffer[(x, row.y)].symbol(), " " | "\u{2800}") {
+                canvas.text(Rect { x, width: 1, ..row }, "░", Role::Border);
+            }
+        }
+    }
 }

@@ -1,23 +1,27 @@
 //! The market: groups and studies, finding others, the economy, and what the press tells of rivals.
 
+mod draw;
 mod economy;
+mod figure;
 pub mod model;
+mod news;
 pub mod report;
 #[cfg(test)]
 mod tests;
 
 use crossterm::event::KeyEvent;
-use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::layout::Rect;
 use serde_json::{Value, json};
 
 use self::model::{Facts, Known, level_of, name_of, study_of, target_of, undiscovered};
-use super::social::feed::{self, Kind, Post};
-use super::{Look, Screen, ScreenId};
+use self::news::Item;
+use super::{Figure, Look, Screen, ScreenId};
 use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click};
+use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::message::News;
+use crate::console::posts::Posts;
 use crate::console::readings::Reading;
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Field, Table};
@@ -30,6 +34,7 @@ const GROUPS: usize = 0;
 const REPORT: usize = 1;
 const ATTEMPTS: usize = 2;
 const NEWS: usize = 3;
+const ECONOMY: usize = 4;
 const FIND: &str = "research_market";
 const STUDY: &str = "research_group";
 
@@ -42,8 +47,12 @@ pub struct Market {
     groups: Vec<Group>,
     table: Table,
     attempts: Table,
-    news: Vec<Post>,
+    news: Vec<Item>,
+    /// Posts from which the news were picked.
+    posts: Posts,
     headlines: Table,
+    /// Measurement of the economy that is selected; the last one if none.
+    point: Option<usize>,
     /// Level that was chosen for the next study.
     target: Option<u8>,
     /// First line of the report that is shown.
@@ -80,8 +89,10 @@ fn row_of(group: Group, known: Known, company: &Company) -> Vec<Cell> {
         }
         None => {
             let target = target_of(company, group, None);
-            let cost = company.terms.level(target).map_or(0.0, |level| level.cost);
-            Cell::words(format!("→{target} ${}", compact(cost))).role(Role::Dim)
+            let terms = company.terms.level(target).map_or(String::new(), |level| {
+                format!(" ${} {}d ±{}", compact(level.cost), level.days, percent(level.noise, 0))
+            });
+            Cell::words(format!("→{target}{terms}")).role(Role::Dim)
         }
     };
     vec![
@@ -140,14 +151,23 @@ impl Market {
         };
         let heads = vec![Column::numbers("day"), Column::numbers("cost"), Column::words("found")];
         self.attempts.set(heads, self.facts.attempts.iter().map(attempt).collect());
-        self.news = feed::posts_of(company).into_iter().filter(|post| post.kind == Kind::Press).collect();
-        let headline = |post: &Post| {
+        if std::sync::Arc::ptr_eq(&self.posts, &company.posts) {
+            return;
+        }
+        self.posts = company.posts.clone();
+        self.news = news::of(company);
+        let headline = |item: &Item| {
             vec![
-                Cell::number(f64::from(post.day), post.day.to_string()).role(Role::Dim),
-                Cell::words(post.text.replace('\n', " ")),
+                Cell::number(f64::from(item.post.day), item.post.day.to_string()).role(Role::Dim),
+                Cell::words(item.rival.as_deref().unwrap_or("economy")).role(match item.rival {
+                    Some(_) => Role::Strong,
+                    None => Role::Dim,
+                }),
+                Cell::words(item.post.text.replace('\n', " ")),
             ]
         };
-        let heads = vec![Column::numbers("day"), Column::words("news").at_most(u16::MAX)];
+        let heads =
+            vec![Column::numbers("day"), Column::words("about"), Column::words("news").at_most(u16::MAX)];
         self.headlines.set(heads, self.news.iter().map(headline).collect());
     }
 
@@ -203,16 +223,42 @@ impl Market {
     fn open(&self, company: &Company) -> Vec<Effect> {
         let effect = match self.focus {
             NEWS => {
-                let post = self.headlines.selected().and_then(|row| self.news.get(row));
-                post.map(|post| Effect::ShowText(format!("day {} · press", post.day), post.text.clone()))
+                let item = self.headlines.selected().and_then(|row| self.news.get(row));
+                item.map(|Item { post, .. }| {
+                    Effect::ShowText(format!("day {} · press", post.day), post.text.clone())
+                })
             }
             ATTEMPTS => None,
+            ECONOMY => self.published().map(|point| {
+                Effect::ShowText(format!("PMI of day {} · {}", point.day, point.words), point.text.clone())
+            }),
             _ => self.group().map(|group| match level_of(company, group) {
                 0 => Effect::Complain(format!("{group} is not found yet; nothing is known of it")),
                 _ => Effect::ShowGroup(ScreenId::Customers, group),
             }),
         };
         effect.into_iter().collect()
+    }
+
+    /// The measurement of the economy that is selected.
+    fn published(&self) -> Option<&model::Published> {
+        self.economy().selected()
+    }
+
+    fn economy(&self) -> economy::View<'_> {
+        economy::View { economy: &self.facts.economy, point: self.point, news: &self.news }
+    }
+
+    fn choose_point(&mut self, action: Action) {
+        let last = self.facts.economy.len().saturating_sub(1);
+        let now = self.point.unwrap_or(last).min(last);
+        self.point = match action {
+            Action::Left | Action::Down | Action::PageDown => Some(now.saturating_sub(1)),
+            Action::Right | Action::Up | Action::PageUp => Some((now + 1).min(last)),
+            Action::First => Some(0),
+            Action::Last | Action::Close => None,
+            _ => self.point,
+        };
     }
 
     fn choose_level(&mut self, company: &Company, up: bool) {
@@ -256,12 +302,14 @@ impl Screen for Market {
     fn hints(&self) -> Vec<Action> {
         match self.focus {
             NEWS => vec![Action::Open, Action::Filter, Action::FindGroup],
+            ECONOMY => vec![Action::Left, Action::Right, Action::Open, Action::FindGroup],
+            ATTEMPTS => vec![Action::FindGroup, Action::Sort, Action::Filter],
             _ => vec![Action::Open, Action::StudyGroup, Action::LevelUp, Action::FindGroup, Action::Filter],
         }
     }
 
     fn panes(&self) -> usize {
-        4
+        5
     }
 
     fn focus(&self) -> usize {
@@ -269,7 +317,11 @@ impl Screen for Market {
     }
 
     fn set_focus(&mut self, pane: usize) {
-        self.focus = pane.min(NEWS);
+        self.focus = pane.min(ECONOMY);
+    }
+
+    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
+        figure::of(self, look.company)
     }
 
     fn readings(&self) -> &'static [Reading] {
@@ -325,6 +377,7 @@ impl Screen for Market {
             }
             Action::Open => return self.open(look.company),
             action if self.focus == REPORT => self.scroll(action, look),
+            action if self.focus == ECONOMY => self.choose_point(action),
             action => {
                 let action = match action {
                     Action::CommitNext | Action::CommitPrevious => Action::Commit,
@@ -366,42 +419,7 @@ impl Screen for Market {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        if area.width >= 104 && area.height >= 24 {
-            let [left, right] =
-                Layout::horizontal([Constraint::Percentage(52), Constraint::Min(0)]).areas(area);
-            let rows = (self.groups.len() as u16 + 3).min(area.height / 20 * 11);
-            let [groups, economy] =
-                Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(left);
-            let attempts = (self.facts.attempts.len() as u16 + 4).min(area.height / 5).max(6);
-            let [report, found, news] = Layout::vertical([
-                Constraint::Length(area.height / 20 * 11),
-                Constraint::Length(attempts),
-                Constraint::Min(0),
-            ])
-            .areas(right);
-            self.draw_groups(canvas, groups, look);
-            economy::draw(canvas, economy, look.company, &self.facts.economy);
-            self.draw_report(canvas, report, look);
-            self.draw_attempts(canvas, found, look);
-            self.draw_news(canvas, news, look);
-            return;
-        }
-        // What has the focus takes the window; groups and report share it.
-        let halves = [Constraint::Percentage(50), Constraint::Min(0)];
-        let [upper, lower] = Layout::vertical(halves).areas(area);
-        match self.focus {
-            GROUPS if area.height >= 14 => {
-                self.draw_groups(canvas, upper, look);
-                self.draw_report(canvas, lower, look);
-            }
-            GROUPS => self.draw_groups(canvas, area, look),
-            REPORT => self.draw_report(canvas, area, look),
-            ATTEMPTS => {
-                self.draw_attempts(canvas, upper, look);
-                economy::draw(canvas, lower, look.company, &self.facts.economy);
-            }
-            _ => self.draw_news(canvas, area, look),
-        }
+        draw::draw(self, canvas, area, look);
     }
 }
 
@@ -413,70 +431,6 @@ impl Market {
         }
         if before != self.group() {
             self.turn();
-        }
-    }
-
-    fn draw_groups(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        canvas.click(area, Click::Pane(GROUPS));
-        let focused = self.focus == GROUPS;
-        let known = look.company.seen.known_groups.len();
-        let note = match self.table.note() {
-            note if note.is_empty() => format!("{known} known · {} to find", undiscovered(look.company)),
-            note => note,
-        };
-        let inside = canvas.pane(area, "Groups", &note, focused);
-        self.table.draw(canvas, inside, focused, GROUPS);
-        if focused {
-            let open = look.keys.label(Action::Open).unwrap_or_default();
-            let keys = look.hints(&[Action::FindGroup, Action::StudyGroup, Action::Filter]);
-            canvas.pane_keys(area, &format!("{open} customers of the group · {keys}"));
-        }
-    }
-
-    fn draw_report(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        canvas.click(area, Click::Pane(REPORT));
-        let focused = self.focus == REPORT;
-        report::draw(canvas, area, look, self.group(), self.target, self.from, focused);
-    }
-
-    fn draw_attempts(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        canvas.click(area, Click::Pane(ATTEMPTS));
-        let focused = self.focus == ATTEMPTS;
-        let next = dollars(look.company.terms.attempt_cost);
-        let note = match self.facts.attempts.len() {
-            0 => format!("next {next}"),
-            count => format!(
-                "{} of {count} found · {} · next {next}",
-                self.facts.found(),
-                dollars(self.facts.spent())
-            ),
-        };
-        let inside = canvas.pane(area, "Attempts", &note, focused);
-        if self.facts.attempts.is_empty() {
-            let key = look.keys.label(Action::FindGroup).unwrap_or_default();
-            canvas.text(inside, &format!("no attempt was made yet: {key} pays for one"), Role::Dim);
-        } else {
-            self.attempts.draw(canvas, inside, focused, ATTEMPTS);
-        }
-        canvas.pane_keys(area, &look.hint(Action::FindGroup));
-    }
-
-    fn draw_news(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        canvas.click(area, Click::Pane(NEWS));
-        let focused = self.focus == NEWS;
-        let note = match self.headlines.note() {
-            note if note.is_empty() => format!("{} in the press", self.news.len()),
-            note => note,
-        };
-        let inside = canvas.pane(area, "Rivals and economy in the news", &note, focused);
-        if self.news.is_empty() {
-            let text = format!("the press has written nothing yet: {}", look.hint(Action::NextWeek));
-            canvas.text(inside, &text, Role::Dim);
-            return;
-        }
-        self.headlines.draw(canvas, inside, focused, NEWS);
-        if focused {
-            canvas.pane_keys(area, &look.hints(&[Action::Open, Action::Filter]));
         }
     }
 }

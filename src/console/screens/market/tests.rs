@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use super::*;
 use crate::console::keys::Keys;
+use crate::console::posts::Kind;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
 use crate::session::{Session, Via};
 
@@ -144,7 +145,7 @@ fn the_economy_is_shown_with_its_lag() {
     }
     screen.set_focus(ATTEMPTS);
     assert!(drawn(&screen, &company, 80, 21).contains("PMI "));
-    assert!(!screen.news.is_empty() && screen.news.iter().all(|post| post.kind == Kind::Press));
+    assert!(!screen.news.is_empty() && screen.news.iter().all(|item| item.post.kind == Kind::Press));
     screen.set_focus(NEWS);
     let effects = act(&mut screen, Action::Open, &company);
     assert!(matches!(&effects[..], [Effect::ShowText(title, _)] if title.contains("press")), "{effects:?}");
@@ -156,7 +157,8 @@ fn the_small_window_shows_groups_and_report() {
     let company = Company::of(&session);
     let mut screen: Market = shown(&mut session, &company);
     let text = drawn(&screen, &company, 80, 21);
-    for words in ["6 known · 20 to find", "next study", "→2 $60.0k", "level 1 · ±65%", "budget", "r study"]
+    for words in
+        ["6 known · 20 to find", "next study", "→2 $60.0k 3d ±40%", "level 1 · ±65%", "budget", "r study"]
     {
         assert!(text.contains(words), "{words} in\n{text}");
     }
@@ -178,5 +180,57 @@ fn it_is_drawn_in_every_window_with_and_without_data() {
         screen.set_focus(GROUPS);
         act(&mut screen, Action::Last, &company);
         sweep(&mut screen, &company);
+    }
+}
+
+#[test]
+fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
+    let mut session = played(12);
+    let company = Company::of(&session);
+    let mut screen: Market = shown(&mut session, &company);
+    let rivals = screen.news.iter().filter(|item| item.rival.is_some()).count();
+    assert!(rivals > 0 && rivals < screen.news.len(), "{rivals} of {}", screen.news.len());
+    screen.set_focus(ECONOMY);
+    for (width, height) in [(80, 21), (120, 37), (200, 57)] {
+        let text = drawn(&screen, &company, width, height);
+        for words in
+            ["░░", "told", "◆", "news", "◆ told", "measured on day 31, told on day 61; next on day 91"]
+        {
+            assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
+        }
+        let lane = text.lines().find(|line| line.contains("│news")).expect("a lane").to_owned();
+        assert!(lane.contains('█'), "{lane}");
+    }
+    act(&mut screen, Action::Left, &company);
+    let text = drawn(&screen, &company, 120, 37);
+    assert!(text.contains("measured on day 1, told on day 31"), "{text}");
+    let keys = Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 5 };
+    let figure = screen.figure(&look).expect("a figure");
+    assert_eq!(figure.title, "PMI of day 1");
+    let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
+    assert_eq!(crate::console::readings::number_at(&rows[0], 1), screen.facts.economy[0].value);
+    for focus in 0..screen.panes() {
+        screen.set_focus(focus);
+        if let Some(figure) = screen.figure(&look) {
+            session
+                .query(&figure.sql.expect("rows"))
+                .unwrap_or_else(|refusal| panic!("{}: {refusal}", figure.title));
+        }
+    }
+}
+
+#[test]
+fn a_zoomed_pane_has_the_window() {
+    let mut session = played(3);
+    let company = Company::of(&session);
+    let mut screen: Market = shown(&mut session, &company);
+    for (pane, own, other) in
+        [(GROUPS, "Groups", "┌ Economy"), (ECONOMY, "Economy", "┌ Groups"), (NEWS, "Rivals", "┌ Attempts")]
+    {
+        screen.set_focus(pane);
+        let text = crate::console::test_kit::zoomed(&screen, &company, 100, 30);
+        let first = text.lines().next().expect("a line");
+        assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");
     }
 }

@@ -2,9 +2,9 @@
 
 use super::alerts::{Alert, Kind};
 use crate::console::company::Company;
+use crate::console::posts::Kind as Author;
 use crate::console::readings::text_at;
 use crate::console::screens::product::model::Project;
-use crate::console::screens::social::feed::{self, Kind as Author};
 use crate::session::Rows;
 
 /// What the notices of a week say, the newest first.
@@ -37,7 +37,8 @@ pub fn of_posts(company: &Company) -> Vec<Alert> {
     let day = company.seen.day;
     // Number of posts of the last week, and of the four before it.
     let (mut own, mut before, mut press) = (0u32, 0u32, 0u32);
-    for post in feed::posts_of(company) {
+    // The newest stand first; what is older than five weeks does not count.
+    for post in company.posts.iter().take_while(|post| post.day + 35 > day) {
         let weeks = day.saturating_sub(post.day) / 7;
         match (post.kind, weeks) {
             (Author::Customers | Author::Comments, 0) => own += 1,

@@ -22,12 +22,21 @@ pub fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> String {
     let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return String::new() };
     match last_week(days) {
         Some((mean, peak)) if rung.units > 0.0 => format!(
-            "tier {set} · used {} mean, {} peak · {} units free",
-            percent(mean / rung.units, 0),
-            percent(peak / rung.units, 0),
+            "tier {set} · used {}, peak {} · {} free",
+            share(mean, rung.units),
+            share(peak, rung.units),
             compact(rung.units - peak)
         ),
         _ => format!("tier {set} · {} units a day", compact(rung.units)),
+    }
+}
+
+/// Units as a share of what a tier serves; how far beyond it matters no more at ten times of it.
+fn share(units: f64, of: f64) -> String {
+    match of {
+        of if of <= 0.0 => "–".to_owned(),
+        of if units >= 10.0 * of => "> 999%".to_owned(),
+        of => percent(units / of, 0),
     }
 }
 
@@ -54,7 +63,7 @@ pub fn draw(
         (area, Rect::default())
     };
     draw_ladder(canvas, list, company, rungs, days, selected, focused, pane);
-    draw_history(canvas, history, days);
+    draw_history(canvas, history, rungs, days);
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -78,10 +87,9 @@ fn draw_ladder(
     }
     let from = first_row(selected, below.height as usize, rungs.len());
     for (row, (at, rung)) in rows_of(below).zip(rungs.iter().enumerate().skip(from)) {
-        let share =
-            |units: f64| if rung.units > 0.0 { percent(units / rung.units, 0) } else { "–".to_owned() };
-        let (mean, peak) =
-            used.map_or(("–".to_owned(), "–".to_owned()), |(mean, peak)| (share(mean), share(peak)));
+        let (mean, peak) = used.map_or(("–".to_owned(), "–".to_owned()), |(mean, peak)| {
+            (share(mean, rung.units), share(peak, rung.units))
+        });
         let mark = match rung.tier {
             tier if Some(tier) == in_force && tier == set => "◆ now",
             tier if Some(tier) == in_force => "◆ until tomorrow",
@@ -107,12 +115,32 @@ fn draw_ladder(
     }
 }
 
-fn draw_history(canvas: &mut Canvas<'_>, area: Rect, days: &[Day]) {
+/// Usage against what was to be had, with the tiers near it as dotted lines.
+fn draw_history(canvas: &mut Canvas<'_>, area: Rect, rungs: &[Rung], days: &[Day]) {
+    let most = days.iter().map(|day| day.usage.max(day.capacity)).fold(0.0, f64::max);
+    let (Some(first), Some(last)) = (days.first(), days.last()) else {
+        return canvas.text(area, "no day has passed", Role::Dim);
+    };
+    let step = (f64::from(last.day - first.day) / 24.0).max(1.0);
+    let near = rungs.iter().filter(|rung| rung.units > most / 20.0 && rung.units <= most);
+    let dotted = |rung: &Rung| {
+        let days = (0..=24).map(|at| f64::from(first.day) + step * f64::from(at));
+        let days = days.filter(|day| *day <= f64::from(last.day));
+        Line { scattered: true, ..Line::through(days.map(|day| (day, rung.units)).collect(), Role::Dim) }
+    };
+    let tiers: Vec<String> =
+        near.clone().map(|rung| format!("{} {}", rung.tier, compact(rung.units))).collect();
+    let words = format!("usage below capacity; dotted: tier {}", tiers.join(", "));
+    let key = Rect { height: u16::from(area.height >= 8), ..area };
+    canvas.text(key, &words, Role::Dim);
+    let area = Rect { y: area.y + key.height, height: area.height - key.height, ..area };
+    let dotted: Vec<Line> = near.map(dotted).collect();
     let points = |value: fn(&Day) -> f64| days.iter().map(|day| (f64::from(day.day), value(day))).collect();
-    let lines = [
+    let curves = [
         Line::through(points(|day| day.capacity), Role::Warning),
         Line::through(points(|day| day.usage), Role::Series(0)),
     ];
+    let lines: Vec<Line> = dotted.into_iter().chain(curves).collect();
     let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[] };
     chart(canvas, area, &lines, &x, &Axis { write: &compact, holds: &[0.0] });
 }

@@ -5,60 +5,117 @@ use std::collections::BTreeMap;
 use ratatui::layout::Rect;
 
 use super::model::Ages;
-use crate::console::canvas::{Canvas, rows_of};
+use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::theme::Role;
-use crate::console::widgets::spark::bar;
+use crate::console::widgets::table::first_row;
 use crate::notation::grouped;
 
-/// One line on issues.
-pub fn summary(issues: &BTreeMap<String, Ages>) -> String {
-    let all: f64 = issues.values().flatten().sum();
-    let old: f64 = issues.values().map(|ages| ages[2] + ages[3]).sum();
-    format!("{} open, {} of them for 8 days or more", grouped(all, 0), grouped(old, 0))
+/// What the bars are made of, the youngest first: the older, the denser.
+const SHADES: [char; 4] = ['░', '▒', '▓', '█'];
+
+/// Width of the figures beside the bars.
+const FIGURES: u16 = 45;
+
+/// One line on issues; nothing is said before they were read.
+pub fn summary(issues: Option<&BTreeMap<String, Ages>>) -> String {
+    let Some(issues) = issues else { return String::new() };
+    let all: f64 = issues.values().flatten().fold(0.0, |sum, count| sum + count);
+    let old: f64 = issues.values().fold(0.0, |sum, ages| sum + ages[2] + ages[3]);
+    format!("{} open, {} for 8 days or more", grouped(all, 0), grouped(old, 0))
 }
 
-/// Draws one group in a row, and all of them in the last.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, issues: &BTreeMap<String, Ages>, from: usize) {
-    let line = |name: &str, cells: [String; 5]| {
-        let [young, week, fortnight, old, all] = cells;
-        format!("{name:<8}{young:>9}{week:>9}{fortnight:>9}{old:>9}{all:>9}")
-    };
+/// The list of groups.
+pub struct List<'a> {
+    /// Open issues, once they were read.
+    pub issues: Option<&'a BTreeMap<String, Ages>>,
+    /// The selected group.
+    pub selected: usize,
+    /// Whether it has the focus.
+    pub focused: bool,
+    /// Its pane.
+    pub pane: usize,
+}
+
+/// Draws all groups in the first row, and each of them in one of its own; bars share one scale.
+pub fn draw(canvas: &mut Canvas<'_>, area: Rect, list: &List<'_>) {
     let head = ["to 3 d", "4-7 d", "8-14 d", "15+ d", "all"].map(str::to_owned);
-    canvas.text(area, &line("group", head), Role::Header);
+    canvas.text(area, &line("group", &head), Role::Header);
     if area.height < 2 {
         return;
     }
-    if issues.is_empty() {
-        let below = Rect { y: area.y + 1, height: 1, ..area };
-        canvas.text(below, "no customer waits for support", Role::Dim);
-        return;
-    }
-    let cells = |ages: &Ages| {
-        let [young, week, fortnight, old] = *ages;
-        [young, week, fortnight, old, ages.iter().sum()].map(|count| match count {
-            0.0 => "–".to_owned(),
-            count => grouped(count, 0),
-        })
+    let below = Rect { y: area.y + 1, height: area.height - 1, ..area };
+    let Some(issues) = list.issues.filter(|issues| !issues.is_empty()) else {
+        let words = if list.issues.is_some() { "no customer waits for support" } else { "reading …" };
+        return canvas.text(below, words, Role::Dim);
     };
+    if area.width > FIGURES + 22 {
+        let place = Rect { x: area.x + FIGURES + 2, width: area.width - FIGURES - 2, height: 1, ..area };
+        canvas.text(place, "░ young … █ old", Role::Dim);
+    }
     let mut all: Ages = [0.0; 4];
     for ages in issues.values() {
         all.iter_mut().zip(ages).for_each(|(sum, count)| *sum += count);
     }
-    let whole = all.iter().sum::<f64>().max(1.0);
-    let lines = std::iter::once(("all", &all))
-        .chain(issues.iter().map(|(group, ages)| (group.as_str(), ages)).skip(from));
-    let below = Rect { y: area.y + 1, height: area.height - 1, ..area };
-    for (row, (name, ages)) in rows_of(below).zip(lines) {
-        let role = match (name, ages[3] > 0.0) {
-            ("all", _) => Role::Strong,
-            (_, true) => Role::Warning,
-            _ => Role::Text,
+    let whole = issues.values().map(|ages| ages.iter().sum::<f64>()).fold(1.0, f64::max);
+    let first = Rect { height: 1, ..below };
+    canvas.text(first, &line("all", &cells(&all)), Role::Strong);
+    let below = Rect { y: below.y + 1, height: below.height - 1, ..below };
+    if list.focused {
+        canvas.page = below.height.max(1);
+    }
+    let from = first_row(list.selected, below.height as usize, issues.len());
+    for (row, (at, (group, ages))) in rows_of(below).zip(issues.iter().enumerate().skip(from)) {
+        let role = match (list.focused && at == list.selected, ages[3] > 0.0) {
+            (true, _) => Role::Selection,
+            (false, true) => Role::Warning,
+            (false, false) => Role::Text,
         };
-        canvas.text(row, &line(name, cells(ages)), role);
-        if row.width > 66 && name != "all" {
-            let width = (row.width - 56).min(24);
-            let place = Rect { x: row.x + 55, width, ..row };
-            canvas.text(place, &bar(ages.iter().sum::<f64>() / whole, width as usize), Role::Series(0));
+        canvas.clear(row, role);
+        canvas.text(row, &line(group, &cells(ages)), role);
+        canvas.click(row, Click::Row(list.pane, at));
+        if row.width > FIGURES + 8 {
+            let place = Rect { x: row.x + FIGURES + 2, width: row.width - FIGURES - 2, ..row };
+            let text = stacked(ages, whole, place.width as usize);
+            canvas.text(place, &text, if role == Role::Selection { role } else { Role::Series(0) });
         }
+    }
+}
+
+fn line(name: &str, cells: &[String; 5]) -> String {
+    let [young, week, fortnight, old, all] = cells;
+    format!("{name:<5}{young:>8}{week:>8}{fortnight:>8}{old:>8}{all:>8}")
+}
+
+fn cells(ages: &Ages) -> [String; 5] {
+    let [young, week, fortnight, old] = *ages;
+    [young, week, fortnight, old, ages.iter().sum()].map(|count| match count {
+        0.0 => "–".to_owned(),
+        count => grouped(count, 0),
+    })
+}
+
+/// The ages of a group beside each other, as parts of the largest group.
+fn stacked(ages: &Ages, whole: f64, width: usize) -> String {
+    let (mut text, mut sum, mut drawn) = (String::new(), 0.0, 0);
+    for (count, shade) in ages.iter().zip(SHADES) {
+        sum += count;
+        let to = (sum / whole * width as f64).round() as usize;
+        text.extend(std::iter::repeat_n(shade, to.saturating_sub(drawn)));
+        drawn = to.max(drawn);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_are_as_long_as_the_share_and_denser_with_age() {
+        assert_eq!(stacked(&[5.0, 0.0, 2.0, 3.0], 10.0, 10), "░░░░░▓▓███");
+        assert_eq!(stacked(&[1.0, 0.0, 0.0, 1.0], 10.0, 10), "░█");
+        assert_eq!(stacked(&[0.0; 4], 1.0, 10), "");
+        assert_eq!(summary(Some(&BTreeMap::new())), "0 open, 0 for 8 days or more");
+        assert_eq!(summary(None), "");
     }
 }

@@ -1,6 +1,7 @@
 //! Quality, plans, capacity, service, issues and R&D.
 
 mod capacity;
+mod figure;
 mod issues;
 pub mod model;
 mod plans;
@@ -13,7 +14,7 @@ use std::collections::BTreeMap;
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use self::model::{Ages, Day, Offer, PlanFacts, Project, Rung, Sales};
-use super::{Look, Screen};
+use super::{Figure, Look, Screen};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::company::Company;
@@ -42,7 +43,10 @@ pub struct Product {
     plans: [PlanFacts; 3],
     rungs: Vec<Rung>,
     days: Vec<Day>,
-    issues: BTreeMap<String, Ages>,
+    /// Open issues by group; none before they were read.
+    issues: Option<BTreeMap<String, Ages>>,
+    /// Plan of the selected figure.
+    column: usize,
     projects: Vec<Project>,
     offers: Vec<Offer>,
     spent: research::Spent,
@@ -65,8 +69,8 @@ impl Product {
             QUALITY => company.quality.len(),
             PLANS => plans::FIGURES.len(),
             CAPACITY => self.rungs.len(),
-            ISSUES => self.issues.len(),
-            RESEARCH => self.offers.len(),
+            ISSUES => self.issues.as_ref().map_or(0, BTreeMap::len),
+            RESEARCH => self.projects.len() + self.offers.len(),
             _ => 1,
         }
     }
@@ -116,6 +120,10 @@ impl Screen for Product {
         self.focus = Focus(pane.min(PANES.len() - 1));
     }
 
+    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
+        figure::of(self, look.company)
+    }
+
     fn readings(&self) -> &'static [Reading] {
         &[
             Reading::Service,
@@ -139,7 +147,7 @@ impl Screen for Product {
             }
             Reading::Subscribers => self.sales.take_subscribers(rows),
             Reading::Usage => self.sales.take_usage(rows),
-            Reading::OpenIssues => self.issues = model::issues(rows),
+            Reading::OpenIssues => self.issues = Some(model::issues(rows)),
             _ => {}
         }
         self.plans = self.sales.plans(look.company);
@@ -167,6 +175,8 @@ impl Screen for Product {
             Action::PageDown => *place = (*place + page).min(last),
             Action::First => *place = 0,
             Action::Last => *place = last,
+            Action::Left if self.focus.0 == PLANS && self.column > 0 => self.column -= 1,
+            Action::Right if self.focus.0 == PLANS && self.column < 2 => self.column += 1,
             Action::Left => self.set_focus((self.focus.0 + PANES.len() - 1) % PANES.len()),
             Action::Right => self.set_focus((self.focus.0 + 1) % PANES.len()),
             Action::Open => return self.open(),
@@ -183,7 +193,9 @@ impl Screen for Product {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        if area.width >= 104 && area.height >= 32 {
+        if canvas.zoomed {
+            self.draw_pane(canvas, area, self.focus.0, look);
+        } else if area.width >= 104 && area.height >= 32 {
             self.draw_all(canvas, area, look);
         } else {
             self.draw_one(canvas, area, look);
@@ -203,7 +215,8 @@ impl Product {
         for (pane, place) in [(QUALITY, top), (PLANS, middle), (RESEARCH, bottom)] {
             self.draw_pane(canvas, place, pane, look);
         }
-        let issues = (self.issues.len().max(1) as u16 + 4).min(right.height / 4);
+        let groups = self.issues.as_ref().map_or(0, BTreeMap::len) as u16;
+        let issues = (groups.max(1) + 4).min(right.height / 4);
         let [top, middle, bottom] =
             Layout::vertical([Constraint::Min(0), Constraint::Length(8), Constraint::Length(issues)])
                 .areas(right);
@@ -238,10 +251,9 @@ impl Product {
                     .iter()
                     .max_by(|left, right| left.group_bonus.total_cmp(&right.group_bonus));
                 let best = best.filter(|best| best.group_bonus > 0.0);
-                let best = best.map_or(String::new(), |best| {
-                    format!(" · {} own {:+.4}", best.group.id(), best.group_bonus)
-                });
-                format!("base {base:.2} · for everybody {shared:+.4}{best}")
+                let best = best
+                    .map_or(String::new(), |best| format!(" · {} {:+.4}", best.group.id(), best.group_bonus));
+                format!("base {base:.2} · all {shared:+.4}{best}")
             }
             PLANS => {
                 let plan = |(name, plan): (char, &PlanFacts)| {
@@ -252,7 +264,7 @@ impl Product {
             }
             CAPACITY => capacity::summary(company, &self.rungs, &self.days),
             SERVICE => capacity::service_summary(&self.days),
-            ISSUES => issues::summary(&self.issues),
+            ISSUES => issues::summary(self.issues.as_ref()),
             _ => research::summary(&self.projects),
         }
     }
@@ -261,20 +273,24 @@ impl Product {
         canvas.click(area, Click::Pane(pane));
         let (company, focused) = (look.company, self.focus.0 == pane);
         let note = match pane {
-            PLANS => "usage of the last day, a month of 30 days".to_owned(),
+            PLANS => "last day's usage, 30 days a month".to_owned(),
             RESEARCH if focused => summary_of_cash(company),
             pane => self.summary(pane, company),
         };
         let inside = canvas.pane(area, PANES[pane], &note, focused);
         let place = self.places[pane];
         match pane {
-            QUALITY => plans::draw_quality(canvas, inside, company, place),
-            PLANS => plans::draw_plans(canvas, inside, &self.plans, place, focused, pane),
+            QUALITY => plans::draw_quality(canvas, inside, company, place, focused, pane),
+            PLANS => plans::draw_plans(canvas, inside, &self.plans, (place, self.column), focused, pane),
             CAPACITY => {
                 capacity::draw(canvas, inside, company, &self.rungs, &self.days, place, focused, pane);
             }
             SERVICE => capacity::draw_service(canvas, inside, &self.days),
-            ISSUES => issues::draw(canvas, inside, &self.issues, place),
+            ISSUES => {
+                let issues = self.issues.as_ref();
+                let list = issues::List { issues, selected: place, focused, pane };
+                issues::draw(canvas, inside, &list);
+            }
             _ => research::draw(
                 canvas,
                 inside,

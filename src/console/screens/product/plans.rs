@@ -1,6 +1,7 @@
 //! Quality by group, and what each plan costs and earns.
 
 use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
 
 use super::model::PlanFacts;
 use crate::console::canvas::{Canvas, Click, rows_of};
@@ -12,7 +13,14 @@ use crate::notation::{cents, compact, grouped, percent};
 use crate::world::identifiers::Plan;
 
 /// Draws the components of quality, one group in a row.
-pub fn draw_quality(canvas: &mut Canvas<'_>, area: Rect, company: &Company, from: usize) {
+pub fn draw_quality(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    company: &Company,
+    selected: usize,
+    focused: bool,
+    pane: usize,
+) {
     let (base, shared) = company.quality_base;
     let tier = |plan: &str| format!("{plan} T{}", number(company.setting("set_model_tiers", plan)));
     let wide = area.width >= 62;
@@ -20,8 +28,11 @@ pub fn draw_quality(canvas: &mut Canvas<'_>, area: Rect, company: &Company, from
     let head = format!("group {parts} {:>8} {:>9} {:>8} {:>8}", "own +", tier("A"), tier("B"), tier("C"));
     canvas.text(area, &head, Role::Header);
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-    let from = first_row(from, below.height as usize, company.quality.len());
-    for (row, quality) in rows_of(below).zip(company.quality.iter().skip(from)) {
+    if focused {
+        canvas.page = below.height.max(1);
+    }
+    let from = first_row(selected, below.height as usize, company.quality.len());
+    for (row, (at, quality)) in rows_of(below).zip(company.quality.iter().enumerate().skip(from)) {
         let parts = if wide { format!(" {base:>7.4} {shared:>+8.4}") } else { String::new() };
         let own = match quality.group_bonus {
             bonus if bonus > 0.0 => format!("{bonus:+.4}"),
@@ -29,8 +40,14 @@ pub fn draw_quality(canvas: &mut Canvas<'_>, area: Rect, company: &Company, from
         };
         let [a, b, c] = quality.by_plan.0;
         let text = format!("{:<6}{parts} {own:>8} {a:>9.4} {b:>8.4} {c:>8.4}", quality.group.id());
-        let role = if quality.group_bonus > 0.0 { Role::Text } else { Role::Dim };
+        let role = match (focused && at == selected, quality.group_bonus > 0.0) {
+            (true, _) => Role::Selection,
+            (false, true) => Role::Text,
+            (false, false) => Role::Dim,
+        };
+        canvas.clear(row, role);
         canvas.text(row, &text, role);
+        canvas.click(row, Click::Row(pane, at));
     }
 }
 
@@ -61,7 +78,7 @@ pub fn draw_plans(
     canvas: &mut Canvas<'_>,
     area: Rect,
     plans: &[PlanFacts; 3],
-    selected: usize,
+    (selected, column): (usize, usize),
     focused: bool,
     pane: usize,
 ) {
@@ -86,6 +103,11 @@ pub fn draw_plans(
         canvas.clear(row, role);
         let warning = if loses { " ! loses" } else { "" };
         canvas.text(row, &(line(name, [0, 1, 2].map(|plan| write(&plans[plan]))) + warning), role);
+        if focused && at == selected {
+            let place = Rect { x: row.x + 19 + 11 * column as u16, width: 10, ..row };
+            let mark = Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED);
+            canvas.buffer.set_style(place.intersection(row).intersection(canvas.area()), mark);
+        }
         canvas.click(row, Click::Row(pane, at));
     }
 }

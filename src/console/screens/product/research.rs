@@ -3,7 +3,7 @@
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::model::{Offer, Project};
-use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::canvas::{Align, Canvas, Click, fit, rows_of};
 use crate::console::company::Company;
 use crate::console::theme::Role;
 use crate::console::widgets::spark;
@@ -46,11 +46,13 @@ pub fn draw(
     pane: usize,
 ) {
     let line = (projects.len() as u16 + 1).clamp(2, (area.height / 3).max(2));
+    let in_line = (focused && selected < projects.len()).then_some(selected);
+    let in_list = selected.checked_sub(projects.len()).filter(|_| focused);
     let [money, line, list] =
         Layout::vertical([Constraint::Length(2), Constraint::Length(line), Constraint::Min(0)]).areas(area);
     draw_spent(canvas, money, spent);
-    draw_line(canvas, line, company, projects);
-    draw_offers(canvas, list, company, offers, selected, focused, pane);
+    draw_line(canvas, line, company, projects, in_line, pane);
+    draw_offers(canvas, list, company, offers, in_list, projects.len(), pane);
 }
 
 fn draw_spent(canvas: &mut Canvas<'_>, area: Rect, spent: &Spent) {
@@ -66,9 +68,18 @@ fn draw_spent(canvas: &mut Canvas<'_>, area: Rect, spent: &Spent) {
 }
 
 /// The projects as bars over the days from the first start to the last end.
-fn draw_line(canvas: &mut Canvas<'_>, area: Rect, company: &Company, projects: &[Project]) {
+fn draw_line(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    company: &Company,
+    projects: &[Project],
+    selected: Option<usize>,
+    pane: usize,
+) {
     let today = company.seen.day;
-    let shown = &projects[..projects.len().min(area.height.saturating_sub(1) as usize)];
+    let rows = area.height.saturating_sub(1) as usize;
+    let skipped = first_row(selected.unwrap_or(0), rows, projects.len());
+    let shown = &projects[skipped..projects.len().min(skipped + rows)];
     if shown.is_empty() {
         canvas.text(area, "no project was started yet: the form start_research_project buys one", Role::Dim);
         return;
@@ -87,11 +98,22 @@ fn draw_line(canvas: &mut Canvas<'_>, area: Rect, company: &Company, projects: &
         let x = area.x + names;
         canvas.text(Rect { x, width, ..area }, &format!("day {first}"), Role::Dim);
         let words = format!("day {last}");
-        canvas.aligned(Rect { x, width, ..area }, &words, Role::Dim, crate::console::canvas::Align::Right);
+        canvas.aligned(Rect { x, width, ..area }, &words, Role::Dim, Align::Right);
+        // Only where it stands clear of both ends.
+        let now = place(today);
+        if now > 10 && now + 14 < width {
+            canvas.text(Rect { x: x + now, width: 5, ..area }, "▼ now", Role::Key);
+        }
     }
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-    for (row, project) in rows_of(below).zip(shown) {
-        let role = if project.done { Role::Dim } else { Role::Text };
+    for (row, (at, project)) in rows_of(below).zip(shown.iter().enumerate()) {
+        let here = selected == Some(skipped + at);
+        let role = match (here, project.done) {
+            (true, _) => Role::Selection,
+            (false, true) => Role::Dim,
+            (false, false) => Role::Text,
+        };
+        canvas.click(row, Click::Row(pane, skipped + at));
         let mark = if project.done { "✓" } else { "…" };
         let text = format!(
             "{:<7}{:>+8.4}{:>5} {:>4} {mark}",
@@ -119,21 +141,21 @@ fn draw_offers(
     area: Rect,
     company: &Company,
     offers: &[Offer],
-    selected: usize,
-    focused: bool,
+    selected: Option<usize>,
+    before: usize,
     pane: usize,
 ) {
     let head =
-        format!("{:>4} {:<18}{:>9}{:>6}{:>8}{:>9}  ", "tier", "project", "cost", "days", "quality", "$/0.01");
-    canvas.text(area, &head, Role::Header);
+        format!("{:>4} {:<17}{:>9}{:>6}{:>8}{:>9}  ", "tier", "project", "cost", "days", "quality", "$/0.01");
+    canvas.text(area, head.trim_end(), Role::Header);
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-    if focused {
+    if selected.is_some() {
         canvas.page = below.height.max(1);
     }
-    let from = first_row(selected, below.height as usize, offers.len());
+    let from = first_row(selected.unwrap_or(0), below.height as usize, offers.len());
     for (row, (at, offer)) in rows_of(below).zip(offers.iter().enumerate().skip(from)) {
         let affordable = offer.cost <= company.seen.cash;
-        let role = match (focused && at == selected, affordable) {
+        let role = match (selected == Some(at), affordable) {
             (true, _) => Role::Selection,
             (false, true) => Role::Text,
             (false, false) => Role::Dim,
@@ -150,17 +172,23 @@ fn draw_offers(
         if !affordable {
             remarks.push("! beyond cash".to_owned());
         }
+        // Where words do not fit, a sign says that it costs more than there is.
+        let remarks = match row.width < 70 {
+            true if !affordable => "!".to_owned(),
+            true => String::new(),
+            false => remarks.join(", "),
+        };
         canvas.clear(row, role);
         let text = format!(
-            "{:>4} {:<18}{:>9}{:>6}{:>+8.3}{each:>9}  {}",
+            "{:>4} {:<17}{:>9}{:>6}{:>+8.3}{each:>9} {}",
             offer.tier,
-            crate::console::canvas::fit(&offer.name, 18),
+            fit(&offer.name, 17),
             format!("${}", compact(offer.cost)),
             grouped(offer.days, 0),
             offer.boost,
-            remarks.join(", ")
+            remarks
         );
-        canvas.text(row, &text, role);
-        canvas.click(row, Click::Row(pane, at));
+        canvas.text(row, text.trim_end(), role);
+        canvas.click(row, Click::Row(pane, before + at));
     }
 }

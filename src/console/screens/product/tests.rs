@@ -82,3 +82,77 @@ fn the_small_window_has_a_line_on_everything() {
         assert!(text.contains(words), "{words} in\n{text}");
     }
 }
+
+/// Rows that an answer of the database holds at most.
+const MOST: f64 = 5000.0;
+
+#[test]
+fn figures_are_made_of_their_rows() {
+    let mut session = played(6);
+    let company = Company::of(&session);
+    let mut screen: Product = shown(&mut session, &company);
+    let keys = crate::console::keys::Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 5 };
+    for pane in 0..PANES.len() {
+        screen.set_focus(pane);
+        for _ in 0..screen.rows(pane, &company) {
+            let figure = screen.figure(&look).expect("a figure");
+            if let Some(sql) = figure.sql {
+                session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+            }
+            act(&mut screen, Action::Down, &company);
+        }
+    }
+    let mut rows = |screen: &Product| {
+        let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
+        session.query(&sql).expect("rows").rows
+    };
+    screen.set_focus(PLANS);
+    (screen.places[PLANS], screen.column) = (4, 1);
+    assert_eq!(screen.figure(&look).expect("a figure").title, "customers of plan B");
+    assert_eq!(rows(&screen).len() as f64, screen.plans[1].customers.min(MOST));
+    act(&mut screen, Action::Right, &company);
+    assert_eq!((screen.focus(), rows(&screen).len() as f64), (PLANS, screen.plans[2].customers.min(MOST)));
+    screen.set_focus(ISSUES);
+    screen.places[ISSUES] = 0;
+    let issues = screen.issues.clone().expect("issues");
+    let first = issues.values().next().expect("a group with open issues");
+    assert_eq!(rows(&screen).len() as f64, first.iter().sum::<f64>());
+    screen.set_focus(RESEARCH);
+    screen.places[RESEARCH] = 0;
+    assert_eq!(rows(&screen).len(), 1, "the project that was started");
+}
+
+#[test]
+fn what_was_not_read_yet_is_not_called_nothing() {
+    let mut session = played(4);
+    let company = Company::of(&session);
+    let mut screen = Product::default();
+    screen.set_focus(ISSUES);
+    let text = drawn(&screen, &company, 120, 37);
+    assert!(text.contains("reading …") && !text.contains("-0 open"), "{text}");
+    let screen: Product = shown(&mut session, &company);
+    let text = drawn(&screen, &company, 120, 37);
+    for words in ["dotted: tier", "usage below capacity", " open, "] {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+    let mut screen = screen;
+    screen.set_focus(RESEARCH);
+    let text = crate::console::test_kit::zoomed(&screen, &company, 120, 37);
+    assert!(text.contains("▼ now") && text.contains("$/0.01"), "{text}");
+}
+
+#[test]
+fn a_zoomed_pane_has_the_window() {
+    let mut session = played(3);
+    let company = Company::of(&session);
+    let mut screen: Product = shown(&mut session, &company);
+    for (pane, own, other) in
+        [(QUALITY, "Quality", "┌ Plans"), (ISSUES, "Issues", "┌ Capacity"), (RESEARCH, "R&D", "┌ Service")]
+    {
+        screen.set_focus(pane);
+        let text = crate::console::test_kit::zoomed(&screen, &company, 100, 30);
+        let first = text.lines().next().expect("a line");
+        assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");
+    }
+}

@@ -2,124 +2,18 @@
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use serde_json::Value;
-
-use crate::console::company::Company;
+pub use crate::console::posts::{Kind, Post};
 use crate::console::readings::{number_at, text_at};
 use crate::session::Rows;
 
-/// Who writes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
-    /// Customers of their own accord.
-    Customers,
-    /// Rivals and the economy, in the news.
-    Press,
-    /// Answers to our posts.
-    Comments,
-    /// The company.
-    Own,
-}
-
-impl Kind {
-    /// All kinds in the order they are chosen.
-    pub const ALL: [Kind; 4] = [Kind::Customers, Kind::Press, Kind::Comments, Kind::Own];
-
-    /// Name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Kind::Customers => "customers",
-            Kind::Press => "press",
-            Kind::Comments => "comments",
-            Kind::Own => "our posts",
-        }
-    }
-}
-
-/// A post.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Post {
-    /// Who writes.
-    pub kind: Kind,
-    /// Number among the posts of others, or among ours.
-    pub number: u32,
-    /// Day.
-    pub day: u32,
-    /// Name and group of the author.
-    pub author: String,
-    /// Text.
-    pub text: String,
-    /// Our post that a comment answers, or the post that ours answers.
-    pub answers: Option<u32>,
-    /// Views of a post of ours; 0 until it was read.
-    pub views: u32,
-    /// Comments on a post of ours.
-    pub comments: u32,
-}
-
-impl Post {
-    /// Week that holds its day.
-    pub fn week(&self) -> u32 {
-        self.day.div_ceil(7).max(1)
-    }
-
-    /// Reactions to a post of ours, as far as they are published.
-    pub fn reactions(&self) -> String {
-        let noun = |count: u32, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
-        format!("{}, {}", noun(self.views, "view"), noun(self.comments, "comment"))
-    }
-
-    /// The line above its text.
-    pub fn head(&self) -> String {
-        match (self.kind, self.answers) {
-            (Kind::Own, Some(post)) => {
-                format!("our post {}, answers #{post} · {}", self.number, self.reactions())
-            }
-            (Kind::Own, None) => format!("our post {} · {}", self.number, self.reactions()),
-            (Kind::Comments, Some(own)) => {
-                format!("{} · #{} on our post {own}, day {}", self.author, self.number, self.day)
-            }
-            _ => format!("{} · #{}", self.author, self.number),
-        }
-    }
-}
-
-/// Posts of others as get_social_posts tells them, in its order.
-pub fn posts_of(company: &Company) -> Vec<Post> {
-    let list = company.posts.get("posts").and_then(Value::as_array);
-    list.into_iter().flatten().map(post_of).collect()
-}
-
-fn post_of(told: &Value) -> Post {
-    let number = |name: &str| told.get(name).and_then(Value::as_u64).and_then(|own| u32::try_from(own).ok());
-    let text = |name: &str| told.get(name).and_then(Value::as_str);
-    let answers = number("reply_to_agent_post_id");
-    let group = text("group_id").unwrap_or("–");
-    // The press is the only one without a profile, comments aside.
-    let (kind, author) = match (answers, text("persona_name")) {
-        (Some(_), name) => (Kind::Comments, format!("{} · {group}", name.unwrap_or("somebody"))),
-        (None, Some(name)) => (Kind::Customers, format!("{name} · {group}")),
-        (None, None) => (Kind::Press, "press".to_owned()),
-    };
-    Post {
-        kind,
-        number: number("post_id").unwrap_or(0),
-        day: number("day").unwrap_or(0),
-        author,
-        text: text("content").unwrap_or_default().to_owned(),
-        answers,
-        views: 0,
-        comments: 0,
-    }
-}
-
 /// Our posts as the database tells them.
-pub fn own_posts(rows: &Rows) -> Vec<Post> {
+pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
     let own = |row: &Vec<crate::session::Cell>| {
         let answers = number_at(row, 3) as u32;
         let comments: Vec<u64> = serde_json::from_str(text_at(row, 5)).unwrap_or_default();
-        Post {
+        Arc::new(Post {
             kind: Kind::Own,
             number: number_at(row, 0) as u32,
             day: number_at(row, 1) as u32,
@@ -128,7 +22,7 @@ pub fn own_posts(rows: &Rows) -> Vec<Post> {
             answers: (answers > 0).then_some(answers),
             views: number_at(row, 4) as u32,
             comments: comments.len() as u32,
-        }
+        })
     };
     rows.rows.iter().map(own).collect()
 }
@@ -140,6 +34,8 @@ pub struct Filter {
     pub kind: Option<Kind>,
     /// Of this week only.
     pub week: Option<u32>,
+    /// Of one thread only: our post, and the one that it answers.
+    pub thread: Option<(u32, Option<u32>)>,
     /// That hold this text, in any case.
     pub text: String,
 }
@@ -150,6 +46,7 @@ impl Filter {
         let wanted = self.text.to_lowercase();
         self.kind.is_none_or(|kind| kind == post.kind)
             && self.week.is_none_or(|week| week == post.week())
+            && self.thread.is_none_or(|thread| belongs(post, thread))
             && (wanted.is_empty()
                 || post.text.to_lowercase().contains(&wanted)
                 || post.head().to_lowercase().contains(&wanted))
@@ -177,15 +74,25 @@ impl Filter {
     pub fn words(&self) -> String {
         let kind = self.kind.map(|kind| kind.name().to_owned());
         let week = self.week.map(|week| format!("week {week}"));
+        let thread = self.thread.map(|(own, _)| format!("thread of our post {own}"));
         let text = (!self.text.is_empty()).then(|| format!("\"{}\"", self.text));
-        [kind, week, text].into_iter().flatten().collect::<Vec<_>>().join(" · ")
+        [thread, kind, week, text].into_iter().flatten().collect::<Vec<_>>().join(" · ")
+    }
+}
+
+/// Whether a post belongs to the thread of one of ours.
+fn belongs(post: &Post, (own, answered): (u32, Option<u32>)) -> bool {
+    match post.kind {
+        Kind::Own => post.number == own,
+        Kind::Comments => post.answers == Some(own),
+        Kind::Customers | Kind::Press => Some(post.number) == answered,
     }
 }
 
 /// All posts with the newest first; comments follow the post of ours that they answer, the oldest first.
-pub fn threads(others: &[Post], own: &[Post]) -> Vec<Post> {
+pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
     let days: BTreeMap<u32, u32> = own.iter().map(|post| (post.number, post.day)).collect();
-    let place = |post: &Post| {
+    let place = |post: &Arc<Post>| {
         let thread = match post.kind {
             Kind::Own => Some(post.number),
             Kind::Comments => post.answers.filter(|own| days.contains_key(own)),
@@ -200,13 +107,13 @@ pub fn threads(others: &[Post], own: &[Post]) -> Vec<Post> {
         };
         (Reverse(day), within)
     };
-    let mut all: Vec<Post> = others.iter().chain(own).cloned().collect();
+    let mut all: Vec<Arc<Post>> = others.iter().chain(own).cloned().collect();
     all.sort_by_key(place);
     all
 }
 
 /// Posts of others by week, from the first week to the last.
-pub fn by_week(posts: &[Post], last: u32, takes: impl Fn(Kind) -> bool) -> Vec<(f64, f64)> {
+pub fn by_week(posts: &[Arc<Post>], last: u32, takes: impl Fn(Kind) -> bool) -> Vec<(f64, f64)> {
     let count = |week: u32| posts.iter().filter(|post| takes(post.kind) && post.week() == week).count();
     (1..=last).map(|week| (f64::from(week), count(week) as f64)).collect()
 }
@@ -215,9 +122,9 @@ pub fn by_week(posts: &[Post], last: u32, takes: impl Fn(Kind) -> bool) -> Vec<(
 mod tests {
     use super::*;
 
-    fn post(kind: Kind, number: u32, day: u32, answers: Option<u32>) -> Post {
+    fn post(kind: Kind, number: u32, day: u32, answers: Option<u32>) -> Arc<Post> {
         let (author, text) = ("Ann · S1".to_owned(), format!("Words {number}"));
-        Post { kind, number, day, author, text, answers, views: 0, comments: 0 }
+        Arc::new(Post { kind, number, day, author, text, answers, views: 0, comments: 0 })
     }
 
     #[test]
@@ -264,6 +171,22 @@ mod tests {
         }
         filter.later_week(3);
         assert_eq!((filter.kind, filter.week), (None, None));
+    }
+
+    #[test]
+    fn a_thread_is_our_post_its_comments_and_what_it_answers() {
+        let filter = Filter { thread: Some((2, Some(6))), ..Filter::default() };
+        for (kind, number, answers, belongs) in [
+            (Kind::Own, 2, Some(6), true),
+            (Kind::Own, 6, None, false),
+            (Kind::Comments, 9, Some(2), true),
+            (Kind::Comments, 2, Some(1), false),
+            (Kind::Customers, 6, None, true),
+            (Kind::Press, 2, None, false),
+        ] {
+            assert_eq!(filter.takes(&post(kind, number, 7, answers)), belongs, "{kind:?} {number}");
+        }
+        assert_eq!(filter.words(), "thread of our post 2");
     }
 
     #[test]

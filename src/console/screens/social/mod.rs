@@ -1,23 +1,27 @@
 //! What people write, our posts, and the desk where the next one is written.
 
+mod draw;
 pub mod feed;
 #[cfg(test)]
 mod tests;
 mod wall;
 
+use std::sync::Arc;
+
 use crossterm::event::{KeyCode, KeyEvent};
-use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::layout::Rect;
 use serde_json::{Value, json};
 
 use self::feed::{Filter, Kind, Post};
-use super::{Look, Screen};
+use super::{Figure, Look, Screen};
 use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, fit};
+use crate::console::canvas::{Canvas, fit};
 use crate::console::effect::Effect;
 use crate::console::message::News;
+use crate::console::posts::Posts;
 use crate::console::readings::Reading;
 use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Cell, Column, Editor, Field, Line, Table, chart};
+use crate::console::widgets::{Cell, Column, Editor, Field, Table};
 use crate::notation::grouped;
 use crate::session::Rows;
 
@@ -31,10 +35,10 @@ const POST: &str = "post_social_media";
 #[derive(Default)]
 pub struct Social {
     focus: usize,
-    others: Vec<Post>,
-    own: Vec<Post>,
+    others: Posts,
+    own: Vec<Arc<Post>>,
     /// Everything in the order of the feed.
-    all: Vec<Post>,
+    all: Vec<Arc<Post>>,
     /// Places of the posts that the filter lets through.
     shown: Vec<usize>,
     selected: usize,
@@ -61,7 +65,7 @@ impl Social {
         let kept = self.post().map(|post| (post.kind, post.number));
         self.all = feed::threads(&self.others, &self.own);
         self.show_filtered(kept);
-        let row = |post: &Post| {
+        let row = |post: &Arc<Post>| {
             vec![
                 Cell::number(f64::from(post.day), post.day.to_string()).role(Role::Dim),
                 Cell::number(f64::from(post.views), grouped(f64::from(post.views), 0)),
@@ -89,14 +93,15 @@ impl Social {
     }
 
     fn post(&self) -> Option<&Post> {
-        self.shown.get(self.selected).and_then(|at| self.all.get(*at))
+        self.shown.get(self.selected).and_then(|at| self.all.get(*at)).map(Arc::as_ref)
     }
 
     /// A post with all that is known of it, and the comments on it.
     fn read(&self, post: &Post) -> Effect {
         let mut parts = vec![post.text.clone()];
         if post.kind == Kind::Own {
-            let of = |comment: &&Post| comment.kind == Kind::Comments && comment.answers == Some(post.number);
+            let of =
+                |comment: &&Arc<Post>| comment.kind == Kind::Comments && comment.answers == Some(post.number);
             let comments = self.all.iter().filter(of);
             parts.extend(comments.map(|comment| format!("↳ {}\n  {}", comment.head(), comment.text)));
         } else if let Some(own) = self.own.iter().find(|own| post.answers == Some(own.number)) {
@@ -105,16 +110,41 @@ impl Social {
         Effect::ShowText(format!("day {} · {}", post.day, post.head()), parts.join("\n\n"))
     }
 
+    /// Our post that is selected in their table.
+    fn own_post(&self) -> Option<&Post> {
+        self.table.selected().and_then(|row| self.own.get(row)).map(Arc::as_ref)
+    }
+
+    /// Our post in whose thread a post stands: itself, the one it comments, or the one that answers it.
+    fn thread_of(&self, post: &Post) -> Option<u32> {
+        match post.kind {
+            Kind::Own => Some(post.number),
+            Kind::Comments => post.answers.filter(|own| self.own.iter().any(|post| post.number == *own)),
+            _ => self.own.iter().find(|own| own.answers == Some(post.number)).map(|own| own.number),
+        }
+    }
+
+    /// Shows the thread of a post; within it, the whole post.
     fn open(&mut self) -> Vec<Effect> {
         let post = match self.focus {
             FEED => self.post(),
-            OWN => self.table.selected().and_then(|row| self.own.get(row)),
+            OWN => self.own_post(),
             _ => {
                 self.editing = true;
                 None
             }
         };
-        post.map(|post| self.read(post)).into_iter().collect()
+        let Some(post) = post else { return Vec::new() };
+        match self.thread_of(post).filter(|_| self.filter.thread.is_none()) {
+            Some(own) => {
+                let answered = self.own.iter().find(|post| post.number == own).and_then(|post| post.answers);
+                self.filter = Filter { thread: Some((own, answered)), ..Filter::default() };
+                self.focus = FEED;
+                self.refilter();
+                Vec::new()
+            }
+            None => vec![self.read(post)],
+        }
     }
 
     fn write(&mut self, answers: Option<u32>) {
@@ -261,6 +291,36 @@ impl Screen for Social {
         self.typing = None;
     }
 
+    fn figure(&self, _: &Look<'_>) -> Option<Figure> {
+        let post = match self.focus {
+            FEED => self.post()?,
+            OWN => self.own_post()?,
+            _ => return Some(Figure { title: "a post of ours".to_owned(), term: POST, sql: None }),
+        };
+        let number = post.number;
+        let own = "SELECT agent_post_id, day, views, comment_post_ids, content FROM agent_social_media_posts";
+        let (title, term, sql) = match (post.kind, self.focus, self.table.selected_column()) {
+            (Kind::Own, OWN, 2) => (
+                format!("comments on our post {number}"),
+                "comment",
+                format!(
+                    "SELECT post_id, day, content FROM social_media_posts WHERE reply_to_agent_post_id = {number}"
+                ),
+            ),
+            (Kind::Own, ..) => (
+                format!("views of our post {number}"),
+                "views",
+                format!("{own} WHERE agent_post_id = {number}"),
+            ),
+            _ => (
+                format!("post #{number}"),
+                if post.kind == Kind::Press { "press" } else { "post" },
+                format!("SELECT * FROM social_media_posts WHERE post_id = {number}"),
+            ),
+        };
+        Some(Figure { title, term, sql: Some(sql) })
+    }
+
     fn readings(&self) -> &'static [Reading] {
         &[Reading::OwnPosts]
     }
@@ -276,7 +336,7 @@ impl Screen for Social {
 
     fn unseen(&self) -> usize {
         // Of a run that was just opened, what the last week brought is new.
-        let is_new = |post: &&Post| match self.seen {
+        let is_new = |post: &&Arc<Post>| match self.seen {
             Some(seen) => post.number > seen,
             None => post.day + 7 > self.day,
         };
@@ -285,8 +345,10 @@ impl Screen for Social {
 
     fn renew(&mut self, look: &Look<'_>) {
         self.day = look.company.seen.day;
-        self.others = feed::posts_of(look.company);
-        self.arrange();
+        if !Arc::ptr_eq(&self.others, &look.company.posts) {
+            self.others = look.company.posts.clone();
+            self.arrange();
+        }
     }
 
     fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
@@ -367,132 +429,6 @@ impl Screen for Social {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        if area.width >= 104 && area.height >= 20 {
-            let right = (area.width / 3).clamp(40, 72);
-            let [left, side] =
-                Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
-            let [feed, desk] = Layout::vertical([Constraint::Min(0), Constraint::Length(8)]).areas(left);
-            let [own, weeks] = Layout::vertical([Constraint::Percentage(60), Constraint::Min(0)]).areas(side);
-            self.draw_feed(canvas, feed, look);
-            self.draw_desk(canvas, desk, look);
-            self.draw_own(canvas, own, look);
-            self.draw_weeks(canvas, weeks);
-            return;
-        }
-        // One above the other; where even that is too much, the pane with the focus alone.
-        let low = if area.height >= 14 { 7 } else { 0 };
-        let low = if low == 0 && self.focus == DESK { area.height } else { low };
-        let [upper, desk] = Layout::vertical([Constraint::Min(0), Constraint::Length(low)]).areas(area);
-        match self.focus {
-            OWN => {
-                let [own, weeks] =
-                    Layout::vertical([Constraint::Percentage(50), Constraint::Min(0)]).areas(upper);
-                self.draw_own(canvas, own, look);
-                self.draw_weeks(canvas, weeks);
-            }
-            _ => self.draw_feed(canvas, upper, look),
-        }
-        self.draw_desk(canvas, desk, look);
-    }
-}
-
-impl Social {
-    fn draw_feed(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        canvas.click(area, Click::Pane(FEED));
-        let focused = self.focus == FEED;
-        let filtered = self.filter.words();
-        let note = match filtered.is_empty() {
-            true => format!("{} posts", grouped(self.all.len() as f64, 0)),
-            false => format!("{filtered}: {} of {}", self.shown.len(), self.all.len()),
-        };
-        let mut inside = canvas.pane(area, "Feed", &note, focused);
-        if let Some(field) = self.typing.as_ref().filter(|_| inside.height > 1 && inside.width > 1) {
-            let row = Rect { y: inside.bottom() - 1, height: 1, ..inside };
-            canvas.text(row, "/", Role::Key);
-            field.draw(canvas, Rect { x: row.x + 1, width: row.width - 1, ..row });
-            inside.height -= 1;
-        }
-        if self.shown.is_empty() {
-            let words = match self.all.is_empty() {
-                true => "nobody has written anything yet: let a week pass (n)".to_owned(),
-                false => format!("no post fits: {} shows all again", look.hint(Action::Close)),
-            };
-            canvas.text(inside, &words, Role::Dim);
-        }
-        let posts: Vec<&Post> = self.shown.iter().filter_map(|at| self.all.get(*at)).collect();
-        wall::draw(canvas, inside, &posts, self.selected, focused, FEED);
-        if focused {
-            let keys = [Action::NextKind, Action::EarlierWeek, Action::LaterWeek, Action::Reply];
-            canvas.pane_keys(area, &look.hints(&keys));
-        }
-    }
-
-    fn draw_desk(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        if area.height < 3 {
-            return;
-        }
-        canvas.click(area, Click::Pane(DESK));
-        let (length, most) = (self.length(), look.company.terms.post_characters);
-        let note = match length > most {
-            true => format!("! {length} of {most} characters: {} too many", length - most),
-            false => format!("{length} of {most} characters"),
-        };
-        let title = self.answers.map_or("New post".to_owned(), |post| format!("Answer to #{post}"));
-        let inside = canvas.pane(area, &title, &note, self.focus == DESK);
-        let today = self.own.iter().any(|post| post.day == self.day);
-        let key = look.keys.label(Action::Compose).unwrap_or_default();
-        let hint = match today {
-            true => "published for this week; the next post can follow after it".to_owned(),
-            false => format!("{key} begins a post; one a week, every known group reads it"),
-        };
-        self.draft.draw(canvas, inside, self.editing, &hint);
-        if length > most && area.width > 8 {
-            let width = (note.chars().count() as u16 + 1).min(area.width - 3);
-            let row = Rect { x: area.right() - 2 - width, width, height: 1, ..area };
-            canvas.buffer.set_style(row.intersection(canvas.area()), canvas.theme.style(Role::Bad));
-        }
-        let keys: &[Action] = match (self.focus, self.editing, self.answers) {
-            (DESK, true, _) => &[Action::SendPost, Action::LeaveEditor],
-            (DESK, false, Some(_)) => &[Action::Compose, Action::SendPost, Action::Unreply],
-            (DESK, false, None) => &[Action::Compose, Action::SendPost],
-            _ => &[Action::Compose],
-        };
-        canvas.pane_keys(area, &look.hints(keys));
-    }
-
-    fn draw_own(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        canvas.click(area, Click::Pane(OWN));
-        let focused = self.focus == OWN;
-        let views: u32 = self.own.iter().map(|post| post.views).sum();
-        let note = match self.table.note() {
-            note if !note.is_empty() => note,
-            _ if self.own.is_empty() => String::new(),
-            _ => format!("{} · {} views", self.own.len(), grouped(f64::from(views), 0)),
-        };
-        let inside = canvas.pane(area, "Our posts", &note, focused);
-        if self.own.is_empty() {
-            let key = look.keys.label(Action::Compose).unwrap_or_default();
-            canvas.text(inside, &format!("none yet: {key} begins one"), Role::Dim);
-            return;
-        }
-        self.table.draw(canvas, inside, focused, OWN);
-        if focused {
-            canvas.pane_keys(area, &look.hints(&[Action::Open, Action::Sort, Action::Filter]));
-        }
-    }
-
-    fn draw_weeks(&self, canvas: &mut Canvas<'_>, area: Rect) {
-        let last = self.last_week();
-        let people = feed::by_week(&self.others, last, |kind| kind == Kind::Customers);
-        let press = feed::by_week(&self.others, last, |kind| kind == Kind::Press);
-        let now = |points: &[(f64, f64)]| points.last().map_or(0.0, |point| point.1);
-        let note = format!("customers {} · press {}", now(&people), now(&press));
-        let inside = canvas.pane(area, "Posts by week", &note, false);
-        let lines = [
-            Line::through(people, Role::Series(0)),
-            Line { scattered: true, ..Line::through(press, Role::Series(1)) },
-        ];
-        let x = Axis { write: &|week| format!("week {week:.0}"), holds: &[] };
-        chart(canvas, inside, &lines, &x, &Axis { write: &|count| grouped(count, 0), holds: &[0.0] });
+        draw::draw(self, canvas, area, look);
     }
 }

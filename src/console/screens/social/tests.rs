@@ -37,7 +37,7 @@ fn the_feed_holds_what_the_tools_and_the_database_tell() {
     let mut session = talked();
     let company = Company::of(&session);
     let screen: Social = shown(&mut session, &company);
-    let total = company.posts.get("total").and_then(Value::as_u64).unwrap_or(0);
+    let total = company.posts.len() as u64;
     assert!(total > 10, "{total}");
     assert_eq!(screen.all.len() as u64, total + 1);
     assert!(screen.own[0].views > 0 && screen.own[0].day == 21);
@@ -97,7 +97,12 @@ fn a_post_opens_with_its_comments() {
     let mut session = talked();
     let company = Company::of(&session);
     let mut screen: Social = shown(&mut session, &company);
+    let all = screen.shown.len();
     screen.set_focus(OWN);
+    assert!(act(&mut screen, Action::Open, &company).is_empty());
+    assert_eq!((screen.focus, screen.shown.len() as u32), (FEED, screen.own[0].comments + 1));
+    let seen = drawn(&screen, &company, 120, 37);
+    assert!(seen.contains("thread of our post 1: ") && seen.contains("our post 1 · "), "{seen}");
     let effects = act(&mut screen, Action::Open, &company);
     let [Effect::ShowText(title, text)] = &effects[..] else { panic!("{effects:?}") };
     assert!(
@@ -105,9 +110,29 @@ fn a_post_opens_with_its_comments() {
         "{title} {text}"
     );
     assert_eq!(text.matches("↳ ").count() as u32, screen.own[0].comments);
-    screen.set_focus(FEED);
+    act(&mut screen, Action::Close, &company);
+    assert_eq!(screen.shown.len(), all, "esc leaves the thread");
     let effects = act(&mut screen, Action::Open, &company);
     assert!(matches!(&effects[..], [Effect::ShowText(..)]), "{effects:?}");
+}
+
+#[test]
+fn figures_are_made_of_their_rows() {
+    let mut session = talked();
+    let company = Company::of(&session);
+    let mut screen: Social = shown(&mut session, &company);
+    let mut rows = |screen: &Social| {
+        let figure = with_look(&company, |look| screen.figure(look)).expect("a figure");
+        let sql = figure.sql.expect("rows");
+        session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
+    };
+    let number = screen.post().expect("a post").number;
+    assert_eq!(rows(&screen)[0][0], crate::session::Cell::Integer(i64::from(number)));
+    screen.set_focus(OWN);
+    assert_eq!(rows(&screen)[0][2], crate::session::Cell::Integer(i64::from(screen.own[0].views)));
+    act(&mut screen, Action::Right, &company);
+    act(&mut screen, Action::Right, &company);
+    assert_eq!(rows(&screen).len() as u32, screen.own[0].comments);
 }
 
 #[test]
@@ -195,4 +220,19 @@ fn it_is_drawn_in_every_window_with_and_without_posts() {
     sweep(&mut screen, &company);
     let empty = drawn(&Social::default(), &company, 80, 21);
     assert!(empty.contains("nobody has written anything yet: let a week pass"), "{empty}");
+}
+
+#[test]
+fn a_zoomed_pane_has_the_window() {
+    let mut session = played(3);
+    let company = Company::of(&session);
+    let mut screen: Social = shown(&mut session, &company);
+    for (pane, own, other) in
+        [(FEED, "Feed", "┌ New post"), (DESK, "New post", "┌ Feed"), (OWN, "Our posts", "┌ Feed")]
+    {
+        screen.set_focus(pane);
+        let text = crate::console::test_kit::zoomed(&screen, &company, 100, 30);
+        let first = text.lines().next().expect("a line");
+        assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");
+    }
 }

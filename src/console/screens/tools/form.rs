@@ -12,7 +12,7 @@ use crate::console::widgets::Field;
 use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::notation::dollars;
 use crate::session::{Preview, Refusal};
-use crate::tools::{Kind, Spec};
+use crate::tools::{ArgumentKind, Key, Kind, Spec};
 
 /// A form of one tool.
 #[derive(Debug, Clone)]
@@ -74,8 +74,19 @@ impl Form {
 
     /// The equivalent call, as a program would write it.
     pub fn call(&self) -> String {
-        let arguments = self.sheet.arguments().map_or("…".to_owned(), |arguments| arguments.to_string());
+        let arguments = self.sheet.arguments().map_or("…".to_owned(), |arguments| spaced(&arguments));
         format!("{}.{}({arguments})", self.spec.module.id(), self.spec.name)
+    }
+
+    /// Channel and group of the cell with the focus, in the matrix of advertising.
+    pub fn cell_names(&self) -> Option<(&str, &str)> {
+        let block = self.sheet.blocks.get(self.at.block)?;
+        match block.argument.kind {
+            ArgumentKind::Matrix(Key::Channel, Key::Group, _) => {
+                Some((block.rows.get(self.at.row)?, block.columns.get(self.at.column)?))
+            }
+            _ => None,
+        }
     }
 
     /// Asks what the call would do.
@@ -332,5 +343,19 @@ impl Form {
             field.insert(text.trim());
         }
         self.check()
+    }
+}
+
+/// JSON with blanks after its commas and colons, so that it can be read and broken into lines.
+pub(super) fn spaced(value: &Value) -> String {
+    match value {
+        Value::Object(fields) => {
+            let one = |(name, value): (&String, &Value)| {
+                format!("{}: {}", Value::String(name.clone()), spaced(value))
+            };
+            format!("{{{}}}", fields.iter().map(one).collect::<Vec<_>>().join(", "))
+        }
+        Value::Array(items) => format!("[{}]", items.iter().map(spaced).collect::<Vec<_>>().join(", ")),
+        plain => plain.to_string(),
     }
 }

@@ -1,24 +1,32 @@
 //! Forms of all tools, made from the catalogue.
 
 mod draw;
+mod figure;
 mod form;
+mod grid;
+mod outcome;
 mod reference;
 mod sheet;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeMap;
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Look, Screen, ScreenId};
+use super::{Figure, Look, Screen, ScreenId};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::message::News;
+use crate::console::readings::Reading;
 use crate::console::widgets::Field;
-use crate::tools::{CATALOGUE, Spec};
-use form::Form;
+use crate::session::{JournalEntry, Rows};
+use crate::tools::{CATALOGUE, Spec, find};
+use form::{Form, spaced};
+use outcome::Leads;
 
 /// The screen.
 #[derive(Default)]
@@ -31,6 +39,7 @@ pub struct Tools {
     typing: Option<Field>,
     /// Forms that were opened, with their drafts.
     forms: BTreeMap<&'static str, Form>,
+    leads: Leads,
 }
 
 impl Tools {
@@ -38,7 +47,9 @@ impl Tools {
     fn shown(&self) -> Vec<&'static Spec> {
         let wanted = self.filter.to_lowercase();
         let fits = |spec: &&'static Spec| {
-            spec.name.contains(&wanted) || spec.summary.to_lowercase().contains(&wanted)
+            spec.name.contains(&wanted)
+                || spec.code.to_lowercase().starts_with(&wanted)
+                || spec.summary.to_lowercase().contains(&wanted)
         };
         CATALOGUE.iter().map(|tool| tool.spec()).filter(fits).collect()
     }
@@ -81,6 +92,28 @@ impl Tools {
             "query" => Some(Effect::Show(ScreenId::Sql)),
             _ => None,
         }
+    }
+
+    /// The calls of this week and of drafts, one in a line, as they are copied.
+    fn calls(&self, company: &Company) -> String {
+        let day = company.seen.day;
+        let done = company.journal.iter().filter_map(|entry| match entry {
+            JournalEntry::Call { day: own, tool, args, .. } if *own == day => {
+                let module = find(tool).map_or("", |tool| tool.spec().module.id());
+                Some(format!("{module}.{tool}({})", spaced(args)))
+            }
+            _ => None,
+        });
+        let mut lines = vec![format!("# day {day}, run {}", company.seen.run)];
+        lines.extend(done);
+        let drafts = self.forms.values().filter(|form| form.spec.kind.acts() && form.sheet.is_changed());
+        let drafts: Vec<String> = drafts.map(Form::call).collect();
+        if !drafts.is_empty() {
+            lines.push("# not sent yet".to_owned());
+            lines.extend(drafts);
+        }
+        lines.push(String::new());
+        lines.join("\n")
     }
 
     fn act_in_list(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
@@ -140,10 +173,11 @@ impl Screen for Tools {
             _ => vec![
                 Action::Apply,
                 Action::SameDown,
-                Action::ClearCell,
                 Action::ResetForm,
                 Action::CopyCall,
+                Action::SaveCalls,
                 Action::Close,
+                Action::ClearCell,
             ],
         }
     }
@@ -158,6 +192,18 @@ impl Screen for Tools {
 
     fn set_focus(&mut self, pane: usize) {
         self.focus = pane.min(1);
+    }
+
+    fn figure(&self, _: &Look<'_>) -> Option<Figure> {
+        figure::of(self)
+    }
+
+    fn readings(&self) -> &'static [Reading] {
+        &[Reading::LeadsByChannel]
+    }
+
+    fn take(&mut self, _: Reading, rows: &Rows, _: &Look<'_>) {
+        self.leads = Leads::read(rows);
     }
 
     fn renew(&mut self, look: &Look<'_>) {
@@ -202,6 +248,9 @@ impl Screen for Tools {
                 Action::EditCell => self.elsewhere().into_iter().collect(),
                 _ => Vec::new(),
             };
+        }
+        if action == Action::SaveCalls {
+            return vec![Effect::Write("calls.txt".to_owned(), self.calls(look.company).into_bytes())];
         }
         match self.form(look.company) {
             Some(form) => form.act(action, look.company),
@@ -249,99 +298,5 @@ impl Screen for Tools {
 
     fn holds_unsent_text(&self) -> bool {
         !self.unsent().is_empty()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use super::*;
-    use crate::console::keys::{Chord, Keys};
-    use crate::console::test_kit::company;
-
-    /// Types into the form of a tool; words are keys, the rest is typed letter by letter.
-    fn typed(tool: &str, keys: &[&str]) -> (Tools, Vec<Effect>) {
-        let (company, bindings) = (company(), Keys::shipped());
-        let look = Look { company: &company, keys: &bindings, page: 10 };
-        let mut tools = Tools::default();
-        tools.show(tool, &company);
-        let mut effects = Vec::new();
-        for key in keys {
-            let chord = Chord::parse(key).expect(key);
-            let event = chord.event();
-            let text = tools.scopes()[0].is_text() && chord.is_text();
-            let scopes: Vec<Scope> =
-                tools.scopes().into_iter().filter(|scope| !text || scope.is_text()).collect();
-            effects = match bindings.action(&scopes, chord) {
-                Some(action) => tools.act(action, &look),
-                None => tools.key(&event, &look),
-            };
-        }
-        (tools, effects)
-    }
-
-    #[test]
-    fn digits_begin_to_type_and_enter_goes_down() {
-        let (_, effects) = typed("set_prices", &["1", "2", "enter", "2", "5", "enter", "5", "5", "ctrl-s"]);
-        let Some(Effect::Call { tool, arguments }) = effects.first() else { panic!("{effects:?}") };
-        assert_eq!((*tool, arguments), ("set_prices", &json!({"A": 12, "B": 25, "C": 55})));
-    }
-
-    #[test]
-    fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
-        let keys = [
-            "[", "[", "7", ",", "[", "[", "\"", "B", "\"", ",", "3", "0", "]", "]", "]", "]", "enter",
-            "ctrl-s",
-        ];
-        let (tools, effects) = typed("send_enterprise_deal", &keys);
-        let Some(Effect::ConfirmCall { tool, arguments, text }) = effects.first() else {
-            panic!("{effects:?}")
-        };
-        assert_eq!((*tool, arguments), ("send_enterprise_deal", &json!({"deals": [[7, [["B", 30]]]]})));
-        assert!(text.contains("cannot be taken back"), "{text}");
-        assert!(tools.holds_unsent_text());
-        let (_, effects) = typed("send_enterprise_deal", &["[", "7", "enter", "ctrl-s"]);
-        assert!(
-            matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: a list")),
-            "{effects:?}"
-        );
-        let (_, effects) = typed("reject_enterprise_deal", &["ctrl-s"]);
-        assert!(matches!(&effects[..], [Effect::Call { .. }]), "the tool says what is missing: {effects:?}");
-    }
-
-    #[test]
-    fn escape_brings_back_what_was_there() {
-        let (tools, _) = typed("set_prices", &["1", "2", "enter", "up", "9", "9", "esc"]);
-        assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
-    }
-
-    #[test]
-    fn the_same_value_goes_down_a_column() {
-        let (tools, _) = typed("set_targeted_ad_spend", &["right", "4", "0", "enter", "up", "="]);
-        let arguments = tools.seen_form().expect("a form").sheet.arguments().expect("numbers");
-        let matrix = arguments["targeted_spend"].as_object().expect("a matrix");
-        assert_eq!(matrix.len(), 5);
-        assert!(matrix.values().all(|groups| groups == &json!({"S2": 40})), "{matrix:?}");
-    }
-
-    #[test]
-    fn a_form_without_changes_is_not_sent_and_a_wrong_cell_is_named() {
-        let (_, effects) = typed("set_prices", &["ctrl-s"]);
-        assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing differs")));
-        let (_, effects) = typed("set_prices", &["1", "-", "ctrl-s"]);
-        assert!(matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("A: a number")));
-    }
-
-    #[test]
-    fn drafts_stay_when_another_tool_is_looked_at() {
-        let (mut tools, _) = typed("set_prices", &["1", "2", "enter"]);
-        let (company, keys) = (company(), Keys::shipped());
-        let look = Look { company: &company, keys: &keys, page: 10 };
-        tools.show("set_daily_spend", &company);
-        tools.renew(&look);
-        tools.show("set_prices", &company);
-        assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
-        assert!(tools.holds_unsent_text());
     }
 }

@@ -1,0 +1,164 @@
+//! What is written in public, as the company keeps it: only what is new is read from the run.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use crate::session::Session;
+
+/// Who writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Customers of their own accord.
+    Customers,
+    /// Rivals and the economy, in the news.
+    Press,
+    /// Answers to our posts.
+    Comments,
+    /// The company.
+    Own,
+}
+
+impl Kind {
+    /// All kinds in the order they are chosen.
+    pub const ALL: [Kind; 4] = [Kind::Customers, Kind::Press, Kind::Comments, Kind::Own];
+
+    /// Name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Customers => "customers",
+            Kind::Press => "press",
+            Kind::Comments => "comments",
+            Kind::Own => "our posts",
+        }
+    }
+}
+
+/// A post.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Post {
+    /// Who writes.
+    pub kind: Kind,
+    /// Number among the posts of others, or among ours.
+    pub number: u32,
+    /// Day.
+    pub day: u32,
+    /// Name and group of the author.
+    pub author: String,
+    /// Text.
+    pub text: String,
+    /// Our post that a comment answers, or the post that ours answers.
+    pub answers: Option<u32>,
+    /// Views of a post of ours; 0 until it was read.
+    pub views: u32,
+    /// Comments on a post of ours.
+    pub comments: u32,
+}
+
+impl Post {
+    /// Week that holds its day.
+    pub fn week(&self) -> u32 {
+        self.day.div_ceil(7).max(1)
+    }
+
+    /// Reactions to a post of ours, as far as they are published.
+    pub fn reactions(&self) -> String {
+        let noun = |count: u32, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
+        format!("{}, {}", noun(self.views, "view"), noun(self.comments, "comment"))
+    }
+
+    /// The line above its text.
+    pub fn head(&self) -> String {
+        match (self.kind, self.answers) {
+            (Kind::Own, Some(post)) => {
+                format!("our post {}, answers #{post} · {}", self.number, self.reactions())
+            }
+            (Kind::Own, None) => format!("our post {} · {}", self.number, self.reactions()),
+            (Kind::Comments, Some(own)) => {
+                format!("{} · #{} on our post {own}, day {}", self.author, self.number, self.day)
+            }
+            _ => format!("{} · #{}", self.author, self.number),
+        }
+    }
+}
+
+/// Posts of others, the newest first. Readings of one run share what did not change.
+pub type Posts = Arc<Vec<Arc<Post>>>;
+
+/// Posts asked for at first when earlier ones are known: more than a week brings as a rule.
+const NEWEST: i64 = 64;
+
+/// Posts of others; of those that are known only the newer ones are asked for.
+pub fn read(session: &Session, known: Option<&Posts>) -> Posts {
+    let last = known.and_then(|posts| posts.first()).map(|post| post.number);
+    let mut limit = if last.is_some() { NEWEST } else { -1 };
+    loop {
+        let answer = session.look_up("get_social_posts", &json!({ "limit": limit })).unwrap_or(Value::Null);
+        let told = answer.get("posts").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+        let is_new = |post: &Post| last.is_none_or(|last| post.number > last);
+        let fresh: Vec<Arc<Post>> = told.iter().map(post_of).take_while(is_new).map(Arc::new).collect();
+        // Nothing known among them: more of what is new may stand before them.
+        if limit > 0 && !told.is_empty() && fresh.len() == told.len() {
+            limit = if limit > 10_000 { -1 } else { limit * 8 };
+            continue;
+        }
+        return match known {
+            Some(known) if fresh.is_empty() => known.clone(),
+            Some(known) => Arc::new(fresh.into_iter().chain(known.iter().cloned()).collect()),
+            None => Arc::new(fresh),
+        };
+    }
+}
+
+fn post_of(told: &Value) -> Post {
+    let number = |name: &str| told.get(name).and_then(Value::as_u64).and_then(|own| u32::try_from(own).ok());
+    let text = |name: &str| told.get(name).and_then(Value::as_str);
+    let answers = number("reply_to_agent_post_id");
+    let group = text("group_id").unwrap_or("–");
+    // The press is the only one without a profile, comments aside.
+    let (kind, author) = match (answers, text("persona_name")) {
+        (Some(_), name) => (Kind::Comments, format!("{} · {group}", name.unwrap_or("somebody"))),
+        (None, Some(name)) => (Kind::Customers, format!("{name} · {group}")),
+        (None, None) => (Kind::Press, "press".to_owned()),
+    };
+    Post {
+        kind,
+        number: number("post_id").unwrap_or(0),
+        day: number("day").unwrap_or(0),
+        author,
+        text: text("content").unwrap_or_default().to_owned(),
+        answers,
+        views: 0,
+        comments: 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::played;
+    use crate::session::Via;
+
+    #[test]
+    fn only_what_is_new_is_read_and_it_is_the_same_as_everything() {
+        let mut session = played(2);
+        let first = read(&session, None);
+        assert!(!first.is_empty());
+        assert!(Arc::ptr_eq(&first, &read(&session, Some(&first))), "nothing has changed");
+        let nothing = Posts::default();
+        for known in [&first, &nothing] {
+            for _ in 0..3 {
+                let forecasts = session.naive_forecasts();
+                session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+            }
+            let (grown, whole) = (read(&session, Some(known)), read(&session, None));
+            assert_eq!(grown, whole);
+            assert!(grown.len() > known.len());
+        }
+        let again = read(&session, Some(&first));
+        let shared = again.iter().rev().zip(first.iter().rev());
+        assert!(
+            shared.clone().count() == first.len() && shared.clone().all(|(now, then)| Arc::ptr_eq(now, then))
+        );
+    }
+}

@@ -1,0 +1,171 @@
+//! How forecasts turned out: by horizon, and one by one for the selected horizon.
+
+use ratatui::layout::Rect;
+
+use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::company::Company;
+use crate::console::screens::Figure;
+use crate::console::text::short_dollars;
+use crate::console::theme::Role;
+use crate::notation::percent;
+use crate::session::{ForecastScore, JournalEntry};
+use crate::tools::Forecast;
+
+/// A forecast whose day has come.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Day on which it was filed.
+    pub filed: u32,
+    /// What was said.
+    pub said: Forecast,
+    /// Cash on the day it was made for.
+    pub cash: f64,
+}
+
+impl Outcome {
+    /// Whether the interval held the outcome.
+    pub fn is_inside(&self) -> bool {
+        self.said.lower <= self.cash && self.cash <= self.said.upper
+    }
+
+    /// How far the point was off, as a share of the outcome; above it positive.
+    pub fn error(&self) -> Option<f64> {
+        (self.cash != 0.0).then(|| (self.said.point - self.cash) / self.cash.abs())
+    }
+}
+
+/// Forecasts of a horizon whose day has come, the newest first.
+pub fn outcomes(company: &Company, horizon: u32) -> Vec<Outcome> {
+    let of_entry = |entry: &JournalEntry| {
+        let JournalEntry::Advance { day, forecasts, .. } = entry else { return None };
+        let said = forecasts.iter().find(|forecast| forecast.horizon_days == horizon)?;
+        let cash = *company.cash_by_day.get((day + horizon) as usize)?;
+        Some(Outcome { filed: *day, said: said.clone(), cash })
+    };
+    company.journal.iter().rev().filter_map(of_entry).collect()
+}
+
+/// The figure of a horizon.
+pub fn figure(company: &Company, selected: usize) -> Option<Figure> {
+    let horizon = company.scores.get(selected)?.horizon_days;
+    Some(Figure {
+        title: format!("forecasts {} ahead that came due", weeks(horizon)),
+        term: "coverage",
+        sql: Some(format!(
+            "SELECT submit_day, submit_day + horizon_days AS due_day, predicted_lower, predicted_value,\n    \
+             predicted_upper\nFROM predictions WHERE horizon_days = {horizon} AND submit_day + horizon_days <= {}\n\
+             ORDER BY submit_day DESC",
+            company.seen.day
+        )),
+    })
+}
+
+fn weeks(days: u32) -> String {
+    format!("{} {}", days / 7, if days == 7 { "week" } else { "weeks" })
+}
+
+/// Draws a line for every horizon, and below them the forecasts of the selected one.
+pub fn draw(
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    company: &Company,
+    selected: usize,
+    focused: bool,
+    pane: usize,
+) {
+    canvas.click(area, Click::Pane(pane));
+    let inside = canvas.pane(area, "Forecasts", "95 in 100 inside?", focused);
+    let head = format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "miss", "width");
+    let mut rows = rows_of(inside);
+    if let Some(row) = rows.next() {
+        canvas.text(row, &head, Role::Header);
+    }
+    for ((at, score), row) in company.scores.iter().enumerate().zip(rows.by_ref()) {
+        let role = if focused && at == selected { Role::Selection } else { role_of(score) };
+        canvas.clear(row, role);
+        canvas.text(row, &line_of(score), role);
+        canvas.click(row, Click::Row(pane, at));
+    }
+    if let Some(row) = rows.next() {
+        let none = company.scores.iter().all(|score| score.scored == 0);
+        canvas.text(
+            row,
+            if none { "no forecast has come due yet" } else { "miss, width: share of cash" },
+            Role::Dim,
+        );
+    }
+    let Some(score) = company.scores.get(selected) else { return };
+    let single = outcomes(company, score.horizon_days);
+    if single.is_empty() {
+        return;
+    }
+    if let Some(row) = rows.next() {
+        let head =
+            format!("{:<9}{:>9}{:>9}{:>9}  {}", "due", "said", "was", "miss", weeks(score.horizon_days));
+        canvas.text(row, &head, Role::Header);
+    }
+    for (row, outcome) in rows.zip(single) {
+        let role = if outcome.is_inside() { Role::Text } else { Role::Warning };
+        canvas.text(row, &line_of_outcome(&outcome), role);
+    }
+}
+
+fn line_of_outcome(outcome: &Outcome) -> String {
+    let error = outcome.error().map_or("–".to_owned(), |error| {
+        let sign = if error < 0.0 { '-' } else { '+' };
+        format!("{sign}{}", limited(error.abs()))
+    });
+    format!(
+        "day {:<5}{:>9}{:>9}{error:>9}  {}",
+        outcome.filed + outcome.said.horizon_days,
+        short_dollars(outcome.said.point),
+        short_dollars(outcome.cash),
+        if outcome.is_inside() { "inside" } else { "OUTSIDE" }
+    )
+}
+
+/// Near zero cash any miss is a large share of it: beyond some size only that matters.
+fn limited(share: f64) -> String {
+    if share < 10.0 { percent(share, 1) } else { "> 999%".to_owned() }
+}
+
+fn line_of(score: &ForecastScore) -> String {
+    let horizon = weeks(score.horizon_days);
+    if score.scored == 0 {
+        return format!("{horizon:<9}{:>10}{:>8}{:>8}", "–", "–", "–");
+    }
+    let inside = format!("{} of {}", score.covered, score.scored);
+    format!("{horizon:<9}{inside:>10}{:>8}{:>8}", limited(score.mean_error), limited(score.mean_sharpness))
+}
+
+/// Too few inside deserves a look once there are enough to judge.
+fn role_of(score: &ForecastScore) -> Role {
+    match score.scored {
+        0 => Role::Dim,
+        scored if scored >= 4 && f64::from(score.covered) < 0.8 * f64::from(scored) => Role::Warning,
+        _ => Role::Text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::played;
+
+    #[test]
+    fn single_forecasts_make_up_the_score_of_their_horizon_and_the_rows_of_the_database() {
+        let mut session = played(9);
+        let company = Company::of(&session);
+        for (at, score) in company.scores.iter().enumerate() {
+            let single = outcomes(&company, score.horizon_days);
+            let inside = single.iter().filter(|outcome| outcome.is_inside()).count();
+            assert_eq!((single.len() as u32, inside as u32), (score.scored, score.covered));
+            let errors: f64 = single.iter().filter_map(Outcome::error).map(f64::abs).sum();
+            assert!((errors / single.len().max(1) as f64 - score.mean_error).abs() < 1e-9);
+            let sql = figure(&company, at).and_then(|figure| figure.sql).expect("rows");
+            assert_eq!(session.query(&sql).expect("rows").rows.len(), single.len());
+        }
+        assert!(company.scores[0].scored >= 8);
+        assert_eq!(figure(&company, 9), None);
+    }
+}

@@ -1,0 +1,72 @@
+//! What is selected among the tools: a tool, or a value of its form with the rows of its history.
+
+use std::sync::LazyLock;
+
+use super::super::Figure;
+use super::Tools;
+use super::form::Form;
+use crate::tools::{ArgumentKind, CATALOGUE, Key, Spec};
+
+/// Names of all arguments with their tools: `set_prices.A`.
+static ARGUMENTS: LazyLock<Vec<String>> = LazyLock::new(|| {
+    let of =
+        |spec: &'static Spec| spec.arguments.iter().map(move |own| format!("{}.{}", spec.name, own.name));
+    CATALOGUE.iter().flat_map(|tool| of(tool.spec())).collect()
+});
+
+fn term_of(tool: &str, argument: &str) -> Option<&'static str> {
+    ARGUMENTS
+        .iter()
+        .map(String::as_str)
+        .find(|name| name.split_once('.').is_some_and(|(own, rest)| own == tool && rest == argument))
+}
+
+/// The figure that is selected.
+pub(super) fn of(tools: &Tools) -> Option<Figure> {
+    let spec = tools.here()?;
+    let whole = || Figure { title: spec.summary.to_owned(), term: spec.name, sql: None };
+    match tools.seen_form().filter(|_| tools.focus == 1) {
+        Some(form) => of_cell(form).or_else(|| Some(whole())),
+        None => Some(whole()),
+    }
+}
+
+fn of_cell(form: &Form) -> Option<Figure> {
+    let block = form.sheet.blocks.get(form.at.block)?;
+    form.sheet.slot(form.at)?;
+    let tool = form.spec.name;
+    Some(Figure {
+        title: format!("{tool} {}", block.path(form.at.row, form.at.column).replace('.', " ")),
+        term: term_of(tool, block.argument.name)?,
+        sql: history(form),
+    })
+}
+
+/// How the value was set over time, or what came of it.
+fn history(form: &Form) -> Option<String> {
+    let block = form.sheet.blocks.get(form.at.block)?;
+    let name = block.argument.name;
+    let column = match form.spec.name {
+        "set_prices" => format!("price_{name}"),
+        "set_model_tiers" => format!("tier_{name}"),
+        "set_usage_quotas" => format!("quota_{name}"),
+        "set_daily_spend" if matches!(name, "operations" | "development") => format!("spend_{name}"),
+        "set_capacity_tier" => "capacity_tier".to_owned(),
+        _ => return of_overrides(form),
+    };
+    Some(format!("SELECT day, \"{column}\" FROM config_history ORDER BY day"))
+}
+
+fn of_overrides(form: &Form) -> Option<String> {
+    if let Some((channel, group)) = form.cell_names() {
+        return Some(format!(
+            "SELECT day, spend, leads_generated FROM ad_channel_leads\n\
+             WHERE channel_id = '{channel}' AND group_id = '{group}' ORDER BY day"
+        ));
+    }
+    let block = form.sheet.blocks.get(form.at.block)?;
+    let kept = matches!(block.argument.kind, ArgumentKind::Map(..) | ArgumentKind::Matrix(..));
+    let customers = matches!(block.argument.kind, ArgumentKind::Map(Key::Customer, _));
+    (kept && !customers)
+        .then(|| format!("SELECT * FROM config_overrides WHERE tool_name = '{}' ORDER BY id", form.spec.name))
+}

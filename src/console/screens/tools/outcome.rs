@@ -1,0 +1,227 @@
+//! What stands below the values of a form, and what advertising brought so far.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use super::form::Form;
+use super::reference::reference;
+use super::sheet::Block;
+use crate::console::action::Action;
+use crate::console::readings::{number_at, text_at};
+use crate::console::screens::Look;
+use crate::console::text::{number, wrapped};
+use crate::console::theme::Role;
+use crate::notation::{dollars, grouped, signed_dollars};
+use crate::session::Rows;
+use crate::tools::{ArgumentKind, Key};
+
+/// Leads and spend of the last four weeks by channel and group, as ad_channel_leads counts them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Leads(BTreeMap<(String, String), (f64, f64)>);
+
+impl Leads {
+    /// Reads them.
+    pub fn read(rows: &Rows) -> Leads {
+        let own = |row: &Vec<crate::session::Cell>| {
+            let pair = (text_at(row, 0).to_owned(), text_at(row, 1).to_owned());
+            (pair, (number_at(row, 2), number_at(row, 3)))
+        };
+        Leads(rows.rows.iter().map(own).collect())
+    }
+
+    /// Whether they belong beside a block.
+    pub fn is_of(&self, block: &Block) -> bool {
+        matches!(block.argument.kind, ArgumentKind::Matrix(Key::Channel, Key::Group, _))
+    }
+
+    /// The groups in which a channel brings most for the money, the best first: `S1 298 · S3 71`.
+    pub fn best(&self, channel: &str) -> Option<String> {
+        let mut rates: Vec<(&str, f64)> = self
+            .0
+            .iter()
+            .filter(|((own, _), (_, spend))| own == channel && *spend > 0.0)
+            .map(|((_, group), (leads, spend))| (group.as_str(), leads / spend * 1000.0))
+            .collect();
+        rates.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(right.0)));
+        let one = |(group, rate): &(&str, f64)| format!("{group} {}", rate_in_words(*rate));
+        let best: Vec<String> = rates.iter().take(2).map(one).collect();
+        (!best.is_empty()).then(|| best.join(" · "))
+    }
+
+    /// What one pair brought, in a sentence.
+    pub fn of(&self, channel: &str, group: &str) -> Option<String> {
+        let (leads, spend) =
+            self.0.get(&(channel.to_owned(), group.to_owned())).filter(|(_, spend)| *spend > 0.0)?;
+        Some(format!(
+            "{channel} × {group}, last four weeks: {} leads for {}, {} per $1,000",
+            grouped(*leads, 0),
+            dollars(*spend),
+            rate_in_words(leads / spend * 1000.0)
+        ))
+    }
+}
+
+fn rate_in_words(rate: f64) -> String {
+    grouped(rate, if rate < 10.0 { 1 } else { 0 })
+}
+
+/// What stands below the values: what the call would do, the call itself, the effect, what helps, the answer.
+pub(super) fn outcome_lines(
+    form: &Form,
+    leads: &Leads,
+    look: &Look<'_>,
+    width: usize,
+) -> Vec<(String, Role)> {
+    let mut lines: Vec<(String, Role)> = Vec::new();
+    let mut paragraph = |text: &str, role: Role| {
+        lines.extend(wrapped(text, width).into_iter().map(|line| (line, role)));
+    };
+    if form.spec.kind.acts() && form.sheet.is_changed() {
+        paragraph(&draft_line(form, look), Role::Changed);
+    }
+    match &form.preview {
+        Some(Ok(preview)) => {
+            let mut parts = Vec::new();
+            if preview.cost_now > 0.0 {
+                parts.push(format!("costs {} at once", dollars(preview.cost_now)));
+            }
+            if preview.cost_per_day != 0.0 {
+                parts.push(format!("{} a day", signed_dollars(preview.cost_per_day)));
+            }
+            if let Some(day) = preview.effect_day {
+                parts.push(format!("from day {day}"));
+            }
+            if !parts.is_empty() {
+                paragraph(&format!("→ {}", parts.join(" · ")), Role::Strong);
+            }
+        }
+        Some(Err(refusal)) => paragraph(&format!("! {}", refusal.message), Role::Bad),
+        None => {}
+    }
+    if form.sheet.is_changed() || !form.spec.kind.acts() {
+        paragraph(&format!("≡ {}", form.call()), Role::Dim);
+    }
+    if let Some(words) = form.cell_names().and_then(|(channel, group)| leads.of(channel, group)) {
+        paragraph(&words, Role::Text);
+    }
+    if let Some(answer) = &form.answer
+        && !form.sheet.is_changed()
+    {
+        answer_lines(answer, &mut paragraph);
+    }
+    let helps = reference(form.spec.name, look.company);
+    if !helps.is_empty() {
+        paragraph(" ", Role::Text);
+        for (at, line) in helps.iter().enumerate() {
+            let role = if at == 0 { Role::Header } else { Role::Text };
+            lines.push((line.clone(), role));
+        }
+    }
+    let mut about = |text: &str| {
+        if !text.is_empty() {
+            lines.push((String::new(), Role::Text));
+            lines.extend(wrapped(text, width).into_iter().map(|line| (line, Role::Dim)));
+        }
+    };
+    about(form.spec.effect);
+    lines
+}
+
+/// What is typed and not sent: one value as old → new, and what to do with the draft.
+fn draft_line(form: &Form, look: &Look<'_>) -> String {
+    let changes: Vec<String> = form
+        .sheet
+        .places()
+        .filter_map(|place| {
+            let (block, slot) = (&form.sheet.blocks[place.block], form.sheet.slot(place)?);
+            if block.is_text() || !slot.is_changed() {
+                return None;
+            }
+            let new = slot.value().ok()?.map_or("–".to_owned(), number);
+            let old = slot.current.map_or("–".to_owned(), number);
+            let path = block.path(place.row, place.column);
+            let name = path.split_once('.').map_or(path.as_str(), |(_, rest)| rest).replace('.', " × ");
+            Some(format!("{name} {old} → {new}"))
+        })
+        .collect();
+    let more = changes.len().saturating_sub(3);
+    let mut words = changes.into_iter().take(3).collect::<Vec<_>>().join(" · ");
+    if more > 0 {
+        words += &format!(" · {more} more");
+    }
+    let keys = look.hints(&[Action::Apply, Action::ResetForm]);
+    format!("* draft, kept until sent or reset{}{words} ({keys})", if words.is_empty() { "" } else { ": " })
+}
+
+fn answer_lines(answer: &Result<Value, crate::session::Refusal>, paragraph: &mut impl FnMut(&str, Role)) {
+    match answer {
+        Ok(value) => {
+            paragraph("✓ answered", Role::Good);
+            for line in readable(value, 0) {
+                paragraph(&line, Role::Text);
+            }
+        }
+        Err(refusal) => paragraph(&format!("! {}: {}", refusal.code, refusal.message), Role::Bad),
+    }
+}
+
+/// An answer as indented lines: flat objects in one line each.
+fn readable(value: &Value, depth: usize) -> Vec<String> {
+    let indent = "  ".repeat(depth + 1);
+    let flat = |value: &Value| !matches!(value, Value::Object(_) | Value::Array(_));
+    let word = |value: &Value| match value {
+        Value::String(text) => text.clone(),
+        Value::Number(figure) => figure.as_f64().map_or(figure.to_string(), |figure| {
+            if figure.fract() == 0.0 { number(figure) } else { figure.to_string() }
+        }),
+        Value::Null => "–".to_owned(),
+        other => other.to_string(),
+    };
+    let pairs = |map: &serde_json::Map<String, Value>| {
+        map.iter().map(|(name, value)| format!("{name} {}", word(value))).collect::<Vec<_>>().join(" · ")
+    };
+    match value {
+        Value::Object(map) if map.is_empty() => vec![format!("{indent}none")],
+        Value::Object(map) if map.values().all(flat) => vec![format!("{indent}{}", pairs(map))],
+        Value::Object(map) => map
+            .iter()
+            .flat_map(|(name, inner)| match inner {
+                inner if flat(inner) => vec![format!("{indent}{name} {}", word(inner))],
+                Value::Object(fields) if !fields.is_empty() && fields.values().all(flat) => {
+                    vec![format!("{indent}{name}: {}", pairs(fields))]
+                }
+                inner => {
+                    std::iter::once(format!("{indent}{name}")).chain(readable(inner, depth + 1)).collect()
+                }
+            })
+            .collect(),
+        Value::Array(items) => items.iter().flat_map(|item| readable(item, depth)).collect(),
+        other => vec![format!("{indent}{}", word(other))],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::Cell;
+
+    #[test]
+    fn a_channel_is_known_by_what_it_brought_for_the_money() {
+        let row = |channel: &str, group: &str, leads: i64, spend: f64| {
+            let text = |text: &str| Cell::Text(text.to_owned());
+            vec![text(channel), text(group), Cell::Integer(leads), Cell::Real(spend)]
+        };
+        let rows = vec![
+            row("linkedin", "E1", 2, 8000.0),
+            row("linkedin", "S1", 300, 1000.0),
+            row("linkedin", "S2", 30, 1000.0),
+            row("search_ads", "S1", 0, 0.0),
+        ];
+        let leads = Leads::read(&Rows { rows, ..Rows::default() });
+        assert_eq!(leads.best("linkedin").as_deref(), Some("S1 300 · S2 30"));
+        assert_eq!((leads.best("search_ads"), leads.of("search_ads", "S1")), (None, None));
+        let words = leads.of("linkedin", "E1").expect("words");
+        assert!(words.ends_with("2 leads for $8,000, 0.2 per $1,000"), "{words}");
+    }
+}

@@ -1,0 +1,210 @@
+use serde_json::json;
+
+use super::*;
+use crate::console::keys::{Chord, Keys};
+use crate::console::test_kit::{act, company, drawn, played, shown, sweep};
+use crate::session::Via;
+
+/// Types into the form of a tool; words are keys, the rest is typed letter by letter.
+fn typed(tool: &str, keys: &[&str]) -> (Tools, Vec<Effect>) {
+    let (company, bindings) = (company(), Keys::shipped());
+    let look = Look { company: &company, keys: &bindings, page: 10 };
+    let mut tools = Tools::default();
+    tools.show(tool, &company);
+    let mut effects = Vec::new();
+    for key in keys {
+        let chord = Chord::parse(key).expect(key);
+        let event = chord.event();
+        let text = tools.scopes()[0].is_text() && chord.is_text();
+        let scopes: Vec<Scope> =
+            tools.scopes().into_iter().filter(|scope| !text || scope.is_text()).collect();
+        effects = match bindings.action(&scopes, chord) {
+            Some(action) => tools.act(action, &look),
+            None => tools.key(&event, &look),
+        };
+    }
+    (tools, effects)
+}
+
+#[test]
+fn digits_begin_to_type_and_enter_goes_down() {
+    let (_, effects) = typed("set_prices", &["1", "2", "enter", "2", "5", "enter", "5", "5", "ctrl-s"]);
+    let Some(Effect::Call { tool, arguments }) = effects.first() else { panic!("{effects:?}") };
+    assert_eq!((*tool, arguments), ("set_prices", &json!({"A": 12, "B": 25, "C": 55})));
+}
+
+#[test]
+fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
+    let keys =
+        ["[", "[", "7", ",", "[", "[", "\"", "B", "\"", ",", "3", "0", "]", "]", "]", "]", "enter", "ctrl-s"];
+    let (tools, effects) = typed("send_enterprise_deal", &keys);
+    let Some(Effect::ConfirmCall { tool, arguments, text }) = effects.first() else { panic!("{effects:?}") };
+    assert_eq!((*tool, arguments), ("send_enterprise_deal", &json!({"deals": [[7, [["B", 30]]]]})));
+    assert!(text.contains("cannot be taken back"), "{text}");
+    assert!(tools.holds_unsent_text());
+    let (_, effects) = typed("send_enterprise_deal", &["[", "7", "enter", "ctrl-s"]);
+    assert!(
+        matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: a list")),
+        "{effects:?}"
+    );
+    let (_, effects) = typed("reject_enterprise_deal", &["ctrl-s"]);
+    assert!(matches!(&effects[..], [Effect::Call { .. }]), "the tool says what is missing: {effects:?}");
+}
+
+#[test]
+fn escape_brings_back_what_was_there() {
+    let (tools, _) = typed("set_prices", &["1", "2", "enter", "up", "9", "9", "esc"]);
+    assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
+}
+
+#[test]
+fn the_same_value_goes_down_a_column() {
+    let (tools, _) = typed("set_targeted_ad_spend", &["right", "4", "0", "enter", "up", "="]);
+    let arguments = tools.seen_form().expect("a form").sheet.arguments().expect("numbers");
+    let matrix = arguments["targeted_spend"].as_object().expect("a matrix");
+    assert_eq!(matrix.len(), 5);
+    assert!(matrix.values().all(|groups| groups == &json!({"S2": 40})), "{matrix:?}");
+}
+
+#[test]
+fn a_form_without_changes_is_not_sent_and_a_wrong_cell_is_named() {
+    let (_, effects) = typed("set_prices", &["ctrl-s"]);
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing differs")));
+    let (_, effects) = typed("set_prices", &["1", "-", "ctrl-s"]);
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("A: a number")));
+}
+
+#[test]
+fn drafts_stay_when_another_tool_is_looked_at() {
+    let (mut tools, _) = typed("set_prices", &["1", "2", "enter"]);
+    let (company, keys) = (company(), Keys::shipped());
+    let look = Look { company: &company, keys: &keys, page: 10 };
+    tools.show("set_daily_spend", &company);
+    tools.renew(&look);
+    tools.show("set_prices", &company);
+    assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
+    assert!(tools.holds_unsent_text());
+}
+
+#[test]
+fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
+    let mut session = played(2);
+    let company = Company::of(&session);
+    let mut tools: Tools = shown(&mut session, &company);
+    tools.show("set_prices", &company);
+    let keys = Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 10 };
+    for key in ["1", "4", "enter", "esc"] {
+        let chord = Chord::parse(key).expect(key);
+        match keys.action(&tools.scopes(), chord).filter(|_| !chord.begins_number()) {
+            Some(action) => tools.act(action, &look),
+            None => tools.key(&chord.event(), &look),
+        };
+    }
+    assert_eq!(tools.focus(), 0, "esc has left the form");
+    for (width, height) in [(120, 37), (200, 57)] {
+        let text = drawn(&tools, &company, width, height);
+        for words in [
+            "* 1 draft",
+            " *set_prices",
+            "PRC",
+            "* draft, kept until sent or reset: A 12 → 14",
+            "Acts from day 15.",
+        ] {
+            assert!(text.contains(words), "{words} in\n{text}");
+        }
+    }
+    let effects = act(&mut tools, Action::Open, &company);
+    assert!(effects.is_empty() && tools.holds_unsent_text());
+    act(&mut tools, Action::ResetForm, &company);
+    assert!(!tools.holds_unsent_text());
+}
+
+#[test]
+fn a_matrix_says_what_its_sums_were_and_what_a_channel_brought() {
+    let mut session = played(5);
+    let company = Company::of(&session);
+    let mut tools: Tools = shown(&mut session, &company);
+    tools.show("set_targeted_ad_spend", &company);
+    let form = tools.form(&company).expect("a form");
+    let place = form.sheet.place_of("targeted_spend.content_marketing.S1").expect("a cell");
+    form.at = place;
+    form.sheet.slot_mut(place).expect("a slot").draft = Some(Field::of("900"));
+    let rows = session
+        .query("SELECT sum(leads_generated), sum(spend) FROM ad_channel_leads WHERE channel_id = 'content_marketing' AND day > 7")
+        .expect("rows")
+        .rows;
+    let leads = crate::console::readings::number_at(&rows[0], 0);
+    let spend = crate::console::readings::number_at(&rows[0], 1);
+    let leads_in_words = crate::notation::grouped(leads, 0);
+    let words = format!("content_marketing × S1, last four weeks: {leads_in_words} leads for");
+    let text = drawn(&tools, &company, 200, 57);
+    let rate = format!("S1 {:.0}", leads / spend * 1000.0);
+    for words in
+        [words.as_str(), "was (+150)", "leads/$1k (yours)", &rate, "content_marketing × S1 750 → 900"]
+    {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+    assert!(!drawn(&tools, &company, 80, 21).contains("(yours)"));
+    tools.set_focus(1);
+    sweep(&mut tools, &company);
+}
+
+#[test]
+fn calls_of_the_week_and_drafts_go_to_a_file() {
+    let mut session = played(1);
+    session.call("set_prices", &json!({"A": 13}), Via::Form).expect("prices");
+    let company = Company::of(&session);
+    let mut tools: Tools = shown(&mut session, &company);
+    tools.show("set_capacity_tier", &company);
+    let form = tools.form(&company).expect("a form");
+    let place = form.at;
+    form.sheet.slot_mut(place).expect("a slot").draft = Some(Field::of("3"));
+    let effects = act(&mut tools, Action::SaveCalls, &company);
+    let [Effect::Write(name, contents)] = &effects[..] else { panic!("{effects:?}") };
+    let text = String::from_utf8(contents.clone()).expect("text");
+    assert_eq!(name, "calls.txt");
+    let lines: Vec<&str> = text.lines().skip(1).collect();
+    let calls = [
+        "pricing.set_prices({\"A\": 13})",
+        "# not sent yet",
+        "infrastructure.set_capacity_tier({\"tier\": 3})",
+    ];
+    assert_eq!(lines, calls);
+}
+
+#[test]
+fn a_field_names_its_term_and_its_history() {
+    let mut session = played(3);
+    let company = Company::of(&session);
+    let mut tools: Tools = shown(&mut session, &company);
+    let keys = Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 10 };
+    let mut asked = std::collections::BTreeSet::new();
+    for tool in CATALOGUE {
+        let spec = tool.spec();
+        tools.show(spec.name, &company);
+        let places = tools.seen_form().map_or(Vec::new(), |form| form.sheet.places().collect());
+        for place in places {
+            tools.form(&company).expect("a form").at = place;
+            let figure = tools.figure(&look).expect("a figure");
+            let (own, argument) = figure.term.split_once('.').expect("tool.argument");
+            assert!(
+                own == spec.name && spec.arguments.iter().any(|it| it.name == argument),
+                "{}",
+                figure.term
+            );
+            if let Some(sql) = figure.sql.filter(|sql| asked.insert(sql.clone())) {
+                session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+            }
+        }
+        tools.set_focus(0);
+        assert_eq!(tools.figure(&look).expect("a figure").term, spec.name);
+    }
+    tools.show("set_prices", &company);
+    tools.form(&company).expect("a form").at = Default::default();
+    let figure = tools.figure(&look).expect("a figure");
+    assert_eq!(figure.term, "set_prices.A");
+    let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
+    assert_eq!(crate::console::readings::number_at(rows.last().expect("a row"), 1), 12.0);
+}

@@ -266,3 +266,29 @@ fn market_and_engine_tools_are_commands() {
     let notices = by_line(16)["data"]["notifications"].to_string();
     assert!(notices.contains("Study of group S1 complete: level 2"), "{notices}");
 }
+
+#[test]
+fn weeks_and_runs_are_told() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let lines = "report\nset_prices A=12 B=25 C=55\nnext \"if it sells, more\" naive\nreport\nreport run\nreport never\n";
+    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], lines);
+    for part in [
+        "> report\nrefused no_week_yet: no week has passed yet; next lets one pass\n",
+        "> report\nweek to day 7: cash -$",
+        "running costs -$",
+        "forecast of 1 week ago: below the interval, missed by ",
+        "new: ",
+        "> report run\n# NovaMind · run ",
+        "price A: 0 → 12 $/month",
+        "“if it sells, more”",
+        "error usage: report tells of a week or of the run",
+    ] {
+        assert!(said.contains(part), "{part} is missing in\n{said}");
+    }
+    let (said, _) = play(runs.path(), &["--run", "latest", "--json"], "report week\nreport run\n");
+    let told = objects(&said);
+    assert_eq!(told[1]["data"]["day"], 7);
+    assert!(told[1]["data"]["moves"].as_array().is_some_and(|moves| !moves.is_empty()));
+    assert_eq!(told[2]["data"]["survival_days"], 7);
+    assert_eq!(told[2]["data"]["planning_words_per_rationale"], 1.0);
+}

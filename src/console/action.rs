@@ -137,6 +137,7 @@ actions! {
         Dashboard "dashboard" "dashboard" "Show the weekly dashboard as text."
         Back "back" "back" "Go back to the screen before."
         Redraw "redraw" "redraw" "Draw the whole screen again."
+        WriteReport "write-report" "write the report" "Write the report of the run as Markdown and as a page for a browser."
         LeaveRun "leave-run" "start menu" "Save and go back to the start menu."
         Quit "quit" "quit" "Save and leave."
     }
@@ -236,6 +237,7 @@ actions! {
     }
     Final {
         ToMenu "to-menu" "start menu" "Go to the start menu."
+        ReportOfRun "report-of-run" "report" "Write the report of the run into its folder, as Markdown and as a page for a browser."
         StayInRun "stay" "look around" "Close this page and look at the run."
     }
 }

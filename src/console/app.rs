@@ -18,7 +18,6 @@ use super::canvas::Click;
 use super::company::Company;
 use super::dialogs::Dialog;
 use super::dialogs::filing::Filing;
-use super::dialogs::report::Report;
 use super::effect::Effect;
 use super::keys::Keys;
 use super::message::Message;
@@ -37,6 +36,7 @@ use super::screens::tools::Tools;
 use super::screens::{Look, Screen, ScreenId};
 use super::theme::Theme;
 use super::worker::{Job, Question};
+use crate::report::Story;
 use crate::session::Configuration;
 
 /// Something for the outside of the console.
@@ -49,8 +49,8 @@ pub enum Order {
     CancelQuery,
     /// Put text into the clipboard of the terminal.
     Copy(String),
-    /// Write a file.
-    Write(PathBuf, Vec<u8>),
+    /// Write files.
+    Write(Vec<(PathBuf, Vec<u8>)>),
     /// List the runs.
     ListRuns,
     /// Draw everything again.
@@ -111,8 +111,8 @@ pub struct Run {
     pub screens: Screens,
     /// The dialog before a week.
     pub filing: Filing,
-    /// The last week.
-    pub report: Option<Report>,
+    /// The story of the run, once it is over and was told.
+    pub story: Option<Arc<Story>>,
     /// Counts what has changed the run, so that late answers are told from fresh ones.
     pub changes: u64,
     /// What is known for each reading: the count of changes when it was asked.

@@ -93,7 +93,7 @@ impl Console {
                     }
                 }
                 Order::Copy(text) => self.screen.copy(&text),
-                Order::Write(path, contents) => files::write_behind(path, contents, self.sender.clone()),
+                Order::Write(files) => files::write_behind(files, self.sender.clone()),
                 Order::ListRuns => self.workers.send(Job::List(self.runs.clone())),
                 Order::Redraw => self.screen.clear()?,
                 Order::Exit(code, text) => return Ok(Some((code, text))),

@@ -17,6 +17,7 @@ use super::company::Company;
 use super::message::{Message, News};
 use super::readings::Reading;
 use crate::database::query::Limits;
+use crate::report::{Story, as_html, as_markdown};
 use crate::session::{
     Access, Configuration, Desk, Forecasts, Interrupt, NewRun, Refusal, Rows, Session, Via, find_run,
     list_runs,
@@ -46,6 +47,10 @@ pub enum Job {
     NoteView(&'static str, &'static str, u64),
     /// Keep the notes.
     SetMemo(String),
+    /// Tell the story of the run.
+    Tell,
+    /// Put the report of the run into words.
+    Report,
     /// Save and close the run.
     Close,
     /// Save, close the run and end the thread.
@@ -263,6 +268,12 @@ impl SessionThread {
             Job::SetMemo(text) => {
                 let kept = session.set_memo(&text);
                 Some(News::MemoKept(kept, Arc::new(Company::of(session))))
+            }
+            Job::Tell => Some(News::Told(Arc::new(Story::of(session)))),
+            Job::Report => {
+                let story = Story::of(session);
+                let files = vec![("report.md", as_markdown(&story)), ("report.html", as_html(&story))];
+                Some(News::Reported(files))
             }
             Job::List(_) | Job::Create(_) | Job::Open(..) | Job::Close | Job::End => None,
         }

@@ -1,6 +1,7 @@
 //! The commands of plain mode: what each line does, and what is answered (chapter 70 §8.1).
 
 mod readings;
+mod report;
 
 use std::io::{self, BufRead};
 
@@ -19,7 +20,7 @@ use crate::session::{Mode, Refusal, Session, Via, rows_as_json};
 use crate::tools::{self, Kind, Module, Tool};
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 18] = [
+const COMMANDS: [(&str, &str); 19] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, let a week pass (also: next-week)"),
     ("dashboard", "dashboard                the dashboard of the last week"),
@@ -28,6 +29,10 @@ const COMMANDS: [(&str, &str); 18] = [
     ("changes", "changes                  settings changed since the last week"),
     ("undo", "undo                     take the last setting of this week back"),
     ("history", "history [N]              the last N confirmed actions and weeks (20)"),
+    (
+        "report",
+        "report [week|run]        what the last week changed and why it may have; or the whole run told",
+    ),
     ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
     ("tools", "tools [NAME]             the tools, or one of them"),
     ("tables", "tables [NAME]            the tables, or one of them"),
@@ -141,6 +146,7 @@ impl Desk {
             "help" => name(arguments).and_then(|name| readings::help(name, arguments)),
             "tools" => name(arguments).and_then(|name| readings::tools(name, arguments)),
             "tables" => name(arguments).and_then(|name| readings::tables(name, arguments)),
+            "report" => name(arguments).and_then(|what| self.report(what, arguments)),
             "history" => count(arguments).map(|count| self.history(count.unwrap_or(20))),
             "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),

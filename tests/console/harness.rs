@@ -121,7 +121,11 @@ impl Console {
                 workers.send(Job::List(self.app.runs_folder().to_owned()));
             }
             Order::Copy(text) => self.copied.push(text),
-            Order::Write(path, contents) => std::fs::write(path, contents).expect("written"),
+            Order::Write(files) => {
+                for (path, contents) in files {
+                    std::fs::write(path, contents).expect("written");
+                }
+            }
             Order::Exit(code, _) => self.left = Some(code),
             Order::CancelQuery | Order::Redraw => {}
         }

@@ -104,8 +104,8 @@ impl Seen<'_> {
 
     fn press(&self) -> Option<String> {
         (self.press > 0).then(|| match self.press {
-            1 => "news in the feed: rivals or the economy".to_owned(),
-            more => format!("{more} news in the feed: rivals or the economy"),
+            1 => "a post of the press: rivals or the economy".to_owned(),
+            more => format!("{more} posts of the press: rivals or the economy"),
         })
     }
 
@@ -220,7 +220,9 @@ fn conversion(up: bool, seen: &Seen<'_>) -> Option<String> {
             .or_else(|| seen.raised("set_lead_promotion", "lead discount"))
             .or_else(|| better_product(seen))
     } else {
-        seen.raised("set_prices", "price")
+        seen.outage()
+            .or_else(|| seen.overload())
+            .or_else(|| seen.raised("set_prices", "price"))
             .or_else(|| seen.lowered("set_lead_promotion", "lead discount"))
             .or_else(|| seen.lowered("set_model_tiers", "model tier"))
             .or_else(|| seen.press())
@@ -277,7 +279,7 @@ mod tests {
             |now: &WeekFigures, changes, press| because(Figure::Cancellations, true, now, changes, press);
         assert_eq!(up(&dark, tier(), 1).as_deref(), Some("an outage of 40 minutes"));
         assert_eq!(up(&calm, tier(), 1).as_deref(), Some("model tier A 3 → 2 $/day"));
-        assert_eq!(up(&calm, vec![], 1).as_deref(), Some("news in the feed: rivals or the economy"));
+        assert_eq!(up(&calm, vec![], 1).as_deref(), Some("a post of the press: rivals or the economy"));
         let busy = WeekFigures { open_issues: 90, ..calm };
         assert_eq!(up(&busy, vec![], 0).as_deref(), Some("open issues rose to 90"));
         let dearer = vec![change("set_prices", "price A", 12.0, 20.0)];

@@ -45,8 +45,10 @@ pub fn highlights(
 fn firsts(weeks: &[WeekFigures], add: &mut impl FnMut(u32, String)) {
     let first = |fits: fn(&WeekFigures) -> bool| weeks.iter().find(|week| fits(week));
     if let Some(week) = first(|week| week.individual_subscribers > 0) {
-        let subscribers = count(week.individual_subscribers, "subscriber");
-        add(week.day, format!("the first week with subscribers ends with {subscribers}"));
+        add(
+            week.day,
+            format!("first subscribers: {} that week", whole(f64::from(week.individual_subscribers))),
+        );
     }
     if let Some(week) = first(|week| week.enterprise_seats > 0) {
         let seats = count(week.enterprise_seats, "seat");
@@ -119,7 +121,7 @@ mod tests {
                 "3 outage of 30 minutes",
                 "9 outage of 10 minutes",
                 "10 outage of 20 minutes",
-                "14 the first week with subscribers ends with 30 subscribers",
+                "14 first subscribers: 30 that week",
                 "14 the first week that earned money: +$20",
                 "14 most subscribers: 30",
                 "21 the first company has signed: 12 seats",

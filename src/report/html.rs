@@ -57,7 +57,8 @@ fn written(block: &Block, shape: &mut Shape) -> String {
         Block::Note(text) => format!("<p class=\"note\">{}</p>\n", escaped(text)),
         Block::Warning(text) => format!("<p class=\"warning\">{}</p>\n", escaped(text)),
         Block::Facts(facts) => {
-            format!("<dl class=\"facts\">\n{}</dl>\n", facts.iter().map(fact).collect::<String>())
+            let class = if facts.len().is_multiple_of(3) { "facts thirds" } else { "facts" };
+            format!("<dl class=\"{class}\">\n{}</dl>\n", facts.iter().map(fact).collect::<String>())
         }
         Block::Table(own) => table(own),
         Block::Bars(bars) => {

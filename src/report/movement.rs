@@ -21,6 +21,11 @@ const ENOUGH: usize = 4;
 const NORMAL: f64 = 1.4826;
 
 impl Movement {
+    /// The change relative to the larger of both values.
+    pub fn size(&self) -> f64 {
+        (self.new - self.old).abs() / self.old.abs().max(self.new.abs())
+    }
+
     /// Where the change stands among all of the run, in words; empty if it is nothing special.
     pub fn standing(&self) -> String {
         let what = if self.new > self.old { "rise" } else { "fall" };

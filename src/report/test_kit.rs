@@ -16,7 +16,9 @@ pub fn finished() -> Session {
 
 /// A run in memory that spends itself into ruin.
 pub fn ruined() -> Session {
-    run(200, 150_000.0, 8, &opening())
+    let mut calls = opening();
+    calls.push(("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 16000}})));
+    run(200, 250_000.0, 8, &calls)
 }
 
 fn opening() -> Vec<(&'static str, Value)> {

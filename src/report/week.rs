@@ -210,8 +210,9 @@ fn moves(sources: &Sources<'_>, week: &WeekFigures, press: u32) -> Vec<Move> {
         let movement = movement(&series)?;
         let up = movement.new > movement.old;
         let (old, new) = (write(movement.old), write(movement.new));
-        // What is written the same did not move for the reader.
-        (old != new).then(|| Move {
+        // What is written the same, or moved by less than a thousandth, did not move for the reader.
+        let moved = old != new && movement.size() >= 0.001;
+        moved.then(|| Move {
             name,
             old,
             new,

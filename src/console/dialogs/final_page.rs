@@ -71,7 +71,7 @@ impl Dialog for FinalPage {
         let inside = canvas.pane(own, &headline(company), "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         if inside.width >= TWO_COLUMNS.0 && inside.height >= TWO_COLUMNS.1 {
-            let [left, right] = Layout::horizontal([Constraint::Percentage(50), Constraint::Fill(1)])
+            let [left, right] = Layout::horizontal([Constraint::Percentage(55), Constraint::Fill(1)])
                 .spacing(3)
                 .areas(inside);
             let lines = self.lines(canvas, company, left.width, left.height);
@@ -110,7 +110,7 @@ impl FinalPage {
         };
         parts.push(ranking(canvas, &standing, width, best, roomy));
         parts.push(match &self.story {
-            Some(story) => facts(canvas, &story.measures, width),
+            Some(story) => facts(canvas, &story.measures, width, roomy),
             None => vec![TextLine::from(canvas.span("reading the books of the run …", Role::Dim))],
         });
         if roomy && let Some(folder) = &company.folder {
@@ -229,7 +229,7 @@ fn ranking<'a>(
 }
 
 /// How the run was played.
-fn facts<'a>(canvas: &Canvas<'_>, measures: &Measures, width: u16) -> Vec<TextLine<'a>> {
+fn facts<'a>(canvas: &Canvas<'_>, measures: &Measures, width: u16, roomy: bool) -> Vec<TextLine<'a>> {
     let room = (width as usize).saturating_sub(NAMES);
     let (least, most) = published_targeted_shares();
     let targeted = measures.targeted_development.map_or("–".to_owned(), |share| {
@@ -239,7 +239,7 @@ fn facts<'a>(canvas: &Canvas<'_>, measures: &Measures, width: u16) -> Vec<TextLi
         ("forecasts", calibration(&measures.forecasts, room)),
         ("ads on best channel", measures.channels.as_ref().map_or("–".to_owned(), best_channel)),
         ("targeted development", targeted),
-        ("tools", tools(measures, room)),
+        ("tools", tools(measures, if roomy { 2 * room } else { room })),
         (
             "planning",
             format!(
@@ -248,13 +248,18 @@ fn facts<'a>(canvas: &Canvas<'_>, measures: &Measures, width: u16) -> Vec<TextLi
             ),
         ),
     ];
-    let line = |(name, value): (&str, String)| {
-        TextLine::from(vec![
-            canvas.span(format!("{name:<NAMES$}"), Role::Dim),
-            canvas.span(fit(&value, room), Role::Text),
-        ])
-    };
-    named.into_iter().map(line).collect()
+    let mut lines = Vec::new();
+    for (name, value) in named {
+        let told = if roomy { wrapped(&value, room) } else { vec![fit(&value, room)] };
+        for (at, text) in told.into_iter().enumerate() {
+            let name = if at == 0 { name } else { "" };
+            lines.push(TextLine::from(vec![
+                canvas.span(format!("{name:<NAMES$}"), Role::Dim),
+                canvas.span(text, Role::Text),
+            ]));
+        }
+    }
+    lines
 }
 
 /// How often intervals held what came, and the typical miss, by horizon; in short where there is no room.
@@ -282,7 +287,9 @@ fn calibration(scores: &[ForecastScore], room: usize) -> String {
 
 fn best_channel(skill: &ChannelSkill) -> String {
     let mut text = percent(skill.share, 0);
-    if let Some(group) = skill.groups.first() {
+    if skill.groups.iter().all(|group| group.tried == 1) {
+        text += ", but no group had more than one channel";
+    } else if let Some(group) = skill.groups.first() {
         text += &format!(" · {}: {} of {} tried", group.group, group.best.replace('_', " "), group.tried);
     }
     text

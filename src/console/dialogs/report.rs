@@ -197,7 +197,7 @@ fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16) -> Part<'a> {
 /// What is new, each with the key of the screen that shows it, in as many lines as it takes.
 fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>) -> Part<'a> {
     let kinds: [(u32, &str, &str, ScreenId); 6] = [
-        (told.week.threads_opened, "new talk", "new talks", ScreenId::Inbox),
+        (told.week.threads_opened, "talk", "talks", ScreenId::Inbox),
         (told.week.replies, "reply", "replies", ScreenId::Inbox),
         (told.customer_posts, "post", "posts", ScreenId::Social),
         (told.comments, "comment on ours", "comments on ours", ScreenId::Social),
@@ -232,16 +232,26 @@ fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>)
     lines.into_iter().map(Line::from).collect()
 }
 
+/// The last notices that have room; equal ones are counted.
 fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], room: usize) -> Part<'a> {
-    let first = notices.len().saturating_sub(room);
-    let line = |(day, text): &(u32, String)| {
-        let flat: Vec<&str> = text.split_whitespace().collect();
+    let mut told: Vec<(u32, String, u32)> = Vec::new();
+    for (day, text) in notices.iter().rev() {
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        match told.iter_mut().find(|(_, known, _)| *known == text) {
+            Some((.., times)) => *times += 1,
+            None => told.push((*day, text, 1)),
+        }
+    }
+    told.truncate(room);
+    let line = |(day, text, times): (u32, String, u32)| {
+        let times = if times > 1 { format!(" ({times} times)") } else { String::new() };
         Line::from(vec![
             canvas.span(format!("  day {day:<4} "), Role::Dim),
-            canvas.span(flat.join(" "), Role::Text),
+            canvas.span(text, Role::Text),
+            canvas.span(times, Role::Dim),
         ])
     };
-    notices[first..].iter().map(line).collect()
+    told.into_iter().rev().map(line).collect()
 }
 
 /// What needs the person, and the key that goes on.

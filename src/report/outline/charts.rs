@@ -153,6 +153,9 @@ pub fn groups(story: &Story) -> Option<Block> {
         .collect();
     largest.sort_by(|left, right| weight(&right.active).total_cmp(&weight(&left.active)));
     largest.truncate(MOST_GROUPS);
+    // A handful beside thousands cannot be seen.
+    let most = largest.first().map_or(0.0, |book| weight(&book.active));
+    largest.retain(|book| weight(&book.active) >= 0.01 * most);
     if largest.len() < 2 {
         return None;
     }
@@ -194,7 +197,7 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
     });
     let ahead = count(horizon / 7, "week");
     let summary = format!(
-        "{} forecasts made {ahead} ahead came due; {} intervals held what came.",
+        "{} forecasts made {ahead} ahead came due; what came lay inside of {} of their intervals.",
         due.len(),
         inside.count()
     );

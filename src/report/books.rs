@@ -96,7 +96,7 @@ impl Books {
         let flows = ask("groups", FLOWS);
         let (leads, revenue) = (ask("leads", LEADS), ask("revenue", REVENUE));
         let groups = groups_of(&flows, &by_group(&leads), &by_group(&revenue), weeks);
-        let channels = ask("channels", CHANNELS).rows.iter().map(channel_of).collect();
+        let channels = ask("channels", CHANNELS).rows.iter().map(|row| channel_of(row)).collect();
         let ledger = ledger_of(&ask("the ledger", LEDGER));
         let outage = |row: &Vec<Cell>| (number_at(row, 0) as u32, number_at(row, 1) as u32);
         let outages = ask("outages", OUTAGES).rows.iter().map(outage).collect();
@@ -141,7 +141,7 @@ fn by_group(rows: &Rows) -> BTreeMap<String, f64> {
     rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), number_at(row, 1))).collect()
 }
 
-fn channel_of(row: &Vec<Cell>) -> ChannelRow {
+fn channel_of(row: &[Cell]) -> ChannelRow {
     ChannelRow {
         group: text_at(row, 0).to_owned(),
         channel: text_at(row, 1).to_owned(),

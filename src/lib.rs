@@ -5,8 +5,9 @@
 //!
 //! | floor | houses | what lives there |
 //! |---|---|---|
-//! | 5 | [`cli`] | one file per subcommand; maps failures to exit codes |
-//! | 4 | [`console`], [`plain`], [`lab`] | the terminal application; the same game line by line; policies, metrics, comparison with reference figures, speed |
+//! | 6 | [`cli`] | one file per subcommand; maps failures to exit codes |
+//! | 5 | [`console`], [`plain`], [`lab`] | the terminal application; the same game line by line; policies, metrics, comparison with reference figures, speed |
+//! | 4 | [`report`] | a week and a whole run told: what changed and why it may have, behaviour measures, the report as Markdown and as a page |
 //! | 3 | [`session`] | one run: open, act, query, advance, record, resume, replay, branch. The only door to a world |
 //! | 3 | [`glossary`] | what every term, tool, argument, table and column means, for people |
 //! | 2 | [`tools`], [`database`], [`voice`] | the catalogue of tools; the observable company in SQLite and its guarded queries; words for facts, and the judge of the player's posts |
@@ -50,6 +51,7 @@ pub mod glossary;
 pub mod lab;
 pub mod notation;
 pub mod plain;
+pub mod report;
 pub mod session;
 pub mod tools;
 pub mod voice;

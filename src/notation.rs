@@ -62,6 +62,12 @@ pub fn compact(value: f64) -> String {
     format!("{scaled:.decimals$}{suffix}")
 }
 
+/// Dollars in at most seven characters: `$1.23M`, `-$45.2k`, `$87`.
+pub fn short_dollars(value: f64) -> String {
+    let sign = if value < 0.0 { "-" } else { "" };
+    format!("{sign}${}", compact(value.abs()))
+}
+
 /// A number as JSON: whole numbers without a decimal point, others in their shortest exact form.
 pub fn json_number(value: f64) -> Value {
     const EXACT: f64 = 9_007_199_254_740_992.0;

@@ -304,3 +304,29 @@ fn named_queries_are_listed_and_answered() {
     assert!(said[4]["error"].as_str().is_some_and(|error| error.contains("near it: cash-by-week")), "{text}");
     assert!(said[5]["data"]["command"].as_str().is_some_and(|line| line.starts_with("queries [NAME]")));
 }
+
+#[test]
+fn weeks_and_runs_are_told() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let lines = "report\nset_prices A=12 B=25 C=55\nnext \"if it sells, more\" naive\nreport\nreport run\nreport never\n";
+    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], lines);
+    for part in [
+        "> report\nrefused no_week_yet: no week has passed yet; next lets one pass\n",
+        "> report\nweek to day 7: cash -$",
+        "running costs -$",
+        "forecast of 1 week ago: below the interval, missed by ",
+        "new: ",
+        "> report run\n# NovaMind · run ",
+        "price A: 0 → 12 $/month",
+        "“if it sells, more”",
+        "error usage: report tells of a week or of the run",
+    ] {
+        assert!(said.contains(part), "{part} is missing in\n{said}");
+    }
+    let (said, _) = play(runs.path(), &["--run", "latest", "--json"], "report week\nreport run\n");
+    let told = objects(&said);
+    assert_eq!(told[1]["data"]["day"], 7);
+    assert!(told[1]["data"]["moves"].as_array().is_some_and(|moves| !moves.is_empty()));
+    assert_eq!(told[2]["data"]["survival_days"], 7);
+    assert_eq!(told[2]["data"]["planning_words_per_rationale"], 1.0);
+}

@@ -9,6 +9,7 @@ mod pictures;
 mod play;
 mod query;
 mod replay;
+mod report;
 mod run;
 mod runs;
 mod scenario;
@@ -48,6 +49,8 @@ enum Command {
     Runs(runs::Options),
     /// Simulate a recorded run again and compare every state.
     Replay(replay::Options),
+    /// Tell a run: result, curves, decisions, how it was played.
+    Report(report::Options),
     /// Ask the database of a run.
     Query(query::Options),
     /// Show the catalogue of tools.
@@ -103,6 +106,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Run(options)) => run::run(&options, &context),
         Some(Command::Runs(options)) => runs::run(&options, &context),
         Some(Command::Replay(options)) => replay::run(&options, &context),
+        Some(Command::Report(options)) => report::run(&options, &context),
         Some(Command::Query(options)) => query::run(&options, &context),
         Some(Command::Tools(options)) => tools::run(&options),
         Some(Command::Tables(options)) => tables::run(&options),

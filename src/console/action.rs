@@ -179,6 +179,7 @@ actions! {
         NextMarker "next-marker" "next marker" "Draw curves with braille dots, blocks or ASCII signs."
         Mouse "mouse" "mouse" "Use the mouse, or leave it to the terminal for selecting text."
         Redraw "redraw" "redraw" "Draw the whole screen again."
+        WriteReport "write-report" "write the report" "Write the report of the run as Markdown and as a page for a browser."
         LeaveRun "leave-run" "start menu" "Save and go back to the start menu."
         Quit "quit" "quit" "Save and leave."
     }
@@ -302,6 +303,7 @@ actions! {
     }
     Final {
         ToMenu "to-menu" "start menu" "Go to the start menu."
+        ReportOfRun "report-of-run" "report" "Write the report of the run into its folder, as Markdown and as a page for a browser."
         StayInRun "stay" "look around" "Close this page and look at the run."
     }
 }

@@ -19,7 +19,6 @@ use super::canvas::Click;
 use super::company::Company;
 use super::dialogs::Dialog;
 use super::dialogs::filing::Filing;
-use super::dialogs::report::Report;
 use super::effect::Effect;
 use super::glyphs::Glyphs;
 use super::keys::{Chord, Keys};
@@ -40,6 +39,7 @@ use super::screens::{Look, Screen, ScreenId};
 use super::theme::Theme;
 use super::tour::Tour;
 use super::worker::{Job, Question};
+use crate::report::Story;
 use crate::session::{Configuration, Library};
 
 /// Screens that back remembers.
@@ -55,8 +55,8 @@ pub enum Order {
     CancelQuery,
     /// Put text into the clipboard of the terminal.
     Copy(String),
-    /// Write a file.
-    Write(PathBuf, Vec<u8>),
+    /// Write files.
+    Write(Vec<(PathBuf, Vec<u8>)>),
     /// Save a query: its name, its title, the statement.
     SaveQuery(Configuration, [String; 3]),
     /// List the runs.
@@ -125,8 +125,8 @@ pub struct Run {
     pub screens: Screens,
     /// The dialog before a week.
     pub filing: Filing,
-    /// The last week.
-    pub report: Option<Report>,
+    /// The story of the run, once it is over and was told.
+    pub story: Option<Arc<Story>>,
     /// Counts what has changed the run, so that late answers are told from fresh ones.
     pub changes: u64,
     /// What is known for each reading: the count of changes when it was asked.

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use serde_json::{Map, Value, json};
 
 use super::posts::{self, Posts};
+use crate::report::WeekReport;
 use crate::session::{
     DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Observation, RunningStudy, Session,
     Terms, WeekFigures,
@@ -26,6 +27,10 @@ pub struct Company {
     pub cash_by_day: Vec<f64>,
     /// Figures of every week.
     pub weeks: Vec<WeekFigures>,
+    /// The last week told.
+    pub week: Option<WeekReport>,
+    /// What the last week put into the inbox: day and text.
+    pub notices: Vec<(u32, String)>,
     /// Delivered quality of every known group.
     pub quality: Vec<DeliveredQuality>,
     /// Quality before any improvement, and what development has added for everybody.
@@ -77,6 +82,8 @@ impl Company {
             next_decision_day: session.next_decision_day(),
             cash_by_day: session.cash_by_day().to_vec(),
             weeks: session.weeks().to_vec(),
+            week: WeekReport::of_session(session),
+            notices: session.notices().to_vec(),
             quality: session.delivered_quality(),
             quality_base: session.quality_base(),
             naive: session.naive_forecasts(),

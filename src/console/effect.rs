@@ -57,6 +57,10 @@ pub enum Effect {
     ShowText(String, String),
     /// Write a file into the folder of the run; its name and contents. A name that is taken gets the next number.
     Write(String, Vec<u8>),
+    /// Tell the story of the run for the final page.
+    TellStory,
+    /// Write the report of the run into its folder.
+    WriteReport,
     /// Say something in the last line.
     Say(String),
     /// Say that something was refused.

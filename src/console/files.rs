@@ -8,14 +8,14 @@ use std::sync::mpsc::Sender;
 use super::message::{Message, News};
 use crate::session::{Configuration, Library, library};
 
-/// Writes a file on a thread of its own and reports where it is.
-pub fn write_behind(path: PathBuf, contents: Vec<u8>, news: Sender<Message>) {
+/// Writes files on a thread of its own and reports where they are.
+pub fn write_behind(files: Vec<(PathBuf, Vec<u8>)>, news: Sender<Message>) {
     std::thread::spawn(move || {
-        let written = match write_beside(&path, &contents) {
-            Ok(path) => Ok(format!("written: {}", path.display())),
-            Err(error) => Err(format!("{}: {error}", path.display())),
+        let write = |(path, contents): (PathBuf, Vec<u8>)| {
+            write_beside(&path, &contents).map_err(|error| format!("{}: {error}", path.display()))
         };
-        let _ = news.send(Message::News(News::Written(written)));
+        let written: Result<Vec<PathBuf>, String> = files.into_iter().map(write).collect();
+        let _ = news.send(Message::News(News::Written(written.map(|paths| in_words(&paths)))));
     });
 }
 
@@ -32,6 +32,16 @@ pub fn save_query_behind(
         };
         let _ = news.send(Message::News(News::QuerySaved(saved)));
     });
+}
+
+/// Where files are: the whole path of the first, then the names of those beside it.
+fn in_words(paths: &[PathBuf]) -> String {
+    let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut words: Vec<String> = paths.iter().map(name).collect();
+    if let Some((first, path)) = words.first_mut().zip(paths.first()) {
+        *first = path.display().to_string();
+    }
+    format!("written: {}", words.join(", "))
 }
 
 /// Writes a new file; if the name is taken, its number is raised until it is free.
@@ -75,5 +85,6 @@ mod tests {
         assert_eq!(next_name(Path::new("/x/note.txt")), Path::new("/x/note-0002.txt"));
         assert_eq!(next_name(Path::new("/x/my-note")), Path::new("/x/my-note-0002"));
         assert!(write_beside(Path::new("/nowhere/at/all.csv"), b"").is_err());
+        assert_eq!(in_words(&["/x/a.md".into(), "/x/a.html".into()]), "written: /x/a.md, a.html");
     }
 }

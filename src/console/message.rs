@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::company::Company;
 use super::readings::Reading;
+use crate::report::Story;
 use crate::session::{Change, Interrupt, Library, Preview, Refusal, Rows, Week};
 
 /// Something that arrives.
@@ -50,7 +51,11 @@ pub enum News {
     MemoKept(Result<(), Refusal>, Arc<Company>),
     /// A query was saved: a sentence and all queries, or what went wrong.
     QuerySaved(Result<(String, Library), String>),
-    /// A file was written: a sentence, or what went wrong.
+    /// The story of the run.
+    Told(Arc<Story>),
+    /// The report of the run: names of files and what they hold.
+    Reported(Vec<(&'static str, String)>),
+    /// Files were written: a sentence, or what went wrong.
     Written(Result<String, String>),
     /// The run was saved and closed; what went wrong, if something did.
     Closed(Option<String>),

@@ -102,7 +102,7 @@ impl Console {
                     }
                 }
                 Order::Copy(text) => self.screen.copy(&text),
-                Order::Write(path, contents) => files::write_behind(path, contents, self.sender.clone()),
+                Order::Write(files) => files::write_behind(files, self.sender.clone()),
                 Order::SaveQuery(configuration, query) => {
                     files::save_query_behind(configuration, query, self.sender.clone());
                 }

@@ -174,9 +174,9 @@ impl Rehearsal {
                     self.waiting += 1;
                     self.workers.send(Job::List(self.app.runs_folder().to_owned()));
                 }
-                Order::Write(path, contents) => {
+                Order::Write(written) => {
                     self.waiting += 1;
-                    files::write_behind(path, contents, self.sender.clone());
+                    files::write_behind(written, self.sender.clone());
                 }
                 Order::SaveQuery(configuration, query) => {
                     self.waiting += 1;

@@ -2,7 +2,8 @@
 
 use unicode_width::UnicodeWidthStr;
 
-use crate::notation::{compact, grouped};
+use crate::notation::grouped;
+pub use crate::notation::short_dollars;
 
 /// Text in lines of at most a width, broken between words where that is possible.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
@@ -56,12 +57,6 @@ pub fn number(value: f64) -> String {
     let value = value + 0.0;
     let decimals = if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 };
     grouped(value, decimals)
-}
-
-/// Dollars in at most seven characters: `$1.23M`, `-$45.2k`, `$87`.
-pub fn short_dollars(value: f64) -> String {
-    let sign = if value < 0.0 { "-" } else { "" };
-    format!("{sign}${}", compact(value.abs()))
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ use super::company::Company;
 use super::message::{Message, News};
 use super::readings::Reading;
 use crate::database::query::Limits;
+use crate::report::{Story, as_html, as_markdown};
 use crate::session::{
     Access, Configuration, Desk, Forecasts, Interrupt, NewRun, Refusal, Rows, Session, Via, delete_run,
     end_run, find_run, find_run_to_read, list_runs, run_course,
@@ -52,6 +53,10 @@ pub enum Job {
     NoteView(&'static str, &'static str, u64),
     /// Keep the notes.
     SetMemo(String),
+    /// Tell the story of the run.
+    Tell,
+    /// Put the report of the run into words.
+    Report,
     /// Save and close the run.
     Close,
     /// Save, close the run and end the thread.
@@ -308,6 +313,12 @@ impl SessionThread {
             Job::SetMemo(text) => {
                 let kept = session.set_memo(&text);
                 Some(News::MemoKept(kept, company(session)))
+            }
+            Job::Tell => Some(News::Told(Arc::new(Story::of(session)))),
+            Job::Report => {
+                let story = Story::of(session);
+                let files = vec![("report.md", as_markdown(&story)), ("report.html", as_html(&story))];
+                Some(News::Reported(files))
             }
             Job::List(_)
             | Job::Course(..)

@@ -1,6 +1,7 @@
 //! The commands of plain mode: what each line does, and what is answered (chapter 70 §8.1).
 
 mod readings;
+mod report;
 mod words;
 
 use std::io::{self, BufRead};
@@ -22,7 +23,7 @@ use crate::session::{Library, Mode, Refusal, Session, Via, rows_as_json};
 use crate::tools::{self, Kind, Module, Tool};
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 22] = [
+const COMMANDS: [(&str, &str); 23] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("queries", "queries [NAME]           the library of queries, or the answer to one of them"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, let a week pass (also: next-week)"),
@@ -32,6 +33,10 @@ const COMMANDS: [(&str, &str); 22] = [
     ("changes", "changes                  settings changed since the last week"),
     ("undo", "undo                     take the last setting of this week back"),
     ("history", "history [N]              the last N confirmed actions and weeks (20)"),
+    (
+        "report",
+        "report [week|run]        what the last week changed and why it may have; or the whole run told",
+    ),
     ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
     ("tools", "tools [NAME]             the tools, or one of them"),
     ("tables", "tables [NAME]            the tables, or one of them"),
@@ -181,6 +186,7 @@ impl Desk {
                 None => Ok(self.queries()),
             }),
             "tables" => name(arguments).and_then(|name| readings::tables(name, arguments)),
+            "report" => name(arguments).and_then(|what| self.report(what, arguments)),
             "history" => count(arguments).map(|count| self.history(count.unwrap_or(20))),
             "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),

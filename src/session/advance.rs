@@ -7,12 +7,12 @@ use super::scripts::as_field;
 use super::trajectory::{Durability, Line, seconds};
 use super::week::{Forecasts, WeekFigures};
 use super::xray::Xray;
-use super::{Ended, JournalEntry, Session};
+use super::{Decisions, Ended, JournalEntry, Session};
 use crate::database::{Entry, ForecastRow};
 use crate::notation::json_number;
 use crate::tools::{self, Kind, Refusal};
 use crate::world::day::step_day;
-use crate::world::events::{DayFigures, Sender, SubscriptionEnded, SubscriptionStatus};
+use crate::world::events::{DayFigures, Notice, Sender, SubscriptionEnded, SubscriptionStatus};
 use crate::world::market::surges::week_end;
 
 /// A day that was just simulated.
@@ -186,6 +186,10 @@ impl Session {
         }
         let replies = self.facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
         week.replies += replies.filter(|turn| turn.number > 0).count() as u32;
+        let finished = |notice: &&Notice| {
+            matches!(notice, Notice::ResearchComplete { .. } | Notice::StudyComplete { .. })
+        };
+        week.research_finished += self.facts.notices.iter().filter(finished).count() as u32;
         let left = |ending: &&SubscriptionEnded| {
             ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
         };
@@ -206,10 +210,15 @@ impl Session {
             self.weeks.push(figures);
             self.running_week = WeekFigures::default();
         }
+        self.decisions.push(Decisions {
+            day: self.decisions.last().map_or(0, |before| before.until),
+            until: self.world.day,
+            changes: self.changes(),
+            purchases: std::mem::take(&mut self.this_week.done),
+        });
         self.journal.push(JournalEntry::Week { figures });
         self.this_week.settings = self.world.settings.clone();
         self.this_week.undo.clear();
-        self.this_week.done.clear();
         figures
     }
 

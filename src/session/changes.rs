@@ -20,6 +20,19 @@ pub struct Change {
     pub unit: &'static str,
 }
 
+/// What was decided between two weeks.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Decisions {
+    /// Decision day.
+    pub day: u32,
+    /// Last day of the days that ran after it.
+    pub until: u32,
+    /// Settings that differ from those of the days before.
+    pub changes: Vec<Change>,
+    /// Purchases, posts and offers, in words.
+    pub purchases: Vec<String>,
+}
+
 /// One setting of a state.
 struct Item {
     tool: &'static str,

@@ -166,6 +166,7 @@ impl Session {
             projector,
             desk: None,
             weeks: Vec::new(),
+            decisions: Vec::new(),
             running_week: WeekFigures::default(),
             notices: Vec::new(),
             feed: Feed::default(),

@@ -39,7 +39,7 @@ use serde::Serialize;
 pub use act::{Preview, Via};
 pub use advance::{DayReport, Week};
 pub use ask::{desk_of_file, rows_as_json};
-pub use changes::Change;
+pub use changes::{Change, Decisions};
 pub use configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
 pub use course::{RunCourse, run_course};
 pub use create::{NewRun, Storage};
@@ -128,6 +128,8 @@ pub struct Session {
     weeks: Vec<WeekFigures>,
     /// The week that has begun with single steps.
     running_week: WeekFigures,
+    /// What was decided before each of them, or before single steps.
+    decisions: Vec<Decisions>,
     /// What the last days put into the inbox: day and text.
     notices: Vec<(u32, String)>,
     /// What people wrote in public, in words.
@@ -201,6 +203,16 @@ impl Session {
     /// Figures of every week that ran.
     pub fn weeks(&self) -> &[WeekFigures] {
         &self.weeks
+    }
+
+    /// What was decided before each week that ran, in order; single steps count for themselves.
+    pub fn decisions(&self) -> &[Decisions] {
+        &self.decisions
+    }
+
+    /// What the last days put into the inbox: day and text.
+    pub fn notices(&self) -> &[(u32, String)] {
+        &self.notices
     }
 
     /// What the person should know about the opening of the run.

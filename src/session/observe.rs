@@ -204,6 +204,6 @@ impl Session {
         let days = (self.cash_by_day.len() - 1).min(28);
         let before = self.cash_by_day[self.cash_by_day.len() - 1 - days];
         let lost_per_day = (before - self.world.finance.cash) / days.max(1) as f64;
-        (lost_per_day > 0.0).then(|| self.world.finance.cash / lost_per_day / 7.0)
+        (lost_per_day > 0.0).then(|| self.world.finance.cash.max(0.0) / lost_per_day / 7.0)
     }
 }

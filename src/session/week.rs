@@ -67,6 +67,9 @@ pub struct WeekFigures {
     /// Messages of companies in their threads.
     #[serde(default)]
     pub replies: u32,
+    /// R&D projects and studies of groups that were finished.
+    #[serde(default)]
+    pub research_finished: u32,
 }
 
 impl WeekFigures {

@@ -63,8 +63,28 @@ fn a_short_run_ends_on_the_final_page() {
     console.press("n");
     console.shows("Day 17. You end with $998,555.");
     console.shows("rank 5 of");
+    console.shows("words of planning");
+    console.press("r");
+    let id = console.app.run().expect("a run").company.seen.run.clone();
+    for (name, begins) in [("report.md", "# NovaMind · run "), ("report.html", "<!DOCTYPE html>")] {
+        let report = std::fs::read_to_string(runs.path().join(&id).join(name)).expect("a report");
+        assert!(report.starts_with(begins) && report.contains("You end with $998,555."), "{name}");
+    }
     console.press("enter down enter");
     console.shows("finished");
+}
+
+#[test]
+fn the_palette_writes_the_report_of_a_run_that_goes_on() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (80, 24));
+    console.week();
+    console.press("esc : 'write_the_report'");
+    console.shows("Write the report of the run");
+    console.press("enter");
+    let id = console.app.run().expect("a run").company.seen.run.clone();
+    let report = std::fs::read_to_string(runs.path().join(id).join("report.md")).expect("a report");
+    assert!(report.contains("**Day 7 of 500. Cash is $") && report.contains("“test”"), "{report}");
 }
 
 #[test]

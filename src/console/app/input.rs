@@ -7,12 +7,12 @@ use super::{App, Closing, Layer, Order, Stage};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::Click;
 use crate::console::dialogs::confirm::Confirm;
-use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::help::Help;
 use crate::console::dialogs::palette::Palette;
 use crate::console::dialogs::reader::Reader;
+use crate::console::dialogs::report::Report;
 use crate::console::dialogs::rows::RowsBehind;
-use crate::console::dialogs::{Dialog, Outcome, report};
+use crate::console::dialogs::{Dialog, Outcome};
 use crate::console::effect::Effect;
 use crate::console::keys::{Chord, Meaning, written};
 use crate::console::screens::{Figure, Look, ScreenId};
@@ -229,6 +229,7 @@ impl App {
                 }
             }
             Action::Report => self.show_report(),
+            Action::WriteReport => self.follow(vec![Effect::WriteReport]),
             Action::Undo => self.follow(vec![Effect::Undo]),
             Action::FocusNext | Action::FocusPrevious => self.move_focus(action == Action::FocusNext),
             Action::Back => self.back(),
@@ -305,17 +306,17 @@ impl App {
             return self.complain("a week is running; its report opens when it is done");
         }
         if !run.company.is_running() {
-            return self.open(FinalPage);
+            return self.show_end();
         }
         run.filing.reopen(run.screens.tools.unsent());
         self.layers.push(Layer::Filing);
     }
 
     fn show_report(&mut self) {
-        let Stage::Run(run) = &mut self.stage else { return };
-        match run.report.take().or_else(|| report::again(&run.company)) {
-            Some(report) => self.open(report),
-            None => self.complain("no week has passed yet: n lets one pass"),
+        let Stage::Run(run) = &self.stage else { return };
+        match run.company.week.is_some() {
+            true => self.open(Report::new(None)),
+            false => self.complain("no week has passed yet: n lets one pass"),
         }
     }
 

@@ -9,11 +9,13 @@ use crate::console::company::Company;
 use crate::console::dialogs::filing::Filing;
 use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::report::Report;
+use crate::console::effect::Effect;
 use crate::console::message::News;
 use crate::console::screens::{Look, ScreenId};
 use crate::console::text::number;
 use crate::console::tour::Tour;
 use crate::notation::{dollars, signed_dollars};
+use crate::report::Story;
 use crate::session::{Change, Interrupt, Refusal, Week};
 
 impl App {
@@ -74,6 +76,10 @@ impl App {
                 self.say(text);
             }
             News::QuerySaved(Err(problem)) => self.complain(problem),
+            News::Told(story) => self.told(&story),
+            News::Reported(files) => {
+                self.write(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect());
+            }
             News::Written(Ok(text)) => self.say(text),
             News::Written(Err(problem)) => self.complain(problem),
             other => self.heard(other),
@@ -174,7 +180,7 @@ impl App {
             shown: Instant::now(),
             screens: Screens::default(),
             filing: Filing::default(),
-            report: None,
+            story: None,
             changes: 0,
             asked: BTreeMap::new(),
             tour,
@@ -185,7 +191,28 @@ impl App {
         }
         self.renew();
         if over {
-            self.layers.push(Layer::Dialog(Box::new(FinalPage)));
+            self.show_end();
+        }
+    }
+
+    /// Shows the final page; what it tells of the books comes when they were read.
+    pub(super) fn show_end(&mut self) {
+        let Stage::Run(run) = &self.stage else { return };
+        let story = run.story.clone();
+        if story.is_none() {
+            self.follow(vec![Effect::TellStory]);
+        }
+        self.layers.push(Layer::Dialog(Box::new(FinalPage::new(story))));
+    }
+
+    fn told(&mut self, story: &Arc<Story>) {
+        if let Stage::Run(run) = &mut self.stage {
+            run.story = Some(story.clone());
+        }
+        for layer in &mut self.layers {
+            if let Layer::Dialog(dialog) = layer {
+                dialog.take_story(story);
+            }
         }
     }
 
@@ -234,12 +261,10 @@ impl App {
             run.filing = Filing::default();
         }
         self.say(text);
-        let report = Report::of(&week);
-        self.layers.push(if week.ended.is_some() {
-            Layer::Dialog(Box::new(FinalPage))
-        } else {
-            Layer::Dialog(Box::new(report))
-        });
+        match week.ended {
+            Some(_) => self.show_end(),
+            None => self.layers.push(Layer::Dialog(Box::new(Report::new(week.remark)))),
+        }
     }
 }
 

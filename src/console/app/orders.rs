@@ -62,7 +62,12 @@ impl App {
             Effect::ShowText(title, text) => {
                 self.layers.push(Layer::Dialog(Box::new(Reader::new(title, text))));
             }
-            Effect::Write(name, contents) => self.write(&name, contents),
+            Effect::Write(name, contents) => self.write(vec![(name.as_str(), contents)]),
+            Effect::TellStory => self.orders.push(Order::Job(Job::Tell)),
+            Effect::WriteReport => {
+                self.say("writing the report …");
+                self.orders.push(Order::Job(Job::Report));
+            }
             Effect::Say(text) => self.say(text),
             Effect::Complain(text) => self.complain(text),
             Effect::Show(screen) => self.show(screen),
@@ -153,10 +158,14 @@ impl App {
         }
     }
 
-    fn write(&mut self, name: &str, contents: Vec<u8>) {
+    /// Writes files into the folder of the run.
+    pub(super) fn write(&mut self, files: Vec<(&str, Vec<u8>)>) {
         let folder = self.run().and_then(|run| run.company.folder.clone());
         match folder {
-            Some(folder) => self.orders.push(Order::Write(folder.join(name), contents)),
+            Some(folder) => {
+                let files = files.into_iter().map(|(name, contents)| (folder.join(name), contents));
+                self.orders.push(Order::Write(files.collect()));
+            }
             None => self.complain("this run is kept in memory and has no folder for files"),
         }
     }

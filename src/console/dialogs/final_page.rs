@@ -1,60 +1,46 @@
-//! The page at the end of a run: the score beside published results, and how the run was played.
+//! The page at the end of a run: the score beside published results, or how the company went under; the curve of
+//! cash; how the run was played.
 
-use std::collections::BTreeMap;
-use std::sync::OnceLock;
+use std::sync::Arc;
 
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line as TextLine;
-use serde::Deserialize;
-use serde_json::Value;
+use unicode_width::UnicodeWidthStr;
 
 use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered};
+use crate::console::canvas::{Canvas, centered, fit};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens::Look;
-use crate::console::text::short_dollars;
+use crate::console::text::{short_dollars, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Line, chart};
 use crate::notation::{dollars, grouped, percent};
-use crate::session::{Ended, JournalEntry};
+use crate::report::Story;
+use crate::report::measures::{ChannelSkill, Measures};
+use crate::report::ranking::{Standing, Whose, published_targeted_shares, standing};
+use crate::session::{Ended, ForecastScore};
 
-/// Published results (read once).
-#[derive(Debug, Deserialize)]
-pub struct Published {
-    /// Cash of the rule-based policy, dollars.
-    pub rule_based_baseline: f64,
-    /// What a perfect player might reach, dollars.
-    pub estimated_upper_bound: f64,
-    /// Results of agents.
-    pub agent: Vec<Agent>,
-}
-
-/// Results of one agent.
-#[derive(Debug, Deserialize)]
-pub struct Agent {
-    /// Model.
-    pub name: String,
-    /// Runs that ended with cash below zero.
-    pub bankruptcies: u32,
-    /// Runs.
-    pub runs: u32,
-    /// Cash of the best run, dollars.
-    pub best_cash: f64,
-}
-
-/// The published results.
-pub fn published() -> &'static Published {
-    static READ: OnceLock<Published> = OnceLock::new();
-    READ.get_or_init(|| {
-        toml::from_str(include_str!("../../../assets/paper-results.toml"))
-            .expect("a test reads the shipped results")
-    })
-}
+/// Widest that reads well.
+const WIDEST: u16 = 124;
+/// From this size on, curve and highlights stand beside the rest.
+const TWO_COLUMNS: (u16, u16) = (104, 26);
+/// Width of the names of facts.
+const NAMES: usize = 22;
 
 /// The final page.
-pub struct FinalPage;
+pub struct FinalPage {
+    /// What was told of the run; none while its books are read.
+    story: Option<Arc<Story>>,
+}
+
+impl FinalPage {
+    /// The page of a run that is over.
+    pub fn new(story: Option<Arc<Story>>) -> FinalPage {
+        FinalPage { story }
+    }
+}
 
 impl Dialog for FinalPage {
     fn scopes(&self) -> Vec<Scope> {
@@ -62,40 +48,137 @@ impl Dialog for FinalPage {
     }
 
     fn hints(&self) -> Vec<Action> {
-        vec![Action::ToMenu, Action::StayInRun]
+        vec![Action::ReportOfRun, Action::StayInRun, Action::ToMenu]
     }
 
     fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
         match action {
             Action::ToMenu => Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun => Outcome::close(),
+            Action::ReportOfRun => Outcome::with(vec![Effect::WriteReport]),
             _ => Outcome::stay(),
         }
     }
 
+    fn take_story(&mut self, story: &Arc<Story>) {
+        self.story = Some(story.clone());
+    }
+
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let company = look.company;
-        let own = centered(area, 112.min(area.width), 40.min(area.height));
+        let own = centered(area, WIDEST.min(area.width), 42.min(area.height));
         canvas.clear(own, Role::Text);
         let inside = canvas.pane(own, &headline(company), "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        let mut lines = Vec::new();
-        draw_ranking(canvas, company, inside.width, &mut lines);
-        lines.push(TextLine::default());
-        lines.extend(facts(company).into_iter().map(|(name, value)| {
-            TextLine::from(vec![
-                canvas.span(format!("{name:<36}"), Role::Dim),
-                canvas.span(value, Role::Text),
-            ])
-        }));
-        canvas.lines(inside, &lines);
-        let used = lines.len() as u16 + 1;
-        let left = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
-        let cash = [Line::of(&company.cash_by_day, Role::Series(0))];
-        let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
-        chart(canvas, left, &cash, &x, &Axis { write: &short_dollars, holds: &[0.0] });
-        canvas.pane_keys(own, &look.hints(&[Action::ToMenu, Action::StayInRun]));
+        if inside.width >= TWO_COLUMNS.0 && inside.height >= TWO_COLUMNS.1 {
+            let [left, right] = Layout::horizontal([Constraint::Percentage(55), Constraint::Fill(1)])
+                .spacing(3)
+                .areas(inside);
+            let lines = self.lines(canvas, company, left.width, left.height);
+            canvas.lines(left, &lines);
+            self.draw_right(canvas, right, company);
+        } else {
+            let lines = self.lines(canvas, company, inside.width, inside.height);
+            canvas.lines(inside, &lines);
+            let used = lines.len() as u16 + 1;
+            let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
+            draw_cash(canvas, below, company);
+        }
+        canvas.pane_keys(own, &look.hints(&[Action::ReportOfRun, Action::StayInRun, Action::ToMenu]));
     }
+}
+
+impl FinalPage {
+    /// Result, rank and how the run was played.
+    fn lines<'a>(
+        &self,
+        canvas: &Canvas<'_>,
+        company: &Company,
+        width: u16,
+        height: u16,
+    ) -> Vec<TextLine<'a>> {
+        let roomy = height >= TWO_COLUMNS.1;
+        let mut parts: Vec<Vec<TextLine<'a>>> = Vec::new();
+        parts.extend(self.ruin(canvas, width, roomy));
+        let start_cash = company.cash_by_day.first().copied().unwrap_or(0.0);
+        let standing = standing(company.seen.score, &company.seen, start_cash);
+        // A ruin is explained before it is ranked.
+        let best = match (roomy, company.seen.ended) {
+            (_, Some(Ended::Bankruptcy)) => usize::from(roomy),
+            (true, _) => 8,
+            (false, _) => 3,
+        };
+        parts.push(ranking(canvas, &standing, width, best, roomy));
+        parts.push(match &self.story {
+            Some(story) => facts(canvas, &story.measures, width, roomy),
+            None => vec![TextLine::from(canvas.span("reading the books of the run …", Role::Dim))],
+        });
+        if roomy && let Some(folder) = &company.folder {
+            let text = format!("The report goes to {}", folder.display());
+            let lines = wrapped(&text, width as usize).into_iter();
+            parts.push(lines.map(|line| TextLine::from(canvas.span(line, Role::Dim))).collect());
+        }
+        let mut lines = Vec::new();
+        for part in parts {
+            if !lines.is_empty() {
+                lines.push(TextLine::default());
+            }
+            lines.extend(part);
+        }
+        lines
+    }
+
+    /// How the company went under: what turned, and what the money went to.
+    fn ruin<'a>(&self, canvas: &Canvas<'_>, width: u16, roomy: bool) -> Option<Vec<TextLine<'a>>> {
+        let ruin = self.story.as_ref()?.ruin.as_ref()?;
+        let told = wrapped(&ruin.turned.join(" "), width as usize);
+        let mut lines: Vec<TextLine<'a>> =
+            told.into_iter().map(|line| TextLine::from(canvas.span(line, Role::Text))).collect();
+        if ruin.costs.is_empty() {
+            return Some(lines);
+        }
+        lines.push(TextLine::from(canvas.span("What the money went to", Role::Header)));
+        let room = (width as usize).saturating_sub(NAMES + 20).min(40);
+        let most = ruin.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
+        for cost in ruin.costs.iter().take(if roomy { 6 } else { 3 }) {
+            let bar = "█".repeat((cost.share / most * room as f64).round() as usize);
+            lines.push(TextLine::from(vec![
+                canvas.span(format!("{:<NAMES$}", cost.name), Role::Dim),
+                canvas.span(
+                    format!("{:>12} {:>4}  ", grouped(cost.dollars, 0), percent(cost.share, 0)),
+                    Role::Text,
+                ),
+                canvas.span(bar, Role::Series(1)),
+            ]));
+        }
+        Some(lines)
+    }
+
+    /// The curve of cash, and the days worth remembering below it.
+    fn draw_right(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
+        let highlights = self.story.as_ref().map_or(&[][..], |story| story.highlights.as_slice());
+        let list = (highlights.len() as u16 + 2).min(area.height / 2);
+        let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(list)]).areas(area);
+        draw_cash(canvas, above, company);
+        if highlights.is_empty() {
+            return;
+        }
+        let line = |one: &crate::report::highlights::Highlight| {
+            TextLine::from(vec![
+                canvas.span(format!("day {:>3}  ", one.day), Role::Dim),
+                canvas.span(one.text.clone(), Role::Text),
+            ])
+        };
+        let mut lines = vec![TextLine::default(), TextLine::from(canvas.span("Highlights", Role::Header))];
+        lines.extend(highlights.iter().map(line));
+        canvas.lines(below, &lines);
+    }
+}
+
+fn draw_cash(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
+    let cash = [Line::of(&company.cash_by_day, Role::Series(0))];
+    let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
+    chart(canvas, area, &cash, &x, &Axis { write: &short_dollars, holds: &[0.0] });
 }
 
 fn headline(company: &Company) -> String {
@@ -109,137 +192,194 @@ fn headline(company: &Company) -> String {
 }
 
 /// The published results with the person's own among them.
-fn draw_ranking(canvas: &Canvas<'_>, company: &Company, width: u16, lines: &mut Vec<TextLine<'_>>) {
-    let own = company.seen.score;
-    let mut rows: Vec<(String, f64, bool)> =
-        published().agent.iter().map(|agent| (agent.name.clone(), agent.best_cash, false)).collect();
-    rows.push(("Rule-based baseline".to_owned(), published().rule_based_baseline, false));
-    if let Some(score) = own {
-        rows.push(("You".to_owned(), score, true));
-    }
-    rows.sort_by(|left, right| right.1.total_cmp(&left.1));
-    let place = rows.iter().position(|row| row.2);
-    let caption = match place {
-        Some(place) => format!("rank {} of {} beside the published results", place + 1, rows.len()),
-        None => "the published results".to_owned(),
-    };
-    let comparable =
-        company.seen.last_day == 500 && company.seen.seed == 42 && company.seen.scenario == "default";
-    let caveat = if comparable { "" } else { " (those are for 500 days, seed 42, one million at the start)" };
-    lines.push(TextLine::from(canvas.span(format!("{caption}{caveat}"), Role::Dim)));
-    let most = rows.iter().map(|row| row.1).fold(1.0, f64::max);
-    let room = (width as usize).saturating_sub(42).min(50);
-    let wanted: Vec<usize> =
-        (0..rows.len()).filter(|at| *at < 5 || place.is_some_and(|own| at.abs_diff(own) <= 1)).collect();
-    for at in wanted {
-        let (name, cash, mine) = &rows[at];
-        let bar = "█".repeat(((cash.max(0.0) / most) * room as f64).round() as usize);
-        let role = if *mine { Role::Good } else { Role::Text };
+fn ranking<'a>(
+    canvas: &Canvas<'_>,
+    standing: &Standing,
+    width: u16,
+    best: usize,
+    roomy: bool,
+) -> Vec<TextLine<'a>> {
+    let most = standing.places.iter().map(|place| place.cash).fold(1.0, f64::max);
+    let room = (width as usize).saturating_sub(39).min(50);
+    let mut lines = vec![TextLine::from(canvas.span(standing.in_words(), Role::Header))];
+    for place in standing.around(best, 1) {
+        let own = place.whose == Whose::Own;
+        let role = if own { Role::Good } else { Role::Text };
+        let bar = "█".repeat(((place.cash.max(0.0) / most) * room as f64).round() as usize);
         lines.push(TextLine::from(vec![
-            canvas.span(if *mine { "▌ " } else { "  " }, role),
-            canvas.span(format!("{name:<22}{:>12}  ", grouped(*cash, 0)), role),
-            canvas.span(bar, if *mine { Role::Good } else { Role::Series(0) }),
+            canvas.span(if own { "▌ " } else { "  " }, role),
+            canvas.span(format!("{:<21}{:>12}  ", place.name, grouped(place.cash, 0)), role),
+            canvas.span(bar, if own { Role::Good } else { Role::Series(0) }),
         ]));
     }
+    if let Some(caveat) = &standing.caveat {
+        match roomy {
+            true => {
+                let told = wrapped(caveat, width as usize).into_iter();
+                lines.extend(told.map(|line| TextLine::from(canvas.span(line, Role::Dim))));
+            }
+            false if best > 0 => {
+                lines.push(TextLine::from(canvas.span(fit(caveat, width as usize), Role::Dim)));
+            }
+            // A ruin needs the room.
+            false => {}
+        }
+    }
+    lines
 }
 
 /// How the run was played.
-fn facts(company: &Company) -> Vec<(&'static str, String)> {
-    let calibration: Vec<String> = company
-        .scores
-        .iter()
-        .filter(|score| score.scored > 0)
-        .map(|score| {
-            let inside = f64::from(score.covered) / f64::from(score.scored);
+fn facts<'a>(canvas: &Canvas<'_>, measures: &Measures, width: u16, roomy: bool) -> Vec<TextLine<'a>> {
+    let room = (width as usize).saturating_sub(NAMES);
+    let (least, most) = published_targeted_shares();
+    let targeted = measures.targeted_development.map_or("–".to_owned(), |share| {
+        format!("{} · published agents {} to {}", percent(share, 0), percent(least, 0), percent(most, 0))
+    });
+    let named: [(&str, String); 5] = [
+        ("forecasts", calibration(&measures.forecasts, room)),
+        ("ads on best channel", measures.channels.as_ref().map_or("–".to_owned(), best_channel)),
+        ("targeted development", targeted),
+        ("tools", tools(measures, if roomy { 2 * room } else { room })),
+        (
+            "planning",
             format!(
-                "{} wk {} inside, {} miss",
-                score.horizon_days / 7,
-                percent(inside, 0),
-                percent(score.mean_error, 0)
-            )
-        })
-        .collect();
-    let mut tools: BTreeMap<&str, u32> = BTreeMap::new();
-    for entry in &company.journal {
-        if let JournalEntry::Call { tool, .. } = entry {
-            *tools.entry(tool).or_default() += 1;
+                "{:.1} words of planning in a rationale of {:.0}",
+                measures.planning.planning_each, measures.planning.words_each
+            ),
+        ),
+    ];
+    let mut lines = Vec::new();
+    for (name, value) in named {
+        let told = if roomy { wrapped(&value, room) } else { vec![fit(&value, room)] };
+        for (at, text) in told.into_iter().enumerate() {
+            let name = if at == 0 { name } else { "" };
+            lines.push(TextLine::from(vec![
+                canvas.span(format!("{name:<NAMES$}"), Role::Dim),
+                canvas.span(text, Role::Text),
+            ]));
         }
     }
-    let mut used: Vec<(&str, u32)> = tools.into_iter().collect();
-    used.sort_by(|left, right| right.1.cmp(&left.1).then(left.0.cmp(right.0)));
-    let used: Vec<String> = used.iter().take(4).map(|(tool, count)| format!("{tool} {count}×")).collect();
-    let (ads, development) = spend_shares(company);
-    let or_none = |list: Vec<String>| if list.is_empty() { "–".to_owned() } else { list.join(" · ") };
-    let share = |share: Option<f64>| share.map_or("–".to_owned(), |share| percent(share, 0));
-    vec![
-        ("forecasts", or_none(calibration)),
-        ("ad spend on the favoured channel", share(ads)),
-        ("development spend that is targeted", share(development)),
-        ("tools", or_none(used)),
-    ]
+    lines
 }
 
-/// Share of ad spend on the channel that got most, and targeted share of development spend, both summed over the
-/// weeks as they were set; none where nothing was spent.
-fn spend_shares(company: &Company) -> (Option<f64>, Option<f64>) {
-    let mut channels: BTreeMap<String, f64> = BTreeMap::new();
-    let (mut general, mut targeted) = (0.0, 0.0);
-    let mut now = Spend::default();
-    for entry in &company.journal {
-        match entry {
-            JournalEntry::Call { tool, args, .. } => now.set(tool, args),
-            JournalEntry::Week { figures } => {
-                let days = f64::from(figures.days_run);
-                for (channel, dollars) in &now.channels {
-                    *channels.entry(channel.clone()).or_default() += dollars * days;
-                }
-                general += now.development * days;
-                targeted += now.targeted * days;
-            }
-            JournalEntry::Advance { .. } => {}
-        }
+/// How often intervals held what came, and the typical miss, by horizon; in short where there is no room.
+fn calibration(scores: &[ForecastScore], room: usize) -> String {
+    let scored = || scores.iter().filter(|score| score.scored > 0);
+    let inside = |score: &ForecastScore| percent(f64::from(score.covered) / f64::from(score.scored), 0);
+    let long = scored().map(|score| {
+        format!(
+            "{} wk {} inside, {} miss",
+            score.horizon_days / 7,
+            inside(score),
+            percent(score.mean_error, 0)
+        )
+    });
+    let long = long.collect::<Vec<_>>().join(" · ");
+    if long.is_empty() {
+        return "none has come due".to_owned();
     }
-    let total: f64 = channels.values().sum();
-    let most = channels.values().copied().fold(0.0, f64::max);
-    let share = |part: f64, whole: f64| (whole > 0.0).then(|| part / whole);
-    (share(most, total), share(targeted, general + targeted))
-}
-
-/// Spend in force, dollars a day.
-#[derive(Default)]
-struct Spend {
-    channels: BTreeMap<String, f64>,
-    development: f64,
-    targeted: f64,
-}
-
-impl Spend {
-    fn set(&mut self, tool: &str, args: &Value) {
-        let sum =
-            |map: &Value| map.as_object().into_iter().flatten().filter_map(|(_, value)| value.as_f64()).sum();
-        let whole = args.get("targeted_spend").unwrap_or(&Value::Null);
-        match tool {
-            "set_daily_spend" => {
-                if let Some(value) = args.get("development").and_then(Value::as_f64) {
-                    self.development = value;
-                }
-            }
-            "set_targeted_dev_spend" => self.targeted = sum(whole),
-            "set_targeted_ad_spend" => {
-                let channel = |(name, groups): (&String, &Value)| (name.clone(), sum(groups));
-                self.channels = whole.as_object().into_iter().flatten().map(channel).collect();
-            }
-            _ => {}
-        }
+    if long.width() <= room {
+        return long;
     }
+    let short = scored().map(|score| format!("{} wk {}", score.horizon_days / 7, inside(score)));
+    format!("inside: {}", short.collect::<Vec<_>>().join(" · "))
+}
+
+fn best_channel(skill: &ChannelSkill) -> String {
+    let mut text = percent(skill.share, 0);
+    if skill.groups.iter().all(|group| group.tried == 1) {
+        text += ", but no group had more than one channel";
+    } else if let Some(group) = skill.groups.first() {
+        text += &format!(" · {}: {} of {} tried", group.group, group.best.replace('_', " "), group.tried);
+    }
+    text
+}
+
+/// Calls a week and the most used tools, as many as have room.
+fn tools(measures: &Measures, room: usize) -> String {
+    let mut text = format!("{:.1} calls a week", measures.tools.per_week);
+    for (tool, calls) in &measures.tools.tools {
+        let more = format!(" · {tool} {calls}×");
+        if text.width() + more.width() > room {
+            break;
+        }
+        text += &more;
+    }
+    text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::console::dialogs::picture;
+    use crate::report::test_kit;
+    use crate::session::Session;
+
+    fn page(session: &Session) -> (FinalPage, Company) {
+        (FinalPage::new(Some(Arc::new(Story::of(session)))), Company::of(session))
+    }
 
     #[test]
-    fn the_published_results_are_read() {
-        assert!(published().rule_based_baseline > 1e7 && published().agent.len() > 10);
+    fn a_finished_run_shows_score_rank_curve_and_measures_at_both_sizes() {
+        let (page, company) = page(&test_kit::finished());
+        let small = picture(&page, &company, 80, 21);
+        let large = picture(&page, &company, 120, 37);
+        for (text, name) in [(&small, "80×24"), (&large, "120×40")] {
+            for part in [
+                "Day 35. You end with $",
+                "of 18 beside the published results",
+                "▌ You",
+                "Rule-based baseline",
+                "1 wk 100% inside",
+                "ads on best channel",
+                "of 2 tried",
+                "targeted development  97%",
+                "calls a week",
+                "words of planning",
+                "day 0",
+                "r report",
+            ] {
+                assert!(text.contains(part), "{part} is missing at {name}:\n{text}");
+            }
+        }
+        assert!(large.contains("Highlights") && large.contains("most cash"), "{large}");
+    }
+
+    #[test]
+    fn a_ruined_run_says_when_what_it_went_to_and_what_turned() {
+        let (page, company) = page(&test_kit::ruined());
+        for (width, height) in [(80, 21), (120, 37)] {
+            let text = picture(&page, &company, width, height);
+            for part in [
+                "The company is bankrupt; the score is $0.",
+                "What the money went to",
+                "development and R&D",
+                "No week earned money.",
+                "rank 14 of 18",
+                "ads on best channel",
+                "words of planning",
+            ] {
+                assert!(text.contains(part), "{part} is missing at {width}×{height}:\n{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn before_the_story_is_told_the_page_says_so() {
+        let company = Company::of(&test_kit::finished());
+        let text = picture(&FinalPage::new(None), &company, 80, 21);
+        assert!(text.contains("reading the books") && text.contains("▌ You"), "{text}");
+    }
+
+    #[test]
+    fn it_draws_in_windows_of_every_size() {
+        for session in [test_kit::finished(), test_kit::ruined()] {
+            let (page, company) = page(&session);
+            for (width, height) in
+                (0..130).step_by(9).flat_map(|width| (0..44).step_by(3).map(move |height| (width, height)))
+            {
+                picture(&page, &company, width, height);
+            }
+        }
     }
 }

@@ -11,6 +11,8 @@ pub mod reader;
 pub mod report;
 pub mod rows;
 
+use std::sync::Arc;
+
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
@@ -19,6 +21,7 @@ use super::canvas::Canvas;
 use super::effect::Effect;
 use super::message::News;
 use super::screens::Look;
+use crate::report::Story;
 
 /// What follows from an action in a dialog.
 #[derive(Debug, Default)]
@@ -77,6 +80,9 @@ pub trait Dialog {
         Outcome::stay()
     }
 
+    /// Takes the story of the run, which was told meanwhile.
+    fn take_story(&mut self, _: &Arc<Story>) {}
+
     /// A row was clicked.
     fn click(&mut self, _: usize, _: &Look<'_>) -> Outcome {
         Outcome::stay()
@@ -84,4 +90,18 @@ pub trait Dialog {
 
     /// Draws itself over the screen.
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
+}
+
+/// Draws a dialog over an empty screen of a size; what is seen as text.
+#[cfg(test)]
+fn picture(dialog: &dyn Dialog, company: &super::company::Company, width: u16, height: u16) -> String {
+    use super::keys::Keys;
+    use super::theme::Theme;
+    let area = Rect::new(0, 0, width, height);
+    let mut buffer = ratatui::buffer::Buffer::empty(area);
+    let theme = Theme::find("mono", &crate::session::Configuration::shipped()).expect("a theme");
+    let keys = Keys::shipped();
+    dialog.draw(&mut Canvas::new(&mut buffer, &theme), area, &Look { company, keys: &keys, page: 5 });
+    let line = |y: u16| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+    (0..height).map(|y| line(y).trim_end().to_owned() + "\n").collect()
 }

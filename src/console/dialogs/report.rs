@@ -1,83 +1,40 @@
-//! What a week has brought: what changed most, what is new, what needs an answer.
+//! What a week has brought: what cash did and why, what changed most and why it may have, what is new and where to
+//! look, what became of the forecasts, what comes next.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
+use unicode_width::UnicodeWidthStr;
 
 use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, centered};
-use crate::console::company::Company;
-use crate::console::screens::{Look, overview};
-use crate::console::text::{arrow, wrapped};
+use crate::console::canvas::{Canvas, Click, centered, fit};
+use crate::console::screens::overview::{self, Alert};
+use crate::console::screens::{Look, ScreenId};
+use crate::console::text::{arrow, short_dollars, wrapped};
 use crate::console::theme::Role;
-use crate::notation::{dollars, grouped, percent};
-use crate::session::{Week, WeekFigures};
+use crate::notation::{dollars, grouped, percent, signed_dollars};
+use crate::report::WeekReport;
+use crate::report::week::{Due, Move};
 
-/// The report of a week.
+/// Widest that reads well.
+const WIDEST: u16 = 116;
+/// From this width on, what is said of a figure stands beside it, otherwise below it.
+const BESIDE: u16 = 100;
+
+/// The report of the last week.
 pub struct Report {
-    notices: Vec<(u32, String)>,
     remark: Option<String>,
 }
 
 impl Report {
-    /// The report of a week that has just passed.
-    pub fn of(week: &Week) -> Report {
-        Report { notices: week.notices.clone(), remark: week.remark.clone() }
+    /// The report; with what the person should know about the saving of the week.
+    pub fn new(remark: Option<String>) -> Report {
+        Report { remark }
     }
 }
 
-/// A figure of the report.
-struct Moved {
-    name: &'static str,
-    now: String,
-    before: String,
-    change: String,
-    /// How much it moved, relative to its size.
-    size: f64,
-    good: bool,
-}
-
-/// A figure: name, how to read it, how to write it, whether more is better.
-type Figure = (&'static str, fn(&WeekFigures) -> f64, fn(f64) -> String, bool);
-
-const FIGURES: [Figure; 12] = [
-    ("recurring revenue a month", |week| week.recurring_revenue, dollars, true),
-    ("payments", |week| week.payments, dollars, true),
-    ("running costs", |week| week.costs, dollars, false),
-    ("individual subscribers", |week| f64::from(week.individual_subscribers), whole, true),
-    ("enterprise seats", |week| f64::from(week.enterprise_seats), whole, true),
-    ("new individual leads", |week| f64::from(week.new_individual_leads), whole, true),
-    ("new individual subscribers", |week| f64::from(week.new_individual_subscribers), whole, true),
-    ("cancellations", |week| f64::from(week.cancellations), whole, false),
-    ("usage, units", |week| week.usage as f64, whole, true),
-    ("overload, peak", |week| week.overload_peak, |share| percent(share, 1), false),
-    ("outage minutes", |week| f64::from(week.downtime_minutes), whole, false),
-    ("open issues", |week| f64::from(week.open_issues), whole, false),
-];
-
-fn whole(value: f64) -> String {
-    grouped(value, 0)
-}
-
-fn moved(company: &Company) -> Vec<Moved> {
-    let Some(now) = company.weeks.last() else { return Vec::new() };
-    let before = company.weeks.len().checked_sub(2).map(|at| company.weeks[at]).unwrap_or_default();
-    let figure = |(name, read, write, more_is_better): &Figure| {
-        let (new, old) = (read(now), read(&before));
-        let change = new - old;
-        Moved {
-            name,
-            now: write(new),
-            before: write(old),
-            change: arrow(change, &write(change.abs())),
-            size: change.abs() / old.abs().max(new.abs()).max(1e-9),
-            good: (change > 0.0) == *more_is_better,
-        }
-    };
-    let mut all: Vec<Moved> = FIGURES.iter().map(figure).filter(|moved| moved.size > 0.0).collect();
-    all.sort_by(|left, right| right.size.total_cmp(&left.size));
-    all
-}
+/// A part of the report: a heading and its lines.
+type Part<'a> = Vec<Line<'a>>;
 
 impl Dialog for Report {
     fn scopes(&self) -> Vec<Scope> {
@@ -96,85 +53,269 @@ impl Dialog for Report {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let company = look.company;
-        let Some(week) = company.weeks.last() else { return };
-        let own = centered(area, 84.min(area.width), 26.min(area.height));
+        let Some(told) = &look.company.week else { return };
+        let width = WIDEST.min(area.width);
+        let lines = self.lines(canvas, told, look, width.saturating_sub(4), area.height.saturating_sub(2));
+        let own = centered(area, width, lines.len() as u16 + 2);
         canvas.clear(own, Role::Text);
-        let title = format!("Week {} · day {}", week.day.div_ceil(7), week.day);
+        let title = format!("Week {} · day {}", told.week.day.div_ceil(7), told.week.day);
         let inside = canvas.pane(own, &title, "", true);
-        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        let mut lines: Vec<Line<'_>> = Vec::new();
-        let change = week.cash_change;
-        lines.push(Line::from(vec![
-            canvas.span(format!("Cash {}  ", dollars(week.cash)), Role::Strong),
-            canvas.span(
-                arrow(change, &dollars(change.abs())),
-                if change >= 0.0 { Role::Good } else { Role::Bad },
-            ),
-            canvas.span(outcome_of_forecast(company), Role::Dim),
-        ]));
-        if let Some(remark) = &self.remark {
-            lines.extend(
-                wrapped(remark, inside.width as usize)
-                    .into_iter()
-                    .map(|line| Line::from(canvas.span(line, Role::Warning))),
-            );
-        }
-        lines.push(Line::default());
-        lines.push(Line::from(canvas.span("What changed most", Role::Header)));
-        for moved in moved(company).into_iter().take(7) {
-            lines.push(Line::from(vec![
-                canvas.span(format!("  {:<28}{:>13}  ", moved.name, moved.now), Role::Text),
-                canvas.span(format!("{:<14}", moved.change), if moved.good { Role::Good } else { Role::Bad }),
-                canvas.span(format!("was {}", moved.before), Role::Dim),
-            ]));
-        }
-        lines.push(Line::default());
-        lines.push(Line::from(canvas.span("What happened", Role::Header)));
-        let first = self.notices.len().saturating_sub(5);
-        for (day, text) in &self.notices[first..] {
-            lines.push(Line::from(vec![
-                canvas.span(format!("  day {day:<4}"), Role::Dim),
-                canvas.span(text.clone(), Role::Text),
-            ]));
-        }
-        if self.notices.is_empty() {
-            lines.push(Line::from(canvas.span("  no messages", Role::Dim)));
-        }
-        if first > 0 {
-            lines.push(Line::from(canvas.span(format!("  and {first} before"), Role::Dim)));
-        }
-        lines.push(Line::default());
-        lines.push(Line::from(canvas.span("Needs you", Role::Header)));
-        let alerts = overview::alerts(company);
-        for alert in alerts.iter().take(4) {
-            let role = if alert.urgent { Role::Warning } else { Role::Text };
-            lines.push(Line::from(
-                canvas.span(format!("  {} {}", if alert.urgent { "!" } else { "·" }, alert.text), role),
-            ));
-        }
-        if alerts.is_empty() {
-            lines.push(Line::from(canvas.span("  nothing", Role::Dim)));
-        }
-        canvas.lines(inside, &lines);
+        canvas.lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
         canvas.click(own, Click::Do(Action::Cancel));
-        canvas.pane_keys(own, "enter or esc closes · w shows it again · d the dashboard as text");
+        let close = look.hint(Action::Cancel);
+        let again =
+            look.keys.label(Action::Report).map_or(String::new(), |key| format!(" · {key} shows it again"));
+        canvas.pane_keys(own, &format!("{close}{again}"));
     }
 }
 
-/// How the forecast of a week ago turned out.
-fn outcome_of_forecast(company: &Company) -> String {
-    let Some((filed, forecasts)) = company.last_forecasts() else { return String::new() };
-    let Some(forecast) = forecasts.first() else { return String::new() };
-    let Some(outcome) = company.cash_by_day.get((filed + forecast.horizon_days) as usize) else {
-        return String::new();
-    };
-    let inside = forecast.lower <= *outcome && *outcome <= forecast.upper;
-    let word = if inside { "inside" } else { "outside" };
-    format!("   you expected {}: {word} your interval", dollars(forecast.point))
+impl Report {
+    /// All lines for a room: what may be left out gives way to what may not.
+    fn lines<'a>(
+        &self,
+        canvas: &Canvas<'_>,
+        told: &WeekReport,
+        look: &Look<'_>,
+        width: u16,
+        height: u16,
+    ) -> Vec<Line<'a>> {
+        let height = height as usize;
+        let head = self.head(canvas, told, width, if height >= 26 { 4 } else { 1 });
+        let alerts = overview::alerts(look.company);
+        let notices = &look.company.notices;
+        let news = news(canvas, told, width, look);
+        // Headings and the blank lines between four parts.
+        let airy = height >= 18;
+        let fixed = head.len() + news.len() + 2 + if airy { 3 } else { 0 };
+        let room = height.saturating_sub(fixed);
+        let shown_alerts = alerts.len().min((room / 5).max(1)).max(1);
+        let moves =
+            moved(canvas, told, width, room.saturating_sub(shown_alerts + usize::from(!notices.is_empty())));
+        let left = room.saturating_sub(shown_alerts + moves.len());
+        let parts: [Part<'a>; 4] = [
+            head,
+            with_heading(canvas, "What changed most", moves),
+            news.into_iter().chain(notice_lines(canvas, notices, left.min(8))).collect(),
+            with_heading(canvas, "What comes next", next(canvas, &alerts, shown_alerts, width, look)),
+        ];
+        let mut lines = Vec::new();
+        for (at, part) in parts.into_iter().enumerate() {
+            if at > 0 && airy {
+                lines.push(Line::default());
+            }
+            lines.extend(part);
+        }
+        lines.truncate(height);
+        lines
+    }
+
+    fn head<'a>(&self, canvas: &Canvas<'_>, told: &WeekReport, width: u16, forecasts: usize) -> Part<'a> {
+        let change = told.week.cash_change;
+        let role = if change < 0.0 { Role::Bad } else { Role::Good };
+        let mut lines = vec![Line::from(vec![
+            canvas.span(format!("Cash {}  ", dollars(told.week.cash)), Role::Strong),
+            canvas.span(arrow(change, &dollars(change.abs())), role),
+            canvas.span(" over the week", Role::Dim),
+        ])];
+        let parts: Vec<String> =
+            told.parts.iter().map(|(name, amount)| format!("{name} {}", signed_dollars(*amount))).collect();
+        lines.push(Line::from(canvas.span(fit(&parts.join(" · "), width as usize), Role::Text)));
+        let remark = self.remark.iter().flat_map(|remark| wrapped(remark, width as usize));
+        lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
+        lines.extend(told.due.iter().take(forecasts).map(|due| forecast_line(canvas, due)));
+        lines
+    }
 }
 
-/// The report of the last week, to be shown again; none before a week has passed.
-pub fn again(company: &Company) -> Option<Report> {
-    company.weeks.last().map(|_| Report { notices: Vec::new(), remark: None })
+fn with_heading<'a>(canvas: &Canvas<'_>, heading: &'static str, lines: Part<'a>) -> Part<'a> {
+    std::iter::once(Line::from(canvas.span(heading, Role::Header))).chain(lines).collect()
+}
+
+fn forecast_line<'a>(canvas: &Canvas<'_>, due: &Due) -> Line<'a> {
+    let weeks = due.horizon_days / 7;
+    let ago = if weeks == 1 { "a week ago".to_owned() } else { format!("{weeks} weeks ago") };
+    let said = format!(
+        "{ago} you said {}, {} to {}: ",
+        short_dollars(due.point),
+        short_dollars(due.lower),
+        short_dollars(due.upper)
+    );
+    let role = if due.is_inside() { Role::Good } else { Role::Warning };
+    Line::from(vec![
+        canvas.span(said, Role::Dim),
+        canvas.span(due.verdict(), role),
+        canvas.span(format!(", missed by {}", percent(due.miss(), 1)), Role::Dim),
+    ])
+}
+
+/// The most unusual moves that have room, each with why it may be.
+fn moved<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, room: usize) -> Part<'a> {
+    if told.moves.is_empty() {
+        return vec![Line::from(canvas.span("  nothing", Role::Dim))];
+    }
+    let mut lines = Vec::new();
+    for own in &told.moves {
+        let of_one = move_lines(canvas, own, width);
+        if lines.len() + of_one.len() > room {
+            break;
+        }
+        lines.extend(of_one);
+    }
+    lines
+}
+
+fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16) -> Part<'a> {
+    let role = match own.good {
+        Some(true) => Role::Good,
+        Some(false) => Role::Bad,
+        None => Role::Text,
+    };
+    let glyph = if own.up { "▲" } else { "▼" };
+    let share = own.in_percent().unwrap_or_default();
+    let mut line = vec![
+        canvas.span(format!("  {:<17}", own.name), Role::Text),
+        canvas.span(format!("{:>12} → ", own.old), Role::Dim),
+        canvas.span(format!("{:>12}", own.new), Role::Strong),
+        canvas.span(format!("  {glyph} {share:<7}"), role),
+    ];
+    let cause = own.cause.as_ref().map(|cause| format!("may be: {cause}"));
+    let said: Vec<String> =
+        [own.movement.standing()].into_iter().filter(|text| !text.is_empty()).chain(cause).collect();
+    let said = said.join(" · ");
+    if said.is_empty() {
+        return vec![Line::from(line)];
+    }
+    let used: usize = line.iter().map(|span| span.content.width()).sum();
+    if width >= BESIDE && used + 2 + said.width() <= width as usize {
+        line.push(canvas.span(format!("  {said}"), Role::Dim));
+        return vec![Line::from(line)];
+    }
+    let below = fit(&said, (width as usize).saturating_sub(6));
+    vec![Line::from(line), Line::from(canvas.span(format!("      {below}"), Role::Dim))]
+}
+
+/// What is new, each with the key of the screen that shows it, in as many lines as it takes.
+fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>) -> Part<'a> {
+    let kinds: [(u32, &str, &str, ScreenId); 6] = [
+        (told.week.threads_opened, "talk", "talks", ScreenId::Inbox),
+        (told.week.replies, "reply", "replies", ScreenId::Inbox),
+        (told.customer_posts, "post", "posts", ScreenId::Social),
+        (told.comments, "comment on ours", "comments on ours", ScreenId::Social),
+        (told.press, "news", "news", ScreenId::Social),
+        (told.week.research_finished, "finished research", "finished research", ScreenId::Product),
+    ];
+    let found: Vec<_> = kinds.into_iter().filter(|(count, ..)| *count > 0).collect();
+    let mut lines = vec![vec![canvas.span("New  ", Role::Header)]];
+    let mut used = 5;
+    for (at, (count, one, more, screen)) in found.iter().enumerate() {
+        let dot = if at > 0 { " · " } else { "" };
+        let text = format!("{dot}{} {}", grouped(f64::from(*count), 0), if *count == 1 { one } else { more });
+        // What leads to the same screen shares its key.
+        let last = found.get(at + 1).is_none_or(|next| next.3 != *screen);
+        let key = look
+            .keys
+            .label(screen.action())
+            .filter(|_| last)
+            .map_or(String::new(), |key| format!(" → {key}"));
+        if used + text.width() + key.width() > width as usize {
+            lines.push(vec![canvas.span("   ", Role::Text)]);
+            used = 3;
+        }
+        used += text.width() + key.width();
+        if let Some(line) = lines.last_mut() {
+            line.extend([canvas.span(text, Role::Text), canvas.span(key, Role::Key)]);
+        }
+    }
+    if found.is_empty() {
+        lines.push(vec![canvas.span("  nothing", Role::Dim)]);
+    }
+    lines.into_iter().map(Line::from).collect()
+}
+
+/// The last notices that have room; equal ones are counted.
+fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], room: usize) -> Part<'a> {
+    let mut told: Vec<(u32, String, u32)> = Vec::new();
+    for (day, text) in notices.iter().rev() {
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        match told.iter_mut().find(|(_, known, _)| *known == text) {
+            Some((.., times)) => *times += 1,
+            None => told.push((*day, text, 1)),
+        }
+    }
+    told.truncate(room);
+    let line = |(day, text, times): (u32, String, u32)| {
+        let times = if times > 1 { format!(" ({times} times)") } else { String::new() };
+        Line::from(vec![
+            canvas.span(format!("  day {day:<4} "), Role::Dim),
+            canvas.span(text, Role::Text),
+            canvas.span(times, Role::Dim),
+        ])
+    };
+    told.into_iter().rev().map(line).collect()
+}
+
+/// What needs the person, and the key that goes on.
+fn next<'a>(canvas: &Canvas<'_>, alerts: &[Alert], shown: usize, width: u16, look: &Look<'_>) -> Part<'a> {
+    if alerts.is_empty() {
+        let key = look.keys.label(Action::NextWeek).unwrap_or_default();
+        let text = format!("  nothing waits; close this and {key} lets the next week pass");
+        return vec![Line::from(canvas.span(text, Role::Dim))];
+    }
+    let line = |alert: &Alert| {
+        let key = look.keys.label(alert.at().action()).map_or(String::new(), |key| format!(" → {key}"));
+        let (sign, role) = if alert.urgent { ("!", Role::Warning) } else { ("·", Role::Text) };
+        let room = (width as usize).saturating_sub(4 + key.width());
+        Line::from(vec![
+            canvas.span(format!("  {sign} {}", fit(&alert.text, room)), role),
+            canvas.span(key, Role::Key),
+        ])
+    };
+    alerts.iter().take(shown).map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::company::Company;
+    use crate::console::dialogs::picture;
+    use crate::console::test_kit;
+
+    #[test]
+    fn the_report_fits_small_windows_and_uses_large_ones() {
+        let company = Company::of(&test_kit::played(8));
+        let report = Report::new(None);
+        let small = picture(&report, &company, 80, 21);
+        let large = picture(&report, &company, 120, 37);
+        for (text, name) in [(&small, "80×24"), (&large, "120×40")] {
+            for part in [
+                "Week 8 · day 56",
+                "Cash $",
+                "payments +$",
+                "a week ago you said",
+                "What changed most",
+                "New  ",
+                "What comes next",
+            ] {
+                assert!(text.contains(part), "{part} is missing at {name}:\n{text}");
+            }
+        }
+        assert!(large.matches(" → ").count() > small.matches(" → ").count(), "{large}");
+        assert!(large.contains("4 weeks ago you said"), "{large}");
+    }
+
+    #[test]
+    fn a_remark_about_the_disk_is_shown() {
+        let company = Company::of(&test_kit::played(1));
+        let report = Report::new(Some("the disk is full".to_owned()));
+        assert!(picture(&report, &company, 80, 21).contains("the disk is full"));
+    }
+
+    #[test]
+    fn it_draws_in_windows_of_every_size() {
+        let company = Company::of(&test_kit::played(3));
+        for (width, height) in (0..90).step_by(7).flat_map(|width| (0..30).map(move |height| (width, height)))
+        {
+            picture(&Report::new(Some("x ".repeat(99))), &company, width, height);
+        }
+    }
 }

@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 
 use super::Menu;
 use crate::console::canvas::{Align, Canvas, rows_of};
-use crate::console::dialogs::final_page::published;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{compact, dollars};
+use crate::report::ranking::published;
 use crate::session::{Ended, Mode, RunSummary};
 
 /// Days of a run that can stand beside published ones.

@@ -1,0 +1,118 @@
+//! `report [week|run]`: a week or the whole run told.
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::super::grammar::{Argument, Problem};
+use super::{Desk, problem};
+use crate::notation::{percent, signed_dollars};
+use crate::report::{Story, WeekReport, as_markdown};
+use crate::session::Refusal;
+
+/// Moves that are told.
+const TOLD: usize = 6;
+
+impl Desk {
+    pub(super) fn report(&self, what: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
+        match what {
+            None | Some("week") => Ok(self.week_report()),
+            Some("run") => Ok(self.run_report()),
+            Some(_) => {
+                Err(problem(arguments, "report tells of a week or of the run: report week, report run"))
+            }
+        }
+    }
+
+    fn week_report(&self) -> Answer {
+        match WeekReport::of_session(&self.session) {
+            Some(report) => Answer::done("report", in_words(&report), as_data(&report)),
+            None => Answer::refused(
+                "report",
+                Refusal::new("no_week_yet", "no week has passed yet; next lets one pass"),
+            ),
+        }
+    }
+
+    fn run_report(&self) -> Answer {
+        let story = Story::of(&self.session);
+        let measures = &story.measures;
+        let data = json!({
+            "headline": story.headline(),
+            "rank": story.standing.rank,
+            "survival_days": measures.survival_days,
+            "cash": measures.cash,
+            "best_channel_share": measures.channels.as_ref().map(|skill| skill.share),
+            "targeted_development_share": measures.targeted_development,
+            "forecasts": measures.forecasts,
+            "calls_per_week": measures.tools.per_week,
+            "planning_words_per_rationale": measures.planning.planning_each,
+            "report": as_markdown(&story),
+        });
+        Answer::done("report", as_markdown(&story), data)
+    }
+}
+
+/// The week in sentences, one a line.
+fn in_words(report: &WeekReport) -> String {
+    let week = &report.week;
+    let parts: Vec<String> =
+        report.parts.iter().map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars))).collect();
+    let change = signed_dollars(week.cash_change);
+    let mut lines = vec![format!("week to day {}: cash {change}, of it {}", week.day, parts.join(", "))];
+    for moved in report.moves.iter().take(TOLD) {
+        let mut line = format!("{} {} → {}", moved.name, moved.old, moved.new);
+        let standing = moved.movement.standing();
+        if !standing.is_empty() {
+            line += &format!(", {standing}");
+        }
+        if let Some(cause) = &moved.cause {
+            line += &format!("; may be: {cause}");
+        }
+        lines.push(line);
+    }
+    for due in &report.due {
+        let (weeks, miss) = (due.horizon_days / 7, percent(due.miss(), 1));
+        let verdict = due.verdict().trim_start_matches(['✓', '▲', '▼', ' ']);
+        lines.push(format!("forecast of {weeks} weeks ago: {verdict} the interval, missed by {miss}"));
+    }
+    lines.push(format!(
+        "new: {} threads, {} replies, {} posts, {} comments on ours, {} news, {} finished research",
+        week.threads_opened,
+        week.replies,
+        report.customer_posts,
+        report.comments,
+        report.press,
+        week.research_finished
+    ));
+    lines.join("\n").replace("of 1 weeks ago", "of 1 week ago")
+}
+
+fn as_data(report: &WeekReport) -> Value {
+    let moved = |moved: &crate::report::week::Move| {
+        json!({
+            "figure": moved.name,
+            "old": moved.movement.old,
+            "new": moved.movement.new,
+            "unusual": moved.movement.unusual,
+            "standing": moved.movement.standing(),
+            "may_be": moved.cause,
+        })
+    };
+    let due = |due: &crate::report::week::Due| {
+        json!({
+            "horizon_days": due.horizon_days,
+            "point": due.point,
+            "lower": due.lower,
+            "upper": due.upper,
+            "outcome": due.outcome,
+            "inside": due.is_inside(),
+        })
+    };
+    json!({
+        "day": report.week.day,
+        "cash_change": report.week.cash_change,
+        "parts": report.parts.iter().map(|(name, dollars)| json!({ "part": name, "dollars": dollars })).collect::<Vec<_>>(),
+        "moves": report.moves.iter().map(moved).collect::<Vec<_>>(),
+        "forecasts": report.due.iter().map(due).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,204 @@
+//! What the database knows of a run: groups by week, money by category, leads by channel. Guarded queries over the
+//! visible tables; what it does not answer is named and left out.
+
+use std::collections::BTreeMap;
+
+use crate::session::{Cell, Rows, Session};
+use crate::world::identifiers::Group;
+
+/// Who came and left by week and group. A deal that was left early ends in the future: it counts from the last day.
+const FLOWS: &str = "SELECT (s.start_day + 6) / 7 AS week, c.group_id, count(*), sum(s.seat_count)
+FROM subscriptions s CROSS JOIN customers c
+WHERE c.customer_id = s.customer_id AND s.status IN ('subscribed', 'cancelled') GROUP BY 1, 2
+UNION ALL
+SELECT (min(s.end_day, (SELECT max(day) FROM service_day)) + 6) / 7, c.group_id, -count(*), -sum(s.seat_count)
+FROM subscriptions s CROSS JOIN customers c
+WHERE c.customer_id = s.customer_id AND s.status = 'cancelled' GROUP BY 1, 2";
+
+/// The first customer is the market observer, who signs news.
+const LEADS: &str = "SELECT group_id, count(*) FROM customers WHERE customer_id > 1 GROUP BY 1";
+
+const REVENUE: &str = "SELECT c.group_id, sum(s.effective_price * s.seat_count)
+FROM subscriptions s CROSS JOIN customers c
+WHERE c.customer_id = s.customer_id AND s.status = 'subscribed' GROUP BY 1";
+
+const CHANNELS: &str =
+    "SELECT group_id, channel_id, sum(leads_generated), sum(spend) FROM ad_channel_leads GROUP BY 1, 2";
+
+/// A decision day still belongs to the week before it.
+const LEDGER: &str = "SELECT (day + 6) / 7 AS week, category, sum(amount) FROM ledger GROUP BY 1, 2";
+
+const OUTAGES: &str = "SELECT day, downtime_minutes FROM service_day WHERE downtime_minutes > 0 ORDER BY day";
+
+/// Ads on one channel for one group.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelRow {
+    /// Group.
+    pub group: String,
+    /// Channel.
+    pub channel: String,
+    /// Leads that came through the pair.
+    pub leads: f64,
+    /// Dollars spent on the pair.
+    pub spend: f64,
+}
+
+/// A group over the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroupBook {
+    /// Group.
+    pub group: Group,
+    /// Everybody who came.
+    pub leads: f64,
+    /// Subscriptions at the end of each week, week 0 first.
+    pub active: Vec<f64>,
+    /// Their seats.
+    pub seats: Vec<f64>,
+    /// Dollars a month at the end.
+    pub revenue: f64,
+}
+
+/// What the database knows of a run.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Books {
+    /// Groups that anybody of came from, in their fixed order.
+    pub groups: Vec<GroupBook>,
+    /// Ads by group and channel.
+    pub channels: Vec<ChannelRow>,
+    /// Dollars by week and category of the ledger; costs are negative.
+    pub ledger: BTreeMap<u32, BTreeMap<String, f64>>,
+    /// Outages: day and minutes.
+    pub outages: Vec<(u32, u32)>,
+    /// What could not be read, and why.
+    pub missing: Vec<String>,
+}
+
+impl Books {
+    /// Asks the database of a run, without a trace in what the person asked.
+    pub fn of(session: &Session) -> Books {
+        let desk = session.wait_for_database().and_then(|()| session.open_desk());
+        let desk = match desk {
+            Ok(desk) => desk,
+            Err(refusal) => {
+                let missing = vec![format!("groups, channels and the ledger: {refusal}")];
+                return Books { missing, ..Books::default() };
+            }
+        };
+        let mut missing = Vec::new();
+        let mut ask = |what: &str, sql: &str| match desk.ask(sql, session.query_limits()) {
+            Ok(rows) => rows,
+            Err(error) => {
+                missing.push(format!("{what}: {}", error.message));
+                Rows::default()
+            }
+        };
+        let weeks = session.observe().week;
+        let flows = ask("groups", FLOWS);
+        let (leads, revenue) = (ask("leads", LEADS), ask("revenue", REVENUE));
+        let groups = groups_of(&flows, &by_group(&leads), &by_group(&revenue), weeks);
+        let channels = ask("channels", CHANNELS).rows.iter().map(|row| channel_of(row)).collect();
+        let ledger = ledger_of(&ask("the ledger", LEDGER));
+        let outage = |row: &Vec<Cell>| (number_at(row, 0) as u32, number_at(row, 1) as u32);
+        let outages = ask("outages", OUTAGES).rows.iter().map(outage).collect();
+        Books { groups, channels, ledger, outages, missing }
+    }
+
+    /// Dollars by category over the whole run.
+    pub fn totals(&self) -> BTreeMap<&str, f64> {
+        let mut totals = BTreeMap::new();
+        for (category, amount) in self.ledger.values().flatten() {
+            *totals.entry(category.as_str()).or_default() += amount;
+        }
+        totals
+    }
+}
+
+fn groups_of(
+    flows: &Rows,
+    leads: &BTreeMap<String, f64>,
+    revenue: &BTreeMap<String, f64>,
+    weeks: u32,
+) -> Vec<GroupBook> {
+    let known = Group::all().filter(|group| leads.contains_key(group.id()));
+    let book = |group: Group| {
+        let (mut active, mut seats) = (vec![0.0; weeks as usize + 1], vec![0.0; weeks as usize + 1]);
+        for row in flows.rows.iter().filter(|row| text_at(row, 1) == group.id()) {
+            let week = (number_at(row, 0) as usize).min(weeks as usize);
+            active[week] += number_at(row, 2);
+            seats[week] += number_at(row, 3);
+        }
+        for week in 1..=weeks as usize {
+            active[week] += active[week - 1];
+            seats[week] += seats[week - 1];
+        }
+        let of = |map: &BTreeMap<String, f64>| map.get(group.id()).copied().unwrap_or(0.0);
+        GroupBook { group, leads: of(leads), active, seats, revenue: of(revenue) }
+    };
+    known.map(book).collect()
+}
+
+fn by_group(rows: &Rows) -> BTreeMap<String, f64> {
+    rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), number_at(row, 1))).collect()
+}
+
+fn channel_of(row: &[Cell]) -> ChannelRow {
+    ChannelRow {
+        group: text_at(row, 0).to_owned(),
+        channel: text_at(row, 1).to_owned(),
+        leads: number_at(row, 2),
+        spend: number_at(row, 3),
+    }
+}
+
+fn ledger_of(rows: &Rows) -> BTreeMap<u32, BTreeMap<String, f64>> {
+    let mut ledger: BTreeMap<u32, BTreeMap<String, f64>> = BTreeMap::new();
+    for row in &rows.rows {
+        let week = ledger.entry(number_at(row, 0) as u32).or_default();
+        week.insert(text_at(row, 1).to_owned(), number_at(row, 2));
+    }
+    ledger
+}
+
+fn number_at(row: &[Cell], at: usize) -> f64 {
+    match row.get(at) {
+        Some(Cell::Integer(number)) => *number as f64,
+        Some(Cell::Real(number)) => *number,
+        _ => 0.0,
+    }
+}
+
+fn text_at(row: &[Cell], at: usize) -> &str {
+    match row.get(at) {
+        Some(Cell::Text(text)) => text,
+        _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::test_kit;
+
+    #[test]
+    fn the_books_agree_with_the_figures_of_the_run() {
+        let session = test_kit::played(5);
+        let books = Books::of(&session);
+        assert_eq!(books.missing, Vec::<String>::new());
+        let seen = session.observe();
+        let people = books.groups.iter().filter(|book| !book.group.is_enterprise());
+        let last: f64 = people.filter_map(|book| book.active.last()).sum();
+        assert!(last > 0.0);
+        assert_eq!(last, f64::from(seen.subscribers));
+        for (at, week) in session.weeks().iter().enumerate() {
+            let people = books.groups.iter().filter(|book| !book.group.is_enterprise());
+            let then: f64 = people.map(|book| book.active[at + 1]).sum();
+            assert_eq!(then, f64::from(week.individual_subscribers), "week {}", at + 1);
+        }
+        let total: f64 = books.totals().values().sum();
+        assert!((total - seen.cash).abs() < 0.01, "{total} is not {}", seen.cash);
+        assert!(
+            books.channels.iter().any(|row| row.channel == "content_marketing" && row.spend == 5.0 * 5250.0)
+        );
+        assert!(session.asked().is_empty(), "reports leave no trace in what the person asked");
+    }
+}

@@ -1,0 +1,138 @@
+//! The days of a run worth remembering.
+
+use super::words::{count, money, whole};
+use crate::notation::signed_dollars;
+use crate::session::{Ended, WeekFigures};
+
+/// A day worth remembering.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Highlight {
+    /// Day.
+    pub day: u32,
+    /// What it was.
+    pub text: String,
+}
+
+/// Outages that are told one by one; further ones are counted.
+const OUTAGES_TOLD: usize = 3;
+
+/// The highlights of a run in the order of their days.
+pub fn highlights(
+    weeks: &[WeekFigures],
+    cash_by_day: &[f64],
+    outages: &[(u32, u32)],
+    ended: Option<Ended>,
+) -> Vec<Highlight> {
+    let mut found: Vec<Highlight> = Vec::new();
+    let mut add = |day: u32, text: String| found.push(Highlight { day, text });
+    firsts(weeks, &mut add);
+    extremes(weeks, cash_by_day, &mut add);
+    for (day, minutes) in outages.iter().take(OUTAGES_TOLD) {
+        add(*day, format!("outage of {minutes} minutes"));
+    }
+    if let Some((day, _)) = outages.last().filter(|_| outages.len() > OUTAGES_TOLD) {
+        let more = count((outages.len() - OUTAGES_TOLD) as u32, "more outage");
+        add(*day, format!("the last of {more}"));
+    }
+    let last = cash_by_day.len().saturating_sub(1) as u32;
+    if ended == Some(Ended::Bankruptcy) {
+        add(last, "bankrupt".to_owned());
+    }
+    found.sort_by_key(|highlight| highlight.day);
+    found
+}
+
+fn firsts(weeks: &[WeekFigures], add: &mut impl FnMut(u32, String)) {
+    let first = |fits: fn(&WeekFigures) -> bool| weeks.iter().find(|week| fits(week));
+    if let Some(week) = first(|week| week.individual_subscribers > 0) {
+        add(
+            week.day,
+            format!("first subscribers: {} that week", whole(f64::from(week.individual_subscribers))),
+        );
+    }
+    if let Some(week) = first(|week| week.enterprise_seats > 0) {
+        let seats = count(week.enterprise_seats, "seat");
+        add(week.day, format!("the first company has signed: {seats}"));
+    }
+    if let Some(week) = first(|week| week.cash_change > 0.0) {
+        add(week.day, format!("the first week that earned money: {}", signed_dollars(week.cash_change)));
+    }
+}
+
+fn extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32, String)) {
+    // One week is neither the best nor the worst.
+    if weeks.len() >= 3 {
+        let by_change =
+            |left: &&WeekFigures, right: &&WeekFigures| left.cash_change.total_cmp(&right.cash_change);
+        if let Some(best) = weeks.iter().max_by(by_change) {
+            add(best.day, format!("the best week for cash: {}", signed_dollars(best.cash_change)));
+        }
+        if let Some(worst) = weeks.iter().min_by(by_change) {
+            add(worst.day, format!("the worst week for cash: {}", signed_dollars(worst.cash_change)));
+        }
+    }
+    let peak = |figure: fn(&WeekFigures) -> u32| {
+        // Of equal ones the first: that is when it was reached.
+        weeks.iter().rev().max_by_key(|week| figure(week)).filter(|week| figure(week) > 0)
+    };
+    if let Some(week) = peak(|week| week.individual_subscribers) {
+        add(week.day, format!("most subscribers: {}", whole(f64::from(week.individual_subscribers))));
+    }
+    if let Some(week) = peak(|week| week.enterprise_seats) {
+        add(week.day, format!("most enterprise seats: {}", whole(f64::from(week.enterprise_seats))));
+    }
+    let days = cash_by_day.iter().enumerate();
+    let most = days.clone().rev().max_by(|left, right| left.1.total_cmp(right.1));
+    if let Some((day, cash)) = most.filter(|(day, _)| *day > 0) {
+        add(day as u32, format!("most cash: {}", money(*cash)));
+    }
+    let least = days.min_by(|left, right| left.1.total_cmp(right.1));
+    if let Some((day, cash)) = least.filter(|(day, cash)| *day > 0 && **cash >= 0.0) {
+        add(day as u32, format!("least cash: {}", money(*cash)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn week(day: u32, subscribers: u32, seats: u32, cash_change: f64) -> WeekFigures {
+        WeekFigures {
+            day,
+            individual_subscribers: subscribers,
+            enterprise_seats: seats,
+            cash_change,
+            ..WeekFigures::default()
+        }
+    }
+
+    #[test]
+    fn firsts_extremes_and_the_end_are_told_in_order() {
+        let weeks =
+            [week(7, 0, 0, -50.0), week(14, 30, 0, 20.0), week(21, 30, 12, 90.0), week(28, 10, 12, -200.0)];
+        let mut cash = vec![100.0; 29];
+        (cash[21], cash[28]) = (160.0, -40.0);
+        let outages = [(3, 30), (9, 10), (10, 20), (11, 5), (25, 40)];
+        let told = highlights(&weeks, &cash, &outages, Some(Ended::Bankruptcy));
+        let lines: Vec<String> = told.iter().map(|one| format!("{} {}", one.day, one.text)).collect();
+        assert_eq!(
+            lines,
+            [
+                "3 outage of 30 minutes",
+                "9 outage of 10 minutes",
+                "10 outage of 20 minutes",
+                "14 first subscribers: 30 that week",
+                "14 the first week that earned money: +$20",
+                "14 most subscribers: 30",
+                "21 the first company has signed: 12 seats",
+                "21 the best week for cash: +$90",
+                "21 most enterprise seats: 12",
+                "21 most cash: $160",
+                "25 the last of 2 more outages",
+                "28 the worst week for cash: -$200",
+                "28 bankrupt",
+            ]
+        );
+        assert!(highlights(&[], &[100.0], &[], None).is_empty());
+    }
+}

@@ -1,0 +1,269 @@
+//! How a run was played: the behaviour measures of the paper, as far as a player can see them. One function each.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::books::ChannelRow;
+use crate::session::{Decisions, Ended, ForecastScore, JournalEntry};
+
+/// Words that show somebody weighing what may come.
+pub const PLANNING_WORDS: [&str; 16] = [
+    "if",
+    "unless",
+    "until",
+    "otherwise",
+    "because",
+    "therefore",
+    "expect",
+    "plan",
+    "should",
+    "would",
+    "might",
+    "risk",
+    "assume",
+    "probably",
+    "likely",
+    "instead",
+];
+
+/// All measures.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measures {
+    /// Days that the company has lived.
+    pub survival_days: u32,
+    /// Cash at the end, or now.
+    pub cash: f64,
+    /// Ads on the best channel of each group; none if nothing was spent.
+    pub channels: Option<ChannelSkill>,
+    /// Targeted share of development spend; none if nothing was spent.
+    pub targeted_development: Option<f64>,
+    /// Forecasts by horizon.
+    pub forecasts: Vec<ForecastScore>,
+    /// Weeks whose forecasts were filled by the naive projection, and all weeks.
+    pub filled_naively: (u32, u32),
+    /// Calls of tools.
+    pub tools: ToolUse,
+    /// What was written before the weeks.
+    pub planning: Planning,
+}
+
+/// Days that the company has lived: to its bankruptcy, or so far.
+pub fn survival_days(ended: Option<Ended>, day: u32, last_day: u32) -> u32 {
+    match ended {
+        Some(Ended::Horizon) => last_day,
+        _ => day,
+    }
+}
+
+/// Ads of one group.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroupAds {
+    /// Group.
+    pub group: String,
+    /// Channel with the most leads per dollar.
+    pub best: String,
+    /// Its leads per 1,000 dollars.
+    pub leads_per_thousand: f64,
+    /// Share of the group's ad spend on it.
+    pub share: f64,
+    /// Channels that were paid for.
+    pub tried: usize,
+    /// Dollars spent on the group.
+    pub spend: f64,
+}
+
+/// Ad spend on the best channels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelSkill {
+    /// Share of all ad spend that went to the best channel of its group.
+    pub share: f64,
+    /// Groups, the dearest first.
+    pub groups: Vec<GroupAds>,
+}
+
+/// Share of ad spend on the best channel of each group, best by the leads per dollar that were measured. Only what was
+/// paid for can be measured: with one channel tried the share says nothing, so the number tried stands beside it.
+pub fn best_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
+    let names: BTreeSet<&str> =
+        rows.iter().filter(|row| row.spend > 0.0).map(|row| row.group.as_str()).collect();
+    let mut groups: Vec<GroupAds> = Vec::new();
+    for group in names {
+        let paid = || rows.iter().filter(|row| row.group == group && row.spend > 0.0);
+        let yield_of = |row: &ChannelRow| row.leads / row.spend;
+        let best = paid().max_by(|left, right| {
+            // Of equal ones the dearer, then the first in the alphabet.
+            let by_spend = left.spend.total_cmp(&right.spend);
+            yield_of(left).total_cmp(&yield_of(right)).then(by_spend).then(right.channel.cmp(&left.channel))
+        })?;
+        let spend: f64 = paid().map(|row| row.spend).sum();
+        groups.push(GroupAds {
+            group: group.to_owned(),
+            best: best.channel.clone(),
+            leads_per_thousand: yield_of(best) * 1000.0,
+            share: best.spend / spend,
+            tried: paid().count(),
+            spend,
+        });
+    }
+    groups.sort_by(|left, right| right.spend.total_cmp(&left.spend).then(left.group.cmp(&right.group)));
+    let spend: f64 = groups.iter().map(|group| group.spend).sum();
+    let on_best: f64 = groups.iter().map(|group| group.share * group.spend).sum();
+    (spend > 0.0).then(|| ChannelSkill { share: on_best / spend, groups })
+}
+
+/// Targeted share of development spend over the days that ran; none if nothing was spent.
+pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
+    let mut general = 0.0;
+    let mut targeted: BTreeMap<&str, f64> = BTreeMap::new();
+    let (mut all, mut aimed) = (0.0, 0.0);
+    for decided in decisions {
+        for change in &decided.changes {
+            match change.tool {
+                "set_targeted_dev_spend" => {
+                    targeted.insert(&change.setting, change.new);
+                }
+                "set_daily_spend" if change.setting == "development" => general = change.new,
+                _ => {}
+            }
+        }
+        let days = f64::from(decided.until - decided.day);
+        let on_groups: f64 = targeted.values().sum::<f64>() * days;
+        aimed += on_groups;
+        all += on_groups + general * days;
+    }
+    (all > 0.0).then(|| aimed / all)
+}
+
+/// Calls of tools.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ToolUse {
+    /// All confirmed calls that did something.
+    pub calls: u32,
+    /// Calls for each week that ran.
+    pub per_week: f64,
+    /// Tools by their calls, the most used first.
+    pub tools: Vec<(String, u32)>,
+}
+
+/// How often which tools were called.
+pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
+    let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
+    let mut weeks = 0u32;
+    for entry in journal {
+        match entry {
+            JournalEntry::Call { tool, .. } => *counts.entry(tool).or_default() += 1,
+            JournalEntry::Advance { .. } => weeks += 1,
+            JournalEntry::Week { .. } => {}
+        }
+    }
+    let mut tools: Vec<(String, u32)> =
+        counts.into_iter().map(|(tool, count)| (tool.to_owned(), count)).collect();
+    tools.sort_by(|left, right| right.1.cmp(&left.1).then_with(|| left.0.cmp(&right.0)));
+    let calls = tools.iter().map(|(_, count)| count).sum();
+    ToolUse { calls, per_week: f64::from(calls) / f64::from(weeks.max(1)), tools }
+}
+
+/// What was written before the weeks.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Planning {
+    /// Rationales.
+    pub rationales: u32,
+    /// Words in a rationale.
+    pub words_each: f64,
+    /// Words of planning in a rationale.
+    pub planning_each: f64,
+}
+
+/// How long rationales are and how much they weigh what may come.
+pub fn planning(journal: &[JournalEntry]) -> Planning {
+    let (mut rationales, mut words, mut weighing) = (0u32, 0usize, 0usize);
+    for entry in journal {
+        let JournalEntry::Advance { rationale, .. } = entry else { continue };
+        rationales += 1;
+        words += rationale.split_whitespace().count();
+        let bare = rationale.split(|letter: char| !letter.is_alphabetic());
+        weighing += bare.filter(|word| PLANNING_WORDS.contains(&word.to_lowercase().as_str())).count();
+    }
+    let each = |count: usize| count as f64 / f64::from(rationales.max(1));
+    Planning { rationales, words_each: each(words), planning_each: each(weighing) }
+}
+
+/// Weeks whose forecasts were filled by the naive projection, and all weeks.
+pub fn filled_naively(journal: &[JournalEntry]) -> (u32, u32) {
+    let filed = journal.iter().filter_map(|entry| match entry {
+        JournalEntry::Advance { filled_naively, .. } => Some(*filled_naively),
+        _ => None,
+    });
+    filed.fold((0, 0), |(naive, all), own| (naive + u32::from(own), all + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::test_kit;
+    use crate::session::Change;
+
+    fn ads(group: &str, channel: &str, leads: f64, spend: f64) -> ChannelRow {
+        ChannelRow { group: group.to_owned(), channel: channel.to_owned(), leads, spend }
+    }
+
+    #[test]
+    fn the_best_channel_is_the_one_with_most_leads_per_dollar() {
+        let rows = [
+            ads("S1", "content_marketing", 30.0, 300.0),
+            ads("S1", "search_ads", 5.0, 100.0),
+            ads("S1", "linkedin", 9.0, 0.0),
+            ads("E1", "linkedin", 0.0, 50.0),
+            ads("E1", "search_ads", 1.0, 50.0),
+        ];
+        let skill = best_channel_share(&rows).expect("money was spent");
+        assert_eq!(skill.share, (300.0 + 50.0) / 500.0);
+        let first = &skill.groups[0];
+        assert_eq!((first.group.as_str(), first.best.as_str()), ("S1", "content_marketing"));
+        assert_eq!((first.share, first.tried, first.leads_per_thousand), (0.75, 2, 100.0));
+        assert_eq!(skill.groups[1].best, "search_ads");
+        assert_eq!(best_channel_share(&[ads("S1", "linkedin", 4.0, 0.0)]), None);
+    }
+
+    #[test]
+    fn targeted_development_counts_days_in_force() {
+        let set = |tool: &'static str, setting: &str, new: f64| Change {
+            tool,
+            setting: setting.to_owned(),
+            old: 0.0,
+            new,
+            unit: "$/day",
+        };
+        let week = |day: u32, changes: Vec<Change>| Decisions {
+            day,
+            until: day + 7,
+            changes,
+            purchases: Vec::new(),
+        };
+        let general = set("set_daily_spend", "development", 100.0);
+        let aimed = set("set_targeted_dev_spend", "development S1", 300.0);
+        let ended = set("set_targeted_dev_spend", "development S1", 0.0);
+        let run = [week(0, vec![general, aimed]), week(7, vec![]), week(14, vec![ended])];
+        assert_eq!(targeted_development(&run), Some(600.0 / 900.0));
+        assert_eq!(targeted_development(&[week(0, vec![])]), None);
+    }
+
+    #[test]
+    fn tools_and_rationales_are_counted() {
+        let session = test_kit::played(4);
+        let tools = tool_use(session.journal());
+        assert_eq!((tools.calls, tools.per_week), (8, 2.0));
+        assert_eq!(tools.tools[0], ("set_prices".to_owned(), 2));
+        let planning = planning(session.journal());
+        assert_eq!(planning.rationales, 4);
+        assert_eq!(planning.planning_each, 0.5, "if, otherwise");
+        assert_eq!(filled_naively(session.journal()), (4, 4));
+        assert_eq!(super::planning(&[]), Planning::default());
+    }
+
+    #[test]
+    fn survival_ends_with_the_company() {
+        assert_eq!(survival_days(Some(Ended::Horizon), 500, 500), 500);
+        assert_eq!(survival_days(Some(Ended::Bankruptcy), 131, 500), 131);
+        assert_eq!(survival_days(None, 84, 500), 84);
+    }
+}

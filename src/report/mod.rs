@@ -1,0 +1,37 @@
+//! A run told: what a week has changed and why it may have, and the whole run as a [`Story`] that can be written as
+//! Markdown or as a page for a browser.
+//!
+//! Everything here is computed from what a player may see: observations, the journal, and guarded queries. Each measure
+//! is one pure function. [`outline`] turns a story into a [`page::Page`]; the writers know nothing of companies.
+
+pub mod books;
+pub mod causes;
+pub mod chapters;
+pub mod highlights;
+pub mod html;
+pub mod markdown;
+pub mod measures;
+pub mod movement;
+pub mod outline;
+pub mod page;
+pub mod ranking;
+pub mod story;
+pub mod svg;
+#[cfg(test)]
+pub mod test_kit;
+pub mod turn;
+pub mod week;
+mod words;
+
+pub use story::Story;
+pub use week::WeekReport;
+
+/// The report of a run as Markdown.
+pub fn as_markdown(story: &Story) -> String {
+    markdown::write(&outline::page_of(story))
+}
+
+/// The report of a run as one page for a browser, without scripts and without other files.
+pub fn as_html(story: &Story) -> String {
+    html::write(&outline::page_of(story))
+}

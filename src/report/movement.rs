@@ -1,0 +1,105 @@
+//! How unusual a change is against the weeks before it.
+
+/// A change of a figure over the last week.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Movement {
+    /// Value before.
+    pub old: f64,
+    /// Value now.
+    pub new: f64,
+    /// How unusual the change is: 0 is an ordinary week, above 3 is rare.
+    pub unusual: f64,
+    /// Weeks since a change in this direction was as large; none if there was none before.
+    pub since: Option<usize>,
+    /// Changes before this one.
+    pub known: usize,
+}
+
+/// Changes that have to be known before a week can be called unusual.
+const ENOUGH: usize = 4;
+/// Turns the median distance into a standard deviation, where changes are spread normally.
+const NORMAL: f64 = 1.4826;
+
+impl Movement {
+    /// The change relative to the larger of both values.
+    pub fn size(&self) -> f64 {
+        (self.new - self.old).abs() / self.old.abs().max(self.new.abs())
+    }
+
+    /// Where the change stands among all of the run, in words; empty if it is nothing special.
+    pub fn standing(&self) -> String {
+        let what = if self.new > self.old { "rise" } else { "fall" };
+        match self.since {
+            _ if self.known < ENOUGH => String::new(),
+            None => format!("largest {what} yet"),
+            Some(weeks) if weeks >= ENOUGH => format!("largest {what} in {weeks} weeks"),
+            Some(_) => String::new(),
+        }
+    }
+}
+
+/// The last change of a series, oldest value first; none without two values or without a change. With enough weeks
+/// known it is measured against the median change and its usual distance from it, otherwise by its size.
+pub fn movement(series: &[f64]) -> Option<Movement> {
+    let [.., old, new] = *series else { return None };
+    if old == new || !old.is_finite() || !new.is_finite() {
+        return None;
+    }
+    let change = new - old;
+    let before: Vec<f64> = series[..series.len() - 1].windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let as_large = |earlier: &f64| if change > 0.0 { *earlier >= change } else { *earlier <= change };
+    let since = before.iter().rev().position(as_large).map(|at| at + 1);
+    let size = change.abs() / old.abs().max(new.abs());
+    let unusual = if before.len() < ENOUGH {
+        // Half of the size of a figure counts as unusual, a tenth of it does not.
+        size * 6.0
+    } else {
+        let usual = median(&before);
+        let distances: Vec<f64> = before.iter().map(|earlier| (earlier - usual).abs()).collect();
+        // A figure that never moved makes nothing infinitely unusual.
+        let spread = (NORMAL * median(&distances)).max(0.02 * old.abs().max(new.abs()));
+        (change - usual).abs() / spread
+    };
+    Some(Movement { old, new, unusual, since, known: before.len() })
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    match sorted.len() {
+        0 => 0.0,
+        odd if odd % 2 == 1 => sorted[odd / 2],
+        even => (sorted[even / 2 - 1] + sorted[even / 2]) / 2.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_breaks_with_the_habit_is_unusual() {
+        let steady = [100.0, 110.0, 121.0, 130.0, 141.0, 150.0];
+        let ordinary = movement(&[&steady[..], &[160.0]].concat()).expect("it moved");
+        assert!(ordinary.unusual < 1.0, "{ordinary:?}");
+        assert_eq!(ordinary.standing(), "");
+        let fall = movement(&[&steady[..], &[120.0]].concat()).expect("it moved");
+        assert!(fall.unusual > 10.0, "{fall:?}");
+        assert_eq!(fall.standing(), "largest fall yet");
+        let jump = movement(&[0.0, 50.0, 60.0, 65.0, 70.0, 72.0, 110.0]).expect("it moved");
+        assert_eq!((jump.since, jump.standing().as_str()), (Some(5), "largest rise in 5 weeks"));
+    }
+
+    #[test]
+    fn few_weeks_are_judged_by_size() {
+        let half = movement(&[100.0, 50.0]).expect("it moved");
+        assert_eq!((half.unusual, half.since, half.standing().as_str()), (3.0, None, ""));
+        assert!(movement(&[100.0, 98.0]).expect("it moved").unusual < 0.2);
+        assert_eq!(
+            [movement(&[1.0]), movement(&[]), movement(&[2.0, 2.0]), movement(&[1.0, f64::NAN])],
+            [None; 4]
+        );
+        let first = movement(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0]).expect("it moved");
+        assert!(first.unusual.is_finite() && first.unusual > 3.0);
+    }
+}

@@ -1,0 +1,338 @@
+//! From a story to a page: what is told, in which order, in which words.
+
+mod charts;
+
+use super::measures::{Measures, PLANNING_WORDS};
+use super::page::{Bar, Block, Fact, Page, Table};
+use super::ranking::{Whose, published_targeted_shares};
+use super::story::{Ruin, Story};
+use super::words::{count, money, number, whole};
+use crate::notation::{percent, signed_dollars};
+use crate::session::Ended;
+
+/// The page that tells a story.
+pub fn page_of(story: &Story) -> Page {
+    let seen = &story.seen;
+    let mut blocks = Vec::new();
+    if let Some(ruin) = &story.ruin {
+        blocks.extend(ruined(ruin));
+    }
+    blocks.push(Block::Facts(result(story)));
+    blocks.extend(story.books.missing.iter().map(|what| Block::Warning(format!("Left out: {what}"))));
+    blocks.push(Block::Heading("Cash"));
+    blocks.extend(charts::cash(story));
+    blocks.extend(charts::income_and_costs(story));
+    blocks.extend(rank(story));
+    blocks.extend(highlights(story));
+    blocks.extend(customers(story));
+    blocks.extend(forecasts(story));
+    blocks.extend(behaviour(&story.measures));
+    blocks.extend(decisions(story));
+    let mut tags = vec![
+        format!("run {}", seen.run),
+        format!("seed {}", seen.seed),
+        format!("{} days", whole(f64::from(seen.last_day))),
+        format!("scenario {}", seen.scenario),
+        format!("{} mode", seen.mode),
+    ];
+    tags.extend(seen.participant.iter().map(|who| format!("played by {who}")));
+    Page {
+        title: format!("NovaMind · run {}", seen.run),
+        headline: story.headline(),
+        tags,
+        blocks,
+        foot: format!(
+            "Recorded by NovaMind console {}. Every figure is one a player can see; the run can be replayed to the same \
+             state from its trajectory.",
+            story.version
+        ),
+    }
+}
+
+fn result(story: &Story) -> Vec<Fact> {
+    let seen = &story.seen;
+    let score = match (seen.ended, seen.score) {
+        (_, Some(score)) => Fact::new("Score", money(score), rank_in_words(story)),
+        (Some(Ended::Abandoned), None) => Fact::new("Score", "none", "given up"),
+        (_, None) => Fact::new(
+            "Cash",
+            money(seen.cash),
+            format!("{} over the last week", signed_dollars(seen.cash_change)),
+        ),
+    };
+    let lived = story.measures.survival_days;
+    let last_day = whole(f64::from(seen.last_day));
+    let most = story.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
+    let seats = story.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
+    let runway = match (seen.ended, seen.runway_weeks) {
+        (Some(_), _) => String::new(),
+        (None, None) => "cash grows".to_owned(),
+        (None, Some(weeks)) => format!("cash lasts {weeks:.0} weeks at this pace"),
+    };
+    let change = signed_dollars(seen.cash - story.start_cash);
+    vec![
+        score,
+        Fact::new("Days", whole(f64::from(lived)), format!("of {last_day}")),
+        Fact::new("Since the start", change, runway),
+        Fact::new(
+            "Subscribers",
+            whole(f64::from(seen.subscribers)),
+            format!("at most {}", whole(f64::from(most))),
+        ),
+        Fact::new(
+            "Enterprise seats",
+            whole(f64::from(seen.seats)),
+            format!("at most {}", whole(f64::from(seats))),
+        ),
+        Fact::new(
+            "Recurring revenue",
+            money(seen.last_week.map_or(0.0, |week| week.recurring_revenue)),
+            "a month",
+        ),
+    ]
+}
+
+fn rank_in_words(story: &Story) -> String {
+    match story.standing.rank {
+        Some(rank) => format!("rank {rank} of {}", story.standing.places.len()),
+        None => String::new(),
+    }
+}
+
+/// How the company went under.
+fn ruined(ruin: &Ruin) -> Vec<Block> {
+    let mut blocks = vec![Block::Heading("How it ended")];
+    blocks.push(Block::Text(format!(
+        "On day {} cash fell below zero, and that ends the company. {}",
+        ruin.day,
+        ruin.turned.join(" ")
+    )));
+    if !ruin.costs.is_empty() {
+        let most = ruin.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
+        blocks.push(Block::Text("What the money went to:".to_owned()));
+        let bar = |cost: &super::turn::Cost| Bar {
+            name: cost.name.to_owned(),
+            shown: format!("{} · {}", money(cost.dollars), percent(cost.share, 0)),
+            share: cost.share / most,
+            own: false,
+        };
+        blocks.push(Block::Bars(ruin.costs.iter().map(bar).collect()));
+    }
+    blocks
+}
+
+fn rank(story: &Story) -> Vec<Block> {
+    let standing = &story.standing;
+    let most = standing.places.iter().map(|place| place.cash).fold(1.0, f64::max);
+    let bar = |place: &super::ranking::Place| Bar {
+        name: place.name.clone(),
+        shown: money(place.cash),
+        share: (place.cash / most).clamp(0.0, 1.0),
+        own: place.whose == Whose::Own,
+    };
+    let told = match standing.rank {
+        Some(_) => format!("{}: cash at the end, the best of three runs of each agent.", capital(&standing.in_words())),
+        None => "The run has no score to compare; these are the published results: cash at the end, the best of three \
+                 runs of each agent."
+            .to_owned(),
+    };
+    let mut blocks = vec![
+        Block::Heading("Beside the published results"),
+        Block::Text(told),
+        Block::Bars(standing.places.iter().map(bar).collect()),
+    ];
+    blocks.extend(standing.caveat.clone().map(Block::Note));
+    blocks.push(Block::Note(format!("Source: {}.", standing.source)));
+    blocks
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+fn highlights(story: &Story) -> Vec<Block> {
+    if story.highlights.is_empty() {
+        return Vec::new();
+    }
+    let row = |one: &super::highlights::Highlight| vec![one.day.to_string(), one.text.clone()];
+    vec![
+        Block::Heading("Highlights"),
+        Block::Table(Table {
+            columns: vec![("day", true), ("what happened", false)],
+            rows: story.highlights.iter().map(row).collect(),
+        }),
+    ]
+}
+
+fn customers(story: &Story) -> Vec<Block> {
+    let mut blocks = vec![Block::Heading("Customers")];
+    let before = blocks.len();
+    blocks.extend(charts::people(story));
+    blocks.extend(charts::groups(story));
+    if !story.books.groups.is_empty() {
+        let row = |book: &super::books::GroupBook| {
+            let now = book.active.last().copied().unwrap_or(0.0);
+            let most = book.active.iter().copied().fold(0.0, f64::max);
+            let seats = match book.group.is_enterprise() {
+                true => whole(book.seats.last().copied().unwrap_or(0.0)),
+                false => String::new(),
+            };
+            vec![
+                book.group.to_string(),
+                whole(book.leads),
+                whole(now),
+                whole(most),
+                seats,
+                money(book.revenue),
+            ]
+        };
+        blocks.push(Block::Table(Table {
+            columns: vec![
+                ("group", false),
+                ("leads", true),
+                ("customers now", true),
+                ("at most", true),
+                ("seats", true),
+                ("revenue a month", true),
+            ],
+            rows: story.books.groups.iter().map(row).collect(),
+        }));
+    }
+    if blocks.len() == before {
+        blocks.push(Block::Text("Nobody has come yet.".to_owned()));
+    }
+    blocks
+}
+
+fn forecasts(story: &Story) -> Vec<Block> {
+    let mut blocks = vec![Block::Heading("Forecasts")];
+    let scored: Vec<_> = story.measures.forecasts.iter().filter(|score| score.scored > 0).collect();
+    if scored.is_empty() {
+        blocks.push(Block::Text("No forecast has come due yet.".to_owned()));
+        return blocks;
+    }
+    let row = |score: &&crate::session::ForecastScore| {
+        vec![
+            count(score.horizon_days / 7, "week"),
+            score.scored.to_string(),
+            percent(f64::from(score.covered) / f64::from(score.scored), 0),
+            percent(score.mean_error, 1),
+            percent(score.mean_sharpness, 1),
+        ]
+    };
+    blocks.push(Block::Table(Table {
+        columns: vec![
+            ("ahead", false),
+            ("came due", true),
+            ("inside", true),
+            ("typical miss", true),
+            ("width of the interval", true),
+        ],
+        rows: scored.iter().map(row).collect(),
+    }));
+    blocks.push(Block::Note(
+        "Inside: how often the 95 % interval held what came; 95 % is the aim. Miss and width are relative to what came."
+            .to_owned(),
+    ));
+    let (naive, all) = story.measures.filled_naively;
+    if naive > 0 {
+        blocks.push(Block::Note(format!(
+            "Forecasts of {naive} of {} were filled by the naive projection.",
+            count(all, "week")
+        )));
+    }
+    blocks.extend(charts::forecasts(story));
+    blocks
+}
+
+fn behaviour(measures: &Measures) -> Vec<Block> {
+    let mut blocks = vec![Block::Heading("How it was played")];
+    let none = || "–".to_owned();
+    let (least, most) = published_targeted_shares();
+    let planning = &measures.planning;
+    blocks.push(Block::Facts(vec![
+        Fact::new(
+            "Ads on the best channel",
+            measures.channels.as_ref().map_or_else(none, |skill| percent(skill.share, 0)),
+            "a random choice gives 20%",
+        ),
+        Fact::new(
+            "Targeted development",
+            measures.targeted_development.map_or_else(none, |share| percent(share, 0)),
+            format!("published agents {} to {}", percent(least, 0), percent(most, 0)),
+        ),
+        Fact::new(
+            "Calls a week",
+            number((measures.tools.per_week * 10.0).round() / 10.0),
+            format!("{} in all", whole(f64::from(measures.tools.calls))),
+        ),
+        Fact::new(
+            "Words of planning",
+            format!("{:.1}", planning.planning_each),
+            format!("in a rationale of {:.0} words", planning.words_each),
+        ),
+    ]));
+    if let Some(skill) = &measures.channels {
+        let row = |ads: &super::measures::GroupAds| {
+            vec![
+                ads.group.clone(),
+                money(ads.spend),
+                ads.tried.to_string(),
+                ads.best.replace('_', " "),
+                number((ads.leads_per_thousand * 10.0).round() / 10.0),
+                percent(ads.share, 0),
+            ]
+        };
+        blocks.push(Block::Table(Table {
+            columns: vec![
+                ("group", false),
+                ("ad spend", true),
+                ("channels tried", true),
+                ("best of them", false),
+                ("leads per $1,000", true),
+                ("share on it", true),
+            ],
+            rows: skill.groups.iter().map(row).collect(),
+        }));
+        blocks.push(Block::Note(
+            "Best is measured by leads per dollar among the channels that were paid for; with one channel tried the share \
+             says nothing."
+                .to_owned(),
+        ));
+    }
+    if !measures.tools.tools.is_empty() {
+        let row = |(tool, calls): &(String, u32)| vec![tool.clone(), calls.to_string()];
+        blocks.push(Block::Table(Table {
+            columns: vec![("tool", false), ("calls", true)],
+            rows: measures.tools.tools.iter().take(10).map(row).collect(),
+        }));
+    }
+    blocks.push(Block::Note(format!("Words of planning: {}.", PLANNING_WORDS.join(", "))));
+    blocks
+}
+
+fn decisions(story: &Story) -> Vec<Block> {
+    let mut blocks = vec![Block::Heading("Decisions by week")];
+    if story.chapters.is_empty() {
+        blocks.push(Block::Text("No week has passed yet.".to_owned()));
+    }
+    for chapter in &story.chapters {
+        let weeks = match chapter.last_week == chapter.week {
+            true => format!("Week {}", chapter.week),
+            false => format!("Weeks {} to {}", chapter.week, chapter.last_week),
+        };
+        let title = format!("{weeks} · day {} to {}", chapter.day, chapter.until);
+        let note = format!("{} → {}", signed_dollars(chapter.cash_change), money(chapter.cash));
+        let points: Vec<String> = chapter.changes.iter().chain(&chapter.deeds).cloned().collect();
+        let mut lines = Vec::new();
+        if !chapter.why.is_empty() {
+            lines.push(format!("“{}”", chapter.why));
+        }
+        if points.is_empty() {
+            lines.push("Nothing was changed.".to_owned());
+        }
+        blocks.push(Block::Folded { title, note, lines, points });
+    }
+    blocks
+}

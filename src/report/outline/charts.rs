@@ -1,0 +1,222 @@
+//! The charts of a story.
+
+use crate::report::page::{Band, Block, Chart, Curve, Part, Plot};
+use crate::report::story::{Filed, Story};
+use crate::report::turn::{COSTS, INCOME};
+use crate::report::words::{count, money, whole};
+
+/// Groups that a chart can tell apart.
+const MOST_GROUPS: usize = 6;
+
+/// Cash by day, with the last forecasts while their days are still to come.
+pub fn cash(story: &Story) -> Option<Block> {
+    let points: Vec<(f64, f64)> =
+        story.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();
+    if points.len() < 2 {
+        return None;
+    }
+    let low = story.cash_by_day.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = story.cash_by_day.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mut curves = vec![Curve { name: "cash".to_owned(), points }];
+    let fan = open_fan(story);
+    let band = fan.map(|(band, expected)| {
+        curves.push(expected);
+        band
+    });
+    let summary = format!(
+        "Cash begins at {}, is at least {} and at most {}, and is {} on day {}.",
+        money(story.start_cash),
+        money(low),
+        money(high),
+        money(story.seen.cash),
+        story.seen.day
+    );
+    let reach = (high - low).max(1.0);
+    Some(Block::Chart(Chart {
+        title: "Cash by day".to_owned(),
+        summary,
+        across: "day",
+        dollars: true,
+        within: band.as_ref().map(|_| (low.min(0.0), high + reach)),
+        plot: Plot::Lines { curves, band },
+    }))
+}
+
+/// The last forecasts as a fan from today's cash, and what was expected; none once the run is over.
+fn open_fan(story: &Story) -> Option<(Band, Curve)> {
+    let filed_last = story.filed.last().filter(|_| story.seen.ended.is_none())?.day;
+    let (day, cash) = (f64::from(story.seen.day), story.seen.cash);
+    let open = || {
+        let last = story.filed.iter().filter(move |filed| filed.day == filed_last);
+        last.filter(|filed| filed.due() > story.seen.day)
+    };
+    let (mut band, mut expected) = (vec![(day, cash, cash)], vec![(day, cash)]);
+    band.extend(open().map(|filed| (f64::from(filed.due()), filed.lower, filed.upper)));
+    expected.extend(open().map(|filed| (f64::from(filed.due()), filed.point)));
+    (band.len() > 1).then(|| {
+        let band = Band { name: "95 % interval of the last forecasts".to_owned(), points: band };
+        (band, Curve { name: "expected".to_owned(), points: expected })
+    })
+}
+
+/// Kinds of income and costs, each with a value for every week.
+fn by_kind(story: &Story) -> Vec<Part> {
+    let weeks: Vec<u32> = story.books.ledger.keys().copied().filter(|week| *week > 0).collect();
+    let of = |week: u32, held: &[&str]| -> f64 {
+        let amounts = story.books.ledger.get(&week);
+        amounts.map_or(0.0, |amounts| held.iter().filter_map(|name| amounts.get(*name)).sum())
+    };
+    let part = |(name, held): &(&str, &[&str])| Part {
+        name: (*name).to_owned(),
+        values: weeks.iter().map(|week| of(*week, held)).collect(),
+    };
+    let parts = INCOME.iter().chain(COSTS.iter()).map(part);
+    parts.filter(|part| part.values.iter().any(|value| *value != 0.0)).collect()
+}
+
+/// Income and costs by week as stacked bars.
+pub fn income_and_costs(story: &Story) -> Option<Block> {
+    let at: Vec<f64> =
+        story.books.ledger.keys().filter(|week| **week > 0).map(|week| f64::from(*week)).collect();
+    let parts = by_kind(story);
+    if at.is_empty() || parts.is_empty() {
+        return None;
+    }
+    let sum = |positive: bool| -> f64 {
+        parts.iter().flat_map(|part| &part.values).filter(|value| (**value > 0.0) == positive).sum()
+    };
+    let summary = format!(
+        "In {} {} came in and {} went out.",
+        count(at.len() as u32, "week"),
+        money(sum(true)),
+        money(-sum(false))
+    );
+    Some(Block::Chart(Chart {
+        title: "Income and costs by week".to_owned(),
+        summary,
+        across: "week",
+        dollars: true,
+        within: None,
+        plot: Plot::Stacks { at, parts },
+    }))
+}
+
+/// Subscribers and seats by week.
+pub fn people(story: &Story) -> Option<Block> {
+    if story.weeks.len() < 2 {
+        return None;
+    }
+    let through = |figure: fn(&crate::session::WeekFigures) -> u32| -> Vec<(f64, f64)> {
+        story.weeks.iter().map(|week| (f64::from(week.day) / 7.0, f64::from(figure(week)))).collect()
+    };
+    let mut curves =
+        vec![Curve { name: "subscribers".to_owned(), points: through(|week| week.individual_subscribers) }];
+    let seats = through(|week| week.enterprise_seats);
+    if seats.iter().any(|(_, seats)| *seats > 0.0) {
+        curves.push(Curve { name: "enterprise seats".to_owned(), points: seats });
+    }
+    let summary = curves.iter().map(|curve| {
+        let (week, most) = highest(&curve.points);
+        format!(
+            "{}: at most {} in week {week:.0}, {} at the end.",
+            curve.name,
+            whole(most),
+            whole(last(&curve.points))
+        )
+    });
+    Some(Block::Chart(Chart {
+        title: "Subscribers and seats by week".to_owned(),
+        summary: summary.collect::<Vec<_>>().join(" "),
+        across: "week",
+        dollars: false,
+        within: None,
+        plot: Plot::Lines { curves, band: None },
+    }))
+}
+
+fn highest(points: &[(f64, f64)]) -> (f64, f64) {
+    points.iter().copied().rev().max_by(|left, right| left.1.total_cmp(&right.1)).unwrap_or((0.0, 0.0))
+}
+
+fn last(points: &[(f64, f64)]) -> f64 {
+    points.last().map_or(0.0, |point| point.1)
+}
+
+/// Customers of the largest groups by week; one group alone says nothing new.
+pub fn groups(story: &Story) -> Option<Block> {
+    let weight = |active: &[f64]| active.iter().copied().fold(0.0, f64::max);
+    let mut largest: Vec<_> = story
+        .books
+        .groups
+        .iter()
+        .filter(|book| weight(&book.active) > 0.0 && book.active.len() > 2)
+        .collect();
+    largest.sort_by(|left, right| weight(&right.active).total_cmp(&weight(&left.active)));
+    largest.truncate(MOST_GROUPS);
+    // A handful beside thousands cannot be seen.
+    let most = largest.first().map_or(0.0, |book| weight(&book.active));
+    largest.retain(|book| weight(&book.active) >= 0.01 * most);
+    if largest.len() < 2 {
+        return None;
+    }
+    let curve = |book: &&super::super::books::GroupBook| Curve {
+        name: book.group.to_string(),
+        points: book.active.iter().enumerate().map(|(week, active)| (week as f64, *active)).collect(),
+    };
+    let curves: Vec<Curve> = largest.iter().map(curve).collect();
+    let summary = curves.iter().map(|curve| format!("{} {}", curve.name, whole(last(&curve.points))));
+    Some(Block::Chart(Chart {
+        title: "Customers by group and week".to_owned(),
+        summary: format!("At the end: {}.", summary.collect::<Vec<_>>().join(", ")),
+        across: "week",
+        dollars: false,
+        within: None,
+        plot: Plot::Lines { curves, band: None },
+    }))
+}
+
+/// Forecasts of each horizon against what came.
+pub fn forecasts(story: &Story) -> Vec<Block> {
+    let horizons = story.measures.forecasts.iter().map(|score| score.horizon_days);
+    horizons.filter_map(|horizon| forecast_chart(story, horizon)).collect()
+}
+
+fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
+    let due: Vec<&Filed> =
+        story.filed.iter().filter(|filed| filed.horizon_days == horizon && filed.outcome.is_some()).collect();
+    if due.len() < 2 {
+        return None;
+    }
+    let through = |value: &dyn Fn(&Filed) -> f64| -> Vec<(f64, f64)> {
+        due.iter().map(|filed| (f64::from(filed.due()), value(filed))).collect()
+    };
+    let came = through(&|filed| filed.outcome.unwrap_or(filed.point));
+    let band = due.iter().map(|filed| (f64::from(filed.due()), filed.lower, filed.upper)).collect();
+    let inside = due.iter().filter(|filed| {
+        filed.outcome.is_some_and(|outcome| filed.lower <= outcome && outcome <= filed.upper)
+    });
+    let ahead = count(horizon / 7, "week");
+    let summary = format!(
+        "{} forecasts made {ahead} ahead came due; what came lay inside of {} of their intervals.",
+        due.len(),
+        inside.count()
+    );
+    // A wild forecast must not flatten what happened.
+    let low = came.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
+    let high = came.iter().map(|point| point.1).fold(f64::NEG_INFINITY, f64::max);
+    let reach = (high - low).max(0.1 * high.abs()).max(1.0);
+    Some(Block::Chart(Chart {
+        title: format!("Cash as forecast {ahead} ahead, and as it came"),
+        summary,
+        across: "day",
+        dollars: true,
+        within: Some((low - reach, high + reach)),
+        plot: Plot::Lines {
+            curves: vec![
+                Curve { name: "came".to_owned(), points: came },
+                Curve { name: "forecast".to_owned(), points: through(&|filed| filed.point) },
+            ],
+            band: Some(Band { name: "95 % interval".to_owned(), points: band }),
+        },
+    }))
+}

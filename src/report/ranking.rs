@@ -1,0 +1,171 @@
+//! A result beside those that were published.
+
+use std::sync::OnceLock;
+
+use serde::Deserialize;
+
+use super::words::{dollar_tick, whole};
+use crate::session::Observation;
+
+/// Published results (read once).
+#[derive(Debug, Deserialize)]
+pub struct Published {
+    source: String,
+    start_cash: f64,
+    /// Cash of the rule-based policy, dollars.
+    pub rule_based_baseline: f64,
+    /// What a perfect player might reach, dollars.
+    pub estimated_upper_bound: f64,
+    /// Results of agents.
+    pub agent: Vec<Agent>,
+}
+
+/// Results of one agent.
+#[derive(Debug, Deserialize)]
+pub struct Agent {
+    /// Model.
+    pub name: String,
+    /// Runs that ended with cash below zero.
+    pub bankruptcies: u32,
+    /// Runs.
+    pub runs: u32,
+    /// Cash of the best run, dollars.
+    pub best_cash: f64,
+    #[serde(default)]
+    targeted_development_share: Option<f64>,
+}
+
+/// The run that the published results were made with: seed and days.
+const PUBLISHED_RUN: (u64, u32) = (42, 500);
+
+/// The published results.
+pub fn published() -> &'static Published {
+    static READ: OnceLock<Published> = OnceLock::new();
+    READ.get_or_init(|| {
+        toml::from_str(include_str!("../../assets/paper-results.toml"))
+            .expect("a test reads the shipped results")
+    })
+}
+
+/// Whose result it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Whose {
+    /// A published agent's best of three runs.
+    Agent,
+    /// The published rule-based company.
+    Baseline,
+    /// This run's.
+    Own,
+}
+
+/// A result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// Name.
+    pub name: String,
+    /// Cash at the end, dollars.
+    pub cash: f64,
+    /// Whose.
+    pub whose: Whose,
+}
+
+/// All results, the best first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Standing {
+    /// Results; this run's is among them once it has a score.
+    pub places: Vec<Place>,
+    /// Place of this run, from 1.
+    pub rank: Option<usize>,
+    /// What differs between this run and the published ones.
+    pub caveat: Option<String>,
+    /// Where the published results come from.
+    pub source: String,
+}
+
+impl Standing {
+    /// The best places and those around this run's: enough to see where it stands.
+    pub fn around(&self, best: usize, beside: usize) -> Vec<&Place> {
+        let own = self.places.iter().position(|place| place.whose == Whose::Own);
+        let wanted = |at: usize| at < best || own.is_some_and(|own| own.abs_diff(at) <= beside);
+        self.places.iter().enumerate().filter(|(at, _)| wanted(*at)).map(|(_, place)| place).collect()
+    }
+
+    /// The rank in words.
+    pub fn in_words(&self) -> String {
+        match self.rank {
+            Some(rank) => format!("rank {rank} of {} beside the published results", self.places.len()),
+            None => "the published results".to_owned(),
+        }
+    }
+}
+
+/// Where a score stands; of equal results the published ones come first.
+pub fn standing(score: Option<f64>, seen: &Observation, start_cash: f64) -> Standing {
+    let place = |name: &str, cash: f64, whose: Whose| Place { name: name.to_owned(), cash, whose };
+    let mut places: Vec<Place> =
+        published().agent.iter().map(|agent| place(&agent.name, agent.best_cash, Whose::Agent)).collect();
+    places.push(place("Rule-based baseline", published().rule_based_baseline, Whose::Baseline));
+    places.extend(score.map(|score| place("You", score, Whose::Own)));
+    places.sort_by(|left, right| right.cash.total_cmp(&left.cash));
+    let rank = score.map(|score| 1 + places.iter().filter(|place| place.cash > score).count());
+    Standing { places, rank, caveat: caveat(seen, start_cash), source: published().source.clone() }
+}
+
+/// Range of the published targeted shares of development spend: the lowest, the highest.
+pub fn published_targeted_shares() -> (f64, f64) {
+    let shares = published().agent.iter().filter_map(|agent| agent.targeted_development_share);
+    shares.fold((1.0, 0.0), |(least, most), share| (f64::min(least, share), f64::max(most, share)))
+}
+
+fn caveat(seen: &Observation, start_cash: f64) -> Option<String> {
+    let (seed, days) = PUBLISHED_RUN;
+    let mut other = Vec::new();
+    if seen.seed != seed {
+        other.push(format!("seed {}", seen.seed));
+    }
+    if seen.last_day != days {
+        other.push(format!("{} days", whole(f64::from(seen.last_day))));
+    }
+    if start_cash != published().start_cash {
+        other.push(format!("{} at the start", dollar_tick(start_cash)));
+    }
+    if !["default", "paper"].contains(&seen.scenario.as_str()) {
+        other.push(format!("scenario {}", seen.scenario));
+    }
+    let start = dollar_tick(published().start_cash);
+    (!other.is_empty()).then(|| {
+        format!("Published: seed {seed}, {days} days, {start} at the start; this run: {}.", other.join(", "))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::test_kit;
+
+    #[test]
+    fn a_score_stands_among_the_published_ones() {
+        let mut seen = test_kit::played(0).observe();
+        (seen.seed, seen.last_day) = (42, 500);
+        let good = standing(Some(14_208_331.0), &seen, 1_000_000.0);
+        assert_eq!((good.rank, good.caveat.clone()), (Some(2), None));
+        assert_eq!(good.in_words(), "rank 2 of 18 beside the published results");
+        let names: Vec<&str> = good.around(1, 1).iter().map(|place| place.name.as_str()).collect();
+        assert_eq!(names, ["Rule-based baseline", "You", "Claude Fable 5"]);
+        let ruined = standing(Some(0.0), &seen, 1_000_000.0);
+        assert_eq!(ruined.rank, Some(14), "four published agents have nothing either");
+        assert_eq!(ruined.places.last().map(|place| place.whose), Some(Whose::Own));
+        assert_eq!(standing(None, &seen, 1_000_000.0).rank, None);
+        assert!(published_targeted_shares().0 < published_targeted_shares().1);
+    }
+
+    #[test]
+    fn other_terms_are_named() {
+        let seen = test_kit::played(0).observe();
+        let caveat = standing(None, &seen, 2e6).caveat.expect("another seed");
+        assert_eq!(
+            caveat,
+            "Published: seed 42, 500 days, $1M at the start; this run: seed 7, 200 days, $2M at the start."
+        );
+    }
+}

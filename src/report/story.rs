@@ -1,0 +1,184 @@
+//! A run as a document: what came of it, how it went, what was decided, how it was played.
+
+use super::books::Books;
+use super::chapters::{Chapter, chapters};
+use super::highlights::{Highlight, highlights};
+use super::measures::{self, Measures};
+use super::ranking::{Standing, standing};
+use super::turn::{Cost, costs, turned};
+use crate::session::{Ended, JournalEntry, Observation, Session, WeekFigures};
+
+/// A forecast of cash, and what came if its day has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Filed {
+    /// Day on which it was filed.
+    pub day: u32,
+    /// Days ahead.
+    pub horizon_days: u32,
+    /// What was said.
+    pub point: f64,
+    /// Lower end of the interval.
+    pub lower: f64,
+    /// Upper end of the interval.
+    pub upper: f64,
+    /// What came.
+    pub outcome: Option<f64>,
+}
+
+impl Filed {
+    /// The day it speaks of.
+    pub fn due(&self) -> u32 {
+        self.day + self.horizon_days
+    }
+}
+
+/// How a company went under.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ruin {
+    /// Day on which cash fell below zero.
+    pub day: u32,
+    /// What the money went to, the dearest first.
+    pub costs: Vec<Cost>,
+    /// When things turned, in sentences.
+    pub turned: Vec<String>,
+}
+
+/// A run as a document.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Story {
+    /// The run at a glance.
+    pub seen: Observation,
+    /// Version that recorded it.
+    pub version: String,
+    /// Cash on day 0, dollars.
+    pub start_cash: f64,
+    /// Cash at the end of each day, day 0 first.
+    pub cash_by_day: Vec<f64>,
+    /// Figures of every week.
+    pub weeks: Vec<WeekFigures>,
+    /// Where the result stands.
+    pub standing: Standing,
+    /// Every forecast, in the order of filing.
+    pub filed: Vec<Filed>,
+    /// What the database knows.
+    pub books: Books,
+    /// What was decided.
+    pub chapters: Vec<Chapter>,
+    /// Days worth remembering.
+    pub highlights: Vec<Highlight>,
+    /// How it was played.
+    pub measures: Measures,
+    /// How it went under, if it did.
+    pub ruin: Option<Ruin>,
+}
+
+impl Story {
+    /// The story of a run so far. Asks the database: not for the thread that draws.
+    pub fn of(session: &Session) -> Story {
+        let seen = session.observe();
+        let start_cash = session.manifest().cash;
+        let (weeks, journal) = (session.weeks(), session.journal());
+        let books = Books::of(session);
+        let ruin = (seen.ended == Some(Ended::Bankruptcy)).then(|| Ruin {
+            day: seen.day,
+            costs: costs(&books.totals()),
+            turned: turned(weeks),
+        });
+        let measures = Measures {
+            survival_days: measures::survival_days(seen.ended, seen.day, seen.last_day),
+            cash: seen.cash,
+            channels: measures::best_channel_share(&books.channels),
+            targeted_development: measures::targeted_development(session.decisions()),
+            forecasts: session.forecast_scores(),
+            filled_naively: measures::filled_naively(journal),
+            tools: measures::tool_use(journal),
+            planning: measures::planning(journal),
+        };
+        Story {
+            version: session.manifest().version.clone(),
+            start_cash,
+            cash_by_day: session.cash_by_day().to_vec(),
+            weeks: weeks.to_vec(),
+            standing: standing(seen.score, &seen, start_cash),
+            filed: filed(journal, session.cash_by_day()),
+            chapters: chapters(session.decisions(), journal, start_cash),
+            highlights: highlights(weeks, session.cash_by_day(), &books.outages, seen.ended),
+            measures,
+            ruin,
+            books,
+            seen,
+        }
+    }
+
+    /// What came of the run, in one sentence.
+    pub fn headline(&self) -> String {
+        use super::words::money;
+        let day = self.seen.day;
+        match self.seen.ended {
+            Some(Ended::Horizon) => format!("Day {day}. You end with {}.", money(self.seen.cash)),
+            Some(Ended::Bankruptcy) => format!("Day {day}. The company is bankrupt; the score is $0."),
+            Some(Ended::Abandoned) => {
+                format!("Day {day}. The run was given up with {}; it has no score.", money(self.seen.cash))
+            }
+            None => format!("Day {day} of {}. Cash is {}.", self.seen.last_day, money(self.seen.cash)),
+        }
+    }
+}
+
+fn filed(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<Filed> {
+    let mut all = Vec::new();
+    for entry in journal {
+        let JournalEntry::Advance { day, forecasts, .. } = entry else { continue };
+        all.extend(forecasts.iter().map(|forecast| Filed {
+            day: *day,
+            horizon_days: forecast.horizon_days,
+            point: forecast.point,
+            lower: forecast.lower,
+            upper: forecast.upper,
+            outcome: cash_by_day.get((day + forecast.horizon_days) as usize).copied(),
+        }));
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::test_kit;
+
+    #[test]
+    fn a_finished_run_has_a_score_a_rank_and_its_measures() {
+        let story = Story::of(&test_kit::finished());
+        assert!(story.headline().starts_with("Day 35. You end with $"), "{}", story.headline());
+        assert!(story.standing.rank.is_some() && story.standing.caveat.is_some());
+        assert_eq!(story.measures.survival_days, 35);
+        assert_eq!(story.filed.len(), 5 * 4);
+        assert_eq!(story.filed.iter().filter(|filed| filed.outcome.is_some()).count(), 5 + 2);
+        assert!(story.measures.channels.as_ref().is_some_and(|skill| skill.groups[0].tried == 2));
+        assert_eq!(story.measures.targeted_development, Some(6000.0 / 6200.0));
+        assert_eq!(story.ruin, None);
+    }
+
+    #[test]
+    fn a_ruined_run_tells_what_its_money_went_to() {
+        let story = Story::of(&test_kit::ruined());
+        let ruin = story.ruin.as_ref().expect("it is bankrupt");
+        assert_eq!((ruin.day, story.measures.survival_days), (story.seen.day, story.seen.day));
+        assert_eq!(ruin.costs[0].name, "development and R&D");
+        let shares: f64 = ruin.costs.iter().map(|cost| cost.share).sum();
+        assert!((shares - 1.0).abs() < 1e-9 && !ruin.turned.is_empty());
+        assert!(story.headline().contains("bankrupt"));
+        assert_eq!(story.highlights.last().map(|last| last.text.as_str()), Some("bankrupt"));
+    }
+
+    #[test]
+    fn a_run_that_goes_on_or_has_not_begun_has_a_story_too() {
+        let begun = Story::of(&test_kit::played(0));
+        assert!(
+            begun.chapters.is_empty() && begun.measures.channels.is_none() && begun.highlights.is_empty()
+        );
+        let running = Story::of(&test_kit::played(2));
+        assert_eq!((running.standing.rank, running.ruin.is_none()), (None, true));
+        assert!(running.headline().starts_with("Day 14 of 200. Cash is $"));
+    }
+}

@@ -1,0 +1,331 @@
+//! Charts as SVG that stands inside a page: colours come from the page's style, names and summaries are part of it.
+
+use std::fmt::Write;
+
+use super::html::escaped;
+use super::page::{Band, Chart, Curve, Part, Plot};
+use super::words::{dollar_tick, money, tick, whole};
+
+const WIDTH: f64 = 760.0;
+const LEFT: f64 = 66.0;
+const RIGHT: f64 = 14.0;
+const BOTTOM: f64 = 40.0;
+/// Height of the part where something is drawn.
+const INSIDE: f64 = 220.0;
+const LEGEND_ROW: f64 = 20.0;
+/// About the width of a letter of the legend.
+const LETTER: f64 = 6.6;
+
+/// A range of values with round steps.
+struct Scale {
+    from: f64,
+    to: f64,
+    step: f64,
+}
+
+impl Scale {
+    /// A scale over values in about so many steps; widened to round ends if asked.
+    fn of(values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
+        let (mut from, mut to) = values
+            .filter(|value| value.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), value| (from.min(value), to.max(value)));
+        if from > to {
+            (from, to) = (0.0, 1.0);
+        }
+        if to - from < 1e-9 {
+            (from, to) = (from - 1.0, to + 1.0);
+        }
+        let step = round_step((to - from) / steps);
+        if round_ends {
+            (from, to) = ((from / step + 1e-9).floor() * step, (to / step - 1e-9).ceil() * step);
+        }
+        Scale { from, to, step }
+    }
+
+    fn share(&self, value: f64) -> f64 {
+        ((value - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
+    }
+
+    fn ticks(&self) -> Vec<f64> {
+        let first = (self.from / self.step - 1e-9).ceil() as i64;
+        let last = (self.to / self.step + 1e-9).floor() as i64;
+        (first..=last).map(|at| at as f64 * self.step).collect()
+    }
+}
+
+/// The next of 1, 2, 5, 10, … that is no smaller.
+fn round_step(least: f64) -> f64 {
+    let magnitude = libm::pow(10.0, libm::floor(libm::log10(least)));
+    let fitting = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| step * magnitude >= least * 0.999);
+    fitting.unwrap_or(10.0) * magnitude
+}
+
+/// Where things are drawn.
+struct Sheet {
+    x: Scale,
+    y: Scale,
+    top: f64,
+}
+
+impl Sheet {
+    fn across(&self, value: f64) -> f64 {
+        LEFT + self.x.share(value) * (WIDTH - LEFT - RIGHT)
+    }
+
+    fn down(&self, value: f64) -> f64 {
+        self.top + (1.0 - self.y.share(value)) * INSIDE
+    }
+}
+
+/// The chart as SVG; the number makes its names unique on the page.
+pub fn draw(chart: &Chart, number: usize) -> String {
+    let keys = legend_keys(chart);
+    let (legend, rows) = legend(&keys);
+    let sheet = Sheet { x: x_scale(chart), y: y_scale(chart), top: 10.0 + rows * LEGEND_ROW };
+    let height = sheet.top + INSIDE + BOTTOM;
+    let mut svg = format!(
+        "<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-labelledby=\"t{number} d{number}\">\n\
+         <title id=\"t{number}\">{}</title>\n<desc id=\"d{number}\">{}</desc>\n{legend}",
+        escaped(&chart.title),
+        escaped(&chart.summary)
+    );
+    axes(&mut svg, chart, &sheet);
+    match &chart.plot {
+        Plot::Lines { curves, band } => {
+            band.iter().for_each(|band| draw_band(&mut svg, band, &sheet));
+            curves.iter().enumerate().for_each(|(at, curve)| draw_curve(&mut svg, curve, at, &sheet));
+        }
+        Plot::Stacks { at, parts } => draw_stacks(&mut svg, at, parts, chart, &sheet),
+    }
+    svg.push_str("</svg>\n");
+    svg
+}
+
+fn x_scale(chart: &Chart) -> Scale {
+    let values: Vec<f64> = match &chart.plot {
+        Plot::Lines { curves, band } => {
+            let of_band = band.iter().flat_map(|band| band.points.iter().map(|point| point.0));
+            curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0)).chain(of_band).collect()
+        }
+        // Half a bar stands over each end.
+        Plot::Stacks { at, .. } => at.iter().flat_map(|place| [place - 0.5, place + 0.5]).collect(),
+    };
+    let mut scale = Scale::of(values.into_iter(), 8.0, false);
+    scale.step = scale.step.max(1.0);
+    scale
+}
+
+fn y_scale(chart: &Chart) -> Scale {
+    let mut values: Vec<f64> = match &chart.plot {
+        Plot::Lines { curves, band } => {
+            let of_band =
+                band.iter().flat_map(|band| band.points.iter().flat_map(|point| [point.1, point.2]));
+            curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1)).chain(of_band).collect()
+        }
+        Plot::Stacks { at, parts } => {
+            let sum = |bar: usize, up: bool| -> f64 {
+                parts.iter().map(|part| part.values[bar]).filter(|value| (*value > 0.0) == up).sum()
+            };
+            (0..at.len()).flat_map(|bar| [sum(bar, true), sum(bar, false)]).chain([0.0]).collect()
+        }
+    };
+    if let Some((low, high)) = chart.within {
+        values.iter_mut().for_each(|value| *value = value.clamp(low, high));
+    }
+    let most = values.iter().copied().fold(0.0, f64::max);
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    // Zero, where the values come near it.
+    if least > 0.0 && least < 0.5 * most {
+        values.push(0.0);
+    }
+    Scale::of(values.into_iter(), 5.0, true)
+}
+
+fn axes(svg: &mut String, chart: &Chart, sheet: &Sheet) {
+    let label = |value: f64| if chart.dollars { dollar_tick(value) } else { tick(value) };
+    let right = WIDTH - RIGHT;
+    for value in sheet.y.ticks() {
+        let y = sheet.down(value);
+        let class = if value == 0.0 { "zero" } else { "grid" };
+        let _ = writeln!(
+            svg,
+            "<line class=\"{class}\" x1=\"{LEFT}\" y1=\"{y:.1}\" x2=\"{right}\" y2=\"{y:.1}\"/>"
+        );
+        let _ = writeln!(
+            svg,
+            "<text class=\"label end\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+            LEFT - 8.0,
+            y + 4.0,
+            escaped(&label(value))
+        );
+    }
+    let below = sheet.top + INSIDE + 16.0;
+    for value in sheet.x.ticks() {
+        let x = sheet.across(value);
+        let _ = writeln!(
+            svg,
+            "<text class=\"label middle\" x=\"{x:.1}\" y=\"{below:.1}\">{}</text>",
+            tick(value)
+        );
+    }
+    let middle = LEFT + (WIDTH - LEFT - RIGHT) / 2.0;
+    let _ = writeln!(
+        svg,
+        "<text class=\"label middle\" x=\"{middle:.1}\" y=\"{:.1}\">{}</text>",
+        below + 18.0,
+        escaped(chart.across)
+    );
+}
+
+fn draw_curve(svg: &mut String, curve: &Curve, at: usize, sheet: &Sheet) {
+    let finite = || curve.points.iter().filter(|point| point.1.is_finite());
+    let points: Vec<String> =
+        finite().map(|(x, y)| format!("{:.1},{:.1}", sheet.across(*x), sheet.down(*y))).collect();
+    let _ = writeln!(
+        svg,
+        "<polyline class=\"line s{}\" points=\"{}\"><title>{}</title></polyline>",
+        at + 1,
+        points.join(" "),
+        escaped(&curve.name)
+    );
+}
+
+fn draw_band(svg: &mut String, band: &Band, sheet: &Sheet) {
+    let upper = band.points.iter().map(|(x, _, upper)| (x, upper));
+    let lower = band.points.iter().rev().map(|(x, lower, _)| (x, lower));
+    let points: Vec<String> =
+        upper.chain(lower).map(|(x, y)| format!("{:.1},{:.1}", sheet.across(*x), sheet.down(*y))).collect();
+    let _ = writeln!(
+        svg,
+        "<polygon class=\"band\" points=\"{}\"><title>{}</title></polygon>",
+        points.join(" "),
+        escaped(&band.name)
+    );
+}
+
+fn draw_stacks(svg: &mut String, at: &[f64], parts: &[Part], chart: &Chart, sheet: &Sheet) {
+    let width = (WIDTH - LEFT - RIGHT) / (sheet.x.to - sheet.x.from) * 0.8;
+    let write = |value: f64| if chart.dollars { money(value) } else { whole(value) };
+    for (bar, place) in at.iter().enumerate() {
+        let (mut up, mut down) = (0.0, 0.0);
+        for (number, part) in parts.iter().enumerate() {
+            let value = part.values[bar];
+            if value == 0.0 {
+                continue;
+            }
+            let from = if value > 0.0 { up } else { down };
+            let (top, bottom) =
+                (sheet.down(f64::max(from, from + value)), sheet.down(f64::min(from, from + value)));
+            if value > 0.0 {
+                up += value
+            } else {
+                down += value
+            }
+            let _ = writeln!(
+                svg,
+                "<rect class=\"part f{}\" x=\"{:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{:.1}\"><title>{} {}: {} {}</title></rect>",
+                number + 1,
+                sheet.across(*place) - width / 2.0,
+                (bottom - top).max(0.0),
+                escaped(chart.across),
+                place,
+                escaped(&part.name),
+                write(value)
+            );
+        }
+    }
+}
+
+/// What a key of the legend looks like.
+enum Sign {
+    Line(usize),
+    Area(String),
+}
+
+fn legend_keys(chart: &Chart) -> Vec<(Sign, String)> {
+    match &chart.plot {
+        Plot::Lines { curves, band } => {
+            let lines = curves.iter().enumerate().map(|(at, curve)| (Sign::Line(at + 1), curve.name.clone()));
+            lines.chain(band.iter().map(|band| (Sign::Area("band".to_owned()), band.name.clone()))).collect()
+        }
+        Plot::Stacks { parts, .. } => {
+            let sign = |at: usize| Sign::Area(format!("part f{}", at + 1));
+            parts.iter().enumerate().map(|(at, part)| (sign(at), part.name.clone())).collect()
+        }
+    }
+}
+
+/// The legend and the number of its rows.
+fn legend(keys: &[(Sign, String)]) -> (String, f64) {
+    let mut svg = String::new();
+    let (mut x, mut row) = (LEFT, 0.0);
+    for (sign, name) in keys {
+        let width = 34.0 + name.chars().count() as f64 * LETTER + 18.0;
+        if x + width > WIDTH && x > LEFT {
+            (x, row) = (LEFT, row + 1.0);
+        }
+        let y = 12.0 + row * LEGEND_ROW;
+        let _ = match sign {
+            Sign::Line(at) => writeln!(
+                svg,
+                "<line class=\"line s{at}\" x1=\"{x:.1}\" y1=\"{y:.1}\" x2=\"{:.1}\" y2=\"{y:.1}\"/>",
+                x + 26.0
+            ),
+            Sign::Area(class) => writeln!(
+                svg,
+                "<rect class=\"{class}\" x=\"{:.1}\" y=\"{:.1}\" width=\"14\" height=\"12\"/>",
+                x + 12.0,
+                y - 6.0
+            ),
+        };
+        let _ = writeln!(
+            svg,
+            "<text class=\"label\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+            x + 33.0,
+            y + 4.0,
+            escaped(name)
+        );
+        x += width;
+    }
+    (svg, row + 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_have_round_steps() {
+        let scale = Scale::of([3.0, 97.0].into_iter(), 5.0, true);
+        assert_eq!(scale.ticks(), [0.0, 20.0, 40.0, 60.0, 80.0, 100.0]);
+        let below = Scale::of([-1_200_000.0, 800_000.0].into_iter(), 5.0, true);
+        assert_eq!((below.from, below.to, below.step), (-1_500_000.0, 1_000_000.0, 500_000.0));
+        assert_eq!(Scale::of(std::iter::empty(), 5.0, true).ticks().len(), 6);
+        let flat = Scale::of([7.0, 7.0].into_iter(), 5.0, true);
+        assert!(flat.from < 7.0 && flat.to > 7.0);
+    }
+
+    #[test]
+    fn every_coordinate_lies_inside_of_the_drawing() {
+        let wild = Curve {
+            name: "a<b".to_owned(),
+            points: vec![(0.0, 1.0), (1.0, 1e12), (2.0, f64::NAN), (3.0, -5.0)],
+        };
+        let chart = Chart {
+            title: "t".to_owned(),
+            summary: "s".to_owned(),
+            across: "day",
+            dollars: true,
+            within: Some((0.0, 10.0)),
+            plot: Plot::Lines { curves: vec![wild], band: None },
+        };
+        let svg = draw(&chart, 1);
+        assert!(svg.contains("a&lt;b") && !svg.contains("NaN"), "{svg}");
+        let points = svg.split("points=\"").nth(1).and_then(|rest| rest.split('"').next()).expect("points");
+        for point in points.split(' ') {
+            let (x, y) = point.split_once(',').expect("two coordinates");
+            let (x, y): (f64, f64) = (x.parse().expect("x"), y.parse().expect("y"));
+            assert!((0.0..=WIDTH).contains(&x) && (0.0..=300.0).contains(&y), "{point}");
+        }
+    }
+}

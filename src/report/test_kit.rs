@@ -1,0 +1,73 @@
+//! Runs that the tests of reports share.
+
+use serde_json::{Value, json};
+
+use crate::session::{Configuration, NewRun, Session, Storage, Via};
+
+/// A run in memory of some weeks, played by a sensible beginner who changes one thing in the third week.
+pub fn played(weeks: usize) -> Session {
+    run(200, 1_000_000.0, weeks, &opening())
+}
+
+/// A run in memory that reached its last day.
+pub fn finished() -> Session {
+    run(35, 1_000_000.0, 5, &opening())
+}
+
+/// A run in memory that spends itself into ruin.
+pub fn ruined() -> Session {
+    let mut calls = opening();
+    calls.push(("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 16000}})));
+    run(200, 250_000.0, 8, &calls)
+}
+
+fn opening() -> Vec<(&'static str, Value)> {
+    vec![
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_model_tiers", json!({"B": 2, "C": 4})),
+        ("set_usage_quotas", json!({"A": 60000, "B": 250000, "C": 1200000})),
+        ("set_daily_spend", json!({"operations": 200, "development": 200})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 6000}})),
+        (
+            "set_targeted_ad_spend",
+            json!({"targeted_spend": {"content_marketing": {"S1": 750}, "linkedin": {"S1": 250}}}),
+        ),
+        (
+            "post_social_media",
+            json!({"content": "NovaMind <opens> today | with *three* plans & fair prices."}),
+        ),
+    ]
+}
+
+fn run(days: u32, cash: f64, weeks: usize, calls: &[(&str, Value)]) -> Session {
+    let new = NewRun {
+        seed: Some(7),
+        days: Some(days),
+        cash: Some(cash),
+        storage: Storage::Memory,
+        participant: Some("Ada <ada@example.org>".to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    for week in 0..weeks {
+        let call = |session: &mut Session, tool: &str, arguments: &Value| {
+            session.call(tool, arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        };
+        match week {
+            0 => calls.iter().for_each(|(tool, arguments)| call(&mut session, tool, arguments)),
+            2 => call(&mut session, "set_prices", &json!({"B": 22})),
+            _ => {}
+        }
+        let rationale = if week == 2 {
+            "If B is cheaper, more will take it; otherwise we go back | <b>B</b>\nand wait"
+        } else {
+            "as planned"
+        };
+        let forecasts = session.naive_forecasts();
+        let week = session.advance(rationale, &forecasts, Via::Script, &mut |_| {}).expect("a week");
+        if week.ended.is_some() {
+            break;
+        }
+    }
+    session
+}

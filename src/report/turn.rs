@@ -1,0 +1,139 @@
+//! How a company went under: what its money went to, and when things turned.
+
+use std::collections::BTreeMap;
+
+use super::words::{money, whole};
+use crate::session::WeekFigures;
+
+/// A kind of cost over the whole run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cost {
+    /// What it was spent on.
+    pub name: &'static str,
+    /// Dollars.
+    pub dollars: f64,
+    /// Share of all costs.
+    pub share: f64,
+}
+
+/// Kinds of cost and the categories of the ledger they hold.
+pub const COSTS: [(&str, &[&str]); 6] = [
+    ("development and R&D", &["development", "research_project"]),
+    ("ads and leads", &["advertising", "lead_acquisition_cost"]),
+    ("compute", &["compute"]),
+    ("capacity", &["capacity"]),
+    ("operations", &["operations"]),
+    ("market studies", &["market_research", "group_research"]),
+];
+
+/// Kinds of income and the categories of the ledger they hold; the funding is none.
+pub const INCOME: [(&str, &[&str]); 2] =
+    [("payments", &["subscription_payment"]), ("ad revenue", &["ad_revenue"])];
+
+/// What money went to, the dearest first; kinds without any cost are left out.
+pub fn costs(totals: &BTreeMap<&str, f64>) -> Vec<Cost> {
+    let spent = |names: &[&str]| -> f64 { names.iter().filter_map(|name| totals.get(name)).sum() };
+    let mut all: Vec<(&'static str, f64)> = COSTS.iter().map(|(name, held)| (*name, -spent(held))).collect();
+    all.retain(|(_, dollars)| *dollars > 0.0);
+    all.sort_by(|left, right| right.1.total_cmp(&left.1));
+    let sum: f64 = all.iter().map(|(_, dollars)| dollars).sum();
+    all.into_iter().map(|(name, dollars)| Cost { name, dollars, share: dollars / sum }).collect()
+}
+
+/// Sentences about when things turned: the last high of cash, of revenue and of subscribers, and what followed.
+pub fn turned(weeks: &[WeekFigures]) -> Vec<String> {
+    let Some(last) = weeks.last() else { return Vec::new() };
+    let mut told = Vec::new();
+    let high = |figure: fn(&WeekFigures) -> f64| {
+        weeks.iter().rev().max_by(|left, right| figure(left).total_cmp(&figure(right)))
+    };
+    let people = |week: &WeekFigures| f64::from(week.individual_subscribers);
+    match high(people).filter(|week| people(week) > 0.0) {
+        None => told.push("Nobody ever subscribed: all of the money went out and none came in.".to_owned()),
+        Some(top) if top.day < last.day => told.push(format!(
+            "Subscribers were most on day {}: {}; at the end there were {}.",
+            top.day,
+            whole(people(top)),
+            whole(people(last))
+        )),
+        Some(top) => told.push(format!("Subscribers still grew at the end: {}.", whole(people(top)))),
+    }
+    if let Some(week) = weeks.iter().rev().find(|week| week.cash_change > 0.0) {
+        told.push(format!("The last week that earned money ended on day {}.", week.day));
+    } else {
+        told.push("No week earned money.".to_owned());
+    }
+    let recent = &weeks[weeks.len().saturating_sub(4)..];
+    let mean = |figure: fn(&WeekFigures) -> f64| recent.iter().map(figure).sum::<f64>() / recent.len() as f64;
+    let (income, costs) = (mean(|week| week.payments), mean(|week| week.costs));
+    told.push(format!(
+        "In the last {} weeks {} a week came in and running costs took {}.",
+        recent.len(),
+        money(income),
+        money(costs)
+    ));
+    let outgrown = weeks.iter().find(|week| week.cancellations > week.new_individual_subscribers);
+    if let Some(week) = outgrown.filter(|week| week.cancellations > 20) {
+        told.push(format!(
+            "In the week to day {} for the first time more people left ({}) than came ({}).",
+            week.day,
+            whole(f64::from(week.cancellations)),
+            whole(f64::from(week.new_individual_subscribers))
+        ));
+    }
+    told
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn week(day: u32, subscribers: u32, came: u32, left: u32, payments: f64, costs: f64) -> WeekFigures {
+        WeekFigures {
+            day,
+            individual_subscribers: subscribers,
+            new_individual_subscribers: came,
+            cancellations: left,
+            payments,
+            costs,
+            cash_change: payments - costs,
+            ..WeekFigures::default()
+        }
+    }
+
+    #[test]
+    fn costs_are_shares_of_all_costs() {
+        let totals = BTreeMap::from([
+            ("initial_funding", 1000.0),
+            ("subscription_payment", 300.0),
+            ("development", -500.0),
+            ("research_project", -100.0),
+            ("advertising", -200.0),
+            ("compute", 0.0),
+        ]);
+        let told: Vec<(&str, f64, f64)> =
+            costs(&totals).iter().map(|cost| (cost.name, cost.dollars, cost.share)).collect();
+        assert_eq!(told, [("development and R&D", 600.0, 0.75), ("ads and leads", 200.0, 0.25)]);
+        assert!(costs(&BTreeMap::new()).is_empty());
+    }
+
+    #[test]
+    fn the_turn_is_told_from_the_weeks() {
+        let weeks = [
+            week(7, 100, 100, 0, 50.0, 40.0),
+            week(14, 150, 60, 10, 90.0, 120.0),
+            week(21, 90, 20, 80, 60.0, 160.0),
+        ];
+        assert_eq!(
+            turned(&weeks),
+            [
+                "Subscribers were most on day 14: 150; at the end there were 90.",
+                "The last week that earned money ended on day 7.",
+                "In the last 3 weeks $67 a week came in and running costs took $107.",
+                "In the week to day 21 for the first time more people left (80) than came (20).",
+            ]
+        );
+        assert!(turned(&[week(7, 0, 0, 0, 0.0, 9.0)])[0].starts_with("Nobody ever subscribed"));
+        assert!(turned(&[]).is_empty());
+    }
+}

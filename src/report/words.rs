@@ -1,0 +1,70 @@
+//! Small words for figures.
+
+use crate::notation::{compact, grouped};
+
+/// Money with its sign before the dollar: `$1,234`, `-$45`.
+pub fn money(value: f64) -> String {
+    let sign = if value < -0.5 { "-" } else { "" };
+    format!("{sign}${}", grouped(value.abs(), 0))
+}
+
+/// A whole number.
+pub fn whole(value: f64) -> String {
+    grouped(value + 0.0, 0)
+}
+
+/// A number with as many decimals as it needs, at most two.
+pub fn number(value: f64) -> String {
+    let value = value + 0.0;
+    grouped(value, if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 })
+}
+
+/// A count with its noun: `1 week`, `3 weeks`.
+pub fn count(number: u32, noun: &str) -> String {
+    let plural = match noun.strip_suffix("ny") {
+        _ if number == 1 => noun.to_owned(),
+        Some(stem) => format!("{stem}nies"),
+        None => format!("{noun}s"),
+    };
+    format!("{} {plural}", whole(f64::from(number)))
+}
+
+/// A value on an axis, without zeros that say nothing: `1.5M`, `200k`, `0`.
+pub fn tick(value: f64) -> String {
+    let text = compact(value);
+    let (digits, suffix) = match text.find(|letter: char| letter.is_ascii_alphabetic()) {
+        Some(at) => text.split_at(at),
+        None => (text.as_str(), ""),
+    };
+    let digits = match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.'),
+        false => digits,
+    };
+    format!("{digits}{suffix}")
+}
+
+/// Dollars on an axis.
+pub fn dollar_tick(value: f64) -> String {
+    let sign = if value < 0.0 { "-" } else { "" };
+    format!("{sign}${}", tick(value.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_read_well() {
+        assert_eq!([money(-1234.4), money(-0.2), money(5.0)], ["-$1,234", "$0", "$5"]);
+        assert_eq!(
+            [count(1, "week"), count(2, "day"), count(1200, "lead"), count(2, "company")],
+            ["1 week", "2 days", "1,200 leads", "2 companies"]
+        );
+        assert_eq!(
+            [tick(1_500_000.0), tick(200_000.0), tick(0.0), tick(120.0)],
+            ["1.5M", "200k", "0", "120"]
+        );
+        assert_eq!(dollar_tick(-2_000_000.0), "-$2M");
+        assert_eq!([number(12.0), number(0.25)], ["12", "0.25"]);
+    }
+}

@@ -107,19 +107,19 @@ fn entries(keys: &Keys, company: &Company) -> Vec<Entry> {
             group.id()
         )),
     }));
-    list.extend(glossary::terms().iter().map(|term| Entry {
-        kind: "term",
-        title: term.title.clone(),
-        doc: term.text.clone(),
-        keys: String::new(),
-        effect: Effect::Explain(Subject::Term(term)),
-    }));
     list.extend(database::tables().iter().map(|table| Entry {
         kind: "table",
         title: table.name.clone(),
         doc: table.description.clone(),
         keys: String::new(),
         effect: Effect::EditSql(format!("SELECT * FROM {} LIMIT 100", table.name)),
+    }));
+    list.extend(glossary::terms().iter().map(|term| Entry {
+        kind: "term",
+        title: term.title.clone(),
+        doc: term.text.clone(),
+        keys: String::new(),
+        effect: Effect::Explain(Subject::Term(term)),
     }));
     list
 }

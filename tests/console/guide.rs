@@ -69,7 +69,7 @@ fn runs_are_compared_given_up_and_deleted_from_the_menu() {
     console.press("n enter");
     console.shows("day 0/500");
     console.press(": 'start' _ 'menu' enter");
-    console.press("down down down enter");
+    console.press("down down enter");
     console.shows("Run ");
     console.press("_ _ v");
     console.shows("Where they stand");

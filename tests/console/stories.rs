@@ -159,7 +159,8 @@ fn a_run_that_cannot_be_opened_is_explained_in_the_menu() {
     let mut console = Console::start(runs.path(), (100, 30));
     console.shows("Runs");
     console.press("down enter");
-    console.shows("broken cannot be read");
+    console.shows("broken");
+    console.shows("cannot be read");
     console.press("enter");
     console.shows("run.toml");
     console.press("esc n enter");

@@ -30,7 +30,7 @@ impl App {
     }
 
     pub(super) fn show_glossary(&mut self) {
-        self.layers.push(Layer::Dialog(Box::new(Glossary::new())));
+        self.layers.push(Layer::Dialog(Box::new(Glossary::default())));
     }
 
     /// Starts a new run for practice with the tour in it.

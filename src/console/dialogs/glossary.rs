@@ -21,9 +21,9 @@ pub struct Glossary {
 /// Rows for the text of the selected term.
 const TEXT_ROWS: u16 = 6;
 
-impl Glossary {
+impl Default for Glossary {
     /// All terms by topic.
-    pub fn new() -> Glossary {
+    fn default() -> Glossary {
         let columns = vec![
             Column::words("term").at_most(22),
             Column::words("about").at_most(9),
@@ -45,7 +45,9 @@ impl Glossary {
         table.set_rows(terms().iter().map(row).collect());
         Glossary { table }
     }
+}
 
+impl Glossary {
     fn selected(&self) -> Option<&'static Term> {
         self.table.selected().and_then(|at| terms().get(at))
     }
@@ -157,7 +159,7 @@ mod tests {
     #[test]
     fn terms_are_found_by_any_of_their_words_and_opened() {
         let company = company();
-        let mut dialog = Glossary::new();
+        let mut dialog = Glossary::default();
         let shown = dialog_picture(&dialog, &company, 80, 21);
         assert!(
             shown.contains("terms") && shown.contains("Runway") && shown.contains("amounts in the ledger"),
@@ -181,7 +183,7 @@ mod tests {
     #[test]
     fn a_filter_without_terms_says_so() {
         let company = company();
-        let mut dialog = Glossary::new();
+        let mut dialog = Glossary::default();
         in_dialog(&mut dialog, Action::Filter, &company);
         dialog.table.edit_filter(|field| field.insert("zzz"));
         let shown = dialog_picture(&dialog, &company, 80, 21);

@@ -154,14 +154,6 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
             group.id()
         )),
     }));
-    list.extend(glossary::terms().iter().map(|term| Entry {
-        kind: "term",
-        code: "",
-        title: term.title.clone(),
-        doc: term.text.clone(),
-        keys: String::new(),
-        effect: Effect::Explain(Subject::Term(term)),
-    }));
     list.extend(library.queries().iter().map(|query| Entry {
         kind: "query",
         code: "",
@@ -177,6 +169,14 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
         doc: table.description.clone(),
         keys: String::new(),
         effect: Effect::EditSql(format!("SELECT * FROM {} LIMIT 100", table.name)),
+    }));
+    list.extend(glossary::terms().iter().map(|term| Entry {
+        kind: "term",
+        code: "",
+        title: term.title.clone(),
+        doc: term.text.clone(),
+        keys: String::new(),
+        effect: Effect::Explain(Subject::Term(term)),
     }));
     for entry in &mut list {
         if let Some(why) = why_not(&entry.effect, company) {

@@ -32,16 +32,13 @@ impl Menu {
         if let Some(run) = self.latest() {
             choices.push((Choice::Continue, "Continue", short(run)));
         }
-        let tour = (Choice::Tour, "Tour", "New here? The first steps in two minutes".to_owned());
+        let tour = (Choice::Tour, "Tour", "New here? The first two minutes".to_owned());
         let known = matches!(self.runs, Some(Ok(_)));
         let newcomer = known && count == 0;
         if newcomer {
             choices.push(tour.clone());
         }
         choices.push((Choice::New, "New run", "500 days from one million dollars".to_owned()));
-        if !newcomer {
-            choices.push(tour);
-        }
         if count > 0 {
             let text = if count == 1 {
                 "the one on this machine".to_owned()
@@ -53,7 +50,10 @@ impl Menu {
         if count > 1 {
             choices.push((Choice::Compare, "Compare runs", "two or more side by side".to_owned()));
         }
-        choices.push((Choice::Paper, "Paper table", "published results, and yours among them".to_owned()));
+        choices.push((Choice::Paper, "Paper table", "published results, and yours".to_owned()));
+        if !newcomer {
+            choices.push(tour);
+        }
         choices.push((Choice::Quit, "Quit", "everything confirmed is saved".to_owned()));
         choices
     }
@@ -136,8 +136,8 @@ pub(super) fn draw_run(
     let facts = facts(run, known);
     let beside = inside.width >= 70 && inside.height < 14;
     let (above, below) = if beside {
-        let left = Rect { width: 38, ..inside };
-        (left, Rect { x: inside.x + 39, width: inside.width - 39, ..inside })
+        let left = Rect { width: 42, ..inside };
+        (left, Rect { x: inside.x + 43, width: inside.width - 43, ..inside })
     } else {
         let used = (facts.len() as u16 + 1).min(inside.height);
         (inside, Rect { y: inside.y + used, height: inside.height - used, ..inside })

@@ -73,19 +73,19 @@ impl Cohorts {
         (size > 0.0).then(|| kept / size)
     }
 
-    /// The triangle in a few words.
-    pub fn summary(&self, group: Group, now: u32) -> String {
+    /// The triangle in as many words as have room.
+    pub fn summary(&self, group: Group, now: u32, room: usize) -> String {
         let mean = |since| self.mean(group, since, now).map(|kept| (since, kept));
         let told: Vec<String> = [4, 8, 12]
             .into_iter()
             .filter_map(mean)
             .map(|(since, kept)| format!("{} after {since} weeks", percent(kept, 0)))
             .collect();
-        if told.is_empty() {
-            "share still there".to_owned()
-        } else {
-            format!("still there: {}", told.join(", "))
-        }
+        let fitting = |count: usize| {
+            let words = told[..count].join(", ");
+            (words.len() <= room).then_some(words)
+        };
+        (1..=told.len()).rev().find_map(fitting).unwrap_or_default()
     }
 }
 

@@ -239,10 +239,9 @@ fn statement(what: What, group: Group, week: u32, day: u32) -> Option<String> {
         What::Level | What::Market => {
             format!("SELECT *\nFROM group_info_levels\nWHERE group_id = '{group}'")
         }
-        What::Development => format!(
-            "SELECT day, tool_name, settings_json\nFROM config_overrides\n\
-             WHERE tool_name = 'set_targeted_dev_spend'\nORDER BY day DESC"
-        ),
+        What::Development => "SELECT day, tool_name, settings_json\nFROM config_overrides\n\
+                              WHERE tool_name = 'set_targeted_dev_spend'\nORDER BY day DESC"
+            .to_owned(),
     })
 }
 

@@ -56,7 +56,7 @@ fn plans(facts: &Facts, group: Group, bars: usize) -> Vec<Fact> {
 }
 
 fn sources(company: &Company, facts: &Facts, group: Group) -> Vec<Fact> {
-    let heads = format!("{:>8} {:>5} {:>6}", "leads", "share", "conv.");
+    let heads = format!("{:>6}{:>6}{:>6}", "leads", "share", "conv.");
     let mut lines = vec![head("sources, 12 weeks", heads)];
     let mut sources: Vec<_> = facts.sources.iter().collect();
     sources.sort_by(|left, right| right.1.0.total_cmp(&left.1.0));
@@ -64,7 +64,7 @@ fn sources(company: &Company, facts: &Facts, group: Group) -> Vec<Fact> {
     for (source, (own, signed)) in sources {
         let conversion = if *own > 0.0 { percent(signed / own, 0) } else { "–".to_owned() };
         let share = percent(own / leads, 0);
-        let figures = format!("{:>8} {share:>5} {conversion:>6}", compact(*own));
+        let figures = format!("{:>6}{share:>6}{conversion:>6}", compact(*own));
         let sql = format!(
             "SELECT c.customer_id, c.created_day, s.plan, s.status, s.start_day, s.end_day\nFROM customers c\n\
              JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\n    \

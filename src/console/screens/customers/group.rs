@@ -187,6 +187,9 @@ impl Opened {
             draw(below, if self.focus == REPORT { REPORT } else { COHORTS });
             draw(facts, FACTS);
             draw(go, WAYS);
+        } else if self.focus == COHORTS {
+            // The triangle needs the width.
+            draw(area, COHORTS);
         } else {
             let [left, _, right] =
                 columns([Constraint::Min(0), Constraint::Length(0), Constraint::Percentage(50)]);
@@ -311,7 +314,7 @@ fn draw_cohorts(
 ) {
     let week = known.company.seen.week;
     let title = "Still there, %";
-    let words = known.cohorts.summary(group, week);
+    let words = known.cohorts.summary(group, week, note_room(area, title));
     let inside = canvas.pane(area, title, &words, place.is_some());
     cohorts::draw(canvas, inside, known.cohorts, (group, week), place, COHORTS);
 }

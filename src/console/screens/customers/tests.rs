@@ -149,11 +149,7 @@ fn the_triangle_is_made_of_customers_who_stayed() {
         let figure = screen.figure(&look).expect("a figure");
         let sql = figure.sql.expect("rows");
         let kept = made(&mut session, &sql, "count(*)");
-        let size = made(
-            &mut session,
-            &sql.split("\n    AND (s.status").next().expect("words").to_owned(),
-            "count(*)",
-        );
+        let size = made(&mut session, sql.split("\n    AND (s.status").next().expect("words"), "count(*)");
         let share = crate::notation::percent(kept / size, 1);
         assert!(
             figure.title.starts_with(&format!("{share} of the S1 customers")),

@@ -282,7 +282,7 @@ fn unspent(company: &Company) -> Vec<Alert> {
     let affordable = |tier: &&Value| number(tier, "cost") * 4.0 < company.seen.cash;
     if company.seen.running_research == 0
         && company.seen.week > 0
-        && let Some(best) = tiers.into_iter().flatten().filter(affordable).next_back()
+        && let Some(best) = tiers.into_iter().flatten().rfind(affordable)
     {
         let text = format!(
             "no R&D runs; tier {} costs {} and adds about {:.2} quality in {:.0} days",

@@ -350,10 +350,12 @@ impl Overview {
 
     fn draw_quality(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let (base, shared) = look.company.quality_base;
-        let note = format!("base {base:.2} · for everybody {shared:+.4}");
+        let title = "Delivered quality";
+        let full = format!("base {base:.2} · for everybody {shared:+.4}");
+        let note = if full.width() <= note_room(area, title) { full } else { String::new() };
         canvas.click(area, Click::Pane(QUALITY));
         let focused = self.focus == QUALITY;
-        let inside = canvas.pane(area, "Delivered quality", &note, focused);
+        let inside = canvas.pane(area, title, &note, focused);
         self.quality.draw(canvas, inside, focused, QUALITY);
     }
 

@@ -16,9 +16,15 @@ const LEAST: u16 = 8;
 /// Greatest.
 const MOST: u16 = 16;
 
-/// Figures that are drawn, the most telling first.
-const SHOWN: [&str; 6] =
-    ["subscribers", "recurring revenue", "individual leads", "cancellations", "payments", "running costs"];
+/// Figures that are drawn, with their titles, the most telling first.
+static SHOWN: [(&str, &str); 6] = [
+    ("subscribers", "Subscribers"),
+    ("recurring revenue", "Recurring revenue"),
+    ("individual leads", "Individual leads"),
+    ("cancellations", "Cancellations"),
+    ("payments", "Payments"),
+    ("running costs", "Running costs"),
+];
 
 /// Draws as many charts as have room, two in a row.
 pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
@@ -26,14 +32,17 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
     if rows == 0 || area.width < 40 {
         return;
     }
-    let metrics = SHOWN.iter().filter_map(|name| METRICS.iter().find(|metric| metric.name == *name));
-    for (at, metric) in metrics.take(2 * rows as usize).enumerate() {
+    let found = |(name, title): &(&str, &'static str)| {
+        METRICS.iter().find(|metric| metric.name == *name).map(|metric| (metric, *title))
+    };
+    let metrics = SHOWN.iter().filter_map(found);
+    for (at, (metric, title)) in metrics.take(2 * rows as usize).enumerate() {
         let (row, column) = (at as u16 / 2, at as u16 % 2);
         let (top, below) = (area.height * row / rows, area.height * (row + 1) / rows);
         let half = area.width / 2;
         let width = if column == 0 { half } else { area.width - half };
         let place = Rect { x: area.x + column * half, y: area.y + top, width, height: below - top };
-        draw_one(canvas, place, metric, company);
+        draw_one(canvas, place, metric, title, company);
     }
 }
 
@@ -42,7 +51,7 @@ pub fn height(room: u16) -> u16 {
     if room < LEAST { 0 } else { room.min(3 * MOST) }
 }
 
-fn draw_one(canvas: &mut Canvas<'_>, area: Rect, metric: &Metric, company: &Company) {
+fn draw_one(canvas: &mut Canvas<'_>, area: Rect, metric: &Metric, title: &str, company: &Company) {
     let weeks: Vec<(f64, f64)> =
         company.weeks.iter().map(|week| (f64::from(week.day) / 7.0, (metric.read)(week))).collect();
     let values: Vec<f64> = weeks.iter().map(|point| point.1).collect();
@@ -50,8 +59,8 @@ fn draw_one(canvas: &mut Canvas<'_>, area: Rect, metric: &Metric, company: &Comp
     let write = move |value: f64| {
         if dollar { crate::console::text::short_dollars(value) } else { compact(value) }
     };
-    let words = summary(&values, &write, note_room(area, metric.name));
-    let inside = canvas.pane(area, metric.name, &words, false);
+    let words = summary(&values, &write, note_room(area, title));
+    let inside = canvas.pane(area, title, &words, false);
     let zero = zero_if_near(values.iter().copied());
     let x = Axis { write: &|week| format!("wk {week:.0}"), holds: &[] };
     chart(canvas, inside, &[Line::through(weeks, Role::Series(0))], &x, &Axis { write: &write, holds: zero });

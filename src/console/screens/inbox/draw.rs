@@ -130,7 +130,11 @@ fn draw_thread(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, own: bool) {
         State::Waiting(days) => format!("{days} days left"),
         state => state.words().to_owned(),
     };
-    let note = format!("{} seats · {state}", grouped(thread.seats, 0));
+    // In a small window the list beside it says how many seats; the days are what presses.
+    let note = match area.width {
+        ..50 => state,
+        _ => format!("{} seats · {state}", grouped(thread.seats, 0)),
+    };
     let inside = canvas.pane(area, &title, &note, focused);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     if focused {

@@ -40,7 +40,7 @@ pub fn outcomes(company: &Company, horizon: u32) -> Vec<Outcome> {
         let JournalEntry::Advance { day, forecasts, .. } = entry else { return None };
         let said = forecasts.iter().find(|forecast| forecast.horizon_days == horizon)?;
         let cash = *company.cash_by_day.get((day + horizon) as usize)?;
-        Some(Outcome { filed: *day, said: said.clone(), cash })
+        Some(Outcome { filed: *day, said: *said, cash })
     };
     company.journal.iter().rev().filter_map(of_entry).collect()
 }

@@ -87,7 +87,7 @@ fn draw_list(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
         let draft =
             tools.forms.get(text).is_some_and(|form| form.sheet.is_changed() && form.spec.kind.acts());
         canvas.clear(row, if here { role } else { Role::Text });
-        let names = row.width.saturating_sub(8) as usize;
+        let names = row.width.saturating_sub(9) as usize;
         let mark = if draft { '*' } else { ' ' };
         canvas.text(row, &format!(" {mark}{:<names$}", fit(text, names)), role);
         canvas.aligned(Rect { width: row.width.saturating_sub(1), ..row }, spec.code, role, Align::Right);

@@ -66,9 +66,8 @@ pub(super) fn draw_sheet(
     area: Rect,
     focused: bool,
 ) {
-    let side = side_width(form, leads, area.width);
-    let (area, side) =
-        (Rect { width: area.width - side, ..area }, Rect { x: area.right() - side, width: side, ..area });
+    let side = side_of(form, leads, area);
+    let area = if side.width > 0 { Rect { width: side.x - area.x, ..area } } else { area };
     let is_here = |line: &FormLine| match line {
         FormLine::Row(block, row) => (*block, *row) == (form.at.block, form.at.row),
         FormLine::Add(block) => form.at_adding_row() == Some(*block),
@@ -90,12 +89,15 @@ pub(super) fn draw_sheet(
     }
 }
 
-/// Room for what each channel brought: only beside a whole matrix, or where the window is wide anyway.
-fn side_width(form: &Form, leads: &Leads, width: u16) -> u16 {
-    let block = form.sheet.blocks.iter().find(|block| leads.is_of(block));
-    let Some(block) = block else { return 0 };
-    let whole = NAME + (block.columns.len() as u16 + 1) * cell_width(block) + SIDE;
-    if width >= whole.min(130) { SIDE } else { 0 }
+/// Place of what each channel brought: beside a whole matrix, or where the window is wide anyway.
+fn side_of(form: &Form, leads: &Leads, area: Rect) -> Rect {
+    let none = Rect { width: 0, ..area };
+    let Some(block) = form.sheet.blocks.iter().find(|block| leads.is_of(block)) else { return none };
+    let matrix = NAME + (block.columns.len() as u16 + 1) * cell_width(block);
+    if area.width < (matrix + SIDE).min(130) {
+        return none;
+    }
+    Rect { x: area.x + matrix.min(area.width - SIDE), width: SIDE, ..area }
 }
 
 fn draw_side(form: &Form, leads: &Leads, line: &FormLine, canvas: &mut Canvas<'_>, row: Rect) {

@@ -231,15 +231,16 @@ fn ranking<'a>(
 /// How the run was played.
 fn facts<'a>(canvas: &Canvas<'_>, measures: &Measures, width: u16, roomy: bool) -> Vec<TextLine<'a>> {
     let room = (width as usize).saturating_sub(NAMES);
+    let long = if roomy { 2 * room } else { room };
     let (least, most) = published_targeted_shares();
     let targeted = measures.targeted_development.map_or("–".to_owned(), |share| {
         format!("{} · published agents {} to {}", percent(share, 0), percent(least, 0), percent(most, 0))
     });
     let named: [(&str, String); 5] = [
-        ("forecasts", calibration(&measures.forecasts, room)),
+        ("forecasts", calibration(&measures.forecasts, long)),
         ("ads on best channel", measures.channels.as_ref().map_or("–".to_owned(), best_channel)),
         ("targeted development", targeted),
-        ("tools", tools(measures, if roomy { 2 * room } else { room })),
+        ("tools", tools(measures, long)),
         (
             "planning",
             format!(
@@ -330,7 +331,7 @@ mod tests {
                 "of 18 beside the published results",
                 "▌ You",
                 "Rule-based baseline",
-                "1 wk 100% inside",
+                "1 wk 0% inside",
                 "ads on best channel",
                 "of 2 tried",
                 "targeted development  97%",

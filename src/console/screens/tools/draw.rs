@@ -21,7 +21,9 @@ pub(super) fn draw(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Lo
         0 if canvas.zoomed => area.width,
         1 if canvas.zoomed || narrow => 0,
         _ if narrow => 34,
-        _ => 32,
+        _ if area.width < 112 => 32,
+        // The longest name, its code, and what is between them.
+        _ => 37,
     };
     let [left, right] = Layout::horizontal([Constraint::Length(list), Constraint::Min(0)]).areas(area);
     if list > 0 {

@@ -151,8 +151,9 @@ pub fn cause(figure: Figure, up: bool, seen: &Seen<'_>) -> Option<String> {
             more.or(fewer)
         }
         Figure::Costs => costs(up, seen).or_else(|| seen.follows(up, usage, "usage")),
-        Figure::Seats if up => (seen.now.new_enterprise_seats > 0)
-            .then(|| format!("deals for {} seats were signed", whole(f64::from(seen.now.new_enterprise_seats)))),
+        Figure::Seats if up => (seen.now.new_enterprise_seats > 0).then(|| {
+            format!("deals for {} seats were signed", whole(f64::from(seen.now.new_enterprise_seats)))
+        }),
         Figure::Seats => {
             (seen.now.companies_lost > 0).then(|| format!("{} companies left", seen.now.companies_lost))
         }

@@ -44,26 +44,36 @@ fn pictures(name: &str, policy: &str, seed: u64, until: u32) {
     let runs = tempfile::tempdir().expect("a folder");
     led(policy, seed, until, runs.path());
     let mut console = Console::in_latest_run(runs.path(), SIZES[1]);
+    let mut complaints = Vec::new();
+    let rich = until > 300;
     for (place, keys, back) in PLACES {
         console.press(keys);
-        let picture = picture(&mut console, place);
+        let picture = picture(&mut console, place, rich, &mut complaints);
         insta::assert_snapshot!(format!("{name}-{place}"), picture);
         console.size = SIZES[1];
         console.press(back);
     }
+    assert!(complaints.is_empty(), "{name}:\n{}", complaints.join("\n"));
 }
 
 /// Least share of cells with ink in every half of a large window.
 const LEAST_INK: f64 = 0.04;
 
-fn looks_well(place: &str, size: (u16, u16), letters: &str) {
+/// What is wrong with a picture, as far as that can be told without eyes. Only a company with much to show fills halves.
+fn complaints(place: &str, size: (u16, u16), rich: bool, letters: &str) -> Vec<String> {
     let cut = cut_with_room(letters);
-    assert!(cut.is_empty(), "{place} at {size:?}: cut although there is room:\n{}", cut.join("\n"));
+    let mut found: Vec<String> = cut
+        .into_iter()
+        .map(|line| format!("{place} at {size:?}: cut although there is room: {line}"))
+        .collect();
     let ink = emptiest_half(letters, size.0.into());
-    assert!(size.0 < 120 || ink > LEAST_INK, "{place} at {size:?}: a half is empty ({ink:.3}):\n{letters}");
+    if rich && size.0 >= 120 && ink < LEAST_INK {
+        found.push(format!("{place} at {size:?}: a half is empty ({ink:.3}):\n{letters}"));
+    }
+    found
 }
 
-fn picture(console: &mut Console, place: &str) -> String {
+fn picture(console: &mut Console, place: &str, rich: bool, found: &mut Vec<String>) -> String {
     let mut text = String::new();
     for size in SIZES {
         console.size = size;
@@ -75,7 +85,7 @@ fn picture(console: &mut Console, place: &str) -> String {
             if let Some(before) = &letters {
                 assert_eq!(*before, own, "the theme {theme} changes letters");
             } else {
-                looks_well(place, size, &own);
+                found.extend(complaints(place, size, rich, &own));
                 writeln!(text, "{}×{}\n{own}", size.0, size.1).expect("text");
             }
             letters = Some(own);

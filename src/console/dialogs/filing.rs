@@ -393,10 +393,13 @@ impl Filing {
 
     fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
         let mut rows = rows_of(area);
-        let question = format!(
-            "Cash now {}. What will it be? You should be right 95 times in 100 between low and high.",
-            dollars(company.seen.cash)
-        );
+        let now = dollars(company.seen.cash);
+        let question = match area.width {
+            0..90 => format!("Cash now {now}. Be right 95 times in 100 between low and high."),
+            _ => format!(
+                "Cash now {now}. What will it be? You should be right 95 times in 100 between low and high."
+            ),
+        };
         if let Some(row) = rows.next() {
             canvas.text(row, &question, Role::Text);
         }
@@ -405,7 +408,11 @@ impl Filing {
                 canvas.aligned(cell_area(row, at), title, Role::Header, Align::Right);
             }
             let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
-            canvas.text(record, "your record so far", Role::Header);
+            canvas.text(
+                record,
+                if record.width < 18 { "so far" } else { "your record so far" },
+                Role::Header,
+            );
         }
         for (at, row) in rows.by_ref().take(4).enumerate() {
             self.draw_horizon(canvas, row, at, company);
@@ -413,11 +420,7 @@ impl Filing {
         if self.naive
             && let Some(row) = rows.next()
         {
-            canvas.text(
-                row,
-                "naive: the mean daily change of the last four weeks goes on; recorded as such",
-                Role::Dim,
-            );
+            canvas.text(row, "naive: the last four weeks go on like this; recorded as such", Role::Dim);
         }
         let used = 7;
         let left = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
@@ -443,6 +446,9 @@ impl Filing {
         }
         let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
         let text = match company.scores.get(at) {
+            Some(score) if score.scored > 0 && record.width < 36 => {
+                format!("{} of {}", score.covered, score.scored)
+            }
             Some(score) if score.scored > 0 => format!(
                 "inside {} of {} · typical miss {}",
                 score.covered,

@@ -95,7 +95,7 @@ impl Report {
         let parts: [Part<'a>; 4] = [
             head,
             with_heading(canvas, "What changed most", moves),
-            news.into_iter().chain(notice_lines(canvas, notices, left.min(8))).collect(),
+            news.into_iter().chain(notice_lines(canvas, notices, width, left.min(8))).collect(),
             with_heading(canvas, "What comes next", next(canvas, &alerts, shown_alerts, width, look)),
         ];
         let mut lines = Vec::new();
@@ -233,7 +233,7 @@ fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>)
 }
 
 /// The last notices that have room; equal ones are counted.
-fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], room: usize) -> Part<'a> {
+fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], width: u16, room: usize) -> Part<'a> {
     let mut told: Vec<(u32, String, u32)> = Vec::new();
     for (day, text) in notices.iter().rev() {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -245,9 +245,11 @@ fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], room: usize)
     told.truncate(room);
     let line = |(day, text, times): (u32, String, u32)| {
         let times = if times > 1 { format!(" ({times} times)") } else { String::new() };
+        let before = format!("  day {day:<4} ");
+        let left = usize::from(width).saturating_sub(before.len() + times.len());
         Line::from(vec![
-            canvas.span(format!("  day {day:<4} "), Role::Dim),
-            canvas.span(text, Role::Text),
+            canvas.span(before, Role::Dim),
+            canvas.span(fit(&text, left), Role::Text),
             canvas.span(times, Role::Dim),
         ])
     };

@@ -1,6 +1,6 @@
 //! What was done and why, how the forecasts turned out, and the notes of the run.
 
-mod entries;
+pub mod entries;
 mod scores;
 
 use crossterm::event::{KeyCode, KeyEvent};

@@ -436,7 +436,11 @@ impl Screen for Sql {
         };
         let [above, below] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(rest);
         self.draw_editor(canvas, above, look);
-        self.results.draw(canvas, below, self.focus == RESULTS, self.running.is_some(), look);
+        if self.results.is_empty() && self.running.is_none() {
+            self.results.draw_nothing(canvas, below, self.focus == RESULTS, &self.library);
+        } else {
+            self.results.draw(canvas, below, self.focus == RESULTS, self.running.is_some(), look);
+        }
         if self.focus == EDITOR && self.over.is_none() {
             self.editor.draw_completion(canvas, rest);
         }

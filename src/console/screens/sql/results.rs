@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
 
 use super::plot::Plot;
 use super::{RESULTS, takeout, values};
@@ -14,7 +15,7 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Table;
 use crate::session::library::{ChartLine, Head};
-use crate::session::{Cell, Refusal, Rows};
+use crate::session::{Cell, Library, Refusal, Rows};
 
 /// What came of the last statement.
 #[derive(Debug, Default)]
@@ -222,6 +223,28 @@ impl Results {
         if again { self.act(Action::WholeCell, page) } else { Vec::new() }
     }
 
+    /// Whether nothing was asked yet.
+    pub fn is_empty(&self) -> bool {
+        matches!(self.answer, Answer::None)
+    }
+
+    /// Draws the pane before anything was asked: what to try, and what the library holds as far as there is room.
+    pub fn draw_nothing(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, library: &Library) {
+        if area.is_empty() {
+            return;
+        }
+        canvas.click(area, Click::Pane(RESULTS));
+        let inside = canvas.pane(area, "Result", "nothing was asked yet", focused);
+        let used = (text(canvas, inside, "", LESSON, Role::Dim) + 1).min(inside.height);
+        let below = Rect { y: inside.y + used, height: inside.height - used, ..inside };
+        let titles = library.queries().iter().map(|query| query.title.width()).max().unwrap_or(0) as u16;
+        for (row, query) in rows_of(below).zip(library.queries()) {
+            canvas.text(Rect { width: titles.min(row.width), ..row }, &query.title, Role::Text);
+            let what = Rect { x: row.x + titles + 2, width: row.width.saturating_sub(titles + 2), ..row };
+            canvas.text(what, &query.what, Role::Dim);
+        }
+    }
+
     /// Draws the pane.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, running: bool, look: &Look<'_>) {
         if area.is_empty() {
@@ -230,7 +253,7 @@ impl Results {
         canvas.click(area, Click::Pane(RESULTS));
         let (title, note) = match &self.answer {
             _ if running => ("Result".to_owned(), String::new()),
-            Answer::None => ("Result".to_owned(), String::new()),
+            Answer::None => return,
             Answer::Refused(refusal) if refusal.code == "sql_timeout" => {
                 ("Result · stopped".to_owned(), String::new())
             }
@@ -253,9 +276,7 @@ impl Results {
             return;
         }
         match &self.answer {
-            Answer::None => {
-                text(canvas, inside, "", LESSON, Role::Dim);
-            }
+            Answer::None => {}
             Answer::Refused(refusal) => {
                 let role = if refusal.code == "sql_timeout" { Role::Warning } else { Role::Bad };
                 text(canvas, inside, refusal.code, &refusal.message, role);

@@ -3,6 +3,7 @@
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line as TextLine;
 
+use super::earlier;
 use super::form::Form;
 use super::grid::{draw_sheet, form_lines};
 use super::outcome::{Leads, outcome_lines};
@@ -134,7 +135,24 @@ fn draw_form(
     let shown: Vec<TextLine<'_>> =
         outcome.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
     canvas.lines(rest, &shown);
+    let used = (shown.len() as u16 + 1).min(rest.height);
+    draw_earlier(spec.name, canvas, Rect { y: rest.y + used, height: rest.height - used, ..rest }, look);
     canvas.pane_keys(area, &keys(form, look));
+}
+
+/// How the tool was used before, where there is room for it.
+fn draw_earlier(tool: &str, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    let calls = earlier::calls(tool, look.company, area.height.saturating_sub(1) as usize);
+    if calls.is_empty() || area.height < 3 {
+        return;
+    }
+    let mut rows = rows_of(area);
+    if let Some(row) = rows.next() {
+        canvas.text(row, "earlier in this run", Role::Header);
+    }
+    for (row, (day, arguments)) in rows.zip(calls) {
+        canvas.text(row, &format!("day {day:>3}  {arguments}"), Role::Dim);
+    }
 }
 
 fn keys(form: &Form, look: &Look<'_>) -> String {

@@ -1,6 +1,7 @@
 //! Forms of all tools, made from the catalogue.
 
 mod draw;
+mod earlier;
 mod figure;
 mod form;
 mod grid;

@@ -1,0 +1,34 @@
+//! How a tool was used before in this run.
+
+use crate::console::company::Company;
+use crate::console::screens::journal::entries::in_words;
+use crate::session::JournalEntry;
+
+/// Calls of a tool, the newest first: decision day and arguments.
+pub fn calls(tool: &str, company: &Company, most: usize) -> Vec<(u32, String)> {
+    let calls = company.journal.iter().rev().filter_map(|entry| match entry {
+        JournalEntry::Call { day, tool: own, args, .. } if own == tool => Some((*day, in_words(args))),
+        _ => None,
+    });
+    calls.take(most).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::played;
+
+    #[test]
+    fn calls_stand_with_the_newest_first() {
+        let mut session = played(1);
+        let arguments = serde_json::json!({"A": 14});
+        session.call("set_prices", &arguments, crate::session::Via::Form).expect("a price");
+        let company = Company::of(&session);
+        assert_eq!(
+            calls("set_prices", &company, 9),
+            [(7, "A 14".to_owned()), (0, "A 12 B 25 C 55".to_owned())]
+        );
+        assert_eq!(calls("set_prices", &company, 1).len(), 1);
+        assert_eq!(calls("set_promotion", &company, 9), []);
+    }
+}

@@ -1,0 +1,90 @@
+//! Signs that are drawn instead of written, so that lines join and curves are seen whatever font the reader has.
+
+use std::fmt::Write;
+
+/// Thickness of lines and diameter of dots, pixels.
+const LINE: f64 = 1.2;
+const DOT: f64 = 1.9;
+
+/// The outline of a sign in a cell; none for signs that are written.
+pub fn path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> Option<String> {
+    let block = |from: f64, to: f64| rectangle(left, top + height * from, width, height * (to - from));
+    Some(match sign {
+        '\u{2801}'..='\u{28ff}' => braille(sign, left, top, (width, height)),
+        '▁'..='█' => block(1.0 - f64::from(sign as u32 - 0x2580) / 8.0, 1.0),
+        '▀' => block(0.0, 0.5),
+        '░' | '▒' | '▓' => shade(sign, left, top, (width, height)),
+        '─' | '│' | '┌' | '┐' | '└' | '┘' | '├' | '┤' | '┬' | '┴' | '┼' => {
+            corner(sign, left, top, (width, height))
+        }
+        _ => return None,
+    })
+}
+
+fn rectangle(left: f64, top: f64, width: f64, height: f64) -> String {
+    let mut path = String::new();
+    // Writing into a text cannot fail.
+    let _ = write!(path, "M{left:.1} {top:.1}h{width:.1}v{height:.1}h-{width:.1}z");
+    path
+}
+
+/// Dots two by four; the low six bits go down the columns, the highest two are the last row.
+fn braille(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
+    let bits = sign as u32 - 0x2800;
+    let places = [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3)];
+    let dot = |(bit, (column, row)): (usize, &(u32, u32))| {
+        (bits >> bit & 1 == 1).then(|| {
+            let x = left + width * (0.25 + 0.5 * f64::from(*column)) - DOT / 2.0;
+            let y = top + height * (0.125 + 0.25 * f64::from(*row)) - DOT / 2.0;
+            rectangle(x, y, DOT, DOT)
+        })
+    };
+    places.iter().enumerate().filter_map(dot).collect()
+}
+
+/// A quarter, a half or three quarters of the cell, in stripes.
+fn shade(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
+    let share = match sign {
+        '░' => 0.25,
+        '▒' => 0.5,
+        _ => 0.75,
+    };
+    const STRIPES: u32 = 6;
+    let step = height / f64::from(STRIPES);
+    (0..STRIPES).map(|stripe| rectangle(left, top + f64::from(stripe) * step, width, step * share)).collect()
+}
+
+/// Lines from the middle of the cell to some of its sides.
+fn corner(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
+    let (to_left, to_right) = (!"│┌└├".contains(sign), !"│┐┘┤".contains(sign));
+    let (up, down) = (!"─┌┐┬".contains(sign), !"─└┘┴".contains(sign));
+    let (x, y) = (left + (width - LINE) / 2.0, top + (height - LINE) / 2.0);
+    let (half_width, half_height) = ((width + LINE) / 2.0, (height + LINE) / 2.0);
+    let lines = [
+        (to_left, rectangle(left, y, half_width, LINE)),
+        (to_right, rectangle(x, y, half_width, LINE)),
+        (up, rectangle(x, top, LINE, half_height)),
+        (down, rectangle(x, y, LINE, half_height)),
+    ];
+    lines.into_iter().filter(|(there, _)| *there).map(|(_, line)| line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_are_drawn_and_letters_are_not() {
+        let drawn = |sign| path(sign, 0.0, 0.0, (8.0, 16.0));
+        assert_eq!(drawn('a'), None);
+        assert_eq!(drawn('…'), None);
+        assert_eq!(drawn('█').as_deref(), Some("M0.0 0.0h8.0v16.0h-8.0z"));
+        assert_eq!(drawn('▂').as_deref(), Some("M0.0 12.0h8.0v4.0h-8.0z"));
+        let pieces = |sign| drawn(sign).map(|path| path.matches('M').count());
+        assert_eq!(pieces('┼'), Some(4));
+        assert_eq!(pieces('┌'), Some(2));
+        assert_eq!(pieces('─'), Some(2));
+        assert_eq!(pieces('\u{28ff}'), Some(8));
+        assert_eq!(pieces('\u{2801}'), Some(1));
+    }
+}

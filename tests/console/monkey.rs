@@ -239,7 +239,8 @@ fn drafts_stay(console: &mut Console, dice: &mut Dice) {
     console.press(there);
     let number = 1_000 + dice.roll(8_999);
     let draft = if there.starts_with('8') { number.to_string() } else { format!("draft{number}") };
-    console.press(&format!("'{draft}'"));
+    // A word of its own, so that it is not broken between lines.
+    console.press(&if there.starts_with('8') { format!("'{draft}'") } else { format!("_ '{draft}'") });
     if there.starts_with('8') {
         // A number that was not taken is given up by esc, as the line at the bottom says.
         console.press("enter");

@@ -14,7 +14,7 @@ use crate::console::canvas::{Align, Canvas, Click, fit, rows_of};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
-use crate::tools::{Module, Spec, When};
+use crate::tools::{Module, Spec, When, describe};
 
 pub(super) fn draw(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     let narrow = area.width < 100;
@@ -136,22 +136,43 @@ fn draw_form(
         outcome.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
     canvas.lines(rest, &shown);
     let used = (shown.len() as u16 + 1).min(rest.height);
-    draw_earlier(spec.name, canvas, Rect { y: rest.y + used, height: rest.height - used, ..rest }, look);
+    let below = Rect { y: rest.y + used, height: rest.height - used, ..rest };
+    let used = draw_earlier(spec.name, canvas, below, look);
+    draw_manual(spec, canvas, Rect { y: below.y + used, height: below.height - used, ..below });
     canvas.pane_keys(area, &keys(form, look));
 }
 
-/// How the tool was used before, where there is room for it.
-fn draw_earlier(tool: &str, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-    let calls = earlier::calls(tool, look.company, area.height.saturating_sub(1) as usize);
+/// Calls that are told below a form.
+const EARLIER: usize = 10;
+
+/// How the tool was used before, where there is room for it; returns the rows taken, with a blank one.
+fn draw_earlier(tool: &str, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) -> u16 {
+    let calls = earlier::calls(tool, look.company, EARLIER.min(area.height.saturating_sub(1) as usize));
     if calls.is_empty() || area.height < 3 {
-        return;
+        return 0;
     }
+    let used = (calls.len() as u16 + 2).min(area.height);
     let mut rows = rows_of(area);
     if let Some(row) = rows.next() {
         canvas.text(row, "earlier in this run", Role::Header);
     }
     for (row, (day, arguments)) in rows.zip(calls) {
         canvas.text(row, &format!("day {day:>3}  {arguments}"), Role::Dim);
+    }
+    used
+}
+
+/// The manual of the tool, in large windows.
+fn draw_manual(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect) {
+    if area.height < 8 {
+        return;
+    }
+    let mut rows = rows_of(area);
+    if let Some(row) = rows.next() {
+        canvas.text(row, "manual", Role::Header);
+    }
+    for (row, line) in rows.zip(wrapped(&describe::manual(spec), area.width as usize)) {
+        canvas.text(row, &line, Role::Dim);
     }
 }
 

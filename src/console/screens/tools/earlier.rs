@@ -1,16 +1,27 @@
 //! How a tool was used before in this run.
 
+use serde_json::Value;
+
 use crate::console::company::Company;
 use crate::console::screens::journal::entries::in_words;
 use crate::session::JournalEntry;
 
-/// Calls of a tool, the newest first: decision day and arguments.
+/// Calls of a tool, the newest first: decision day and arguments. Calls that repeat the one before are left out.
 pub fn calls(tool: &str, company: &Company, most: usize) -> Vec<(u32, String)> {
     let calls = company.journal.iter().rev().filter_map(|entry| match entry {
-        JournalEntry::Call { day, tool: own, args, .. } if own == tool => Some((*day, in_words(args))),
+        JournalEntry::Call { day, tool: own, args, .. } if own == tool => Some((*day, args)),
         _ => None,
     });
-    calls.take(most).collect()
+    let mut told: Vec<(u32, &Value)> = Vec::new();
+    for (day, arguments) in calls {
+        let full = told.len() == most;
+        match told.last_mut() {
+            Some((first, known)) if *known == arguments => *first = day,
+            _ if full => break,
+            _ => told.push((day, arguments)),
+        }
+    }
+    told.into_iter().map(|(day, arguments)| (day, in_words(arguments))).collect()
 }
 
 #[cfg(test)]
@@ -21,8 +32,10 @@ mod tests {
     #[test]
     fn calls_stand_with_the_newest_first() {
         let mut session = played(1);
-        let arguments = serde_json::json!({"A": 14});
-        session.call("set_prices", &arguments, crate::session::Via::Form).expect("a price");
+        for price in [14, 14] {
+            let arguments = serde_json::json!({ "A": price });
+            session.call("set_prices", &arguments, crate::session::Via::Form).expect("a price");
+        }
         let company = Company::of(&session);
         assert_eq!(
             calls("set_prices", &company, 9),

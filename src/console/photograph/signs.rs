@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 /// Thickness of lines and diameter of dots, pixels.
 const LINE: f64 = 1.2;
-const DOT: f64 = 1.9;
+const DOT: f64 = 2.3;
 
 /// The outline of a sign in a cell; none for signs that are written.
 pub fn path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> Option<String> {
@@ -14,6 +14,7 @@ pub fn path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> Opt
         '▁'..='█' => block(1.0 - f64::from(sign as u32 - 0x2580) / 8.0, 1.0),
         '▀' => block(0.0, 0.5),
         '░' | '▒' | '▓' => shade(sign, left, top, (width, height)),
+        '⎯' => corner('─', left, top, (width, height)),
         '─' | '│' | '┌' | '┐' | '└' | '┘' | '├' | '┤' | '┬' | '┴' | '┼' => {
             corner(sign, left, top, (width, height))
         }

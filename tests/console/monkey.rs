@@ -236,7 +236,8 @@ fn drafts_stay(console: &mut Console, dice: &mut Dice) {
     }
     let size = std::mem::replace(&mut console.size, (120, 40));
     let (there, again) = *dice.pick(&DRAFTS);
-    console.press("esc esc esc esc esc 1");
+    // Explanations lead to rows, and those to cells: many dialogs may lie on each other.
+    console.press(&format!("{}1", "esc ".repeat(30)));
     console.press(there);
     let number = 1_000 + dice.roll(8_999);
     let draft = if there.starts_with('8') { number.to_string() } else { format!("draft{number}") };

@@ -218,8 +218,8 @@ fn a_click((width, height): (u16, u16), dice: &mut Dice) -> Event {
 /// Places in which text is written: keys that lead there and into the text, and those that lead back.
 const DRAFTS: [(&str, &str); 5] = [
     ("9 esc i ctrl-n", "9 esc"),
-    ("5 p ctrl-u", "5 p"),
-    ("0 tab tab e", "0"),
+    ("5 esc esc p ctrl-u", "5 esc esc p"),
+    ("0 esc esc tab tab e", "0"),
     ("n enter ctrl-u", "n enter"),
     // A filter that is still typed would make another tool the first.
     ("8 esc esc esc home enter", "8 esc esc home enter"),
@@ -237,7 +237,8 @@ fn drafts_stay(console: &mut Console, dice: &mut Dice) {
     let size = std::mem::replace(&mut console.size, (120, 40));
     let (there, again) = *dice.pick(&DRAFTS);
     // Explanations lead to rows, and those to cells: many dialogs may lie on each other.
-    console.press(&format!("{}1", "esc ".repeat(30)));
+    // A filter that was being typed on a screen is still typed when one comes back.
+    console.press(&format!("{}1 esc esc", "esc ".repeat(30)));
     console.press(there);
     let number = 1_000 + dice.roll(8_999);
     let draft = if there.starts_with('8') { number.to_string() } else { format!("draft{number}") };

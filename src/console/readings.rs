@@ -1,8 +1,6 @@
 //! What screens ask the database for. Every reading is one guarded query over the visible tables, the same a
 //! person could ask; its words are in `assets/readings`.
 
-use crate::session::Cell;
-
 macro_rules! readings {
     ($($variant:ident $file:literal $doc:literal)*) => {
         /// A question of a screen.
@@ -41,23 +39,6 @@ readings! {
     Economy "economy" "The published index: day measured, value, trend, change, phase, description."
 }
 
-/// A cell of a row as a number; 0 if it holds none.
-pub fn number_at(row: &[Cell], at: usize) -> f64 {
-    match row.get(at) {
-        Some(Cell::Integer(number)) => *number as f64,
-        Some(Cell::Real(number)) => *number,
-        _ => 0.0,
-    }
-}
-
-/// A cell of a row as text; empty if it holds none.
-pub fn text_at(row: &[Cell], at: usize) -> &str {
-    match row.get(at) {
-        Some(Cell::Text(text)) => text,
-        _ => "",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -73,12 +54,5 @@ mod tests {
                 assert!(!rows.truncated, "{reading:?}");
             }
         }
-    }
-
-    #[test]
-    fn cells_that_are_missing_or_of_another_kind_count_as_nothing() {
-        let row = [Cell::Null, Cell::Integer(2), Cell::Text("x".to_owned())];
-        assert_eq!([0, 1, 2, 3].map(|at| number_at(&row, at)), [0.0, 2.0, 0.0, 0.0]);
-        assert_eq!([0, 2, 3].map(|at| text_at(&row, at)), ["", "x", ""]);
     }
 }

@@ -58,6 +58,23 @@ pub struct Rows {
     pub hint: Option<String>,
 }
 
+/// A cell of a row as a number; 0 if it holds none.
+pub fn number_at(row: &[Cell], at: usize) -> f64 {
+    match row.get(at) {
+        Some(Cell::Integer(number)) => *number as f64,
+        Some(Cell::Real(number)) => *number,
+        _ => 0.0,
+    }
+}
+
+/// A cell of a row as text; empty if it holds none.
+pub fn text_at(row: &[Cell], at: usize) -> &str {
+    match row.get(at) {
+        Some(Cell::Text(text)) => text,
+        _ => "",
+    }
+}
+
 /// Why a query was not answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct QueryError {

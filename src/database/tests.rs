@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::query::Limits;
-use super::{Cell, Desk, Entry, Location, Position, Projector, QueryError, Rows};
+use super::{Cell, Desk, Entry, Location, Position, Projector, QueryError, Rows, number_at, text_at};
 use crate::world::day::{step_day, tests::policy_p};
 use crate::world::events::Facts;
 use crate::world::params::Params;
@@ -382,4 +382,11 @@ fn queries_during_a_week_see_the_state_before_it() {
         company.projector.wait().expect("written");
         assert_eq!(rows(&desk, state).rows, [[Cell::Integer(8), Cell::Integer(8)]]);
     }
+}
+
+#[test]
+fn cells_that_are_missing_or_of_another_kind_count_as_nothing() {
+    let row = [Cell::Null, Cell::Integer(2), Cell::Text("x".to_owned())];
+    assert_eq!([0, 1, 2, 3].map(|at| number_at(&row, at)), [0.0, 2.0, 0.0, 0.0]);
+    assert_eq!([0, 2, 3].map(|at| text_at(&row, at)), ["", "x", ""]);
 }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::session::{Cell, Rows, Session};
+use crate::session::{Cell, Rows, Session, number_at, text_at};
 use crate::world::identifiers::Group;
 
 /// Who came and left by week and group. A deal that was left early ends in the future: it counts from the last day.
@@ -157,21 +157,6 @@ fn ledger_of(rows: &Rows) -> BTreeMap<u32, BTreeMap<String, f64>> {
         week.insert(text_at(row, 1).to_owned(), number_at(row, 2));
     }
     ledger
-}
-
-fn number_at(row: &[Cell], at: usize) -> f64 {
-    match row.get(at) {
-        Some(Cell::Integer(number)) => *number as f64,
-        Some(Cell::Real(number)) => *number,
-        _ => 0.0,
-    }
-}
-
-fn text_at(row: &[Cell], at: usize) -> &str {
-    match row.get(at) {
-        Some(Cell::Text(text)) => text,
-        _ => "",
-    }
 }
 
 #[cfg(test)]

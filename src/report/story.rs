@@ -6,31 +6,7 @@ use super::highlights::{Highlight, highlights};
 use super::measures::{self, Measures};
 use super::ranking::{Standing, standing};
 use super::turn::{Cost, costs, turned};
-use crate::session::{Ended, JournalEntry, Observation, Session, WeekFigures};
-
-/// A forecast of cash, and what came if its day has come.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Filed {
-    /// Day on which it was filed.
-    pub day: u32,
-    /// Days ahead.
-    pub horizon_days: u32,
-    /// What was said.
-    pub point: f64,
-    /// Lower end of the interval.
-    pub lower: f64,
-    /// Upper end of the interval.
-    pub upper: f64,
-    /// What came.
-    pub outcome: Option<f64>,
-}
-
-impl Filed {
-    /// The day it speaks of.
-    pub fn due(&self) -> u32 {
-        self.day + self.horizon_days
-    }
-}
+use crate::session::{Ended, Filed, Observation, Session, WeekFigures, filed_forecasts};
 
 /// How a company went under.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,7 +76,7 @@ impl Story {
             cash_by_day: session.cash_by_day().to_vec(),
             weeks: weeks.to_vec(),
             standing: standing(seen.score, &seen, start_cash),
-            filed: filed(journal, session.cash_by_day()),
+            filed: filed_forecasts(journal, session.cash_by_day()),
             chapters: chapters(session.decisions(), journal, start_cash),
             highlights: highlights(weeks, session.cash_by_day(), &books.outages, seen.ended),
             measures,
@@ -123,22 +99,6 @@ impl Story {
             None => format!("Day {day} of {}. Cash is {}.", self.seen.last_day, money(self.seen.cash)),
         }
     }
-}
-
-fn filed(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<Filed> {
-    let mut all = Vec::new();
-    for entry in journal {
-        let JournalEntry::Advance { day, forecasts, .. } = entry else { continue };
-        all.extend(forecasts.iter().map(|forecast| Filed {
-            day: *day,
-            horizon_days: forecast.horizon_days,
-            point: forecast.point,
-            lower: forecast.lower,
-            upper: forecast.upper,
-            outcome: cash_by_day.get((day + forecast.horizon_days) as usize).copied(),
-        }));
-    }
-    all
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 use super::error::RunError;
 use super::trajectory::Durability;
-use super::{Session, WeekFigures};
+use super::{Filed, Session, WeekFigures, filed_forecasts};
 use crate::tools::{Forecast, Refusal};
 
 /// A confirmed action or week.
@@ -64,27 +64,19 @@ impl Session {
 
     /// Scores of the forecasts so far, one per horizon.
     pub fn forecast_scores(&self) -> Vec<ForecastScore> {
-        let filed: Vec<(u32, Forecast)> = self
-            .journal
-            .iter()
-            .filter_map(|entry| match entry {
-                JournalEntry::Advance { day, forecasts, .. } => Some((*day, forecasts)),
-                _ => None,
-            })
-            .flat_map(|(day, forecasts)| forecasts.iter().map(move |forecast| (day, *forecast)))
-            .collect();
+        let filed = filed_forecasts(&self.journal, &self.cash_by_day);
         let horizons = self.params.limits.prediction_horizons_days.iter();
-        horizons.map(|horizon| self.score_horizon(*horizon, &filed)).collect()
+        horizons.map(|horizon| Session::score_horizon(*horizon, &filed)).collect()
     }
 
-    fn score_horizon(&self, horizon_days: u32, filed: &[(u32, Forecast)]) -> ForecastScore {
+    fn score_horizon(horizon_days: u32, filed: &[Filed]) -> ForecastScore {
         let mut score =
             ForecastScore { horizon_days, scored: 0, covered: 0, mean_error: 0.0, mean_sharpness: 0.0 };
-        for (day, forecast) in filed.iter().filter(|(_, forecast)| forecast.horizon_days == horizon_days) {
-            let Some(outcome) = self.cash_by_day.get((day + horizon_days) as usize) else { continue };
+        for forecast in filed.iter().filter(|filed| filed.horizon_days == horizon_days) {
+            let Some(outcome) = forecast.outcome else { continue };
             let size = if outcome.abs() <= 1.0 { 1.0 } else { outcome.abs() };
             score.scored += 1;
-            score.covered += u32::from(forecast.lower <= *outcome && *outcome <= forecast.upper);
+            score.covered += u32::from(forecast.is_inside());
             score.mean_error += (forecast.point - outcome).abs() / size;
             score.mean_sharpness += (forecast.upper - forecast.lower) / size;
         }

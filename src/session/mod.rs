@@ -15,6 +15,7 @@ mod create;
 mod dashboard;
 mod error;
 mod feed;
+mod filed;
 mod journal;
 pub mod library;
 mod manifest;
@@ -45,6 +46,7 @@ pub use course::{RunCourse, run_course};
 pub use create::{NewRun, Storage};
 pub use dashboard::DeliveredQuality;
 pub use error::RunError;
+pub use filed::{Filed, filed_forecasts};
 pub use journal::{ForecastScore, JournalEntry};
 pub use library::Library;
 pub use manifest::{FORMAT, Manifest, Parent};
@@ -58,7 +60,7 @@ pub use trajectory::{Line, Trajectory};
 pub use week::{Forecasts, WeekFigures, week_of};
 pub use xray::Xray;
 
-pub use crate::database::{Cell, Desk, Interrupt, QueryError, Rows};
+pub use crate::database::{Cell, Desk, Interrupt, QueryError, Rows, number_at, text_at};
 pub use crate::tools::{PublicPost, Refusal};
 pub use crate::voice::judge::Judgement;
 

@@ -1,9 +1,10 @@
 //! The charts of a story.
 
 use crate::report::page::{Band, Block, Chart, Curve, Part, Plot};
-use crate::report::story::{Filed, Story};
+use crate::report::story::Story;
 use crate::report::turn::{COSTS, INCOME};
 use crate::report::words::{count, money, whole};
+use crate::session::Filed;
 
 /// Groups that a chart can tell apart.
 const MOST_GROUPS: usize = 6;

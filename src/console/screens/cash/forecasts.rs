@@ -2,7 +2,6 @@
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::model::{Filed, filed};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click};
 use crate::console::company::Company;
@@ -11,6 +10,7 @@ use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Band, Cell, Column, Line, Plot, Table};
 use crate::notation::percent;
+use crate::session::{Filed, filed_forecasts};
 
 /// Forecasts of one horizon.
 #[derive(Default)]
@@ -25,7 +25,7 @@ pub struct Outlook {
 impl Outlook {
     /// Takes what was filed.
     pub fn renew(&mut self, company: &Company) {
-        self.all = filed(company);
+        self.all = filed_forecasts(&company.journal, &company.cash_by_day);
         self.horizons = company.scores.iter().map(|score| score.horizon_days).collect();
         self.refresh();
     }
@@ -37,7 +37,7 @@ impl Outlook {
     /// Forecasts of the horizon that is shown, in the order of filing.
     fn shown(&self) -> impl DoubleEndedIterator<Item = &Filed> {
         let horizon = self.horizon();
-        self.all.iter().filter(move |filed| filed.horizon == horizon)
+        self.all.iter().filter(move |filed| filed.horizon_days == horizon)
     }
 
     fn refresh(&mut self) {
@@ -88,7 +88,7 @@ impl Outlook {
         let sql = format!(
             "SELECT p.*, (SELECT sum(amount) FROM ledger WHERE day <= p.submit_day + p.horizon_days) AS cash\n\
              FROM predictions p\nWHERE submit_day = {} AND horizon_days = {}",
-            filed.day, filed.horizon
+            filed.day, filed.horizon_days
         );
         let title = format!("forecast of day {} for day {}", filed.day, filed.due());
         Some(Figure { title, term: "forecast", sql: Some(sql) })

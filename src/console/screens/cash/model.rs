@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::console::company::Company;
-use crate::console::readings::{number_at, text_at};
 use crate::notation::grouped;
-use crate::session::{JournalEntry, Rows, week_of};
+use crate::session::{Rows, week_of};
+use crate::session::{number_at, text_at};
 
 /// A category of the ledger.
 #[derive(Debug, PartialEq, Eq)]
@@ -205,56 +205,6 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
     }
     steps.push(level(format!("day {}", (7 * week).min(company.seen.day)), after));
     steps
-}
-
-/// A forecast and what became of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Filed {
-    /// Day it was filed.
-    pub day: u32,
-    /// Days ahead.
-    pub horizon: u32,
-    /// What was expected.
-    pub point: f64,
-    /// Lower end of the interval.
-    pub lower: f64,
-    /// Upper end of the interval.
-    pub upper: f64,
-    /// What it was, once its day has come.
-    pub outcome: Option<f64>,
-}
-
-impl Filed {
-    /// Day it speaks of.
-    pub fn due(&self) -> u32 {
-        self.day + self.horizon
-    }
-
-    /// -1 below the interval, 0 inside, 1 above; none before its day.
-    pub fn verdict(&self) -> Option<i32> {
-        let outcome = self.outcome?;
-        Some(i32::from(outcome > self.upper) - i32::from(outcome < self.lower))
-    }
-}
-
-/// Every forecast that was filed, in the order of filing.
-pub fn filed(company: &Company) -> Vec<Filed> {
-    let mut all = Vec::new();
-    for entry in &company.journal {
-        let JournalEntry::Advance { day, forecasts, .. } = entry else { continue };
-        for forecast in forecasts {
-            let due = (*day + forecast.horizon_days) as usize;
-            all.push(Filed {
-                day: *day,
-                horizon: forecast.horizon_days,
-                point: forecast.point,
-                lower: forecast.lower,
-                upper: forecast.upper,
-                outcome: company.cash_by_day.get(due).copied(),
-            });
-        }
-    }
-    all
 }
 
 /// Dollars with the sign in front.

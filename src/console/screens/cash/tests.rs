@@ -1,7 +1,7 @@
 use super::model::*;
 use super::*;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
-use crate::session::Cell as Value;
+use crate::session::{Cell as Value, Filed, filed_forecasts};
 
 #[test]
 fn the_books_agree_with_the_ledger() {
@@ -83,7 +83,7 @@ fn every_figure_of_the_books_is_made_of_its_rows() {
             let figure = screen.figure(&look).expect("a figure");
             let sql = format!("SELECT coalesce(sum(amount), 0.0) FROM ({})", figure.sql.expect("rows"));
             let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
-            let made = crate::console::readings::number_at(&rows.rows[0], 0);
+            let made = crate::session::number_at(&rows.rows[0], 0);
             let shown = subject.of(&amounts);
             assert!((made - shown).abs() < 0.2, "{}: {shown}, rows make {made}", figure.title);
             for _ in 1..column {
@@ -142,14 +142,14 @@ fn a_pane_can_have_the_whole_screen() {
 
 #[test]
 fn forecasts_are_compared_once_their_day_has_come() {
-    let forecast = Filed { day: 7, horizon: 7, point: 1.0, lower: 0.0, upper: 2.0, outcome: None };
+    let forecast = Filed { day: 7, horizon_days: 7, point: 1.0, lower: 0.0, upper: 2.0, outcome: None };
     for (outcome, verdict) in
         [(None, None), (Some(1.0), Some(0)), (Some(-1.0), Some(-1)), (Some(3.0), Some(1))]
     {
         assert_eq!(Filed { outcome, ..forecast }.verdict(), verdict);
     }
     let company = Company::of(&played(2));
-    let all = filed(&company);
+    let all = filed_forecasts(&company.journal, &company.cash_by_day);
     assert_eq!((all.len(), all.iter().filter(|one| one.outcome.is_some()).count()), (8, 2));
 }
 

@@ -6,12 +6,12 @@ use ratatui::layout::Rect;
 
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click};
-use crate::console::readings::{number_at, text_at};
 use crate::console::screens::Figure;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{compact, percent};
 use crate::session::Rows;
+use crate::session::{number_at, text_at};
 use crate::world::identifiers::Group;
 
 /// Width of the names of cohorts with their sizes, and of a cell.

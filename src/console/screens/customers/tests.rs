@@ -105,7 +105,7 @@ fn a_group_opens_and_leads_to_its_tools() {
 fn made(session: &mut Session, sql: &str, what: &str) -> f64 {
     let sql = format!("SELECT coalesce({what}, 0) FROM ({sql})");
     let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
-    crate::console::readings::number_at(&rows.rows[0], 0)
+    crate::session::number_at(&rows.rows[0], 0)
 }
 
 #[test]

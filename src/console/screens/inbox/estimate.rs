@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use super::model::Thread;
 use crate::console::company::Company;
-use crate::console::readings::{number_at, text_at};
 use crate::session::Rows;
+use crate::session::{number_at, text_at};
 use crate::world::identifiers::{Group, Plan};
 
 /// Days of a month of compute, as the screen of the product counts them.

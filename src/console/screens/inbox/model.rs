@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::console::readings::{Reading, number_at, text_at};
+use crate::console::readings::Reading;
 use crate::session::{Rows, WaitingThread};
+use crate::session::{number_at, text_at};
 use crate::world::identifiers::Plan;
 
 /// One row of a thread.

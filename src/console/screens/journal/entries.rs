@@ -8,7 +8,7 @@ use crate::console::company::Company;
 use crate::console::text::{number, short_dollars};
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, signed_dollars};
-use crate::session::{JournalEntry, WeekFigures};
+use crate::session::{Filed, JournalEntry, WeekFigures};
 use crate::tools::{Forecast, Kind, Spec, find};
 
 /// A line.
@@ -31,7 +31,7 @@ pub struct Line {
 }
 
 /// What was filed before a week.
-struct Filed<'a> {
+struct Filing<'a> {
     day: u32,
     rationale: &'a str,
     forecasts: &'a [Forecast],
@@ -42,7 +42,7 @@ struct Filed<'a> {
 #[derive(Default)]
 struct Group<'a> {
     calls: Vec<Line>,
-    filed: Option<Filed<'a>>,
+    filed: Option<Filing<'a>>,
     figures: Option<&'a WeekFigures>,
 }
 
@@ -55,7 +55,7 @@ pub fn lines(company: &Company) -> Vec<Line> {
         match entry {
             JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings)),
             JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
-                last.filed = Some(Filed { day: *day, rationale, forecasts, naively: *filled_naively });
+                last.filed = Some(Filing { day: *day, rationale, forecasts, naively: *filled_naively });
             }
             JournalEntry::Week { figures } => {
                 last.figures = Some(figures);
@@ -159,16 +159,12 @@ impl Group<'_> {
     }
 }
 
-impl Filed<'_> {
-    /// Cash on the day a forecast was made for, once it has come.
-    fn outcome(&self, forecast: &Forecast, company: &Company) -> Option<f64> {
-        company.cash_by_day.get((self.day + forecast.horizon_days) as usize).copied()
-    }
-
+impl Filing<'_> {
     fn in_a_line(&self, company: &Company) -> String {
         let one = |forecast: &Forecast| {
-            let came = match self.outcome(forecast, company) {
-                Some(cash) if forecast.lower <= cash && cash <= forecast.upper => " inside",
+            let filed = Filed::of(self.day, forecast, &company.cash_by_day);
+            let came = match filed.outcome {
+                Some(_) if filed.is_inside() => " inside",
                 Some(_) => " OUTSIDE",
                 None => "",
             };
@@ -182,12 +178,12 @@ impl Filed<'_> {
     fn in_full(&self, company: &Company) -> String {
         let head = format!("{:>8} {:>14} {:>14} {:>14}   {}", "", "low", "point", "high", "outcome");
         let one = |forecast: &Forecast| {
-            let outcome = match self.outcome(forecast, company) {
+            let filed = Filed::of(self.day, forecast, &company.cash_by_day);
+            let outcome = match filed.outcome {
                 Some(cash) => {
-                    let inside = forecast.lower <= cash && cash <= forecast.upper;
-                    format!("{} {}", dollars(cash), if inside { "inside" } else { "OUTSIDE" })
+                    format!("{} {}", dollars(cash), if filed.is_inside() { "inside" } else { "OUTSIDE" })
                 }
-                None => format!("on day {}", self.day + forecast.horizon_days),
+                None => format!("on day {}", filed.due()),
             };
             format!(
                 "{:>5} wk {:>14} {:>14} {:>14}   {outcome}",

@@ -328,7 +328,7 @@ mod tests {
             if let Some(sql) = &figure.sql {
                 let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows;
                 if figure.term == "cash-change" {
-                    let sum: f64 = rows.iter().map(|row| crate::console::readings::number_at(row, 1)).sum();
+                    let sum: f64 = rows.iter().map(|row| crate::session::number_at(row, 1)).sum();
                     let week = company.weeks.iter().find(|week| (week.cash_change - sum).abs() < 0.01);
                     assert!(week.is_some(), "{sql}: {sum}");
                 }

@@ -8,41 +8,14 @@ use crate::console::screens::Figure;
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::percent;
-use crate::session::{ForecastScore, JournalEntry};
-use crate::tools::Forecast;
-
-/// A forecast whose day has come.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
-    /// Day on which it was filed.
-    pub filed: u32,
-    /// What was said.
-    pub said: Forecast,
-    /// Cash on the day it was made for.
-    pub cash: f64,
-}
-
-impl Outcome {
-    /// Whether the interval held the outcome.
-    pub fn is_inside(&self) -> bool {
-        self.said.lower <= self.cash && self.cash <= self.said.upper
-    }
-
-    /// How far the point was off, as a share of the outcome; above it positive.
-    pub fn error(&self) -> Option<f64> {
-        (self.cash != 0.0).then(|| (self.said.point - self.cash) / self.cash.abs())
-    }
-}
+use crate::session::{Filed, ForecastScore, filed_forecasts};
 
 /// Forecasts of a horizon whose day has come, the newest first.
-pub fn outcomes(company: &Company, horizon: u32) -> Vec<Outcome> {
-    let of_entry = |entry: &JournalEntry| {
-        let JournalEntry::Advance { day, forecasts, .. } = entry else { return None };
-        let said = forecasts.iter().find(|forecast| forecast.horizon_days == horizon)?;
-        let cash = *company.cash_by_day.get((day + horizon) as usize)?;
-        Some(Outcome { filed: *day, said: *said, cash })
-    };
-    company.journal.iter().rev().filter_map(of_entry).collect()
+pub fn outcomes(company: &Company, horizon: u32) -> Vec<Filed> {
+    let mut all = filed_forecasts(&company.journal, &company.cash_by_day);
+    all.retain(|filed| filed.horizon_days == horizon && filed.outcome.is_some());
+    all.reverse();
+    all
 }
 
 /// The figure of a horizon.
@@ -110,17 +83,17 @@ pub fn draw(
     }
 }
 
-fn line_of_outcome(outcome: &Outcome) -> String {
-    let error = outcome.error().map_or("–".to_owned(), |error| {
+fn line_of_outcome(filed: &Filed) -> String {
+    let error = filed.error().map_or("–".to_owned(), |error| {
         let sign = if error < 0.0 { '-' } else { '+' };
         format!("{sign}{}", limited(error.abs()))
     });
     format!(
         "day {:<5}{:>9}{:>9}{error:>9}  {}",
-        outcome.filed + outcome.said.horizon_days,
-        short_dollars(outcome.said.point),
-        short_dollars(outcome.cash),
-        if outcome.is_inside() { "inside" } else { "OUTSIDE" }
+        filed.due(),
+        short_dollars(filed.point),
+        filed.outcome.map_or("–".to_owned(), short_dollars),
+        if filed.is_inside() { "inside" } else { "OUTSIDE" }
     )
 }
 
@@ -160,7 +133,7 @@ mod tests {
             let single = outcomes(&company, score.horizon_days);
             let inside = single.iter().filter(|outcome| outcome.is_inside()).count();
             assert_eq!((single.len() as u32, inside as u32), (score.scored, score.covered));
-            let errors: f64 = single.iter().filter_map(Outcome::error).map(f64::abs).sum();
+            let errors: f64 = single.iter().filter_map(Filed::error).map(f64::abs).sum();
             assert!((errors / single.len().max(1) as f64 - score.mean_error).abs() < 1e-9);
             let sql = figure(&company, at).and_then(|figure| figure.sql).expect("rows");
             assert_eq!(session.query(&sql).expect("rows").rows.len(), single.len());

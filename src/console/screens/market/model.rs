@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::console::company::Company;
-use crate::console::readings::{Reading, number_at, text_at};
+use crate::console::readings::Reading;
 use crate::session::{Cell, Rows, RunningStudy};
+use crate::session::{number_at, text_at};
 use crate::world::identifiers::Group;
 
 /// Since when a group is known.

@@ -209,7 +209,7 @@ fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
     let figure = screen.figure(&look).expect("a figure");
     assert_eq!(figure.title, "PMI of day 1");
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
-    assert_eq!(crate::console::readings::number_at(&rows[0], 1), screen.facts.economy[0].value);
+    assert_eq!(crate::session::number_at(&rows[0], 1), screen.facts.economy[0].value);
     for focus in 0..screen.panes() {
         screen.set_focus(focus);
         if let Some(figure) = screen.figure(&look) {

@@ -3,9 +3,9 @@
 use super::alerts::{Alert, Kind};
 use crate::console::company::Company;
 use crate::console::posts::Kind as Author;
-use crate::console::readings::text_at;
 use crate::console::screens::product::model::Project;
 use crate::session::Rows;
+use crate::session::text_at;
 
 /// What the notices of a week say, the newest first.
 pub fn of_notices(rows: &Rows) -> Vec<Alert> {

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::console::company::Company;
-use crate::console::readings::{number_at, text_at};
 use crate::session::Rows;
+use crate::session::{number_at, text_at};
 use crate::world::identifiers::Plan;
 
 /// A plan and what it earns.

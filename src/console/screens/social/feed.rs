@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub use crate::console::posts::{Kind, Post};
-use crate::console::readings::{number_at, text_at};
 use crate::session::Rows;
+use crate::session::{number_at, text_at};
 
 /// Our posts as the database tells them.
 pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {

@@ -44,7 +44,7 @@ fn the_feed_holds_what_the_tools_and_the_database_tell() {
     let comments = screen.others.iter().filter(|post| post.kind == Kind::Comments).count();
     assert_eq!(comments as u32, screen.own[0].comments);
     let rows = session.query("SELECT count(*) FROM social_media_posts").expect("rows");
-    assert_eq!(crate::console::readings::number_at(&rows.rows[0], 0) as u64, total);
+    assert_eq!(crate::session::number_at(&rows.rows[0], 0) as u64, total);
 }
 
 #[test]

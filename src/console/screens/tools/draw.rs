@@ -3,7 +3,6 @@
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line as TextLine;
 
-use super::earlier;
 use super::form::Form;
 use super::grid::{draw_sheet, form_lines};
 use super::outcome::{Leads, outcome_lines};
@@ -137,17 +136,13 @@ fn draw_form(
     canvas.lines(rest, &shown);
     let used = (shown.len() as u16 + 1).min(rest.height);
     let below = Rect { y: rest.y + used, height: rest.height - used, ..rest };
-    let used = draw_earlier(spec.name, canvas, below, look);
+    let used = draw_earlier(&form.earlier, canvas, below);
     draw_manual(spec, canvas, Rect { y: below.y + used, height: below.height - used, ..below });
     canvas.pane_keys(area, &keys(form, look));
 }
 
-/// Calls that are told below a form.
-const EARLIER: usize = 10;
-
 /// How the tool was used before, where there is room for it; returns the rows taken, with a blank one.
-fn draw_earlier(tool: &str, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) -> u16 {
-    let calls = earlier::calls(tool, look.company, EARLIER.min(area.height.saturating_sub(1) as usize));
+fn draw_earlier(calls: &[(u32, String)], canvas: &mut Canvas<'_>, area: Rect) -> u16 {
     if calls.is_empty() || area.height < 3 {
         return 0;
     }

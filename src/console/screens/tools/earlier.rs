@@ -6,6 +6,9 @@ use crate::console::company::Company;
 use crate::console::screens::journal::entries::in_words;
 use crate::session::JournalEntry;
 
+/// Calls that are told below a form.
+pub const MOST: usize = 10;
+
 /// Calls of a tool, the newest first: decision day and arguments. Calls that repeat the one before are left out.
 pub fn calls(tool: &str, company: &Company, most: usize) -> Vec<(u32, String)> {
     let calls = company.journal.iter().rev().filter_map(|entry| match entry {

@@ -3,6 +3,7 @@
 use crossterm::event::KeyEvent;
 use serde_json::Value;
 
+use super::earlier;
 use super::sheet::{Place, Sheet};
 use crate::console::action::Action;
 use crate::console::company::Company;
@@ -31,6 +32,8 @@ pub struct Form {
     pub preview: Option<Result<Preview, Refusal>>,
     /// The last answer.
     pub answer: Option<Result<Value, Refusal>>,
+    /// How the tool was used before: decision day and arguments, the newest first.
+    pub earlier: Vec<(u32, String)>,
 }
 
 impl Form {
@@ -44,6 +47,7 @@ impl Form {
             adding: None,
             preview: None,
             answer: None,
+            earlier: earlier::calls(spec.name, company, earlier::MOST),
         }
     }
 
@@ -55,6 +59,7 @@ impl Form {
     /// Takes over what holds now; drafts stay.
     pub fn renew(&mut self, company: &Company) {
         self.sheet = self.sheet.renewed(company);
+        self.earlier = earlier::calls(self.spec.name, company, earlier::MOST);
         self.preview = None;
         self.keep_inside();
     }

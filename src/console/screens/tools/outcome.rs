@@ -8,12 +8,12 @@ use super::form::Form;
 use super::reference::reference;
 use super::sheet::Block;
 use crate::console::action::Action;
-use crate::console::readings::{number_at, text_at};
 use crate::console::screens::Look;
 use crate::console::text::{number, wrapped};
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped, signed_dollars};
 use crate::session::Rows;
+use crate::session::{number_at, text_at};
 use crate::tools::{ArgumentKind, Key};
 
 /// Leads and spend of the last four weeks by channel and group, as ad_channel_leads counts them.

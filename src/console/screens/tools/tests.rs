@@ -134,8 +134,8 @@ fn a_matrix_says_what_its_sums_were_and_what_a_channel_brought() {
         .query("SELECT sum(leads_generated), sum(spend) FROM ad_channel_leads WHERE channel_id = 'content_marketing' AND day > 7")
         .expect("rows")
         .rows;
-    let leads = crate::console::readings::number_at(&rows[0], 0);
-    let spend = crate::console::readings::number_at(&rows[0], 1);
+    let leads = crate::session::number_at(&rows[0], 0);
+    let spend = crate::session::number_at(&rows[0], 1);
     let leads_in_words = crate::notation::grouped(leads, 0);
     let words = format!("content_marketing × S1, last four weeks: {leads_in_words} leads for");
     let text = drawn(&tools, &company, 200, 57);
@@ -206,5 +206,5 @@ fn a_field_names_its_term_and_its_history() {
     let figure = tools.figure(&look).expect("a figure");
     assert_eq!(figure.term, "set_prices.A");
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
-    assert_eq!(crate::console::readings::number_at(rows.last().expect("a row"), 1), 12.0);
+    assert_eq!(crate::session::number_at(rows.last().expect("a row"), 1), 12.0);
 }

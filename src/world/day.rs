@@ -1,5 +1,6 @@
 //! A day, as a list: read [`step_day`] from top to bottom (specification, chapter 20 §5).
 
+use super::canonical::canonical;
 use super::customers::Customers;
 use super::enterprise::Negotiation;
 use super::events::{Category, DayFigures, Facts, LedgerEntry, LedgerNote};
@@ -77,6 +78,8 @@ pub struct DayTrace {
     /// Factors of today's leads.
     pub leads: ByGroup<LeadFactors>,
 }
+
+canonical! { DayTrace { leads } }
 
 /// Simulates one day. Afterwards `facts` holds what happened.
 pub fn step_day(

@@ -1,6 +1,6 @@
 //! The whole hidden truth of a company and its market.
 
-use super::canonical::{Canonical, CanonicalHasher, hash_of};
+use super::canonical::{Canonical, CanonicalHasher, Sink, canonical, hash_of};
 use super::customers::Customers;
 use super::enterprise::Enterprise;
 use super::events::{Category, Facts, LedgerEntry, LedgerNote, SettingsChange};
@@ -32,6 +32,10 @@ pub struct World {
     pub market: Market,
     /// Negotiations.
     pub enterprise: Enterprise,
+}
+
+canonical! {
+    World { day, total_days, settings, finance, product, customers, issue_desk, market, enterprise }
 }
 
 /// Hash of one part of the state, so that a difference between two runs can be named.

@@ -4,7 +4,7 @@
 //! their numbers. A daily sweep goes through whole blocks, on any thread; a customer's random word stands at
 //! its fixed place of the block's stream, so nobody's fate shifts another's (chapter 20 §4).
 
-use crate::world::canonical::{Canonical, CanonicalHasher};
+use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink};
 use crate::world::identifiers::Plan;
 
 use super::curve::Curve;
@@ -52,14 +52,30 @@ macro_rules! columns {
         }
 
         impl Canonical for $Row {
-            fn feed(&self, hasher: &mut CanonicalHasher) {
-                $(self.$column.feed(hasher);)*
+            fn feed(&self, sink: &mut impl Sink) {
+                $(self.$column.feed(sink);)*
+            }
+        }
+
+        impl Restore for $Row {
+            fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+                $(let $column = reader.read()?;)*
+                Some($Row { $($column,)* })
+            }
+        }
+
+        impl Restore for $Block {
+            fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+                $(let $column: Vec<$kind> = reader.read()?;)*
+                let block = $Block { $($column,)* };
+                let whole = [$(block.$column.len(),)*].iter().all(|length| *length == block.len());
+                whole.then_some(block)
             }
         }
 
         impl Canonical for $Block {
-            fn feed(&self, hasher: &mut CanonicalHasher) {
-                $(self.$column.feed(hasher);)*
+            fn feed(&self, sink: &mut impl Sink) {
+                $(self.$column.feed(sink);)*
             }
         }
     };

@@ -1,6 +1,6 @@
 //! Companies that negotiate: what stays the same about them, and where they stand.
 
-use crate::world::canonical::{Canonical, CanonicalHasher, canonical};
+use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink, canonical};
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Subscriber;
 use crate::world::customers::persona::PersonaPicks;
@@ -47,12 +47,23 @@ canonical! {
 }
 
 impl Canonical for Standing {
-    fn feed(&self, hasher: &mut CanonicalHasher) {
+    fn feed(&self, sink: &mut impl Sink) {
         match self {
-            Standing::Lead(row) => (0u8, *row).feed(hasher),
-            Standing::Subscriber => 1u8.feed(hasher),
-            Standing::Gone(row) => (2u8, *row).feed(hasher),
+            Standing::Lead(row) => (0u8, *row).feed(sink),
+            Standing::Subscriber => 1u8.feed(sink),
+            Standing::Gone(row) => (2u8, *row).feed(sink),
         }
+    }
+}
+
+impl Restore for Standing {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some(match reader.read::<u8>()? {
+            0 => Standing::Lead(reader.read()?),
+            1 => Standing::Subscriber,
+            2 => Standing::Gone(reader.read()?),
+            _ => return None,
+        })
     }
 }
 

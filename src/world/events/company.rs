@@ -1,6 +1,6 @@
 //! The company and its environment: settings, service, research, notifications.
 
-use crate::world::canonical::{Canonical, CanonicalHasher, canonical};
+use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink, canonical};
 use crate::world::identifiers::Group;
 use crate::world::market::economy::Reading;
 use crate::world::market::studies::Study;
@@ -51,16 +51,31 @@ impl SettingsChange {
 }
 
 impl Canonical for SettingsChange {
-    fn feed(&self, hasher: &mut CanonicalHasher) {
+    fn feed(&self, sink: &mut impl Sink) {
         match self {
-            SettingsChange::Core(value) => (0u8, *value).feed(hasher),
-            SettingsChange::Promotion(value) => (1u8, value.clone()).feed(hasher),
-            SettingsChange::LeadPromotion(value) => (2u8, value.clone()).feed(hasher),
-            SettingsChange::AdsStrength(value) => (3u8, value.clone()).feed(hasher),
-            SettingsChange::TargetedAds(value) => (4u8, value.clone()).feed(hasher),
-            SettingsChange::TargetedOperations(value) => (5u8, value.clone()).feed(hasher),
-            SettingsChange::TargetedDevelopment(value) => (6u8, value.clone()).feed(hasher),
+            SettingsChange::Core(value) => (0u8, *value).feed(sink),
+            SettingsChange::Promotion(value) => (1u8, value.clone()).feed(sink),
+            SettingsChange::LeadPromotion(value) => (2u8, value.clone()).feed(sink),
+            SettingsChange::AdsStrength(value) => (3u8, value.clone()).feed(sink),
+            SettingsChange::TargetedAds(value) => (4u8, value.clone()).feed(sink),
+            SettingsChange::TargetedOperations(value) => (5u8, value.clone()).feed(sink),
+            SettingsChange::TargetedDevelopment(value) => (6u8, value.clone()).feed(sink),
         }
+    }
+}
+
+impl Restore for SettingsChange {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some(match reader.read::<u8>()? {
+            0 => SettingsChange::Core(reader.read()?),
+            1 => SettingsChange::Promotion(reader.read()?),
+            2 => SettingsChange::LeadPromotion(reader.read()?),
+            3 => SettingsChange::AdsStrength(reader.read()?),
+            4 => SettingsChange::TargetedAds(reader.read()?),
+            5 => SettingsChange::TargetedOperations(reader.read()?),
+            6 => SettingsChange::TargetedDevelopment(reader.read()?),
+            _ => return None,
+        })
     }
 }
 
@@ -111,11 +126,21 @@ pub enum ResearchChange {
 }
 
 impl Canonical for ResearchChange {
-    fn feed(&self, hasher: &mut CanonicalHasher) {
+    fn feed(&self, sink: &mut impl Sink) {
         match self {
-            ResearchChange::Started(project) => (0u8, *project).feed(hasher),
-            ResearchChange::Completed(project) => (1u8, *project).feed(hasher),
+            ResearchChange::Started(project) => (0u8, *project).feed(sink),
+            ResearchChange::Completed(project) => (1u8, *project).feed(sink),
         }
+    }
+}
+
+impl Restore for ResearchChange {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some(match reader.read::<u8>()? {
+            0 => ResearchChange::Started(reader.read()?),
+            1 => ResearchChange::Completed(reader.read()?),
+            _ => return None,
+        })
     }
 }
 
@@ -213,20 +238,40 @@ impl Notice {
 }
 
 impl Canonical for Notice {
-    fn feed(&self, hasher: &mut CanonicalHasher) {
+    fn feed(&self, sink: &mut impl Sink) {
         match *self {
-            Notice::EnterpriseLead => 0u8.feed(hasher),
-            Notice::LeadLostByTimeout { days } => (1u8, days).feed(hasher),
-            Notice::ResearchComplete { tier, number } => (2u8, (tier, number)).feed(hasher),
-            Notice::EconomyUpdate(reading) => (3u8, reading).feed(hasher),
-            Notice::GroupFound { group, attempt } => (4u8, (group, attempt)).feed(hasher),
-            Notice::StudyComplete { study, noise } => (5u8, (study, noise)).feed(hasher),
-            Notice::LeadSilent => 10u8.feed(hasher),
-            Notice::CounterOffer { customer } => (11u8, customer).feed(hasher),
-            Notice::ChurnThreat { customer } => (12u8, customer).feed(hasher),
-            Notice::PlanWish { customer, upgrade } => (13u8, (customer, upgrade)).feed(hasher),
-            Notice::DealWon { price } => (14u8, price).feed(hasher),
-            Notice::OwnPostSeen(reaction) => (20u8, reaction).feed(hasher),
+            Notice::EnterpriseLead => 0u8.feed(sink),
+            Notice::LeadLostByTimeout { days } => (1u8, days).feed(sink),
+            Notice::ResearchComplete { tier, number } => (2u8, (tier, number)).feed(sink),
+            Notice::EconomyUpdate(reading) => (3u8, reading).feed(sink),
+            Notice::GroupFound { group, attempt } => (4u8, (group, attempt)).feed(sink),
+            Notice::StudyComplete { study, noise } => (5u8, (study, noise)).feed(sink),
+            Notice::LeadSilent => 10u8.feed(sink),
+            Notice::CounterOffer { customer } => (11u8, customer).feed(sink),
+            Notice::ChurnThreat { customer } => (12u8, customer).feed(sink),
+            Notice::PlanWish { customer, upgrade } => (13u8, (customer, upgrade)).feed(sink),
+            Notice::DealWon { price } => (14u8, price).feed(sink),
+            Notice::OwnPostSeen(reaction) => (20u8, reaction).feed(sink),
         }
+    }
+}
+
+impl Restore for Notice {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some(match reader.read::<u8>()? {
+            0 => Notice::EnterpriseLead,
+            1 => Notice::LeadLostByTimeout { days: reader.read()? },
+            2 => Notice::ResearchComplete { tier: reader.read()?, number: reader.read()? },
+            3 => Notice::EconomyUpdate(reader.read()?),
+            4 => Notice::GroupFound { group: reader.read()?, attempt: reader.read()? },
+            5 => Notice::StudyComplete { study: reader.read()?, noise: reader.read()? },
+            10 => Notice::LeadSilent,
+            11 => Notice::CounterOffer { customer: reader.read()? },
+            12 => Notice::ChurnThreat { customer: reader.read()? },
+            13 => Notice::PlanWish { customer: reader.read()?, upgrade: reader.read()? },
+            14 => Notice::DealWon { price: reader.read()? },
+            20 => Notice::OwnPostSeen(reader.read()?),
+            _ => return None,
+        })
     }
 }

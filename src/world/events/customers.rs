@@ -14,7 +14,11 @@ canonical! {
     IssueOpened { issue, customer, group }
     AdsRevenueRow { customer, group, strength, revenue }
 }
-canonical_codes!(Source, SubscriptionStatus, EndCause);
+canonical_codes! {
+    Source { SocialMedia, SearchAds, Linkedin, ContentMarketing, ReferralProgram, Network, Organic }
+    SubscriptionStatus { Lead, Subscribed, Cancelled, Lost }
+    EndCause { Involuntary, Quality, Price, LeadTimeout, LeadSilent, LeadRejected, ExtendedIssue, QualityChange, QuotaChange, PriceSensitivity }
+}
 
 /// How a customer came.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,13 +1,18 @@
 //! Movements of cash.
 
-use crate::world::canonical::{Canonical, CanonicalHasher, canonical, canonical_codes};
+use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink, canonical, canonical_codes};
 use crate::world::market::studies::Study;
 
 canonical! {
     Payment { customer, amount }
     LedgerEntry { category, amount, note }
 }
-canonical_codes!(Category);
+canonical_codes! {
+    Category {
+        InitialFunding, LeadAcquisitionCost, SubscriptionPayment, Capacity, Compute, Operations, Development, Advertising,
+        AdRevenue, MarketResearch, GroupResearch, ResearchProject,
+    }
+}
 
 /// A payment of a subscriber.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,13 +116,26 @@ pub enum LedgerNote {
 }
 
 impl Canonical for LedgerNote {
-    fn feed(&self, hasher: &mut CanonicalHasher) {
+    fn feed(&self, sink: &mut impl Sink) {
         match *self {
-            LedgerNote::General => (0u8, 0u32).feed(hasher),
-            LedgerNote::Targeted => (1u8, 0u32).feed(hasher),
-            LedgerNote::Subscribers(count) => (2u8, count).feed(hasher),
-            LedgerNote::Project(tier, number) => (3u8, (tier, number)).feed(hasher),
-            LedgerNote::Study(study) => (4u8, study).feed(hasher),
+            LedgerNote::General => (0u8, 0u32).feed(sink),
+            LedgerNote::Targeted => (1u8, 0u32).feed(sink),
+            LedgerNote::Subscribers(count) => (2u8, count).feed(sink),
+            LedgerNote::Project(tier, number) => (3u8, (tier, number)).feed(sink),
+            LedgerNote::Study(study) => (4u8, study).feed(sink),
         }
+    }
+}
+
+impl Restore for LedgerNote {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some(match reader.read::<u8>()? {
+            0 => reader.read::<u32>().map(|_| LedgerNote::General)?,
+            1 => reader.read::<u32>().map(|_| LedgerNote::Targeted)?,
+            2 => LedgerNote::Subscribers(reader.read()?),
+            3 => LedgerNote::Project(reader.read()?, reader.read()?),
+            4 => LedgerNote::Study(reader.read()?),
+            _ => return None,
+        })
     }
 }

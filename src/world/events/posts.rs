@@ -1,6 +1,6 @@
 //! Social media: what is written in public. Codes and numbers only; `voice` finds the words.
 
-use crate::world::canonical::{Canonical, CanonicalHasher, canonical, canonical_codes};
+use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink, canonical, canonical_codes};
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::events::ThreadKind;
 use crate::world::identifiers::{Group, Plan};
@@ -17,7 +17,10 @@ canonical! {
     OwnPostMade { post, content, reply_to }
     OwnPostSeen { post, views, comments }
 }
-canonical_codes!(Theme, Severity);
+canonical_codes! {
+    Theme { Price, Quality, Rivals, Service, Support, Limits, Ads, Progress, Habit }
+    Severity { Minor, Moderate, Major, Transformative }
+}
 
 /// A post of somebody else than the player.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,16 +91,38 @@ pub enum Matter {
 }
 
 impl Canonical for Matter {
-    fn feed(&self, hasher: &mut CanonicalHasher) {
+    fn feed(&self, sink: &mut impl Sink) {
         match *self {
-            Matter::Opinion(opinion) => (0u8, opinion).feed(hasher),
-            Matter::Reading(reading) => (1u8, reading).feed(hasher),
-            Matter::Economy { trend, pmi, perspective } => (2u8, ((trend, pmi), perspective)).feed(hasher),
+            Matter::Opinion(opinion) => (0u8, opinion).feed(sink),
+            Matter::Reading(reading) => (1u8, reading).feed(sink),
+            Matter::Economy { trend, pmi, perspective } => (2u8, ((trend, pmi), perspective)).feed(sink),
             Matter::Rival { name, perspective, severity, estimate } => {
-                (3u8, ((name, perspective), (severity, estimate))).feed(hasher)
+                (3u8, ((name, perspective), (severity, estimate))).feed(sink)
             }
-            Matter::Comment { own_post, group, effect } => (4u8, ((own_post, group), effect)).feed(hasher),
+            Matter::Comment { own_post, group, effect } => (4u8, ((own_post, group), effect)).feed(sink),
         }
+    }
+}
+
+impl Restore for Matter {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some(match reader.read::<u8>()? {
+            0 => Matter::Opinion(reader.read()?),
+            1 => Matter::Reading(reader.read()?),
+            2 => {
+                let ((trend, pmi), perspective) = reader.read()?;
+                Matter::Economy { trend, pmi, perspective }
+            }
+            3 => {
+                let ((name, perspective), (severity, estimate)) = reader.read()?;
+                Matter::Rival { name, perspective, severity, estimate }
+            }
+            4 => {
+                let ((own_post, group), effect) = reader.read()?;
+                Matter::Comment { own_post, group, effect }
+            }
+            _ => return None,
+        })
     }
 }
 
@@ -153,7 +178,7 @@ pub enum Cause {
 }
 
 impl Canonical for Cause {
-    fn feed(&self, hasher: &mut CanonicalHasher) {
+    fn feed(&self, sink: &mut impl Sink) {
         let code = match self {
             Cause::Overload => 0u8,
             Cause::Outage => 1,
@@ -165,10 +190,30 @@ impl Canonical for Cause {
             Cause::Cancelled => 7,
             Cause::Lost { .. } => 8,
         };
-        code.feed(hasher);
+        code.feed(sink);
         if let Cause::Lost { thread, unanswered } = self {
-            (*thread, *unanswered).feed(hasher);
+            (*thread, *unanswered).feed(sink);
         }
+    }
+}
+
+impl Restore for Cause {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some(match reader.read::<u8>()? {
+            0 => Cause::Overload,
+            1 => Cause::Outage,
+            2 => Cause::Issue,
+            3 => Cause::Quota,
+            4 => Cause::Improved,
+            5 => Cause::Declined,
+            6 => Cause::General,
+            7 => Cause::Cancelled,
+            8 => {
+                let (thread, unanswered) = reader.read()?;
+                Cause::Lost { thread, unanswered }
+            }
+            _ => return None,
+        })
     }
 }
 

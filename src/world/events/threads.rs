@@ -1,6 +1,6 @@
 //! Negotiations with companies.
 
-use crate::world::canonical::{Canonical, CanonicalHasher, canonical, canonical_codes};
+use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink, canonical, canonical_codes};
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::identifiers::{Group, Plan};
 
@@ -9,7 +9,10 @@ canonical! {
     Offering { plan, price }
     DealClosed { customer, kind, activated, plan, price, agent_turns, days, seats, contract_end_day }
 }
-canonical_codes!(ThreadKind, Sender);
+canonical_codes! {
+    ThreadKind { NewLead, PlanChange, ChurnPrevention, Renegotiation }
+    Sender { System, Customer, Agent }
+}
 
 /// How an enterprise thread began.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -110,20 +113,36 @@ pub enum TurnContent {
 }
 
 impl Canonical for TurnContent {
-    fn feed(&self, hasher: &mut CanonicalHasher) {
+    fn feed(&self, sink: &mut impl Sink) {
         match self {
-            TurnContent::Opening => 0u8.feed(hasher),
+            TurnContent::Opening => 0u8.feed(sink),
             TurnContent::Offer(offerings) => {
-                1u8.feed(hasher);
-                offerings.feed(hasher);
+                1u8.feed(sink);
+                offerings.feed(sink);
             }
-            TurnContent::Rejection => 2u8.feed(hasher),
-            TurnContent::Threat => 3u8.feed(hasher),
-            TurnContent::PlanWish { from, to } => (4u8, (*from, *to)).feed(hasher),
-            TurnContent::Counter { asked, offered } => (5u8, (*asked, *offered)).feed(hasher),
-            TurnContent::Acceptance(offering) => (6u8, *offering).feed(hasher),
-            TurnContent::Closing(offering) => (7u8, *offering).feed(hasher),
+            TurnContent::Rejection => 2u8.feed(sink),
+            TurnContent::Threat => 3u8.feed(sink),
+            TurnContent::PlanWish { from, to } => (4u8, (*from, *to)).feed(sink),
+            TurnContent::Counter { asked, offered } => (5u8, (*asked, *offered)).feed(sink),
+            TurnContent::Acceptance(offering) => (6u8, *offering).feed(sink),
+            TurnContent::Closing(offering) => (7u8, *offering).feed(sink),
         }
+    }
+}
+
+impl Restore for TurnContent {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some(match reader.read::<u8>()? {
+            0 => TurnContent::Opening,
+            1 => TurnContent::Offer(reader.read()?),
+            2 => TurnContent::Rejection,
+            3 => TurnContent::Threat,
+            4 => TurnContent::PlanWish { from: reader.read()?, to: reader.read()? },
+            5 => TurnContent::Counter { asked: reader.read()?, offered: reader.read()? },
+            6 => TurnContent::Acceptance(reader.read()?),
+            7 => TurnContent::Closing(reader.read()?),
+            _ => return None,
+        })
     }
 }
 

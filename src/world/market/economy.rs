@@ -44,7 +44,10 @@ canonical! {
     Economy { pmi, started, history, last_measurement, waiting, published }
     Reading { measured_day, value, change, trend, phase }
 }
-canonical_codes!(Trend, Phase);
+canonical_codes! {
+    Trend { StrongExpansion, Expansion, Neutral, Contraction, SevereContraction }
+    Phase { Peak, Declining, Trough, Recovering }
+}
 
 /// Label of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

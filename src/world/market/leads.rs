@@ -4,6 +4,7 @@ use super::Market;
 use super::economy::Dimension;
 use super::social::own::social_multiplier;
 use super::surges::surge_factor;
+use crate::world::canonical::canonical;
 use crate::world::events::Source;
 use crate::world::identifiers::{ByChannel, ByGroup, Channel, Group};
 use crate::world::params::{Leads, Params};
@@ -29,6 +30,8 @@ pub struct LeadFactors {
     /// Leads by word of mouth before the factors.
     pub network: f64,
 }
+
+canonical! { LeadFactors { reputation, saturation, calendar, economy, social, surge, paid, network } }
 
 impl LeadFactors {
     /// Expected leads: lambda = R D C M A Z (X + Y).

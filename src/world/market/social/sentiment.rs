@@ -3,7 +3,7 @@
 use crate::world::canonical::canonical_codes;
 use crate::world::params::{SentimentChances, Social};
 
-canonical_codes!(Sentiment);
+canonical_codes! { Sentiment { Positive, Neutral, Negative } }
 
 /// Tone of a post.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,172 @@
+//! Reading canonical bytes back. Whatever the bytes are, reading ends with a value or with none.
+
+use indexmap::IndexMap;
+
+use crate::world::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
+
+/// Canonical bytes that are still to be read.
+pub struct CanonicalReader<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> CanonicalReader<'a> {
+    /// Begins with the first byte.
+    pub fn new(bytes: &'a [u8]) -> CanonicalReader<'a> {
+        CanonicalReader { rest: bytes }
+    }
+
+    /// The next bytes; none if there are fewer.
+    pub fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (taken, rest) = self.rest.split_at_checked(count)?;
+        self.rest = rest;
+        Some(taken)
+    }
+
+    /// The next value.
+    pub fn read<T: Restore>(&mut self) -> Option<T> {
+        T::restore(self)
+    }
+
+    /// Whether everything was read.
+    pub fn is_empty(&self) -> bool {
+        self.rest.is_empty()
+    }
+}
+
+/// A part of the state that can be read back from its canonical bytes.
+pub trait Restore: Sized {
+    /// Reads the next value; none if the bytes are not those of one.
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self>;
+}
+
+/// The value whose canonical bytes these are, all of them.
+pub fn restored<T: Restore>(bytes: &[u8]) -> Option<T> {
+    let mut reader = CanonicalReader::new(bytes);
+    let value = reader.read()?;
+    reader.is_empty().then_some(value)
+}
+
+macro_rules! restored_numbers {
+    ($($number:ty),*) => {$(
+        impl Restore for $number {
+            fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+                let bytes = reader.take(size_of::<$number>())?;
+                bytes.try_into().ok().map(<$number>::from_le_bytes)
+            }
+        }
+    )*};
+}
+restored_numbers!(u8, u16, u32, u64, i64);
+
+impl Restore for f64 {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        reader.read().map(f64::from_bits)
+    }
+}
+
+impl Restore for bool {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        match reader.read::<u8>()? {
+            0 => Some(false),
+            1 => Some(true),
+            _ => None,
+        }
+    }
+}
+
+/// Length of a list or text that is read next; each of its values takes a byte or more.
+fn length(reader: &mut CanonicalReader<'_>) -> Option<usize> {
+    let length = usize::try_from(reader.read::<u64>()?).ok()?;
+    (length <= reader.rest.len()).then_some(length)
+}
+
+impl Restore for String {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        let length = length(reader)?;
+        String::from_utf8(reader.take(length)?.to_vec()).ok()
+    }
+}
+
+impl<T: Restore> Restore for Vec<T> {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        let length = length(reader)?;
+        (0..length).map(|_| reader.read()).collect()
+    }
+}
+
+impl<T: Restore, const LENGTH: usize> Restore for [T; LENGTH] {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        let values: Vec<T> = (0..LENGTH).map(|_| reader.read()).collect::<Option<_>>()?;
+        values.try_into().ok()
+    }
+}
+
+impl<T: Restore> Restore for Option<T> {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        if reader.read()? { reader.read().map(Some) } else { Some(None) }
+    }
+}
+
+impl<A: Restore, B: Restore> Restore for (A, B) {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some((reader.read()?, reader.read()?))
+    }
+}
+
+impl<K: Restore + std::hash::Hash + Eq, V: Restore> Restore for IndexMap<K, V> {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        let length = length(reader)?;
+        (0..length).map(|_| reader.read()).collect()
+    }
+}
+
+macro_rules! restored_positions {
+    ($($name:ident),*) => {$(
+        impl Restore for $name {
+            fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+                $name::at(usize::from(reader.read::<u8>()?))
+            }
+        }
+    )*};
+}
+restored_positions!(Group, Plan, Channel);
+
+macro_rules! restored_tables {
+    ($($name:ident),*) => {$(
+        impl<T: Restore> Restore for $name<T> {
+            fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+                reader.read().map($name)
+            }
+        }
+    )*};
+}
+restored_tables!(ByGroup, ByPlan, ByChannel);
+
+#[cfg(test)]
+mod tests {
+    use super::super::bytes_of;
+    use super::*;
+
+    #[test]
+    fn every_kind_of_value_comes_back() {
+        let text = "naïve".to_owned();
+        let nested = (vec![Some(Plan::B), None], (text, [1.5f64, -0.0]));
+        let read: (Vec<Option<Plan>>, (String, [f64; 2])) = restored(&bytes_of(&nested)).expect("it reads");
+        assert_eq!(read, nested);
+        let map: IndexMap<i64, ByChannel<u16>> = IndexMap::from([(-3, ByChannel([1, 2, 3, 4, 5]))]);
+        assert_eq!(restored::<IndexMap<i64, ByChannel<u16>>>(&bytes_of(&map)), Some(map));
+    }
+
+    #[test]
+    fn bytes_of_nothing_are_refused() {
+        let whole = bytes_of(&vec![Group::at(25).expect("a group"); 3]);
+        for cut in 0..whole.len() {
+            assert!(restored::<Vec<Group>>(&whole[..cut]).is_none(), "cut at {cut}");
+        }
+        assert!(restored::<Vec<Group>>(&[whole.as_slice(), &[0]].concat()).is_none(), "a byte too many");
+        assert!(restored::<Group>(&[26]).is_none());
+        assert!(restored::<bool>(&[2]).is_none());
+        assert!(restored::<Vec<u8>>(&u64::MAX.to_le_bytes()).is_none(), "a length beyond the end");
+        assert!(restored::<String>(&[1, 0, 0, 0, 0, 0, 0, 0, 0xff]).is_none(), "no text");
+    }
+}

@@ -22,7 +22,7 @@ use clap::{Parser, Subcommand};
 
 pub use failure::Failure;
 
-use crate::session::Configuration;
+use crate::session::{Configuration, participant_folder};
 
 /// Run a simulated AI subscription company for 500 days.
 ///
@@ -37,6 +37,9 @@ pub struct Arguments {
     /// Folder of the runs [default: the platform's data folder].
     #[arg(long, global = true, env = "NOVAMIND_RUNS", value_name = "DIR")]
     runs_dir: Option<PathBuf>,
+    /// Whose runs these are: they stand in a folder of their own, carry this label, and no others are shown.
+    #[arg(long = "as", global = true, env = "NOVAMIND_PARTICIPANT", value_name = "LABEL")]
+    participant: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -77,6 +80,8 @@ pub struct Context {
     pub configuration: Configuration,
     /// Folder of the runs, if one was named or the platform has one.
     runs: Option<PathBuf>,
+    /// Whose runs these are, if anybody's in particular.
+    pub participant: Option<String>,
 }
 
 impl Context {
@@ -85,9 +90,13 @@ impl Context {
     /// # Errors
     /// The platform has none and none was named.
     pub fn runs(&self) -> Result<PathBuf, Failure> {
-        self.runs.clone().ok_or_else(|| {
+        let base = self.runs.clone().ok_or_else(|| {
             Failure::usage("this system names no folder for data; give one with --runs-dir or NOVAMIND_RUNS")
-        })
+        })?;
+        match &self.participant {
+            None => Ok(base),
+            Some(label) => participant_folder(&base, label).map_err(Failure::usage),
+        }
     }
 }
 
@@ -99,6 +108,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let context = Context {
         configuration: Configuration::of_user(),
         runs: arguments.runs_dir.or_else(Configuration::runs_folder),
+        participant: arguments.participant.filter(|label| !label.is_empty()),
     };
     match arguments.command {
         None => play::run(arguments.play, &context),

@@ -11,7 +11,7 @@ use crate::console::effect::Effect;
 use crate::console::glyphs::Glyphs;
 use crate::console::keys::Keys;
 use crate::console::theme::Theme;
-use crate::session::{Access, Library, Mode, NewRun, Session, Storage, find_run};
+use crate::session::{Access, Library, Mode, NewRun, RunError, Session, Storage, find_run};
 
 /// Options of `play`.
 #[derive(Debug, Args, Clone, Default)]
@@ -40,6 +40,9 @@ pub struct Options {
     /// Who plays.
     #[arg(long, value_name = "LABEL")]
     participant: Option<String>,
+    /// The participant has agreed to the text in consent.md of the configuration folder.
+    #[arg(long)]
+    consent: bool,
     /// Set a parameter of a debug run; may be repeated.
     #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
     set: Vec<(String, String)>,
@@ -88,7 +91,8 @@ impl Options {
             scenario: self.scenario.clone().unwrap_or(standard.scenario),
             overrides: self.set.clone(),
             mode: self.mode.unwrap_or(standard.mode),
-            participant: self.participant.clone(),
+            participant: self.participant.clone().or_else(|| context.participant.clone()),
+            agreed: self.consent,
             storage: Storage::Runs(context.runs()?),
             projection: true,
             sync_calls: true,
@@ -105,7 +109,25 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
 fn open(options: &Options, context: &Context) -> Result<Session, Failure> {
     match &options.run {
         Some(id) => Ok(Session::open(&find_run(&context.runs()?, id)?, Access::Write, true)?),
-        None => Ok(Session::create(options.new_run(context)?, &context.configuration)?),
+        None => create(options.new_run(context)?, context),
+    }
+}
+
+/// Starts a run; a participant who has to agree to something is asked at a terminal.
+fn create(new: NewRun, context: &Context) -> Result<Session, Failure> {
+    match Session::create(new.clone(), &context.configuration) {
+        Err(RunError::ConsentNeeded(text)) if std::io::stdin().is_terminal() => {
+            eprint!("{}\n\nType yes to agree: ", text.text.trim_end());
+            let mut answer = String::new();
+            let read = std::io::stdin().read_line(&mut answer);
+            if read.is_err() || !answer.trim().eq_ignore_ascii_case("yes") {
+                return Err(Failure::failed(
+                    "nobody agreed; no run was started and nothing was recorded".to_owned(),
+                ));
+            }
+            Ok(Session::create(NewRun { agreed: true, ..new }, &context.configuration)?)
+        }
+        created => Ok(created?),
     }
 }
 

@@ -65,7 +65,11 @@ mod tests {
         session.advance("wait and see", &forecasts, Via::Script, &mut |_| {}).expect("a week");
         let id = session.manifest().id.clone();
         drop(session);
-        let context = Context { configuration: Configuration::shipped(), runs: Some(runs.path().to_owned()) };
+        let context = Context {
+            configuration: Configuration::shipped(),
+            runs: Some(runs.path().to_owned()),
+            participant: None,
+        };
         let written = |format: Format, name: &str| {
             let path = runs.path().join(name);
             let options = Options { run: "latest".to_owned(), format, out: Some(path.clone()) };

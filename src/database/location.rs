@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use rusqlite::{Connection, OpenFlags};
+use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 /// Place of a database.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,7 +45,18 @@ impl Location {
 
     /// Opens a connection that only reads.
     pub(super) fn open_reader(&self) -> rusqlite::Result<Connection> {
-        self.open(OpenFlags::SQLITE_OPEN_READ_ONLY)
+        let opened = self.open(OpenFlags::SQLITE_OPEN_READ_ONLY).and_then(|connection| {
+            connection.query_row("SELECT COUNT(*) FROM sqlite_master", [], |_| Ok(()))?;
+            Ok(connection)
+        });
+        match (opened, self.path().and_then(Path::to_str)) {
+            // Where nothing can be written, SQLite has no place for its marks between readers and a writer.
+            (Err(error), Some(path)) if error.sqlite_error_code() == Some(ErrorCode::CannotOpen) => {
+                let escaped = path.replace('%', "%25").replace('?', "%3f").replace('#', "%23");
+                Location::Memory(format!("file:{escaped}?immutable=1")).open(OpenFlags::SQLITE_OPEN_READ_ONLY)
+            }
+            (opened, _) => opened,
+        }
     }
 
     fn open(&self, flags: OpenFlags) -> rusqlite::Result<Connection> {

@@ -25,6 +25,6 @@ mod tests;
 pub use catalogue::{Column, Table, table, tables};
 pub use interrupt::Interrupt;
 pub use location::Location;
-pub use projector::{Position, ProjectionError, Projector, desk_of, position_of};
+pub use projector::{Position, ProjectionError, Projector, desk_of, file_digest, is_consistent, position_of};
 pub use query::{Cell, Desk, QueryError, Rows, ScriptError, number_at, text_at};
 pub use rows::{Entry, ForecastRow};

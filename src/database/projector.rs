@@ -1,6 +1,7 @@
 //! The writer thread: takes entries as they happen and commits them in one transaction per week or call.
 
 use std::fmt;
+use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, RwLock};
 use std::thread::JoinHandle;
@@ -25,6 +26,13 @@ pub struct Position {
     pub line_hash: String,
 }
 
+impl Position {
+    /// Shows whether the position itself is whole.
+    fn check(&self) -> String {
+        blake3::hash(format!("{} {}", self.seq, self.line_hash).as_bytes()).to_hex()[..16].to_owned()
+    }
+}
+
 /// Why the database could not be written. The run itself is safe: the trajectory holds everything.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ProjectionError(pub String);
@@ -41,9 +49,13 @@ impl fmt::Display for ProjectionError {
 
 impl std::error::Error for ProjectionError {}
 
+/// Something to do once everything handed over before is in the database.
+type Errand = Box<dyn FnOnce(&Connection) + Send>;
+
 enum Job {
     Write(Box<Entry>),
     Commit(Position),
+    Then(Errand),
     Wait(Sender<Result<(), ProjectionError>>),
 }
 
@@ -96,6 +108,15 @@ impl Projector {
     /// Makes everything handed over so far visible, as of a trajectory position.
     pub fn commit(&self, position: Position) {
         self.send(Job::Commit(position));
+    }
+
+    /// Does something on the writer's thread once everything committed so far is in the database. It is told the
+    /// digest of the database's file if `digest` asks for it; none in memory, or where the file cannot be read.
+    pub fn then(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
+        let path = self.location.path().filter(|_| digest).map(Path::to_owned);
+        self.send(Job::Then(Box::new(move |connection| {
+            work(path.and_then(|path| settled_digest(connection, &path)));
+        })));
     }
 
     /// Waits until everything handed over so far is in the database.
@@ -156,6 +177,7 @@ impl Worker<'_> {
                 Job::Wait(done) => {
                     let _ = done.send(self.failed.clone().map_or(Ok(()), Err));
                 }
+                Job::Then(errand) => errand(self.connection),
                 Job::Commit(position) => {
                     self.try_to(|worker| worker.transact(&mut pending, Some(&position), queue))
                 }
@@ -189,7 +211,7 @@ impl Worker<'_> {
         for entry in pending.drain(..) {
             self.rows.write(&transaction, &entry)?;
         }
-        let mut waiting = Vec::new();
+        let (mut waiting, mut errands) = (Vec::new(), Vec::new());
         let position = match position {
             Some(position) => position.clone(),
             None => loop {
@@ -197,6 +219,7 @@ impl Worker<'_> {
                     Ok(Job::Write(entry)) => self.rows.write(&transaction, &entry)?,
                     Ok(Job::Commit(position)) => break position,
                     Ok(Job::Wait(done)) => waiting.push(done),
+                    Ok(Job::Then(errand)) => errands.push(errand),
                     // The program ends in the middle of a week: the week is simulated again when the run is opened.
                     Err(_) => return Ok(()),
                 }
@@ -204,18 +227,32 @@ impl Worker<'_> {
         };
         self.rows.flush(&transaction)?;
         transaction.execute(
-            "INSERT OR REPLACE INTO projection VALUES (1, ?1, ?2)",
-            rusqlite::params![position.seq as i64, position.line_hash],
+            "INSERT OR REPLACE INTO projection VALUES (1, ?1, ?2, ?3)",
+            rusqlite::params![position.seq as i64, position.line_hash, position.check()],
         )?;
         let closed = self.gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());
         transaction.commit()?;
         self.rows.publish();
         drop(closed);
+        errands.into_iter().for_each(|errand| errand(self.connection));
         for done in waiting {
             let _ = done.send(Ok(()));
         }
         Ok(())
     }
+}
+
+/// Digest of a database's file, with everything committed in it rather than beside it.
+fn settled_digest(connection: &Connection, path: &Path) -> Option<String> {
+    let busy: i64 = connection.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |row| row.get(0)).ok()?;
+    (busy == 0).then(|| file_digest(path)).flatten()
+}
+
+/// Digest of a file's bytes; none if it cannot be read.
+pub fn file_digest(path: &Path) -> Option<String> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(std::fs::File::open(path).ok()?).ok()?;
+    Some(hasher.finalize().to_hex().to_string())
 }
 
 /// Opens a database that is there, whole, and at a known position; loads its blocks onto the shelf.
@@ -256,6 +293,14 @@ pub fn desk_of(location: &Location) -> Result<(Desk, Position), ProjectionError>
     Ok((desk, position))
 }
 
+/// Whether the structure of the database at a location is what it should be. Takes a while for a large one.
+pub fn is_consistent(location: &Location) -> bool {
+    let check = |connection: Connection| {
+        connection.query_row("PRAGMA quick_check(1)", [], |row| row.get::<_, String>(0))
+    };
+    location.open_reader().and_then(check).is_ok_and(|answer| answer == "ok")
+}
+
 /// How far the database at a location has come; none where there is none that can be read.
 pub fn position_of(location: &Location) -> Option<Position> {
     location.path().filter(|path| path.exists())?;
@@ -271,10 +316,14 @@ fn load_shelf(connection: &Connection) -> Option<Shelf> {
 
 fn stored_position(connection: &Connection) -> rusqlite::Result<Option<Position>> {
     connection
-        .query_row("SELECT seq, line_hash FROM projection", [], |row| {
-            Ok(Position { seq: row.get::<_, i64>(0)? as u64, line_hash: row.get(1)? })
+        .query_row("SELECT seq, line_hash, own_check FROM projection", [], |row| {
+            let position = Position { seq: row.get::<_, i64>(0)? as u64, line_hash: row.get(1)? };
+            // A position that was damaged accuses the wrong file.
+            let whole = row.get::<_, String>(2)? == position.check();
+            Ok(whole.then_some(position))
         })
         .optional()
+        .map(Option::flatten)
 }
 
 fn load<T>(

@@ -4,7 +4,8 @@
 CREATE TABLE projection (
     id INTEGER PRIMARY KEY CHECK (id = 1),
     seq INTEGER NOT NULL,
-    line_hash TEXT NOT NULL
+    line_hash TEXT NOT NULL,
+    own_check TEXT NOT NULL
 );
 
 -- Words of customer profiles by group and axis.

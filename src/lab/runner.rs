@@ -179,6 +179,7 @@ pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
         overrides,
         mode: Mode::Debug,
         participant: None,
+        agreed: false,
         storage: spec.save.clone().map_or(Storage::Memory, Storage::Runs),
         projection: spec.projection,
         sync_calls: false,

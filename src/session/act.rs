@@ -134,6 +134,9 @@ impl Session {
         let planned = allowed.and_then(|()| self.plan(tool, arguments)).and_then(|(arguments, effect)| {
             let deed = self.world.resolve(effect, &self.params, &self.streams);
             let task = tool.task(&self.view(), &arguments);
+            if task.as_ref().is_some_and(Task::leaves_something) {
+                self.refuse_if_closed()?;
+            }
             let answer = match &task {
                 Some(Task::Run { code, seconds }) => self.run_statements(code, *seconds)?,
                 _ => tool.answer(&self.view(), &arguments, &deed),
@@ -218,7 +221,10 @@ impl Session {
         }
         self.chain_facts();
         self.project_facts();
-        self.commit_projection();
+        // The database must not be ahead of what is on the disk.
+        if self.sync_calls {
+            self.commit_projection();
+        }
     }
 
     /// Takes back the last setting of this week by sending the call that restores the old value.
@@ -273,12 +279,13 @@ impl Session {
         Ok((arguments, effect))
     }
 
-    /// What tools may look at.
-    /// Refuses what acts once the run is over, and everything that would write a run that is only read.
+    /// Refuses what acts once the run is over, and in a run that is only read.
     pub(super) fn refuse_if_over(&self, kind: Kind) -> Result<(), Refusal> {
-        if !kind.acts() {
-            return Ok(());
-        }
+        if kind.acts() { self.refuse_if_closed() } else { Ok(()) }
+    }
+
+    /// Refuses whatever would have to be written down where nothing is written any more.
+    fn refuse_if_closed(&self) -> Result<(), Refusal> {
         if let Some(ended) = self.ended {
             let day = self.world.day;
             let how = match ended {

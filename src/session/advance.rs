@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::act::{Via, not_saved};
 use super::scripts::as_field;
+use super::snapshot::WEEKS_BETWEEN;
 use super::trajectory::{Durability, Line, seconds};
 use super::week::{Forecasts, WeekFigures};
 use super::xray::Xray;
@@ -231,6 +232,10 @@ impl Session {
         self.commit_projection();
         self.facts_chain.close();
         remark = remark.or_else(|| self.close_if_over());
+        let due = self.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.running_week.days_run == 0;
+        if due && remark.is_none() && self.sync_calls {
+            self.keep_snapshot(false);
+        }
         remark.map(|problem| {
             format!("{problem}; the days are simulated again when the run is opened, with the same result")
         })

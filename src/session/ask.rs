@@ -49,6 +49,11 @@ impl Session {
     /// # Errors
     /// The database cannot be written.
     pub fn wait_for_database(&self) -> Result<(), Refusal> {
+        if !self.sync_calls {
+            let synced = self.trajectory.as_ref().map_or(Ok(()), |trajectory| trajectory.sync_written());
+            synced.map_err(|error| Refusal::new("sql_error", error.to_string()))?;
+            self.commit_projection();
+        }
         match &self.projector {
             Some(projector) => projector.wait().map_err(|error| Refusal::new("sql_error", error.to_string())),
             None => Ok(()),

@@ -106,7 +106,7 @@ fn write_branch(folder: &PathBuf, manifest: &Manifest, shared: &[&Line]) -> Resu
 
 /// The fields of a line that are not part of its frame.
 fn own_fields(line: &Line) -> Map<String, Value> {
-    let frame = ["seq", "kind", "day", "at", "prev"];
+    let frame = ["seq", "kind", "day", "at", "prev", "sum"];
     line.fields
         .iter()
         .filter(|(name, _)| !frame.contains(&name.as_str()))

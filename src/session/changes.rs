@@ -1,15 +1,17 @@
 //! Settings as a list of numbers, so that two states can be compared: old -> new.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::notation::{Word, word};
 use crate::world::identifiers::{Channel, Group, Plan};
 use crate::world::settings::Settings;
 
 /// A setting that differs between two states.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Change {
     /// Tool that sets it.
-    pub tool: &'static str,
+    #[serde(deserialize_with = "word")]
+    pub tool: Word,
     /// Which one, for instance `price A` or `ads linkedin E1`.
     pub setting: String,
     /// Value before.
@@ -17,11 +19,12 @@ pub struct Change {
     /// Value after.
     pub new: f64,
     /// Unit of both.
-    pub unit: &'static str,
+    #[serde(deserialize_with = "word")]
+    pub unit: Word,
 }
 
 /// What was decided between two weeks.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Decisions {
     /// Decision day.
     pub day: u32,

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde_json::{Map, Value, json};
 
 use super::configuration::{Configuration, DEFAULT_SCENARIO};
+use super::consent::agreed;
 use super::error::RunError;
 use super::feed::Feed;
 use super::manifest::{FORMAT, Manifest, differences, sync_folder};
@@ -13,11 +14,12 @@ use super::mode::Mode;
 use super::record::FactsChain;
 use super::runs::{earlier_runs, lock_run};
 use super::scripts::Office;
-use super::trajectory::{Durability, TrajectoryWriter, now};
+use super::trajectory::{Durability, SUMS, TrajectoryWriter, now};
 use super::week::WeekFigures;
 use super::{Session, ThisWeek};
 use crate::database::{Location, Projector};
 use crate::notation::json_number;
+use crate::world::MECHANICS;
 use crate::world::day::DayTrace;
 use crate::world::events::Facts;
 use crate::world::params::Params;
@@ -44,6 +46,8 @@ pub struct NewRun {
     pub mode: Mode,
     /// Who plays, as the experimenter names them.
     pub participant: Option<String>,
+    /// Whether the person has agreed to the text that the experimenter asks for; baseline runs only.
+    pub agreed: bool,
     /// Where the run is kept.
     pub storage: Storage,
     /// Whether the database is kept up to date; without it queries are refused.
@@ -71,6 +75,7 @@ impl Default for NewRun {
             overrides: Vec::new(),
             mode: Mode::Sandbox,
             participant: None,
+            agreed: false,
             storage: Storage::Memory,
             projection: true,
             sync_calls: true,
@@ -245,9 +250,14 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         Storage::Runs(runs) => earlier_runs(runs, seed, &scenario.name),
         Storage::Memory => 0,
     };
+    let consent = match new.mode {
+        Mode::Baseline => agreed(new, configuration)?,
+        Mode::Sandbox | Mode::Lesson | Mode::Debug => None,
+    };
     let manifest = Manifest {
         format: FORMAT,
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        mechanics: MECHANICS,
         id: new_id(),
         created: now(),
         seed,
@@ -257,6 +267,7 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         mode: new.mode,
         participant: new.participant.clone(),
         earlier_runs,
+        consent,
         parameters_digest: params.digest(),
         parent: None,
         parameters: differences(&params),
@@ -279,6 +290,7 @@ pub(super) fn start_fields(manifest: &Manifest) -> Map<String, Value> {
     let fields = json!({
         "format": manifest.format,
         "version": manifest.version,
+        "mechanics": manifest.mechanics,
         "run": manifest.id,
         "seed": manifest.seed,
         "days": manifest.days,
@@ -288,7 +300,9 @@ pub(super) fn start_fields(manifest: &Manifest) -> Map<String, Value> {
         "parameters_digest": manifest.parameters_digest,
         "mode": manifest.mode,
         "participant": manifest.participant,
+        "consent": manifest.consent,
         "parent": manifest.parent,
+        (SUMS): true,
     });
     fields.as_object().cloned().unwrap_or_default()
 }

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use super::consent::ConsentText;
+
 use crate::database::ProjectionError;
 use crate::world::params::ParameterError;
 
@@ -48,6 +50,24 @@ pub enum RunError {
         /// Digest of the parameters as this program reads them.
         own: String,
     },
+    /// The run was played by other mechanics than this program has.
+    #[error(
+        "run {id} was recorded by version {version} with mechanics {recorded}, this program has mechanics {own}; \
+         open it with that version: nothing was changed"
+    )]
+    OtherMechanics {
+        /// Run.
+        id: String,
+        /// Version that recorded it.
+        version: String,
+        /// Number in the manifest.
+        recorded: u32,
+        /// Number of this program.
+        own: u32,
+    },
+    /// The person has to agree to a text first.
+    #[error("{}", .0.explained())]
+    ConsentNeeded(ConsentText),
     /// The run was written in a format this program does not know.
     #[error(
         "run {id} has format {format}, this program reads format {known}; use a newer version: nothing was changed"
@@ -67,6 +87,20 @@ pub enum RunError {
         id: String,
         /// Who holds it.
         holder: String,
+    },
+    /// The folder of a run takes no changes.
+    #[error(
+        "run {id} cannot be written ({error}): its folder {folder} is on read-only media or belongs to somebody else; \
+         open it to read only with `novamind play --run {id} --watch`, or copy it to a place of your own",
+        folder = .folder.display()
+    )]
+    NotWritable {
+        /// Run.
+        id: String,
+        /// Its folder.
+        folder: PathBuf,
+        /// What the system said.
+        error: std::io::Error,
     },
     /// There is no such run.
     #[error("there is no run {id} in {folder}; `novamind runs` lists those there are", folder = .folder.display())]

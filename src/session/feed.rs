@@ -2,6 +2,8 @@
 //!
 //! Words belong to no state: they are made anew, the same, whenever a run is simulated again.
 
+use serde::{Deserialize, Serialize};
+
 use super::Session;
 use crate::tools::PublicPost;
 use crate::voice;
@@ -15,15 +17,52 @@ use crate::world::market::social::sentiment::Sentiment;
 use crate::world::params::PostJudge;
 
 /// Everything that was written so far, and why the player's posts were taken as they were.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 pub(super) struct Feed {
     writer: Writer,
     /// Posts of others as the player sees them, in the order of their numbers.
+    #[serde(with = "kept_posts")]
     pub posts: Vec<PublicPost>,
     /// Whether each of them complains.
     complains: Vec<bool>,
     /// Judgements of the player's posts, by their position; empty until they were judged.
     pub judgements: Vec<Vec<Judgement>>,
+}
+
+/// Posts with everything the session knows of them; what tools show of them leaves some of it out.
+mod kept_posts {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use crate::notation::{Word, word_if_any};
+    use crate::tools::PublicPost;
+    use crate::world::identifiers::Group;
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(remote = "PublicPost")]
+    struct Kept {
+        post: u32,
+        day: u32,
+        content: String,
+        own_post: Option<u32>,
+        source_group: Option<Group>,
+        written_by: Option<Group>,
+        #[serde(deserialize_with = "word_if_any")]
+        profile: Option<Word>,
+    }
+
+    #[derive(Serialize)]
+    struct Borrowed<'a>(#[serde(with = "Kept")] &'a PublicPost);
+
+    #[derive(Deserialize)]
+    struct Owned(#[serde(with = "Kept")] PublicPost);
+
+    pub fn serialize<S: Serializer>(posts: &[PublicPost], serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(posts.iter().map(Borrowed))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<PublicPost>, D::Error> {
+        Ok(Vec::<Owned>::deserialize(deserializer)?.into_iter().map(|owned| owned.0).collect())
+    }
 }
 
 impl Feed {

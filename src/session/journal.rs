@@ -1,6 +1,6 @@
 //! What was done and why: every confirmed action, week by week, and how the forecasts turned out.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::error::RunError;
@@ -9,7 +9,7 @@ use super::{Filed, Session, WeekFigures, filed_forecasts};
 use crate::tools::{Forecast, Refusal};
 
 /// A confirmed action or week.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum JournalEntry {
     /// A tool was called.

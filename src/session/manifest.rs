@@ -5,8 +5,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
+use super::consent::Consent;
 use super::error::RunError;
 use super::mode::Mode;
+use crate::world::MECHANICS;
 use crate::world::params::{ParameterError, Params, Source, shipped_sources};
 
 /// Format of trajectories and manifests that this program writes.
@@ -20,6 +22,9 @@ pub struct Manifest {
     pub format: u32,
     /// Version of the program that created it.
     pub version: String,
+    /// Number of the mechanics it is played by; runs of the first builds do not name it.
+    #[serde(default = "first_mechanics")]
+    pub mechanics: u32,
     /// Name of the run: eight hexadecimal digits.
     pub id: String,
     /// When it was created, RFC 3339.
@@ -41,12 +46,19 @@ pub struct Manifest {
     pub earlier_runs: u32,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
+    /// Which text the person agreed to, and when; none if none was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub consent: Option<Consent>,
     /// Run and line this one branched from.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parent: Option<Parent>,
     /// Every parameter that differs from the shipped ones.
     #[serde(default, skip_serializing_if = "Table::is_empty")]
     pub parameters: Table,
+}
+
+fn first_mechanics() -> u32 {
+    1
 }
 
 /// Where a branch comes from.
@@ -73,6 +85,14 @@ impl Manifest {
             safe: "The trajectory was not touched; restore run.toml from a copy to open the run".to_owned(),
             path,
         })?;
+        if manifest.mechanics != MECHANICS {
+            return Err(RunError::OtherMechanics {
+                id: manifest.id,
+                version: manifest.version,
+                recorded: manifest.mechanics,
+                own: MECHANICS,
+            });
+        }
         if manifest.format > FORMAT {
             return Err(RunError::OtherFormat { id: manifest.id, format: manifest.format, known: FORMAT });
         }
@@ -161,6 +181,7 @@ mod tests {
         Manifest {
             format: FORMAT,
             version: "0.1.0".to_owned(),
+            mechanics: MECHANICS,
             id: "0123abcd".to_owned(),
             created: "2026-11-21T10:00:00Z".to_owned(),
             seed: 42,
@@ -170,6 +191,7 @@ mod tests {
             mode: Mode::Sandbox,
             participant: None,
             earlier_runs: 0,
+            consent: None,
             parameters_digest: params.digest(),
             parent: None,
             parameters: differences(params),
@@ -198,6 +220,11 @@ mod tests {
         let mut own = manifest(&Params::shipped());
         own.parameters_digest = "0000000000000000".to_owned();
         assert!(own.params().expect_err("another digest").to_string().contains("nothing was changed"));
+        own.mechanics = MECHANICS + 1;
+        own.write(folder.path()).expect("it is written");
+        let error = Manifest::read(folder.path()).expect_err("other mechanics").to_string();
+        assert!(error.contains("version 0.1.0") && error.contains("nothing was changed"), "{error}");
+        own.mechanics = MECHANICS;
         own.format = 2;
         own.write(folder.path()).expect("it is written");
         let error = Manifest::read(folder.path()).expect_err("another format").to_string();

@@ -10,6 +10,7 @@ mod ask;
 mod branch;
 mod changes;
 mod configuration;
+mod consent;
 mod course;
 mod create;
 mod dashboard;
@@ -25,23 +26,29 @@ mod open;
 mod record;
 mod runs;
 mod scripts;
+mod snapshot;
 mod terms;
 mod trajectory;
 mod week;
+mod witness;
 mod xray;
+
+#[cfg(test)]
+mod power_cut_tests;
 
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 pub use act::{Preview, Via};
 pub use advance::{DayReport, Week};
 pub use ask::{desk_of_file, rows_as_json};
 pub use changes::{Change, Decisions};
 pub use configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
+pub use consent::{Consent, ConsentText};
 pub use course::{RunCourse, run_course};
 pub use create::{NewRun, Storage};
 pub use dashboard::DeliveredQuality;
@@ -53,7 +60,10 @@ pub use manifest::{FORMAT, Manifest, Parent};
 pub use mode::Mode;
 pub use observe::{Observation, WaitingThread};
 pub use open::{Access, Verification, verify};
-pub use runs::{RunSummary, delete_run, end_run, find_run, find_run_to_read, list_runs, run_folder};
+pub use runs::{
+    RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,
+    participant_folder, run_folder,
+};
 pub use scripts::Calculated;
 pub use terms::{RunningStudy, StudyLevel, Terms};
 pub use trajectory::{Line, Trajectory};
@@ -77,7 +87,7 @@ use scripts::Office;
 use trajectory::TrajectoryWriter;
 
 /// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Ended {
     /// It reached its last day.
@@ -258,11 +268,15 @@ impl Session {
     /// # Errors
     /// The disk refuses.
     pub fn save(&mut self) -> Result<(), RunError> {
-        if let Some(projector) = &self.projector {
-            projector.wait()?;
+        if let Some(trajectory) = &mut self.trajectory {
+            trajectory.sync()?;
         }
-        match &mut self.trajectory {
-            Some(trajectory) => trajectory.sync(),
+        if !self.sync_calls {
+            self.commit_projection();
+        }
+        self.keep_snapshot(true);
+        match &self.projector {
+            Some(projector) => Ok(projector.wait()?),
             None => Ok(()),
         }
     }

@@ -1,5 +1,6 @@
 //! Going on with a run: reading its trajectory and simulating it again.
 
+use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -8,10 +9,13 @@ use serde_json::Value;
 use super::error::RunError;
 use super::manifest::Manifest;
 use super::runs::lock_run;
+use super::snapshot::Snapshot;
 use super::trajectory::{Line, Trajectory, TrajectoryWriter};
+use super::witness::Witnesses;
 use super::{Ended, Session};
-use crate::database::{Location, Position, Projector, position_of};
+use crate::database::{Location, Position, Projector};
 use crate::world::events::Facts;
+use crate::world::params::Params;
 use crate::world::state::World;
 
 /// What may be done with an opened run.
@@ -21,6 +25,15 @@ pub enum Access {
     Write,
     /// Look at it; nothing of it is changed.
     Read,
+}
+
+/// Where opening begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Begin {
+    /// With the snapshot, if there is one that can be used.
+    Snapshot,
+    /// With the first line.
+    FirstLine,
 }
 
 /// What a verification found out.
@@ -44,6 +57,10 @@ impl Session {
     /// # Errors
     /// The run is missing, damaged, of another version, or in use; the error names the place and what is safe.
     pub fn open(folder: &Path, access: Access, projection: bool) -> Result<Session, RunError> {
+        Session::open_from(folder, access, projection, Begin::Snapshot)
+    }
+
+    fn open_from(folder: &Path, access: Access, projection: bool, begin: Begin) -> Result<Session, RunError> {
         let manifest = Manifest::read(folder)?;
         let params = Arc::new(manifest.params()?);
         let lock = match access {
@@ -51,19 +68,23 @@ impl Session {
             Access::Read => None,
         };
         let path = folder.join("trajectory.jsonl");
+        let mut witnesses = Witnesses::of(folder);
         let trajectory = Trajectory::read(&path)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;
-        if access == Access::Write && projection {
-            check_end(&path, folder, &trajectory)?;
-        }
-        let (projector, projected) = open_projector(folder, access, projection, &params, &trajectory)?;
-        let mut facts = Facts::default();
-        let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
-        let in_memory = TrajectoryWriter::in_memory();
-        let own = Some(folder.to_owned());
-        let mut session = Session::assemble(manifest, own, lock, params, world, facts, in_memory, None, true);
-        session.trajectory = None;
-        session.replay(&path, &trajectory, projector, projected.as_ref())?;
+        witnesses.check(&path, &trajectory)?;
+        let database = match projection {
+            false => None,
+            true => {
+                let sound = access == Access::Write && witnesses.vouch_for_database(folder);
+                Some(open_projector(folder, access, &params, &trajectory, sound)?)
+            }
+        };
+        // The number of the line up to which rows are there; rows that lack need the facts before them.
+        let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
+        let snapshot = usable(&witnesses, &manifest, &trajectory, rows).filter(|_| begin == Begin::Snapshot);
+        let (mut session, seen) = Session::before_replay(manifest.clone(), folder, lock, params, snapshot);
+        session.remarks.append(&mut witnesses.remarks);
+        session.replay(&path, &trajectory, seen, database)?;
         if access == Access::Write {
             session.trajectory = Some(TrajectoryWriter::resume(&path, &trajectory)?);
         }
@@ -73,20 +94,62 @@ impl Session {
                 "The last line of the trajectory was unfinished ({bytes} bytes) and was dropped: it was never confirmed."
             ));
         }
+        session.check_memo(&trajectory);
         session.finish_week(&trajectory);
         Ok(session)
     }
 
-    /// Applies every line again; the database gets only what it does not have yet.
+    /// Notes that are not the ones that were kept last are told; they are the person's own, and stay as they are.
+    fn check_memo(&mut self, trajectory: &Trajectory) {
+        let Some(line) = trajectory.lines.iter().rev().find(|line| line.kind == "memo") else { return };
+        let digest = |text: &str| Value::from(blake3::hash(text.as_bytes()).to_hex().as_str());
+        let kept = self.memo().ok().map(|text| digest(&text));
+        if kept.as_ref() != line.fields.get("digest") {
+            self.remarks
+                .push("memo.md is not as it was kept last: it was changed outside, or damaged.".to_owned());
+        }
+    }
+
+    /// A session that has seen no line yet, or everything up to a snapshot's; and how many it has seen.
+    fn before_replay(
+        manifest: Manifest,
+        folder: &Path,
+        lock: Option<File>,
+        params: Arc<Params>,
+        snapshot: Option<&Snapshot>,
+    ) -> (Session, usize) {
+        let (in_memory, own) = (TrajectoryWriter::in_memory(), Some(folder.to_owned()));
+        let recalled = snapshot.and_then(|snapshot| Some((snapshot.recall()?, snapshot.position())));
+        let (mut session, seen) = match recalled {
+            None => {
+                let mut facts = Facts::default();
+                let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
+                (Session::assemble(manifest, own, lock, params, world, facts, in_memory, None, true), 0)
+            }
+            Some(((world, facts, recalled), position)) => {
+                let seen = position.seq as usize + 1;
+                let mut session =
+                    Session::assemble(manifest, own, lock, params, world, facts, in_memory, None, true);
+                session.remember(recalled, position);
+                (session, seen)
+            }
+        };
+        session.trajectory = None;
+        (session, seen)
+    }
+
+    /// Applies every line again but those the session has seen; the database gets only what it does not have yet.
     fn replay(
         &mut self,
         path: &Path,
         trajectory: &Trajectory,
-        mut projector: Option<Projector>,
-        projected: Option<&Position>,
+        seen: usize,
+        database: Option<(Projector, Option<Position>)>,
     ) -> Result<(), RunError> {
-        for line in &trajectory.lines {
-            let missing = projected.is_none_or(|position| line.seq > position.seq);
+        let (mut projector, projected): (Option<Projector>, _) = database.unzip();
+        let projected = projected.flatten();
+        for line in trajectory.lines.iter().skip(seen) {
+            let missing = projected.as_ref().is_none_or(|position| line.seq > position.seq);
             if missing && projector.is_some() {
                 self.projector = projector.take();
             }
@@ -209,54 +272,38 @@ fn same_figures(reached: &serde_json::Map<String, Value>, line: &Line) -> Result
     }
 }
 
-/// Nothing follows the last line and vouches for it, but the database remembers it: a line that was changed or
-/// cut off at the end shows here.
-fn check_end(path: &Path, folder: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
-    let location = Location::File(folder.join("world.db"));
-    let (Some(last), Some(position)) = (trajectory.lines.last(), position_of(&location)) else {
-        return Ok(());
-    };
-    // A torn line is cut off with a notice, and a week that lacks its closing line is simulated again.
-    let heals = trajectory.unfinished > 0 || last.kind == "advance";
-    let (line, problem) = if position.seq > last.seq && !heals {
-        (last.seq + 2, "the line is missing, but the database was made from it")
-    } else if position.seq == last.seq && position.line_hash != last.hash {
-        (last.seq + 1, "the line is not the one the database was made from: it was changed")
-    } else {
-        return Ok(());
-    };
-    Err(RunError::Damaged {
-        path: path.to_owned(),
-        line: line as usize,
-        problem: problem.to_owned(),
-        safe: format!(
-            "Lines 1 to {} are good; nothing was changed. Restore the trajectory from a copy, or remove world.db to \
-             go on from what is there",
-            line - 1
-        ),
-    })
-}
-
+/// Starts the database. What it holds already counts only if `sound` says so.
 fn open_projector(
     folder: &Path,
     access: Access,
-    wanted: bool,
-    params: &Arc<crate::world::params::Params>,
+    params: &Arc<Params>,
     trajectory: &Trajectory,
-) -> Result<(Option<Projector>, Option<Position>), RunError> {
-    if !wanted {
-        return Ok((None, None));
-    }
+    sound: bool,
+) -> Result<(Projector, Option<Position>), RunError> {
     let location = match access {
         Access::Write => Location::File(folder.join("world.db")),
         // Somebody else may be writing the file; a reader makes its own.
         Access::Read => Location::memory(),
     };
     let known = |position: &Position| {
-        trajectory.lines.get(position.seq as usize).is_some_and(|line| line.hash == position.line_hash)
+        let line = trajectory.lines.get(position.seq as usize);
+        sound && line.is_some_and(|line| line.hash == position.line_hash)
     };
-    let (projector, position) = Projector::start(location, params.clone(), known)?;
-    Ok((Some(projector), position))
+    Ok(Projector::start(location, params.clone(), known)?)
+}
+
+/// The snapshot from which the run can go on: its line is in the trajectory, and the database lacks no row before it.
+fn usable<'a>(
+    witnesses: &'a Witnesses,
+    manifest: &Manifest,
+    trajectory: &Trajectory,
+    rows_from: Option<u64>,
+) -> Option<&'a Snapshot> {
+    let snapshot = witnesses.snapshot.as_ref().filter(|snapshot| snapshot.fits(manifest))?;
+    let position = snapshot.position();
+    let line = trajectory.lines.get(position.seq as usize)?;
+    let complete = rows_from.is_none_or(|seq| seq >= position.seq);
+    (line.hash == position.line_hash && complete).then_some(snapshot)
 }
 
 /// Simulates a run again and compares every recorded state; nothing is changed.
@@ -265,7 +312,7 @@ fn open_projector(
 /// The first line that does not fit.
 pub fn verify(folder: &Path) -> Result<Verification, RunError> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
-    let session = Session::open(folder, Access::Read, false)?;
+    let session = Session::open_from(folder, Access::Read, false, Begin::FirstLine)?;
     let states =
         trajectory.lines.iter().filter(|line| ["week", "step"].contains(&line.kind.as_str())).count();
     let last = trajectory.lines.iter().rev().find_map(|line| line.fields.get("state_hash")?.as_str());

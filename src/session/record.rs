@@ -46,6 +46,16 @@ impl FactsChain {
         self.hash = hasher.finalize();
     }
 
+    /// The chain with this hash, of a week that is over or still runs.
+    pub(super) fn resume(hash: blake3::Hash, closed: bool) -> FactsChain {
+        FactsChain { hash, closed }
+    }
+
+    /// Whether the week is over.
+    pub(super) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
     /// Ends the week.
     pub(super) fn close(&mut self) {
         self.closed = true;

@@ -1,7 +1,7 @@
 //! The folder of runs: names, locks, the list.
 
 use std::fs::{File, TryLockError};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -45,6 +45,36 @@ pub struct RunSummary {
 /// Folder of a run.
 pub fn run_folder(runs: &Path, id: &str) -> PathBuf {
     runs.join(id)
+}
+
+/// Folder, below that of all runs, in which participants have folders of their own.
+const PARTICIPANTS: &str = "participants";
+
+/// Folder of one participant's runs, so that several people at one machine do not meet each other's by accident.
+///
+/// # Errors
+/// The label cannot name a folder.
+pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
+    let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
+    if label.is_empty() || label.len() > 40 || label.starts_with('.') || !label.chars().all(fits) {
+        return Err(format!(
+            "{label:?} is no label of a participant: up to 40 letters, digits, hyphens, underscores and dots, not \
+             beginning with a dot"
+        ));
+    }
+    Ok(runs.join(PARTICIPANTS).join(label))
+}
+
+/// Every folder of runs that belongs with this one: the common one, then those of the participants by their labels.
+pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
+    let of_participant =
+        runs.parent().filter(|parent| parent.file_name().is_some_and(|name| name == PARTICIPANTS));
+    let base = of_participant.and_then(Path::parent).unwrap_or(runs);
+    let entries = std::fs::read_dir(base.join(PARTICIPANTS)).into_iter().flatten().flatten();
+    let mut own: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    own.sort_unstable();
+    own.insert(0, base.to_owned());
+    own
 }
 
 /// All runs, the last played first.
@@ -198,7 +228,12 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
 pub(super) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
     let path = folder.join("lock");
     let open = File::options().create(true).truncate(false).read(true).write(true).open(&path);
-    let mut file = open.map_err(RunError::io(&path))?;
+    let mut file = open.map_err(|error| match error.kind() {
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            RunError::NotWritable { id: id.to_owned(), folder: folder.to_owned(), error }
+        }
+        _ => RunError::Io { path: path.clone(), error },
+    })?;
     match file.try_lock() {
         Ok(()) => {
             // Only for people who look; the lock itself is what counts.
@@ -215,7 +250,8 @@ pub(super) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
 
 /// Earlier runs of a seed and scenario on this machine.
 pub(super) fn earlier_runs(runs: &Path, seed: u64, scenario: &str) -> u32 {
-    let entries = std::fs::read_dir(runs).into_iter().flatten().flatten();
+    let folders = all_run_folders(runs);
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
     let same = |folder: &PathBuf| {
         Manifest::read(folder).is_ok_and(|manifest| manifest.seed == seed && manifest.scenario == scenario)
     };

@@ -6,6 +6,7 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::Session;
@@ -46,7 +47,7 @@ impl Surroundings for Office {
 }
 
 /// A calculation and what it said before the last week.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Calculated {
     /// Name.
     pub name: String,

@@ -1,10 +1,11 @@
 //! `trajectory.jsonl`: the truth of a run, one line per action (chapter 70 §5, format 1).
 //!
-//! Lines are appended and never changed. Each names the hash of the one before, so what is cut, flipped or
-//! inserted shows. A line whose last byte is missing was never confirmed and is dropped.
+//! Lines are appended and never changed. Each names the hash of the one before and ends with a sum of its own, so
+//! what is cut, flipped or inserted shows, in the last line too. A line whose last byte is missing was never
+//! confirmed and is dropped.
 
 use std::fs::File;
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
@@ -52,6 +53,31 @@ fn line_hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
+/// Field of the first line that says that every line ends with a sum.
+pub const SUMS: &str = "line_sums";
+/// What stands before the sum of a line.
+const SUM: &[u8] = b",\"sum\":\"";
+/// Hexadecimal digits of a sum.
+const SUM_DIGITS: usize = 16;
+
+/// A line with the sum of its own bytes as its last field.
+fn with_sum(mut line: Vec<u8>) -> Vec<u8> {
+    let sum = line_hash(&line);
+    line.pop();
+    line.extend_from_slice(SUM);
+    line.extend_from_slice(&sum.as_bytes()[..SUM_DIGITS]);
+    line.extend_from_slice(b"\"}");
+    line
+}
+
+/// Whether a line ends with a sum, and with the right one.
+fn sum_of(line: &[u8]) -> Option<bool> {
+    let (own, tail) = line.split_at_checked(line.len().checked_sub(SUM.len() + SUM_DIGITS + 2)?)?;
+    let sum = tail.strip_prefix(SUM)?.strip_suffix(b"\"}")?;
+    let without: Vec<u8> = own.iter().copied().chain([b'}']).collect();
+    Some(line_hash(&without).as_bytes().starts_with(sum))
+}
+
 /// The present moment, RFC 3339.
 pub fn now() -> String {
     OffsetDateTime::now_utc().format(&Rfc3339).unwrap_or_default()
@@ -62,10 +88,35 @@ pub fn seconds(at: &str) -> f64 {
     OffsetDateTime::parse(at, &Rfc3339).map_or(0.0, |moment| moment.unix_timestamp_nanos() as f64 / 1e9)
 }
 
+/// Where lines end up: a file, or in tests one that forgets what was not synced.
+pub(super) trait Medium: Send {
+    /// Appends bytes.
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
+    /// Makes everything appended survive a power cut.
+    fn sync(&mut self) -> io::Result<()>;
+    /// Forgets everything after so many bytes.
+    fn cut(&mut self, length: u64) -> io::Result<()>;
+}
+
+impl Medium for File {
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.write_all(bytes)
+    }
+
+    fn sync(&mut self) -> io::Result<()> {
+        self.sync_data()
+    }
+
+    fn cut(&mut self, length: u64) -> io::Result<()> {
+        self.set_len(length)?;
+        self.seek(SeekFrom::Start(length)).map(|_| ())
+    }
+}
+
 /// Appends lines.
 pub struct TrajectoryWriter {
     /// The file; none for a run in memory.
-    file: Option<File>,
+    medium: Option<Box<dyn Medium>>,
     path: PathBuf,
     /// Bytes of the file that are good.
     length: u64,
@@ -79,7 +130,7 @@ impl TrajectoryWriter {
     /// A trajectory in memory: only numbers and hashes are kept.
     pub fn in_memory() -> TrajectoryWriter {
         TrajectoryWriter {
-            file: None,
+            medium: None,
             path: PathBuf::new(),
             length: 0,
             backlog: Vec::new(),
@@ -94,7 +145,8 @@ impl TrajectoryWriter {
     /// It exists already, or cannot be made.
     pub fn create(path: &Path) -> Result<TrajectoryWriter, RunError> {
         let file = File::options().create_new(true).append(true).open(path).map_err(RunError::io(path))?;
-        Ok(TrajectoryWriter { file: Some(file), path: path.to_owned(), ..TrajectoryWriter::in_memory() })
+        let medium: Box<dyn Medium> = Box::new(file);
+        Ok(TrajectoryWriter { medium: Some(medium), path: path.to_owned(), ..TrajectoryWriter::in_memory() })
     }
 
     /// Goes on with a file that was read; bytes after the good ones are cut off.
@@ -103,10 +155,9 @@ impl TrajectoryWriter {
     /// The file cannot be written.
     pub fn resume(path: &Path, read: &Trajectory) -> Result<TrajectoryWriter, RunError> {
         let mut file = File::options().write(true).open(path).map_err(RunError::io(path))?;
-        file.set_len(read.length).map_err(RunError::io(path))?;
-        file.seek(SeekFrom::End(0)).map_err(RunError::io(path))?;
+        file.cut(read.length).map_err(RunError::io(path))?;
         Ok(TrajectoryWriter {
-            file: Some(file),
+            medium: Some(Box::new(file)),
             path: path.to_owned(),
             length: read.length,
             backlog: Vec::new(),
@@ -172,18 +223,18 @@ impl TrajectoryWriter {
             "a field hides a part of the frame: {kind}"
         );
         line.extend(fields);
-        let mut bytes = Value::Object(line).to_string().into_bytes();
+        let mut bytes = with_sum(Value::Object(line).to_string().into_bytes());
         let hash = line_hash(&bytes);
         bytes.push(b'\n');
         (bytes, hash, at)
     }
 
     fn write(&mut self, bytes: &[u8], durability: Durability) -> Result<(), RunError> {
-        let Some(file) = &mut self.file else { return Ok(()) };
+        let Some(medium) = &mut self.medium else { return Ok(()) };
         let mut all = self.backlog.clone();
         all.extend_from_slice(bytes);
-        let written = file.write_all(&all).and_then(|()| match durability {
-            Durability::Synced => file.sync_data(),
+        let written = medium.append(&all).and_then(|()| match durability {
+            Durability::Synced => medium.sync(),
             Durability::Written => Ok(()),
         });
         match written {
@@ -194,11 +245,27 @@ impl TrajectoryWriter {
             }
             Err(error) => {
                 // Whatever got through is no line yet; the file ends where it ended.
-                let _ = file.set_len(self.length);
-                let _ = file.seek(SeekFrom::Start(self.length));
+                let _ = medium.cut(self.length);
                 Err(RunError::Io { path: self.path.clone(), error })
             }
         }
+    }
+
+    /// Puts the lines that were written on the disk, whatever still waits in memory.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn sync_written(&self) -> Result<(), RunError> {
+        if self.medium.is_none() {
+            return Ok(());
+        }
+        File::open(&self.path).and_then(|file| file.sync_data()).map_err(RunError::io(&self.path))
+    }
+
+    /// Puts another medium in place of the file.
+    #[cfg(test)]
+    pub(super) fn write_to(&mut self, medium: Box<dyn Medium>) {
+        self.medium = Some(medium);
     }
 
     /// Puts everything on the disk.
@@ -249,8 +316,18 @@ impl Trajectory {
         for text in bytes[..end].split_inclusive(|byte| *byte == b'\n') {
             let text = &text[..text.len() - 1];
             let expected = lines.last().map_or_else(|| line_hash(b""), |line| line.hash.clone());
-            let line = parse_line(text, lines.len() as u64, &expected)
-                .map_err(|problem| (lines.len() + 1, problem))?;
+            let number = lines.len() + 1;
+            let line =
+                parse_line(text, lines.len() as u64, &expected).map_err(|problem| (number, problem))?;
+            let summed = lines.first().unwrap_or(&line).fields.get(SUMS) == Some(&Value::Bool(true));
+            match sum_of(text) {
+                Some(true) => {}
+                // Runs of the first builds have no sums.
+                None if !summed => {}
+                Some(false) | None => {
+                    return Err((number, "the line does not fit its own sum: it was changed".to_owned()));
+                }
+            }
             lines.push(line);
         }
         Ok(Trajectory { lines, length: end as u64, unfinished: bytes.len() - end })
@@ -287,7 +364,8 @@ mod tests {
         let path = folder.join("trajectory.jsonl");
         let mut writer = TrajectoryWriter::create(&path).expect("a file");
         for number in 0..count {
-            let line = fields(json!({"tool": "set_prices", "number": number, "text": "größer"}));
+            let line =
+                fields(json!({"tool": "set_prices", "number": number, "text": "größer", (SUMS): true}));
             writer.append("call", number as u32, line, Durability::Synced).expect("a line");
         }
         path
@@ -326,9 +404,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let bytes = std::fs::read(written(folder.path(), 4)).expect("bytes");
         let whole = Trajectory::parse(&bytes).expect("it reads");
-        // The last line has no successor to vouch for it; the position of the database and the state hash do.
-        let last = bytes[..bytes.len() - 1].iter().rposition(|byte| *byte == b'\n').expect("a line end") + 1;
-        for at in 0..last {
+        // Without its line end the last line counts as unfinished.
+        for at in 0..bytes.len() - 1 {
             let mut damaged = bytes.clone();
             damaged[at] ^= 0x04;
             assert!(Trajectory::parse(&damaged).is_err(), "byte {at} was changed unseen");

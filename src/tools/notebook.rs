@@ -2,6 +2,8 @@
 //!
 //! Both are names for SQL statements. Nothing of it reaches the world.
 
+use serde::{Deserialize, Serialize};
+
 /// What is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kept {
@@ -39,8 +41,15 @@ pub enum Task {
     },
 }
 
+impl Task {
+    /// Whether something stays behind that was not there before.
+    pub fn leaves_something(&self) -> bool {
+        !matches!(self, Task::Run { .. })
+    }
+}
+
 /// Named statements in the order in which their names were first kept.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Shelf(Vec<(String, String)>);
 
 impl Shelf {
@@ -77,7 +86,7 @@ impl Shelf {
 }
 
 /// The calculations and scripts of a run.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Notebook {
     calculations: Shelf,
     scripts: Shelf,

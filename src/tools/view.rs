@@ -1,6 +1,7 @@
 //! What a tool may look at when it is planned.
 
 use super::surroundings::{Nothing, Surroundings};
+use crate::notation::Word;
 use crate::world::identifiers::Group;
 use crate::world::params::Params;
 use crate::world::settings::Settings;
@@ -34,7 +35,7 @@ pub struct PublicPost {
     pub written_by: Option<Group>,
     /// Name of the author's profile.
     #[serde(skip)]
-    pub profile: Option<&'static str>,
+    pub profile: Option<Word>,
 }
 
 impl<'a> View<'a> {

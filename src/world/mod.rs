@@ -19,3 +19,7 @@ pub mod retention;
 pub mod series;
 pub mod settings;
 pub mod state;
+
+/// Number of the mechanics. It rises with every change after which the same decisions can lead to another state, so
+/// that runs of earlier builds are refused with a reason instead of differing somewhere.
+pub const MECHANICS: u32 = 1;

@@ -16,9 +16,12 @@ mod tests;
 
 use std::fmt::Write;
 
+use serde::{Deserialize, Serialize};
+
 pub use circumstances::Circumstances;
 pub use lexicon::Lexicon;
 
+use crate::notation::{Word, word};
 use crate::world::identifiers::Group;
 use features::Features;
 use text::{Reading, pair_overlap};
@@ -48,7 +51,7 @@ pub struct Original<'a> {
 }
 
 /// How a group takes a post, and why.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// The group.
     pub group: Group,
@@ -59,10 +62,11 @@ pub struct Judgement {
 }
 
 /// One part of a reaction.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Term {
     /// Name.
-    pub name: &'static str,
+    #[serde(deserialize_with = "word")]
+    pub name: Word,
     /// Size with its sign.
     pub value: f64,
     /// Topics, claims or events behind it.

@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 /// Posts within which no text comes twice.
 pub const MEMORY: usize = 60;
 /// Posts within which two should not begin alike.
@@ -12,7 +14,7 @@ const DRAFTS: usize = 24;
 const MOST_DRAFTS: usize = 400;
 
 /// The last texts without capitals, oldest first.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Recent(VecDeque<String>);
 
 impl Recent {

@@ -11,6 +11,8 @@ pub mod names;
 mod press;
 mod words;
 
+use serde::{Deserialize, Serialize};
+
 use fresh::Recent;
 
 use super::judge::Judgement;
@@ -19,7 +21,7 @@ use crate::world::params::Params;
 use crate::world::random::{Part, Streams};
 
 /// Puts posts into words, one after the other: it remembers the last ones so as not to repeat them.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Writer {
     recent: Recent,
 }

@@ -27,9 +27,9 @@ impl<'a> CanonicalReader<'a> {
         T::restore(self)
     }
 
-    /// Whether everything was read.
-    pub fn is_empty(&self) -> bool {
-        self.rest.is_empty()
+    /// Bytes that are still to be read.
+    pub fn left(&self) -> usize {
+        self.rest.len()
     }
 }
 
@@ -43,7 +43,7 @@ pub trait Restore: Sized {
 pub fn restored<T: Restore>(bytes: &[u8]) -> Option<T> {
     let mut reader = CanonicalReader::new(bytes);
     let value = reader.read()?;
-    reader.is_empty().then_some(value)
+    (reader.left() == 0).then_some(value)
 }
 
 macro_rules! restored_numbers {

@@ -1,0 +1,260 @@
+//! `snapshot.bin`: the whole state at one line of the trajectory, so that a long run opens at once.
+//!
+//! Never the truth: a snapshot is used only if it is whole, was written by this version for this run and these
+//! parameters, and stands at a line that the trajectory still has. Otherwise the run is simulated from its
+//! beginning, which costs time and nothing else (specification, chapter 90 §4-§5).
+//!
+//! The file is a title line, the blake3 digest of the rest, and the rest as canonical bytes: header and notes as
+//! JSON texts, then what the world and the session hold as numbers.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::feed::Feed;
+use super::record::{FactsChain, state_hash};
+use super::{Calculated, Decisions, Ended, JournalEntry, Manifest, Session, ThisWeek, UndoStep, WeekFigures};
+use crate::database::Position;
+use crate::tools::{Notebook, find};
+use crate::world::canonical::{Canonical, CanonicalReader, Restore};
+use crate::world::day::DayTrace;
+use crate::world::events::{Facts, LedgerEntry};
+use crate::world::settings::Settings;
+use crate::world::state::World;
+
+const TITLE: &[u8] = b"novamind snapshot 1\n";
+const DIGEST: usize = blake3::OUT_LEN;
+/// Name of the file in a run's folder.
+pub(super) const FILE: &str = "snapshot.bin";
+/// Weeks between two snapshots of a run that is played.
+pub(super) const WEEKS_BETWEEN: usize = 4;
+
+/// What a snapshot is of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Header {
+    /// Version of the program that wrote it.
+    version: String,
+    run: String,
+    parameters_digest: String,
+    /// Line of the trajectory it stands at.
+    seq: u64,
+    line_hash: String,
+    /// Hash of the state it holds.
+    state_hash: String,
+    /// Digest of the database's file as it was then, if the run was closed in order.
+    database: Option<String>,
+}
+
+/// What a session knows in words.
+#[derive(Serialize, Deserialize)]
+struct Notes {
+    weeks: Vec<WeekFigures>,
+    running_week: WeekFigures,
+    decisions: Vec<Decisions>,
+    notices: Vec<(u32, String)>,
+    feed: Feed,
+    done: Vec<String>,
+    journal: Vec<JournalEntry>,
+    asked: Vec<String>,
+    notebook: Notebook,
+    calculated: Vec<Calculated>,
+    facts_chain: (String, bool),
+    ended: Option<Ended>,
+}
+
+/// The notes of a session, not copied.
+#[derive(Serialize)]
+struct NotesOf<'a> {
+    weeks: &'a [WeekFigures],
+    running_week: &'a WeekFigures,
+    decisions: &'a [Decisions],
+    notices: &'a [(u32, String)],
+    feed: &'a Feed,
+    done: &'a [String],
+    journal: &'a [JournalEntry],
+    asked: &'a [String],
+    notebook: &'a Notebook,
+    calculated: &'a [Calculated],
+    facts_chain: (String, bool),
+    ended: Option<Ended>,
+}
+
+/// A snapshot file that is whole.
+pub(super) struct Snapshot {
+    header: Header,
+    /// Title, digest and everything after them.
+    file: Vec<u8>,
+    /// Where the notes begin.
+    notes_at: usize,
+}
+
+/// What a session gets back from a snapshot besides world and facts.
+pub(super) struct Recalled {
+    facts_chain: FactsChain,
+    trace: DayTrace,
+    cash_by_day: Vec<f64>,
+    called: Vec<LedgerEntry>,
+    /// Settings before the first call of this week.
+    settings: Settings,
+    undo: Vec<UndoStep>,
+    notes: Notes,
+}
+
+impl Snapshot {
+    /// The snapshot in a run's folder; none if there is none.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub(super) fn read(folder: &Path) -> Result<Option<Snapshot>, &'static str> {
+        let file = match std::fs::read(folder.join(FILE)) {
+            Ok(file) => file,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(_) => return Err("cannot be read"),
+        };
+        let body = file.strip_prefix(TITLE).ok_or("is of another version or damaged")?;
+        let (digest, body) = body.split_at_checked(DIGEST).ok_or("is cut short")?;
+        if blake3::hash(body).as_bytes() != digest {
+            return Err("is damaged");
+        }
+        let mut reader = CanonicalReader::new(body);
+        let header: Option<String> = reader.read();
+        let header =
+            header.and_then(|text| serde_json::from_str(&text).ok()).ok_or("is of another version")?;
+        let notes_at = file.len() - reader.left();
+        Ok(Some(Snapshot { header, file, notes_at }))
+    }
+
+    /// The line of the trajectory it stands at.
+    pub(super) fn position(&self) -> Position {
+        Position { seq: self.header.seq, line_hash: self.header.line_hash.clone() }
+    }
+
+    /// Digest of the database's file as it was then, if the run was closed in order.
+    pub(super) fn database(&self) -> Option<&str> {
+        self.header.database.as_deref()
+    }
+
+    /// Whether it was written by this version for this run.
+    pub(super) fn fits(&self, manifest: &Manifest) -> bool {
+        self.header.version == env!("CARGO_PKG_VERSION")
+            && self.header.run == manifest.id
+            && self.header.parameters_digest == manifest.parameters_digest
+    }
+
+    /// The state; none if it is not the one it claims to be.
+    pub(super) fn recall(&self) -> Option<(World, Facts, Recalled)> {
+        let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
+        let notes: Notes = serde_json::from_str(&reader.read::<String>()?).ok()?;
+        let chain = blake3::Hash::from_hex(&notes.facts_chain.0).ok()?;
+        let (world, facts) = (reader.read()?, reader.read()?);
+        let recalled = Recalled {
+            facts_chain: FactsChain::resume(chain, notes.facts_chain.1),
+            notes,
+            trace: reader.read()?,
+            cash_by_day: reader.read()?,
+            called: reader.read()?,
+            settings: reader.read()?,
+            undo: reader.read()?,
+        };
+        let (hash, _) = state_hash(&world, recalled.facts_chain.hash());
+        (reader.left() == 0 && hash == self.header.state_hash).then_some((world, facts, recalled))
+    }
+}
+
+impl Canonical for UndoStep {
+    fn feed(&self, sink: &mut impl crate::world::canonical::Sink) {
+        self.seq.feed(sink);
+        self.tool.feed(sink);
+        self.before.feed(sink);
+    }
+}
+
+impl Restore for UndoStep {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        let (seq, tool): (u64, String) = reader.read()?;
+        Some(UndoStep { seq, tool: find(&tool)?.spec().name, before: reader.read()? })
+    }
+}
+
+impl Session {
+    /// Keeps the present state as a snapshot, behind everything the database still has to take in. A closing one
+    /// vouches for the database's file too. A disk that refuses it takes away nothing but time.
+    pub(super) fn keep_snapshot(&self, closing: bool) {
+        let Some(folder) = self.folder.as_ref().filter(|_| self.trajectory.is_some()) else { return };
+        let path = folder.join(FILE);
+        let (header, state) = (self.snapshot_header(), self.state_bytes());
+        match &self.projector {
+            None => write(&path, &header, &state),
+            Some(projector) => projector.then(closing, move |database| {
+                write(&path, &Header { database, ..header }, &state);
+            }),
+        }
+    }
+
+    fn snapshot_header(&self) -> Header {
+        Header {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            run: self.manifest.id.clone(),
+            parameters_digest: self.manifest.parameters_digest.clone(),
+            seq: self.position.seq,
+            line_hash: self.position.line_hash.clone(),
+            state_hash: self.state_hash().0,
+            database: None,
+        }
+    }
+
+    fn state_bytes(&self) -> Vec<u8> {
+        let notes = NotesOf {
+            weeks: &self.weeks,
+            running_week: &self.running_week,
+            decisions: &self.decisions,
+            notices: &self.notices,
+            feed: &self.feed,
+            done: &self.this_week.done,
+            journal: &self.journal,
+            asked: &self.asked,
+            notebook: &self.office.notebook,
+            calculated: &self.calculated,
+            facts_chain: (self.facts_chain.hash().to_hex().to_string(), self.facts_chain.is_closed()),
+            ended: self.ended,
+        };
+        let mut bytes = Vec::new();
+        serde_json::to_string(&notes).unwrap_or_default().feed(&mut bytes);
+        self.world.feed(&mut bytes);
+        self.facts.feed(&mut bytes);
+        self.trace.feed(&mut bytes);
+        self.cash_by_day.feed(&mut bytes);
+        self.called.feed(&mut bytes);
+        self.this_week.settings.feed(&mut bytes);
+        self.this_week.undo.feed(&mut bytes);
+        bytes
+    }
+
+    /// Takes over what a snapshot kept besides world and facts.
+    pub(super) fn remember(&mut self, recalled: Recalled, position: Position) {
+        let Recalled { facts_chain, trace, cash_by_day, called, settings, undo, notes } = recalled;
+        self.facts_chain = facts_chain;
+        self.this_week = ThisWeek { settings, undo, done: notes.done };
+        (self.trace, self.cash_by_day, self.called) = (trace, cash_by_day, called);
+        (self.weeks, self.running_week) = (notes.weeks, notes.running_week);
+        (self.decisions, self.notices, self.journal) = (notes.decisions, notes.notices, notes.journal);
+        (self.feed, self.asked, self.calculated) = (notes.feed, notes.asked, notes.calculated);
+        self.office.notebook = notes.notebook;
+        self.ended = notes.ended;
+        self.position = position;
+    }
+}
+
+/// Writes a snapshot in place of the old one. Not synced: after a power cut its digest tells whether it is whole.
+fn write(path: &Path, header: &Header, state: &[u8]) {
+    let mut body = Vec::with_capacity(state.len() + 1024);
+    serde_json::to_string(header).unwrap_or_default().feed(&mut body);
+    body.extend_from_slice(state);
+    let draft = path.with_extension("draft");
+    let written = std::fs::write(&draft, [TITLE, blake3::hash(&body).as_bytes(), &body].concat())
+        .and_then(|()| std::fs::rename(&draft, path));
+    if written.is_err() {
+        // Half a file helps nobody, least of all on a disk that is full.
+        let _ = std::fs::remove_file(&draft);
+    }
+}

@@ -1,0 +1,94 @@
+//! What vouches for the end of a trajectory, and for the database.
+//!
+//! Nothing follows the last line, but the database and the snapshot remember how far it went: a cut at a line end
+//! shows here.
+
+use std::path::Path;
+
+use super::error::RunError;
+use super::snapshot::{FILE, Snapshot};
+use super::trajectory::Trajectory;
+use crate::database::{Location, Position, file_digest, is_consistent, position_of};
+
+/// What stood beside the trajectory before it was read.
+pub(super) struct Witnesses {
+    /// The snapshot, if there is one that is whole.
+    pub snapshot: Option<Snapshot>,
+    /// How far the database has come, if it can be read.
+    database: Option<Position>,
+    /// What the person should know about them.
+    pub remarks: Vec<String>,
+}
+
+impl Witnesses {
+    /// Asks them. Has to come before the trajectory is read, which may grow in between.
+    pub(super) fn of(folder: &Path) -> Witnesses {
+        let mut remarks = Vec::new();
+        let snapshot = Snapshot::read(folder).unwrap_or_else(|problem| {
+            remarks
+                .push(format!("{FILE} {problem} and is not used: the run was simulated from its beginning."));
+            None
+        });
+        Witnesses { snapshot, database: position_of(&location(folder)), remarks }
+    }
+
+    /// Whether the trajectory goes as far as they remember.
+    ///
+    /// # Errors
+    /// The first line that is missing or is not the one they saw.
+    pub(super) fn check(&self, path: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
+        let database = self.database.clone().map(|position| ("world.db", position));
+        let snapshot = self.snapshot.as_ref().map(|snapshot| (FILE, snapshot.position()));
+        [database, snapshot].into_iter().flatten().try_for_each(|(file, position)| {
+            let Some((line, problem)) = contradiction(trajectory, &position) else { return Ok(()) };
+            let good = line - 1;
+            Err(RunError::Damaged {
+                path: path.to_owned(),
+                line: line as usize,
+                problem: format!("{problem} ({file} was made from it)"),
+                safe: format!(
+                    "Lines 1 to {good} are good; nothing was changed. Restore the trajectory from a copy, or go on \
+                     from the good lines in a branch: `novamind runs rescue`"
+                ),
+            })
+        })
+    }
+
+    /// Whether the database can be gone on with. After an orderly end its whole file is compared; after a crash
+    /// its structure is.
+    pub(super) fn vouch_for_database(&mut self, folder: &Path) -> bool {
+        let file = folder.join("world.db");
+        if !file.exists() {
+            return false;
+        }
+        let sound = self.database.as_ref().is_some_and(|position| {
+            let closed = self.snapshot.as_ref().filter(|snapshot| snapshot.position() == *position);
+            match closed.and_then(Snapshot::database) {
+                Some(digest) => file_digest(&file).as_deref() == Some(digest),
+                None => is_consistent(&location(folder)),
+            }
+        });
+        if !sound {
+            self.remarks.push("world.db is damaged and was made anew from the trajectory.".to_owned());
+        }
+        sound
+    }
+}
+
+fn location(folder: &Path) -> Location {
+    Location::File(folder.join("world.db"))
+}
+
+/// Line, from 1, that a remembered position shows to be missing or changed.
+fn contradiction(trajectory: &Trajectory, position: &Position) -> Option<(u64, &'static str)> {
+    let last = trajectory.lines.last()?;
+    // A torn line is cut off with a notice, and a week that lacks its closing lines is simulated again: week and end.
+    let healing = if last.kind == "advance" { 2 } else { u64::from(trajectory.unfinished > 0) };
+    match trajectory.lines.get(position.seq as usize) {
+        None if position.seq > last.seq + healing => Some((last.seq + 2, "the line is missing")),
+        Some(line) if line.hash != position.line_hash => {
+            Some((position.seq + 1, "the line is not the one it was: it was changed"))
+        }
+        None | Some(_) => None,
+    }
+}

@@ -1,0 +1,73 @@
+//! A run in a folder of its own, and what must be equal between two sessions of the same run.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use novamind::session::{Access, Configuration, NewRun, Session, Storage};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+/// A folder for runs, gone when the test ends.
+pub fn runs() -> TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+/// A new run of a seed.
+pub fn create(runs: &Path, seed: u64, days: u32) -> Session {
+    let storage = Storage::Runs(runs.to_owned());
+    let new = NewRun { seed: Some(seed), days: Some(days), storage, ..NewRun::default() };
+    Session::create(new, &Configuration::shipped()).expect("the run begins")
+}
+
+/// Opens a run to go on with it.
+#[track_caller]
+pub fn open(folder: &Path) -> Session {
+    Session::open(folder, Access::Write, true).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A copy of a run's folder beside others.
+pub fn copy(folder: &Path, to: &Path) -> PathBuf {
+    let own = to.join(folder.file_name().expect("a name"));
+    fs::create_dir_all(&own).expect("a folder");
+    for entry in fs::read_dir(folder).expect("a folder").flatten() {
+        fs::copy(entry.path(), own.join(entry.file_name())).expect("a copy");
+    }
+    own
+}
+
+/// Everything a person can see of a session, and the hash of what nobody sees.
+pub fn view(session: &mut Session) -> Value {
+    let totals = [
+        "SELECT COUNT(*), SUM(amount), SUM(id * amount) FROM ledger",
+        "SELECT COUNT(*), SUM(customer_id * start_day) FROM subscriptions",
+        "SELECT COUNT(*), SUM(usage_units * customer_id) FROM daily_usage",
+        "SELECT COUNT(*), SUM(issue_id * days_open) FROM issues",
+        "SELECT COUNT(*), SUM(predicted_value), SUM(submitted_at) FROM predictions",
+        "SELECT COUNT(*), SUM(LENGTH(message_text)) FROM enterprise_turns",
+        "SELECT COUNT(*), SUM(LENGTH(content)) FROM social_media_posts",
+        "SELECT COUNT(*), SUM(LENGTH(type || message)) FROM notifications",
+        "SELECT COUNT(*), MAX(day) FROM config_history",
+    ];
+    // Not `query`, which would record that it was asked.
+    session.wait_for_database().expect("a database");
+    let desk = session.open_desk().expect("a desk");
+    let limits = session.query_limits();
+    let rows: Vec<String> = totals
+        .iter()
+        .map(|sql| {
+            format!("{:?}", desk.ask(sql, limits).unwrap_or_else(|error| panic!("{sql}: {error:?}")).rows)
+        })
+        .collect();
+    json!({
+        "state": session.state_hash(),
+        "observation": session.observe(),
+        "journal": session.journal(),
+        "decisions": session.decisions(),
+        "notices": session.notices(),
+        "posts": session.posts(),
+        "asked": session.asked(),
+        "cash": session.cash_by_day(),
+        "weeks": session.weeks(),
+        "rows": rows,
+    })
+}

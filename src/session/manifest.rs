@@ -7,6 +7,7 @@ use toml::{Table, Value};
 
 use super::error::RunError;
 use super::mode::Mode;
+use super::trajectory::Line;
 use crate::world::params::{ParameterError, Params, Source, shipped_sources};
 
 /// Format of trajectories and manifests that this program writes.
@@ -59,6 +60,24 @@ pub struct Parent {
     pub seq: u64,
 }
 
+/// What the first line of a trajectory says of a run.
+#[derive(Deserialize)]
+struct Start {
+    format: u32,
+    version: String,
+    run: String,
+    seed: u64,
+    days: u32,
+    cash: f64,
+    scenario: String,
+    mode: Mode,
+    participant: Option<String>,
+    parameters_digest: String,
+    parent: Option<Parent>,
+    #[serde(default)]
+    overrides: Table,
+}
+
 impl Manifest {
     /// Reads the manifest of a run's folder.
     ///
@@ -77,6 +96,43 @@ impl Manifest {
             return Err(RunError::OtherFormat { id: manifest.id, format: manifest.format, known: FORMAT });
         }
         Ok(manifest)
+    }
+
+    /// The manifest as the first line of a trajectory tells it, for one that stands alone.
+    ///
+    /// # Errors
+    /// The line is no start of a run.
+    pub fn of_start(path: &Path, line: Option<&Line>) -> Result<Manifest, RunError> {
+        let damaged = |problem: &str| RunError::Damaged {
+            path: path.to_owned(),
+            line: 1,
+            problem: problem.to_owned(),
+            safe: "Nothing was changed".to_owned(),
+        };
+        let Some(line) = line.filter(|line| line.kind == "start") else {
+            return Err(damaged("the trajectory does not begin with the start of a run"));
+        };
+        let start: Start = serde_json::from_value(serde_json::Value::Object(line.fields.clone()))
+            .map_err(|error| damaged(&format!("the start of the run cannot be read ({error})")))?;
+        if start.format > FORMAT {
+            return Err(RunError::OtherFormat { id: start.run, format: start.format, known: FORMAT });
+        }
+        Ok(Manifest {
+            format: start.format,
+            version: start.version,
+            id: start.run,
+            created: line.at.clone(),
+            seed: start.seed,
+            days: start.days,
+            cash: start.cash,
+            scenario: start.scenario,
+            mode: start.mode,
+            participant: start.participant,
+            earlier_runs: 0,
+            parameters_digest: start.parameters_digest,
+            parent: start.parent,
+            parameters: start.overrides,
+        })
     }
 
     /// Writes the manifest into a run's folder, so that it is there whole or not at all.

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::error::RunError;
 use super::manifest::Manifest;
 use super::runs::lock_run;
-use super::trajectory::{Line, Trajectory, TrajectoryWriter};
+use super::trajectory::{BRANCH_THEM, Line, Trajectory, TrajectoryWriter, damaged_at};
 use super::{Ended, Session};
 use crate::database::{Location, Position, Projector, position_of};
 use crate::world::events::Facts;
@@ -90,18 +90,19 @@ impl Session {
             if missing && projector.is_some() {
                 self.projector = projector.take();
             }
-            self.position = line.position();
-            self.replay_line(line).map_err(|problem| RunError::Damaged {
-                path: path.to_owned(),
-                line: line.seq as usize + 1,
-                problem,
-                safe: format!("Lines 1 to {} are good; nothing was changed", line.seq),
-            })?;
+            self.apply_line(path, line)?;
         }
         if projector.is_some() {
             self.projector = projector;
         }
         Ok(())
+    }
+
+    /// Applies a line of a file again.
+    pub(super) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
+        self.position = line.position();
+        let damaged = damaged_at(path);
+        self.replay_line(line).map_err(|problem| damaged((line.seq as usize + 1, problem)))
     }
 
     fn replay_line(&mut self, line: &Line) -> Result<(), String> {
@@ -177,7 +178,7 @@ impl Session {
 }
 
 /// The first line must say what the manifest says: otherwise one of the two files belongs to another run.
-fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
+pub(super) fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
     let damaged = |problem: &str| RunError::Damaged {
         path: path.to_owned(),
         line: 1,
@@ -211,7 +212,7 @@ fn same_figures(reached: &serde_json::Map<String, Value>, line: &Line) -> Result
 
 /// Nothing follows the last line and vouches for it, but the database remembers it: a line that was changed or
 /// cut off at the end shows here.
-fn check_end(path: &Path, folder: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
+pub(super) fn check_end(path: &Path, folder: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
     let location = Location::File(folder.join("world.db"));
     let (Some(last), Some(position)) = (trajectory.lines.last(), position_of(&location)) else {
         return Ok(());
@@ -230,8 +231,8 @@ fn check_end(path: &Path, folder: &Path, trajectory: &Trajectory) -> Result<(), 
         line: line as usize,
         problem: problem.to_owned(),
         safe: format!(
-            "Lines 1 to {} are good; nothing was changed. Restore the trajectory from a copy, or remove world.db to \
-             go on from what is there",
+            "Lines 1 to {} are good; nothing was changed{BRANCH_THEM}. Or restore the trajectory from a copy, or remove \
+             world.db to go on from what is there",
             line - 1
         ),
     })

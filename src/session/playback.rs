@@ -246,6 +246,14 @@ impl Playback {
     /// # Errors
     /// The file cannot be read, or its new lines are damaged.
     pub fn look_for_more(&mut self) -> Result<bool, RunError> {
+        let more = self.read_more();
+        if more.is_err() || self.is_recorded_to_the_end() {
+            self.follows = false;
+        }
+        more
+    }
+
+    fn read_more(&mut self) -> Result<bool, RunError> {
         let path = &self.origin.path;
         let length = std::fs::metadata(path).map_err(RunError::io(path))?.len();
         let known = self.trajectory.length + self.trajectory.unfinished as u64;
@@ -261,9 +269,6 @@ impl Playback {
         self.trajectory.extend(&bytes).map_err(damaged_at(path))?;
         self.good = self.trajectory.lines.len();
         self.find_stops(before);
-        if self.is_recorded_to_the_end() {
-            self.follows = false;
-        }
         Ok(self.good > before)
     }
 
@@ -373,7 +378,8 @@ impl Playback {
             (None, Some(folder)) => folder,
             (refusal, _) => return Err(refusal.unwrap_or_else(stands_alone)),
         };
-        if self.session.ended().is_some() {
+        // What was given up can be gone on with; what reached its end cannot.
+        if self.session.ended().is_some() && !self.session.is_abandoned() {
             let message = "nothing comes after this moment: go back to a week first";
             return Err(Refusal::new("run_over", message));
         }

@@ -12,7 +12,8 @@ use crate::console::photograph::{self, Paper};
 use crate::console::rehearsal::Rehearsal;
 use crate::console::screens::ScreenId;
 use crate::console::theme::Theme;
-use crate::session::find_run_to_read;
+use crate::console::worker::Recorded;
+use crate::session::{Goal, find_run_to_read};
 
 /// Options of `pictures`.
 #[derive(Debug, Args)]
@@ -26,6 +27,9 @@ pub struct Options {
     /// Keys that are pressed instead of showing screens, as the key file writes them, with blanks between them.
     #[arg(long, conflicts_with = "screens")]
     keys: Option<String>,
+    /// Play the run again instead, and show it as it was after this week.
+    #[arg(long, value_name = "WEEK")]
+    replay: Option<u32>,
     /// Columns and rows of the window.
     #[arg(long, default_value = "120x40", value_parser = size)]
     size: (u16, u16),
@@ -102,7 +106,11 @@ fn take_pictures(
     options: &Options,
 ) -> Result<(), Failure> {
     let failed = |error: std::io::Error| Failure::failed(error.to_string());
-    console.look_at(run).map_err(failed)?;
+    match options.replay {
+        Some(week) => console.replay(Recorded::Run(run.to_owned()), Goal::Week(week), false),
+        None => console.look_at(run),
+    }
+    .map_err(failed)?;
     for (name, keys) in places {
         console.press(keys).map_err(|error| Failure::usage(error.to_string()))?;
         let frame = console.draw();

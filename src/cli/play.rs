@@ -11,7 +11,8 @@ use crate::console::effect::Effect;
 use crate::console::glyphs::Glyphs;
 use crate::console::keys::Keys;
 use crate::console::theme::Theme;
-use crate::session::{Access, Library, Mode, NewRun, RunError, Session, Storage, find_run};
+use crate::console::worker::Recorded;
+use crate::session::{Access, Goal, Library, Mode, NewRun, RunError, Session, Storage, find_run};
 
 /// Options of `play`.
 #[derive(Debug, Args, Clone, Default)]
@@ -19,6 +20,9 @@ pub struct Options {
     /// Open a run; `latest` is the newest unfinished one.
     #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set"])]
     run: Option<String>,
+    /// Follow a run read-only while somebody else plays it.
+    #[arg(long, requires = "run")]
+    watch: bool,
     /// Start a new run.
     #[arg(long)]
     new: bool,
@@ -108,7 +112,10 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
 
 fn open(options: &Options, context: &Context) -> Result<Session, Failure> {
     match &options.run {
-        Some(id) => Ok(Session::open(&find_run(&context.runs()?, id)?, Access::Write, true)?),
+        Some(id) => {
+            let access = if options.watch { Access::Read } else { Access::Write };
+            Ok(Session::open(&find_run(&context.runs()?, id)?, access, true)?)
+        }
         None => create(options.new_run(context)?, context),
     }
 }
@@ -139,15 +146,24 @@ fn play_plain(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
-    let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    let name = options.theme.as_deref().unwrap_or(if no_colour { "mono" } else { "dark" });
-    let theme = Theme::find(name, &context.configuration).map_err(Failure::usage)?;
-    let keys = Keys::of_user(&context.configuration).map_err(Failure::unreadable)?;
     let start = match &options.run {
+        Some(id) if options.watch => {
+            let recorded = Recorded::Run(id.clone());
+            Some(Effect::Replay { recorded, goal: Goal::Last, follow: true })
+        }
         Some(id) => Some(Effect::Open(id.clone())),
         None if options.asks_for_new_run() => Some(Effect::Create(Box::new(options.new_run(context)?))),
         None => None,
     };
+    show_console(options, start, context)
+}
+
+/// Opens the console with something to begin with.
+pub fn show_console(options: &Options, start: Option<Effect>, context: &Context) -> Result<(), Failure> {
+    let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let name = options.theme.as_deref().unwrap_or(if no_colour { "mono" } else { "dark" });
+    let theme = Theme::find(name, &context.configuration).map_err(Failure::usage)?;
+    let keys = Keys::of_user(&context.configuration).map_err(Failure::unreadable)?;
     let settings = Settings {
         theme,
         keys,

@@ -1,11 +1,15 @@
-//! `novamind replay`: simulate a run again and compare.
+//! `novamind replay`: play a recorded run again, in the console or headless to compare every state.
 
+use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Context, Failure, print};
-use crate::session::{find_run_to_read, verify};
+use super::play::show_console;
+use super::{Context, Failure, play, print};
+use crate::console::effect::Effect;
+use crate::console::worker::Recorded;
+use crate::session::{Goal, find_run_to_read, verify};
 
 /// Options of `replay`.
 #[derive(Debug, Args)]
@@ -15,20 +19,41 @@ pub struct Options {
     /// Simulate again and compare every recorded state.
     #[arg(long)]
     verify: bool,
+    /// Begin after this week.
+    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with = "verify")]
+    week: u32,
 }
 
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    if !options.verify {
-        return Err(Failure::usage("say --verify: the run is simulated again and every state compared"));
+    if options.verify { check(options, context) } else { show(options, context) }
+}
+
+fn show(options: &Options, context: &Context) -> Result<(), Failure> {
+    if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
+        return Err(Failure::usage(
+            "the replay is shown in a terminal; with --verify it is simulated again and every state compared",
+        ));
     }
-    let path = PathBuf::from(&options.run);
-    let folder = if path.is_dir() {
-        path
-    } else if path.is_file() {
-        path.parent().map(PathBuf::from).unwrap_or_default()
-    } else {
-        find_run_to_read(&context.runs()?, &options.run)?
+    let recorded = recorded(&options.run);
+    if let Recorded::Run(id) = &recorded {
+        find_run_to_read(&context.runs()?, id)?;
+    }
+    let effect = Effect::Replay { recorded, goal: Goal::Week(options.week), follow: false };
+    show_console(&play::Options::default(), Some(effect), context)
+}
+
+/// A file or folder, if there is one of that name; otherwise a run.
+fn recorded(name: &str) -> Recorded {
+    let path = PathBuf::from(name);
+    if path.exists() { Recorded::File(path) } else { Recorded::Run(name.to_owned()) }
+}
+
+fn check(options: &Options, context: &Context) -> Result<(), Failure> {
+    let folder = match recorded(&options.run) {
+        Recorded::File(path) if path.is_dir() => path,
+        Recorded::File(path) => path.parent().map(PathBuf::from).unwrap_or_default(),
+        Recorded::Run(id) => find_run_to_read(&context.runs()?, &id)?,
     };
     let found = verify(&folder)?;
     print(&format!(

@@ -4,7 +4,7 @@ use clap::{Args, Subcommand};
 
 use super::{Context, Failure, print};
 use crate::notation::dollars;
-use crate::session::{RunSummary, delete_run, end_run, find_run, find_run_to_read, list_runs};
+use crate::session::{RunSummary, delete_run, end_run, find_run, find_run_to_read, list_runs, rescue};
 
 /// Options of `runs`.
 #[derive(Debug, Args)]
@@ -31,6 +31,11 @@ enum Choice {
     /// End an unfinished run for good.
     End {
         /// Run, or `latest`: the newest unfinished one.
+        run: String,
+    },
+    /// Open the good beginning of a damaged run as a branch; the run itself is not touched.
+    Rescue {
+        /// Run.
         run: String,
     },
     /// Delete a run with all its files.
@@ -75,6 +80,14 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Some(Choice::End { run }) => {
             end_run(&runs, run)?;
             print(&format!("run {run} is ended; it can still be read\n"))
+        }
+        Some(Choice::Rescue { run }) => {
+            let found = rescue(&find_run_to_read(&runs, run)?)?;
+            print(&format!(
+                "run {} holds lines 1 to {} of run {run} and stands at day {}, mode {}\n\
+                 what was wrong: {}\nrun {run} is as it was; `novamind play --run {}` goes on\n",
+                found.run, found.lines, found.day, found.mode, found.problem, found.run
+            ))
         }
         Some(Choice::Delete { run, yes }) => {
             if !yes {

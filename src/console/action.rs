@@ -37,11 +37,13 @@ pub enum Scope {
     Social,
     /// Groups and their studies.
     Market,
+    /// A recorded run that is played again.
+    Viewer,
 }
 
 impl Scope {
     /// All scopes, in the order of the help.
-    pub const ALL: [Scope; 17] = [
+    pub const ALL: [Scope; 18] = [
         Scope::Global,
         Scope::List,
         Scope::Form,
@@ -59,6 +61,7 @@ impl Scope {
         Scope::Dialog,
         Scope::Menu,
         Scope::Final,
+        Scope::Viewer,
     ];
 
     /// Name in the key file.
@@ -81,6 +84,7 @@ impl Scope {
             Scope::Memo => "memo",
             Scope::Social => "social",
             Scope::Market => "market",
+            Scope::Viewer => "viewer",
         }
     }
 
@@ -104,6 +108,7 @@ impl Scope {
             Scope::Memo => "Notes",
             Scope::Social => "Social",
             Scope::Market => "Market",
+            Scope::Viewer => "Replay of a run",
         }
     }
 
@@ -298,13 +303,34 @@ actions! {
         ContinueRun "continue-run" "continue" "Continue the latest run."
         MarkRun "mark-run" "mark" "Mark the run for a comparison, or unmark it."
         CompareRuns "compare-runs" "compare" "Show the marked runs side by side."
+        ReplayRun "replay-run" "replay" "Play the recorded run again, read-only, week by week."
         EndRun "end-run" "give up" "End the run for good, after a question."
         DeleteRun "delete-run" "delete" "Delete the run with everything in its folder, after a question."
     }
     Final {
         ToMenu "to-menu" "start menu" "Go to the start menu."
         ReportOfRun "report-of-run" "report" "Write the report of the run into its folder, as Markdown and as a page for a browser."
+        ReplayOfRun "replay-of-run" "replay" "Play the run again from its first day."
+        WhatIf "what-if" "what if" "Go back to the last decision in a replay; from any week in it another run can branch off."
         StayInRun "stay" "look around" "Close this page and look at the run."
+    }
+    Viewer {
+        WeekBack "week-back" "week back" "Go to the end of the week before."
+        WeekForward "week-forward" "week on" "Go to the end of the next week."
+        LineBack "line-back" "action back" "Take back the last single action."
+        LineForward "line-forward" "action on" "Let the next single action happen: a call, a query, a look at a screen."
+        ReelStart "reel-start" "first" "Go to the first day, before any action."
+        ReelEnd "reel-end" "last" "Go to the end of the record."
+        SeekWeek "seek-week" "week …" "Go to a week, by its number."
+        PlayPause "play-pause" "play" "Play week after week, or pause."
+        Faster "faster" "faster" "Play faster."
+        Slower "slower" "slower" "Play slower."
+        Decisions "decisions" "decisions" "Show what was decided before the next week beside the screen, or hide it; in a small window as text."
+        DecisionsWhole "decisions-whole" "in full" "Show the decisions of the week in full, with arguments, statements and answers."
+        DecisionsUp "decisions-up" "decisions up" "Scroll the decisions up."
+        DecisionsDown "decisions-down" "decisions down" "Scroll the decisions down."
+        TakeOver "take-over" "take over" "Go on from this moment in a run of your own: a branch."
+        LeaveViewer "leave-viewer" "leave" "Leave the replay for the start menu; nothing was changed."
     }
 }
 

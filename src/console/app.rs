@@ -6,6 +6,8 @@ mod guide;
 mod input;
 mod news;
 mod orders;
+mod shelf;
+mod viewer;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -13,6 +15,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use ratatui::layout::Rect;
+
+pub use shelf::Screens;
 
 use super::action::{Action, Scope};
 use super::canvas::Click;
@@ -24,20 +28,11 @@ use super::glyphs::Glyphs;
 use super::keys::{Chord, Keys};
 use super::message::Message;
 use super::readings::Reading;
-use super::screens::cash::Cash;
-use super::screens::customers::Customers;
-use super::screens::inbox::Inbox;
-use super::screens::journal::Journal;
-use super::screens::market::Market;
 use super::screens::menu::Menu;
-use super::screens::overview::Overview;
-use super::screens::product::Product;
-use super::screens::social::Social;
-use super::screens::sql::Sql;
-use super::screens::tools::Tools;
 use super::screens::{Look, Screen, ScreenId};
 use super::theme::Theme;
 use super::tour::Tour;
+use super::viewer::Viewer;
 use super::worker::{Job, Question};
 use crate::report::Story;
 use crate::session::{Configuration, Library};
@@ -135,6 +130,8 @@ pub struct Run {
     pub tour: Option<Tour>,
     /// Something was explained in this sitting.
     pub explained: bool,
+    /// The run is a recorded one that is played again.
+    pub viewer: Option<Viewer>,
 }
 
 impl Run {
@@ -144,55 +141,6 @@ impl Run {
         self.here = screen;
         self.zoomed = false;
         self.screens.get_mut(screen).looked_at();
-    }
-}
-
-/// Every screen of a run.
-#[derive(Default)]
-pub struct Screens {
-    overview: Overview,
-    cash: Cash,
-    customers: Customers,
-    product: Product,
-    social: Social,
-    inbox: Inbox,
-    market: Market,
-    tools: Tools,
-    sql: Sql,
-    journal: Journal,
-}
-
-impl Screens {
-    /// A screen.
-    pub fn get(&self, id: ScreenId) -> &dyn Screen {
-        match id {
-            ScreenId::Overview => &self.overview,
-            ScreenId::Cash => &self.cash,
-            ScreenId::Customers => &self.customers,
-            ScreenId::Product => &self.product,
-            ScreenId::Social => &self.social,
-            ScreenId::Inbox => &self.inbox,
-            ScreenId::Market => &self.market,
-            ScreenId::Tools => &self.tools,
-            ScreenId::Sql => &self.sql,
-            ScreenId::Journal => &self.journal,
-        }
-    }
-
-    /// A screen, to change it.
-    pub fn get_mut(&mut self, id: ScreenId) -> &mut dyn Screen {
-        match id {
-            ScreenId::Overview => &mut self.overview,
-            ScreenId::Cash => &mut self.cash,
-            ScreenId::Customers => &mut self.customers,
-            ScreenId::Product => &mut self.product,
-            ScreenId::Social => &mut self.social,
-            ScreenId::Inbox => &mut self.inbox,
-            ScreenId::Market => &mut self.market,
-            ScreenId::Tools => &mut self.tools,
-            ScreenId::Sql => &mut self.sql,
-            ScreenId::Journal => &mut self.journal,
-        }
     }
 }
 
@@ -239,8 +187,8 @@ pub struct App {
     pub clicks: Vec<(Rect, Click)>,
     /// Rows that the focused list showed in the last frame.
     pub page: u16,
-    /// Whether the window is large enough to draw.
-    pub drawable: bool,
+    /// Columns and rows of the window in the last frame.
+    pub window: (u16, u16),
     orders: Vec<Order>,
 }
 
@@ -292,7 +240,7 @@ impl App {
             tour_planned: false,
             clicks: Vec::new(),
             page: 10,
-            drawable: true,
+            window: (0, 0),
             orders: vec![Order::ListRuns],
         }
     }
@@ -336,7 +284,7 @@ impl App {
             (Some(Layer::Dialog(dialog)), _) => return dialog.scopes(),
             (Some(Layer::Filing), Stage::Run(run)) => return run.filing.scopes(),
             (_, Stage::Menu(menu)) => return menu.scopes(),
-            (None, Stage::Run(run)) => run.screens.get(run.here).scopes(),
+            (None, Stage::Run(run)) => run.scopes(),
         };
         scopes.push(Scope::Global);
         scopes
@@ -348,7 +296,7 @@ impl App {
             (Some(Layer::Dialog(dialog)), _) => dialog.hints(),
             (Some(Layer::Filing), Stage::Run(run)) => run.filing.hints(),
             (_, Stage::Menu(menu)) => menu.hints(),
-            (None, Stage::Run(run)) => run.screens.get(run.here).hints(),
+            (None, Stage::Run(run)) => run.hints(),
         }
     }
 
@@ -379,6 +327,7 @@ impl App {
 
     fn closed(&mut self, problem: Option<String>) {
         self.busy = None;
+        let was_replay = self.is_replay();
         let code = match self.closing.take() {
             Some(Closing::ToShell(code)) => code,
             Some(Closing::ToMenu) | None => {
@@ -387,12 +336,13 @@ impl App {
                 self.orders.push(Order::ListRuns);
                 match problem {
                     Some(problem) => self.complain(problem),
+                    None if was_replay => self.say("the replay is closed; nothing was changed"),
                     None => self.say("the run is saved"),
                 }
                 return;
             }
         };
-        let farewell = self.run().map(|run| {
+        let farewell = self.run().filter(|run| run.viewer.is_none()).map(|run| {
             let company = &run.company.seen;
             let end =
                 if company.ended.is_some() { "It is over." } else { "`novamind --run latest` continues." };
@@ -470,6 +420,7 @@ impl App {
             }
             run.asked.insert(*reading, changes);
             let question = Question::of_screen(*reading, changes);
+            run.viewer.iter_mut().for_each(|viewer| viewer.unanswered += 1);
             self.orders.push(if self.busy.is_some() {
                 Order::AskNow(question)
             } else {

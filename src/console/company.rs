@@ -63,6 +63,8 @@ pub struct Company {
     pub studies: Vec<RunningStudy>,
     /// What the person should know about the opening of the run.
     pub remarks: Vec<String>,
+    /// It is a moment of a recorded run that is played again: nothing can be done.
+    pub replayed: bool,
 }
 
 impl Company {
@@ -100,6 +102,7 @@ impl Company {
             terms: session.terms(),
             studies: session.running_studies(),
             remarks: session.remarks().to_vec(),
+            replayed: false,
         }
     }
 

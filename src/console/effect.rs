@@ -5,9 +5,24 @@ use serde_json::Value;
 use super::action::Action;
 use super::readings::Reading;
 use super::screens::ScreenId;
+use super::worker::Recorded;
 use crate::glossary::Subject;
-use crate::session::{Forecasts, NewRun};
+use crate::session::{Forecasts, Goal, Mode, NewRun};
 use crate::world::identifiers::Group;
+
+impl Effect {
+    /// Whether it would change the run.
+    pub fn changes_run(&self) -> bool {
+        matches!(
+            self,
+            Effect::Call { .. }
+                | Effect::ConfirmCall { .. }
+                | Effect::Undo
+                | Effect::Advance { .. }
+                | Effect::SetMemo(_)
+        )
+    }
+}
 
 /// Something an update asks for.
 #[derive(Debug, Clone)]
@@ -18,6 +33,21 @@ pub enum Effect {
     Open(String),
     /// Open a run by its id, to look at it; nothing of it is changed.
     Look(String),
+    /// Play a recorded run again.
+    Replay {
+        /// Which.
+        recorded: Recorded,
+        /// Where it begins.
+        goal: Goal,
+        /// New lines are awaited: somebody else is playing it.
+        follow: bool,
+    },
+    /// Go somewhere in the replay.
+    Go(Goal),
+    /// Go on from this moment of the replay in a run of one's own.
+    TakeOver(Mode),
+    /// Open the good beginning of a damaged run of the folder as a branch.
+    Rescue(String),
     /// What a call would do; only the newest answer counts.
     Check {
         /// Tool.

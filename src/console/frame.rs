@@ -29,6 +29,8 @@ pub struct Drawn {
     pub cursor: Option<Position>,
     /// Rows that the focused list showed.
     pub page: u16,
+    /// Columns and rows of the window.
+    pub window: (u16, u16),
 }
 
 /// Draws everything.
@@ -44,8 +46,12 @@ pub fn draw(app: &App, buffer: &mut Buffer) -> Drawn {
     } else {
         draw_all(app, &mut canvas, area);
     }
-    let drawn =
-        Drawn { clicks: std::mem::take(&mut canvas.clicks), cursor: canvas.cursor, page: canvas.page };
+    let drawn = Drawn {
+        clicks: std::mem::take(&mut canvas.clicks),
+        cursor: canvas.cursor,
+        page: canvas.page,
+        window: (area.width, area.height),
+    };
     if app.glyphs == Glyphs::Ascii {
         ascii::plain(buffer);
     }
@@ -88,11 +94,24 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     draw_tabs(app, run, canvas, Rect { y: area.y + 1, height: 1, ..area });
     let body = Rect { y: area.y + 2, height: area.height - 3, ..area };
     let tour = run.tour.as_ref().map(|tour| (tour, tour.height(&app.keys, area.width)));
-    let below = tour.as_ref().map_or(0, |(_, height)| *height);
+    let strip = u16::from(run.viewer.is_some());
+    let below = tour.as_ref().map_or(0, |(_, height)| *height) + strip;
     let body = Rect { height: body.height.saturating_sub(below), ..body };
     let look = Look { company: &run.company, keys: &app.keys, page: app.page };
     canvas.zoomed = run.zoomed;
-    run.screens.get(run.here).draw(canvas, body, &look);
+    let beside = run.viewer.as_ref().filter(|_| !run.zoomed).map_or(0, |viewer| viewer.columns(body));
+    let screen = Rect { width: body.width - beside, ..body };
+    run.screens.get(run.here).draw(canvas, screen, &look);
+    if let Some(viewer) = &run.viewer {
+        // A list beside the screen is not what paging goes by.
+        let page = canvas.page;
+        if beside > 0 {
+            let own = Rect { x: screen.right(), width: beside, ..body };
+            viewer.draw_decisions(canvas, own, &look);
+        }
+        canvas.page = page;
+        viewer.draw_strip(canvas, Rect { y: body.bottom(), height: 1, ..area });
+    }
     for layer in &app.layers {
         // What lies below a dialog can be seen but not clicked.
         canvas.clicks.clear();
@@ -130,6 +149,7 @@ fn draw_top(canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
         (format!("   seats {}", count(seen.seats)), Role::Text),
     ];
     let state = match seen.ended {
+        _ if company.replayed => "REPLAY".to_owned(),
         None => seen.mode.id().to_uppercase(),
         Some(Ended::Horizon) => "FINISHED".to_owned(),
         Some(Ended::Bankruptcy) => "BANKRUPT".to_owned(),
@@ -250,9 +270,12 @@ fn actions_shown(app: &App) -> Vec<Action> {
             Action::Changes,
             Action::Quit,
         ];
+        let of_players = [Action::NextWeek, Action::Changes];
+        let replay = app.run().is_some_and(|run| run.viewer.is_some());
+        let always = always.into_iter().filter(|action| !replay || !of_players.contains(action));
         if !typing {
             let own = actions.clone();
-            actions.extend(always.into_iter().filter(|action| !own.contains(action)));
+            actions.extend(always.filter(|action| !own.contains(action)));
         }
     }
     actions
@@ -262,7 +285,7 @@ fn waiting(busy: &Busy) -> String {
     let seconds = busy.since.elapsed().as_secs_f64();
     match busy.days {
         Some((from, to, now)) => {
-            let share = f64::from(now - from) / f64::from((to - from).max(1));
+            let share = f64::from(now.saturating_sub(from)) / f64::from(to.saturating_sub(from).max(1));
             format!("{} day {now}/{to} {} {seconds:.1} s", busy.what, bar(share, 10))
         }
         None => format!("{} …", busy.what),

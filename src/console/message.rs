@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::company::Company;
 use super::readings::Reading;
 use crate::report::Story;
-use crate::session::{Change, Interrupt, Library, Preview, Refusal, Rows, Week};
+use crate::session::{Change, Interrupt, Library, Place, Preview, Refusal, Rows, Week};
 
 /// Something that arrives.
 pub enum Message {
@@ -19,6 +19,27 @@ pub enum Message {
     News(News),
     /// A signal asks the program to end.
     Signal(i32),
+}
+
+/// A moment of a replay that was reached.
+pub struct Arrival {
+    /// The company of that moment; none where nothing has changed.
+    pub company: Option<Arc<Company>>,
+    /// Where it is.
+    pub place: Place,
+    /// The company has a new database: a handle that stops the person's queries of it.
+    pub interrupt: Option<Interrupt>,
+    /// What the person should know.
+    pub problem: Option<String>,
+}
+
+/// What can be done with a run that does not open.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Instead {
+    /// Somebody else plays it: it can be watched.
+    Watch(String),
+    /// It is damaged: its good beginning can be opened as a branch.
+    Rescue(String),
 }
 
 /// What a thread behind the screen reports.
@@ -31,8 +52,14 @@ pub enum News {
     Kept(Result<String, String>, Result<Vec<crate::session::RunSummary>, String>),
     /// A run is open; with a handle that stops the person's queries.
     Opened(Arc<Company>, Option<Interrupt>),
-    /// A run could not be opened or created.
-    NotOpened(String),
+    /// A run is played again; with a handle that stops the person's queries.
+    Replays(Arc<Company>, Option<Interrupt>, Box<Place>),
+    /// The replay has gone where it was sent, or tried to.
+    Went(Box<Arrival>),
+    /// The replay has gone on by itself: it plays, or somebody else has played.
+    WentOn(Box<Arrival>),
+    /// A run could not be opened or created; with what can be done instead.
+    NotOpened(String, Option<Instead>),
     /// What a call would do; the number says which question this answers.
     Checked(u64, Result<Preview, Refusal>),
     /// A tool was called.

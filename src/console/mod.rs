@@ -30,6 +30,7 @@ mod test_kit;
 mod text;
 pub mod theme;
 pub mod tour;
+pub mod viewer;
 pub mod widgets;
 pub mod worker;
 

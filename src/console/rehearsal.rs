@@ -15,7 +15,8 @@ use super::files;
 use super::frame;
 use super::keys::Chord;
 use super::message::{Message, News};
-use super::worker::{Job, Workers};
+use super::worker::{Job, Recorded, Workers};
+use crate::session::Goal;
 
 /// An answer that takes longer than this does not come.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -71,6 +72,14 @@ impl Rehearsal {
     /// It does not open.
     pub fn look_at(&mut self, run: &str) -> io::Result<()> {
         self.open_with(Effect::Look(run.to_owned()))
+    }
+
+    /// Plays a recorded run again from a moment on, and waits until everything about it is known.
+    ///
+    /// # Errors
+    /// It does not open.
+    pub fn replay(&mut self, recorded: Recorded, goal: Goal, follow: bool) -> io::Result<()> {
+        self.open_with(Effect::Replay { recorded, goal, follow })
     }
 
     fn open_with(&mut self, effect: Effect) -> io::Result<()> {
@@ -154,7 +163,8 @@ impl Rehearsal {
     }
 
     fn count(&mut self, message: &Message) {
-        let answers = matches!(message, Message::News(news) if !matches!(news, News::Day(..)));
+        let unasked = |news: &News| matches!(news, News::Day(..) | News::WentOn(_));
+        let answers = matches!(message, Message::News(news) if !unasked(news));
         self.waiting -= u32::from(answers).min(self.waiting);
     }
 
@@ -163,7 +173,9 @@ impl Rehearsal {
         for order in self.app.take_orders() {
             match order {
                 Order::Job(job) => {
-                    self.waiting += u32::from(!matches!(job, Job::NoteQuery(..) | Job::NoteView(..)));
+                    let silent =
+                        matches!(job, Job::NoteQuery(..) | Job::NoteView(..) | Job::GoOn(_) | Job::Hold);
+                    self.waiting += u32::from(!silent);
                     self.workers.send(job);
                 }
                 Order::AskNow(question) => {
@@ -201,6 +213,7 @@ impl Rehearsal {
         let drawn = frame::draw(&self.app, buffer);
         self.app.clicks = drawn.clicks;
         self.app.page = drawn.page;
+        self.app.window = drawn.window;
         self.cursor = drawn.cursor;
     }
 

@@ -77,6 +77,7 @@ impl Screen {
         if let Some(drawn) = drawn {
             app.clicks = drawn.clicks;
             app.page = drawn.page;
+            app.window = drawn.window;
         }
         Ok(())
     }

@@ -4,23 +4,26 @@
 //! carries the input. A query waits for the session's thread, so that it sees everything that was confirmed,
 //! unless a week is running: then it sees the state before it.
 
+mod player;
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
 use super::company::Company;
-use super::message::{Message, News};
+use super::message::{Instead, Message, News};
 use super::readings::Reading;
 use crate::database::query::Limits;
 use crate::report::{Story, as_html, as_markdown};
 use crate::session::{
-    Access, Configuration, Desk, Forecasts, Interrupt, NewRun, Refusal, Rows, Session, Via, delete_run,
-    end_run, find_run, find_run_to_read, list_runs, run_course,
+    Access, Configuration, Desk, Forecasts, Goal, Interrupt, Mode, NewRun, Playback, Refusal, Rows, RunError,
+    Session, Via, delete_run, end_run, find_run, find_run_to_read, list_runs, run_course,
 };
 
 /// Work for the session's thread.
@@ -37,6 +40,18 @@ pub enum Job {
     Create(Box<NewRun>),
     /// Open a run of a folder by its id, to go on with it or to look at it.
     Open(PathBuf, String, Access),
+    /// Play a run of a folder again, or a file: where it begins, and whether new lines are awaited.
+    Replay(PathBuf, Recorded, Goal, bool),
+    /// Go somewhere in the replay, unless it is stopped on the way.
+    Go(Goal, Arc<AtomicBool>),
+    /// Go a week on in the replay after a while.
+    GoOn(Duration),
+    /// Do not go on.
+    Hold,
+    /// Go on from this moment of the replay in a run of one's own.
+    TakeOver(Mode),
+    /// Open the good beginning of a damaged run of a folder as a branch.
+    Rescue(PathBuf, String),
     /// What a call would do.
     Check(u64, &'static str, Value),
     /// Call a tool.
@@ -61,6 +76,15 @@ pub enum Job {
     Close,
     /// Save, close the run and end the thread.
     End,
+}
+
+/// A run that was recorded.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Recorded {
+    /// One of the folder of runs, by its id.
+    Run(String),
+    /// A folder of a run or a trajectory file anywhere.
+    File(PathBuf),
 }
 
 /// A question for the database.
@@ -127,8 +151,15 @@ impl Workers {
         };
         let for_session = desks.clone();
         let session = std::thread::spawn(move || {
-            let thread =
-                SessionThread { session: None, company: None, news, desks: for_session, configuration };
+            let thread = SessionThread {
+                open: None,
+                company: None,
+                due: None,
+                looked: Instant::now(),
+                news,
+                desks: for_session,
+                configuration,
+            };
             thread.run(&todo);
         });
         Workers { jobs, desks, session: Some(session) }
@@ -156,10 +187,29 @@ impl Workers {
     }
 }
 
+/// The run that is open.
+enum Open {
+    Played(Box<Session>),
+    Replayed(Box<Playback>),
+}
+
+impl Open {
+    fn session(&mut self) -> &mut Session {
+        match self {
+            Open::Played(session) => session,
+            Open::Replayed(playback) => playback.session_mut(),
+        }
+    }
+}
+
 struct SessionThread {
-    session: Option<Session>,
+    open: Option<Open>,
     /// The company as it was shown last.
     company: Option<Arc<Company>>,
+    /// When the replay goes on by itself.
+    due: Option<Instant>,
+    /// When somebody else's lines were looked for.
+    looked: Instant,
     news: Sender<Message>,
     desks: Desks,
     configuration: Configuration,
@@ -170,7 +220,19 @@ const BETWEEN_DAYS: Duration = Duration::from_millis(40);
 
 impl SessionThread {
     fn run(mut self, todo: &Receiver<Job>) {
-        while let Ok(job) = todo.recv() {
+        loop {
+            let job = match self.patience().map(|patience| todo.recv_timeout(patience)) {
+                None => todo.recv().ok(),
+                Some(Ok(job)) => Some(job),
+                Some(Err(RecvTimeoutError::Disconnected)) => None,
+                Some(Err(RecvTimeoutError::Timeout)) => {
+                    if let Err(panic) = catch_unwind(AssertUnwindSafe(|| self.go_on())) {
+                        return self.say(News::Crashed(words_of(&*panic)));
+                    }
+                    continue;
+                }
+            };
+            let Some(job) = job else { return };
             let ending = matches!(job, Job::End);
             let done = catch_unwind(AssertUnwindSafe(|| self.work(job)));
             if let Err(panic) = done {
@@ -209,8 +271,8 @@ impl SessionThread {
                 self.say_kept(&runs, done.map(|()| format!("run {id} is deleted")));
             }
             Job::Create(new) => {
-                let made = Session::create(*new, &self.configuration).map_err(|error| error.to_string());
-                self.take(made);
+                let made = Session::create(*new, &self.configuration);
+                self.take(made, "", None);
             }
             Job::Open(runs, id, access) => {
                 let found = match access {
@@ -218,16 +280,23 @@ impl SessionThread {
                     Access::Read => find_run_to_read(&runs, &id),
                 };
                 let found = found.and_then(|folder| Session::open(&folder, access, true));
-                self.take(found.map_err(|error| error.to_string()));
+                self.take(found, &id, None);
             }
+            Job::Replay(runs, recorded, goal, follow) => self.replay(&runs, recorded, goal, follow),
+            Job::Go(goal, stop) => self.go(goal, &stop),
+            Job::GoOn(after) => self.due = Some(Instant::now() + after),
+            Job::Hold => self.due = None,
+            Job::TakeOver(mode) => self.take_over(mode),
+            Job::Rescue(runs, id) => self.rescue(&runs, &id),
             Job::Close | Job::End => {
-                let problem = self.session.as_mut().and_then(|session| session.save().err());
-                (self.session, self.company) = (None, None);
+                let problem = self.open.as_mut().and_then(|open| open.session().save().err());
+                (self.open, self.company, self.due) = (None, None, None);
                 self.say(News::Closed(problem.map(|error| error.to_string())));
             }
             other => {
-                if let Some(session) = &mut self.session {
-                    let news = Self::with_run(session, &mut self.company, other, &self.news, &self.desks);
+                if let Some(open) = &mut self.open {
+                    let news =
+                        Self::with_run(open.session(), &mut self.company, other, &self.news, &self.desks);
                     if let Some(news) = news {
                         self.say(news);
                     }
@@ -242,11 +311,30 @@ impl SessionThread {
         self.say(News::Kept(done, list));
     }
 
-    fn take(&mut self, opened: Result<Session, String>) {
+    /// Shows a run that was opened, with a remark; if it does not open, what can be done instead.
+    fn take(&mut self, opened: Result<Session, RunError>, id: &str, remark: Option<String>) {
         let session = match opened {
             Ok(session) => session,
-            Err(problem) => return self.say(News::NotOpened(problem)),
+            Err(problem) => {
+                let instead = match &problem {
+                    RunError::InUse { id, .. } => Some(Instead::Watch(id.clone())),
+                    RunError::Damaged { .. } if !id.is_empty() => Some(Instead::Rescue(id.to_owned())),
+                    _ => None,
+                };
+                return self.say(News::NotOpened(problem.to_string(), instead));
+            }
         };
+        let interrupt = self.hand_desks(&session);
+        let mut company = Company::of(&session);
+        company.remarks.extend(remark);
+        let company = Arc::new(company);
+        self.company = Some(company.clone());
+        (self.open, self.due) = (Some(Open::Played(Box::new(session))), None);
+        self.say(News::Opened(company, interrupt));
+    }
+
+    /// Gives the threads that ask the database a desk each; returns what stops the person's.
+    fn hand_desks(&self, session: &Session) -> Option<Interrupt> {
         let mut interrupt: Option<Interrupt> = None;
         for (desk, of_person) in [(&self.desks.person, true), (&self.desks.screens, false)] {
             if let Ok(own) = session.open_desk() {
@@ -256,10 +344,7 @@ impl SessionThread {
                 let _ = desk.send(DeskJob::Take(Box::new(own), session.query_limits()));
             }
         }
-        let company = Arc::new(Company::of(&session));
-        self.company = Some(company.clone());
-        self.session = Some(session);
-        self.say(News::Opened(company, interrupt));
+        interrupt
     }
 
     fn with_run(
@@ -326,6 +411,12 @@ impl SessionThread {
             | Job::DeleteRun(..)
             | Job::Create(_)
             | Job::Open(..)
+            | Job::Replay(..)
+            | Job::Go(..)
+            | Job::GoOn(_)
+            | Job::Hold
+            | Job::TakeOver(_)
+            | Job::Rescue(..)
             | Job::Close
             | Job::End => None,
         }

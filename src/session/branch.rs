@@ -1,6 +1,6 @@
 //! Branches: a new run that shares the past of another up to a decision day (chapter 80 §2).
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
@@ -23,9 +23,6 @@ impl Session {
             let message = "an unfinished baseline run cannot be branched; end it first";
             return Err(Refusal::new("not_in_this_mode", message));
         }
-        if mode == Mode::Baseline {
-            return Err(Refusal::new("not_in_this_mode", "a branch can have any mode but baseline"));
-        }
         let Some(folder) = &self.folder else {
             return Err(Refusal::new("not_saved", "a run in memory cannot be branched"));
         };
@@ -39,24 +36,7 @@ impl Session {
             ));
         }
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved)?;
-        let shared = shared_lines(&trajectory, day);
-        let parent = Parent { run: self.manifest.id.clone(), seq: shared.last().map_or(0, |line| line.seq) };
-        let manifest = Manifest {
-            id: new_id(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            created: now(),
-            mode,
-            parent: Some(parent),
-            ..self.manifest.clone()
-        };
-        let own = folder.with_file_name(&manifest.id);
-        write_branch(&own, &manifest, &shared)
-            .and_then(|()| Session::open(&own, Access::Write, true))
-            .map_err(|error| {
-                // A branch that cannot be opened is nobody's run.
-                let _ = std::fs::remove_dir_all(&own);
-                not_saved(error)
-            })
+        branch_of(folder, &self.manifest, before(&trajectory, day), mode)
     }
 
     /// Whether the run can be branched now.
@@ -74,19 +54,54 @@ fn not_saved(error: RunError) -> Refusal {
     Refusal::new("not_saved", error.to_string())
 }
 
-/// The lines that make the company what it was at the beginning of a decision day: everything before the week
-/// that begins on it, without what was decided on that day itself.
-fn shared_lines(trajectory: &Trajectory, day: u32) -> Vec<&Line> {
-    let kinds = ["call", "advance", "week", "step", "override"];
-    let accepted = |line: &&Line| line.kind != "call" || line.fields.get("ok") == Some(&Value::Bool(true));
+/// Starts a run beside another that shares some of its lines, and opens it.
+///
+/// # Errors
+/// `not_in_this_mode` for a baseline branch, `not_saved`.
+pub(super) fn branch_of(
+    folder: &Path,
+    parent: &Manifest,
+    lines: &[Line],
+    mode: Mode,
+) -> Result<Session, Refusal> {
+    if mode == Mode::Baseline {
+        return Err(Refusal::new("not_in_this_mode", "a branch can have any mode but baseline"));
+    }
+    let shared = shared_lines(lines);
+    let manifest = Manifest {
+        id: new_id(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        created: now(),
+        mode,
+        parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
+        ..parent.clone()
+    };
+    let own = folder.with_file_name(&manifest.id);
+    write_branch(&own, &manifest, &shared).and_then(|()| Session::open(&own, Access::Write, true)).map_err(
+        |error| {
+            // A branch that cannot be opened is nobody's run.
+            let _ = std::fs::remove_dir_all(&own);
+            not_saved(error)
+        },
+    )
+}
+
+/// The lines before a decision day: those of the days before it and the week that ends on it, without what was
+/// decided on that day itself.
+fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
     let closes = |line: &Line| ["week", "step"].contains(&line.kind.as_str());
-    trajectory
+    let after = trajectory
         .lines
         .iter()
-        .take_while(|line| line.day < day || (line.day == day && closes(line)) || line.seq == 0)
-        .filter(|line| kinds.contains(&line.kind.as_str()))
-        .filter(accepted)
-        .collect()
+        .position(|line| !(line.day < day || (line.day == day && closes(line)) || line.seq == 0));
+    &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]
+}
+
+/// Those lines that make a company what it is.
+fn shared_lines(lines: &[Line]) -> Vec<&Line> {
+    let kinds = ["call", "advance", "week", "step", "override"];
+    let accepted = |line: &&Line| line.kind != "call" || line.fields.get("ok") == Some(&Value::Bool(true));
+    lines.iter().filter(|line| kinds.contains(&line.kind.as_str())).filter(accepted).collect()
 }
 
 fn write_branch(folder: &PathBuf, manifest: &Manifest, shared: &[&Line]) -> Result<(), RunError> {

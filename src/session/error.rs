@@ -81,7 +81,9 @@ pub enum RunError {
         known: u32,
     },
     /// Another program is writing the run.
-    #[error("run {id} is open in another program ({holder}); close it there, or open it to read only")]
+    #[error(
+        "run {id} is open in another program ({holder}); close it there, or watch it from here: `novamind play --run {id} --watch`"
+    )]
     InUse {
         /// Run.
         id: String,

@@ -8,6 +8,7 @@ use toml::{Table, Value};
 use super::consent::Consent;
 use super::error::RunError;
 use super::mode::Mode;
+use super::trajectory::Line;
 use crate::world::MECHANICS;
 use crate::world::params::{ParameterError, Params, Source, shipped_sources};
 
@@ -71,6 +72,28 @@ pub struct Parent {
     pub seq: u64,
 }
 
+/// What the first line of a trajectory says of a run.
+#[derive(Deserialize)]
+struct Start {
+    format: u32,
+    version: String,
+    #[serde(default = "first_mechanics")]
+    mechanics: u32,
+    run: String,
+    seed: u64,
+    days: u32,
+    cash: f64,
+    scenario: String,
+    mode: Mode,
+    participant: Option<String>,
+    parameters_digest: String,
+    #[serde(default)]
+    consent: Option<Consent>,
+    parent: Option<Parent>,
+    #[serde(default)]
+    overrides: Table,
+}
+
 impl Manifest {
     /// Reads the manifest of a run's folder.
     ///
@@ -85,18 +108,60 @@ impl Manifest {
             safe: "The trajectory was not touched; restore run.toml from a copy to open the run".to_owned(),
             path,
         })?;
-        if manifest.mechanics != MECHANICS {
+        manifest.understood()
+    }
+
+    /// This manifest, if this program plays by its mechanics and reads its format.
+    fn understood(self) -> Result<Manifest, RunError> {
+        if self.format > FORMAT {
+            return Err(RunError::OtherFormat { id: self.id, format: self.format, known: FORMAT });
+        }
+        if self.mechanics != MECHANICS {
             return Err(RunError::OtherMechanics {
-                id: manifest.id,
-                version: manifest.version,
-                recorded: manifest.mechanics,
+                id: self.id,
+                version: self.version,
+                recorded: self.mechanics,
                 own: MECHANICS,
             });
         }
-        if manifest.format > FORMAT {
-            return Err(RunError::OtherFormat { id: manifest.id, format: manifest.format, known: FORMAT });
+        Ok(self)
+    }
+
+    /// The manifest as the first line of a trajectory tells it, for one that stands alone.
+    ///
+    /// # Errors
+    /// The line is no start of a run.
+    pub fn of_start(path: &Path, line: Option<&Line>) -> Result<Manifest, RunError> {
+        let damaged = |problem: &str| RunError::Damaged {
+            path: path.to_owned(),
+            line: 1,
+            problem: problem.to_owned(),
+            safe: "Nothing was changed".to_owned(),
+        };
+        let Some(line) = line.filter(|line| line.kind == "start") else {
+            return Err(damaged("the trajectory does not begin with the start of a run"));
+        };
+        let start: Start = serde_json::from_value(serde_json::Value::Object(line.fields.clone()))
+            .map_err(|error| damaged(&format!("the start of the run cannot be read ({error})")))?;
+        Manifest {
+            format: start.format,
+            version: start.version,
+            mechanics: start.mechanics,
+            id: start.run,
+            created: line.at.clone(),
+            seed: start.seed,
+            days: start.days,
+            cash: start.cash,
+            scenario: start.scenario,
+            mode: start.mode,
+            participant: start.participant,
+            earlier_runs: 0,
+            consent: start.consent,
+            parameters_digest: start.parameters_digest,
+            parent: start.parent,
+            parameters: start.overrides,
         }
-        Ok(manifest)
+        .understood()
     }
 
     /// Writes the manifest into a run's folder, so that it is there whole or not at all.

@@ -14,6 +14,7 @@ mod consent;
 mod course;
 mod create;
 mod dashboard;
+mod decided;
 mod error;
 mod feed;
 mod filed;
@@ -23,7 +24,9 @@ mod manifest;
 mod mode;
 mod observe;
 mod open;
+mod playback;
 mod record;
+mod rescue;
 mod runs;
 mod scripts;
 mod snapshot;
@@ -52,6 +55,7 @@ pub use consent::{Consent, ConsentText};
 pub use course::{RunCourse, run_course};
 pub use create::{NewRun, Storage};
 pub use dashboard::DeliveredQuality;
+pub use decided::{Act, Decided, Foreseen};
 pub use error::RunError;
 pub use filed::{Filed, filed_forecasts};
 pub use journal::{ForecastScore, JournalEntry};
@@ -60,6 +64,8 @@ pub use manifest::{FORMAT, Manifest, Parent};
 pub use mode::Mode;
 pub use observe::{Observation, WaitingThread};
 pub use open::{Access, Verification, verify};
+pub use playback::{Chapter, Goal, Place, Playback, Went};
+pub use rescue::{Rescued, rescue};
 pub use runs::{
     RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,
     participant_folder, run_folder,

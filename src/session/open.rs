@@ -10,7 +10,7 @@ use super::error::RunError;
 use super::manifest::Manifest;
 use super::runs::lock_run;
 use super::snapshot::Snapshot;
-use super::trajectory::{Line, Trajectory, TrajectoryWriter};
+use super::trajectory::{Line, Trajectory, TrajectoryWriter, damaged_at};
 use super::witness::Witnesses;
 use super::{Ended, Session};
 use crate::database::{Location, Position, Projector};
@@ -153,18 +153,19 @@ impl Session {
             if missing && projector.is_some() {
                 self.projector = projector.take();
             }
-            self.position = line.position();
-            self.replay_line(line).map_err(|problem| RunError::Damaged {
-                path: path.to_owned(),
-                line: line.seq as usize + 1,
-                problem,
-                safe: format!("Lines 1 to {} are good; nothing was changed", line.seq),
-            })?;
+            self.apply_line(path, line)?;
         }
         if projector.is_some() {
             self.projector = projector;
         }
         Ok(())
+    }
+
+    /// Applies a line of a file again.
+    pub(super) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
+        self.position = line.position();
+        let damaged = damaged_at(path);
+        self.replay_line(line).map_err(|problem| damaged((line.seq as usize + 1, problem)))
     }
 
     fn replay_line(&mut self, line: &Line) -> Result<(), String> {
@@ -240,7 +241,7 @@ impl Session {
 }
 
 /// The first line must say what the manifest says: otherwise one of the two files belongs to another run.
-fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
+pub(super) fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
     let damaged = |problem: &str| RunError::Damaged {
         path: path.to_owned(),
         line: 1,

@@ -295,15 +295,7 @@ impl Trajectory {
     /// The file cannot be read, or a line is damaged; the error names it and says what is still good.
     pub fn read(path: &Path) -> Result<Trajectory, RunError> {
         let bytes = std::fs::read(path).map_err(RunError::io(path))?;
-        Trajectory::parse(&bytes).map_err(|(line, problem)| RunError::Damaged {
-            path: path.to_owned(),
-            line,
-            problem,
-            safe: match line {
-                1 => "Nothing before it can be used".to_owned(),
-                _ => format!("Lines 1 to {} are good; nothing was changed", line - 1),
-            },
-        })
+        Trajectory::parse(&bytes).map_err(damaged_at(path))
     }
 
     /// Checks bytes as [`Trajectory::read`] does.
@@ -311,32 +303,55 @@ impl Trajectory {
     /// # Errors
     /// (line, problem), lines from 1.
     pub fn parse(bytes: &[u8]) -> Result<Trajectory, (usize, String)> {
+        let mut trajectory = Trajectory::default();
+        trajectory.extend(bytes).map(|()| trajectory)
+    }
+
+    /// Takes what follows in the file after the lines that are known.
+    ///
+    /// # Errors
+    /// (line, problem), lines from 1. The lines before it are kept.
+    pub fn extend(&mut self, bytes: &[u8]) -> Result<(), (usize, String)> {
         let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
-        let mut lines: Vec<Line> = Vec::new();
         for text in bytes[..end].split_inclusive(|byte| *byte == b'\n') {
-            let text = &text[..text.len() - 1];
-            let expected = lines.last().map_or_else(|| line_hash(b""), |line| line.hash.clone());
-            let number = lines.len() + 1;
-            let line =
-                parse_line(text, lines.len() as u64, &expected).map_err(|problem| (number, problem))?;
-            let summed = lines.first().unwrap_or(&line).fields.get(SUMS) == Some(&Value::Bool(true));
-            match sum_of(text) {
-                Some(true) => {}
-                // Runs of the first builds have no sums.
-                None if !summed => {}
-                Some(false) | None => {
-                    return Err((number, "the line does not fit its own sum: it was changed".to_owned()));
-                }
-            }
-            lines.push(line);
+            let line = &text[..text.len() - 1];
+            let expected = self.lines.last().map_or_else(|| line_hash(b""), |line| line.hash.clone());
+            let number = self.lines.len() + 1;
+            let summed = self.lines.first().is_none_or(|first| first.fields.get(SUMS) == Some(&true.into()));
+            let line = parse_line(line, self.lines.len() as u64, &expected, summed)
+                .map_err(|problem| (number, problem))?;
+            self.lines.push(line);
+            self.length += text.len() as u64;
         }
-        Ok(Trajectory { lines, length: end as u64, unfinished: bytes.len() - end })
+        self.unfinished = bytes.len() - end;
+        Ok(())
     }
 }
 
-fn parse_line(text: &[u8], seq: u64, previous: &str) -> Result<Line, String> {
+/// A line of a file that is not what was written, as an error.
+pub(super) fn damaged_at(path: &Path) -> impl Fn((usize, String)) -> RunError + '_ {
+    move |(line, problem)| RunError::Damaged {
+        path: path.to_owned(),
+        line,
+        problem,
+        safe: match line {
+            1 => "Nothing before it can be used".to_owned(),
+            _ => format!("Lines 1 to {} are good; nothing was changed{BRANCH_THEM}", line - 1),
+        },
+    }
+}
+
+/// What can be done with the lines before a damaged one.
+pub(super) const BRANCH_THEM: &str = ": `novamind runs rescue` makes a branch of them";
+
+/// Reads a line. Those of the first builds have no sums; of a first line only it itself tells whether it has one.
+fn parse_line(text: &[u8], seq: u64, previous: &str, summed: bool) -> Result<Line, String> {
     let fields: Map<String, Value> =
         serde_json::from_slice(text).map_err(|error| format!("this is no line of a trajectory ({error})"))?;
+    let summed = summed && (seq > 0 || fields.get(SUMS) == Some(&true.into()));
+    if sum_of(text).map_or(summed, |fits| !fits) {
+        return Err("the line does not fit its own sum: it was changed".to_owned());
+    }
     if fields.get("seq").and_then(Value::as_u64) != Some(seq) {
         return Err(format!("the line should have number {seq}: lines are missing or out of order"));
     }

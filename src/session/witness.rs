@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::error::RunError;
 use super::snapshot::{FILE, Snapshot};
-use super::trajectory::Trajectory;
+use super::trajectory::{BRANCH_THEM, Trajectory};
 use crate::database::{Location, Position, file_digest, is_consistent, position_of};
 
 /// What stood beside the trajectory before it was read.
@@ -47,8 +47,8 @@ impl Witnesses {
                 line: line as usize,
                 problem: format!("{problem} ({file} was made from it)"),
                 safe: format!(
-                    "Lines 1 to {good} are good; nothing was changed. Restore the trajectory from a copy, or go on \
-                     from the good lines in a branch: `novamind runs rescue`"
+                    "Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}. Or restore the trajectory from a \
+                     copy, or remove {file} to go on from what is there"
                 ),
             })
         })

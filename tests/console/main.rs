@@ -7,5 +7,6 @@ mod harness;
 mod looks;
 mod monkey;
 mod pictures;
+mod replay;
 mod sizes;
 mod stories;

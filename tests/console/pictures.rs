@@ -6,13 +6,14 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use novamind::console::theme::Theme;
-use novamind::session::Configuration;
+use novamind::session::{Configuration, Goal, Mode};
 use ratatui::buffer::Buffer;
 use ratatui::style::Style;
 
 use super::company::led;
 use super::harness::Console;
 use super::looks::{cut_with_room, emptiest_half};
+use super::replay::{played, replayed};
 
 /// Sizes of windows: the smallest that is promised, a usual one, a large one.
 const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
@@ -151,4 +152,30 @@ fn a_crisis_in_week_30() {
 #[test]
 fn a_large_company_in_week_60() {
     pictures("week-60", "crowd.toml", 42, 420);
+}
+
+/// Places of a replay.
+const OF_REPLAY: [(&str, &str, &str); 6] = [
+    ("overview", "1", ""),
+    ("cash", "2", ""),
+    ("tools-form", "8 enter", "esc"),
+    ("half-a-week", "1 ) ) )", "<"),
+    ("seek", "#", "esc"),
+    ("take-over", "T", "esc"),
+];
+
+#[test]
+fn a_replay_of_twelve_weeks() {
+    let runs = tempfile::tempdir().expect("a folder");
+    drop(played(runs.path(), Mode::Sandbox, 12));
+    let mut console = replayed(runs.path(), SIZES[1], Goal::Week(7));
+    let mut complaints = Vec::new();
+    for (place, keys, back) in OF_REPLAY {
+        console.press(keys);
+        let picture = picture(&mut console, place, false, &mut complaints);
+        insta::assert_snapshot!(format!("replay-{place}"), picture);
+        console.size = SIZES[1];
+        console.press(back);
+    }
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }

@@ -20,7 +20,9 @@ fn runs_of_other_builds_reach_the_same_states() {
     let mut hashes = Vec::new();
     for build in ["development", "release"] {
         let found = verify(&recorded(build)).unwrap_or_else(|error| {
-            panic!("{error}\nIf the mechanics were changed on purpose, raise MECHANICS and record the runs anew.")
+            panic!(
+                "{error}\nIf the mechanics were changed on purpose, raise MECHANICS and record the runs anew."
+            )
         });
         assert_eq!((found.day, found.states), (70, 10), "{build}");
         hashes.push(found.state_hash);

@@ -326,8 +326,10 @@ fn a_run_in_use_is_left_to_its_owner() {
         &["runs", "delete", &id, "--yes"],
     ] {
         let holder = format!("(process {})", owner.id());
-        home.run(arguments).fails(1, &["open in another program", &holder]);
+        home.run(arguments).fails(1, &["open in another program", &holder, "--watch"]);
     }
+    let watched = home.play(&["--run", &id, "--watch"], "set_prices A=14\nquit\n");
+    assert!(watched.out.contains("open to read only"), "{}", watched.out);
     // Looking on is allowed, and the owner goes on undisturbed.
     let seen = home.run(&["query", &id, "SELECT MAX(day) AS day FROM config_history"]);
     assert_eq!(seen.code, 0, "{}", seen.err);
@@ -335,6 +337,27 @@ fn a_run_in_use_is_left_to_its_owner() {
     wait_for("ok set_prices");
     assert_eq!(owner.wait().expect("it ends").code(), Some(0));
     assert_eq!(home.run(&["runs", "delete", &id, "--yes"]).code, 0);
+}
+
+#[test]
+fn the_good_beginning_of_a_damaged_run_becomes_a_branch() {
+    let home = Home::new();
+    let folder = home.two_weeks();
+    home.run(&["runs", "rescue", &id(&folder)]).fails(2, &["not damaged"]);
+    let path = folder.join("trajectory.jsonl");
+    let mut bytes = fs::read(&path).expect("a trajectory");
+    let second_price = bytes.windows(8).position(|part| part == b"\"C\":50.0" || part == b"{\"C\":50}");
+    let at = second_price.expect("the call of the second week") + 6;
+    bytes[at] ^= 0x01;
+    fs::write(&path, &bytes).expect("written");
+    home.play(&["--run", &id(&folder)], "").fails(3, &["novamind runs rescue"]);
+    let rescued = home.run(&["runs", "rescue", &id(&folder)]);
+    assert_eq!(rescued.code, 0, "{}", rescued.err);
+    assert!(rescued.out.contains("stands at day 7"), "{}", rescued.out);
+    let own = rescued.out.split_whitespace().nth(1).expect("a name").to_owned();
+    assert_eq!(home.run(&["replay", &own, "--verify"]).code, 0);
+    assert_eq!(fs::read(&path).expect("a trajectory"), bytes, "the damaged run was changed");
+    home.run(&["replay", &own]).fails(2, &["--verify"]);
 }
 
 #[test]

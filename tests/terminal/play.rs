@@ -157,3 +157,36 @@ fn a_call_is_copied_through_the_terminal() {
     terminal.type_keys("\x03y");
     assert_eq!(terminal.end().0, 0);
 }
+
+#[test]
+fn a_recorded_run_is_played_again_and_taken_over() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new", "--days", "28"], (120, 40));
+    terminal.wait_for("day 0/28");
+    for (week, day) in [(1, 7), (2, 14)] {
+        terminal.type_keys("n");
+        terminal.wait_for("[1 review]");
+        terminal.type_keys("\rbecause\r");
+        terminal.wait_for("[3 forecasts]");
+        terminal.type_keys("f\r");
+        terminal.wait_for(&format!("Week {week} · day {day}"));
+        terminal.type_keys("\r");
+    }
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+    let mut terminal = Terminal::start(runs.path(), &["replay", "latest"], (120, 40));
+    terminal.wait_for("week 0/2");
+    terminal.type_keys("FFFF ");
+    terminal.wait_for("week 2/2");
+    terminal.wait_for("the record ends here");
+    terminal.type_keys("#1\r");
+    terminal.wait_for("week 1/2");
+    terminal.type_keys("T");
+    terminal.wait_for("on day 7 before week 2");
+    terminal.type_keys("\r");
+    terminal.wait_for("SANDBOX");
+    terminal.type_keys("q");
+    let (code, screen) = terminal.end();
+    assert_eq!(code, 0);
+    assert!(screen.contains("is saved at day 7"), "{screen}");
+}

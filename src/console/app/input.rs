@@ -39,6 +39,9 @@ impl App {
         let scopes = self.scopes();
         let typing = scopes.first().is_some_and(|scope| scope.is_text());
         let chord = Chord::of(&key);
+        if chord.is_escape() && self.stop_on_the_way() {
+            return;
+        }
         if !self.pending.is_empty() {
             return self.go_on(chord);
         }
@@ -179,6 +182,12 @@ impl App {
             let effects = menu.act(action);
             return self.follow(effects);
         }
+        if self.refuses_in_replay(action) {
+            return;
+        }
+        if action.entry().scope == Scope::Viewer {
+            return self.act_in_viewer(action);
+        }
         if global {
             return self.act_globally(action);
         }
@@ -201,7 +210,7 @@ impl App {
         self.follow(outcome.effects);
     }
 
-    fn open(&mut self, dialog: impl Dialog + 'static) {
+    pub(super) fn open(&mut self, dialog: impl Dialog + 'static) {
         self.layers.push(Layer::Dialog(Box::new(dialog)));
     }
 
@@ -345,7 +354,7 @@ impl App {
     }
 
     fn quit(&mut self) {
-        let unsent = self.run().is_some_and(|run| {
+        let unsent = self.run().filter(|run| run.viewer.is_none()).is_some_and(|run| {
             run.filing.has_draft()
                 || ScreenId::ALL.iter().any(|screen| run.screens.get(*screen).holds_unsent_text())
         });

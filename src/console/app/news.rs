@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::{App, Layer, Order, Run, Screens, Stage};
+use crate::console::action::Action;
 use crate::console::company::Company;
 use crate::console::dialogs::filing::Filing;
 use crate::console::dialogs::final_page::FinalPage;
@@ -14,6 +15,7 @@ use crate::console::message::News;
 use crate::console::screens::{Look, ScreenId};
 use crate::console::text::number;
 use crate::console::tour::Tour;
+use crate::console::viewer::Viewer;
 use crate::notation::{dollars, signed_dollars};
 use crate::report::Story;
 use crate::session::{Change, Interrupt, Refusal, Week};
@@ -42,12 +44,17 @@ impl App {
                     self.follow(effects);
                 }
             }
-            News::Opened(company, interrupt) => self.opened(company, interrupt),
-            News::NotOpened(problem) => {
+            News::Opened(company, interrupt) => self.opened(company, interrupt, None),
+            News::Replays(company, interrupt, place) => {
+                self.opened(company, interrupt, Some(Viewer::new(*place)));
+            }
+            News::Went(arrival) => self.arrived(*arrival, true),
+            News::WentOn(arrival) => self.arrived(*arrival, false),
+            News::NotOpened(problem, instead) => {
                 self.busy = None;
                 self.tour_planned = false;
                 if let Stage::Menu(menu) = &mut self.stage {
-                    menu.refused(problem.clone());
+                    menu.refused(problem.clone(), instead);
                 }
                 self.complain(problem);
             }
@@ -126,6 +133,7 @@ impl App {
                 ScreenId::Journal
             }
             News::Read(reading, changes, answer) => {
+                self.play_on_when_known();
                 let Stage::Run(run) = &mut self.stage else { return };
                 if run.asked.get(reading) != Some(changes) {
                     return;
@@ -158,12 +166,18 @@ impl App {
         self.follow(effects);
     }
 
-    fn opened(&mut self, company: Arc<Company>, interrupt: Option<Interrupt>) {
+    fn opened(&mut self, company: Arc<Company>, interrupt: Option<Interrupt>, viewer: Option<Viewer>) {
         self.busy = None;
+        // Whoever takes a replay over goes on where they look.
+        let here = self.run().filter(|run| run.viewer.is_some()).map_or(ScreenId::Overview, |run| run.here);
         self.layers.clear();
-        let over = !company.is_running();
+        let over = !company.is_running() && viewer.is_none();
         let tour = std::mem::take(&mut self.tour_planned).then(Tour::default);
         match company.remarks.last() {
+            _ if viewer.is_some() => {
+                let help = self.keys.label(Action::Help).unwrap_or_default();
+                self.say(format!("a replay: nothing is changed; {help} shows its keys"));
+            }
             Some(remark) => self.say(remark.clone()),
             None if company.seen.day == 0 => {
                 self.say("a new company: 8 shows the forms, n lets a week pass, ? explains the keys")
@@ -173,7 +187,7 @@ impl App {
         self.stage = Stage::Run(Box::new(Run {
             company: company.clone(),
             interrupt,
-            here: ScreenId::Overview,
+            here,
             before: Vec::new(),
             after: Vec::new(),
             zoomed: false,
@@ -185,6 +199,7 @@ impl App {
             asked: BTreeMap::new(),
             tour,
             explained: false,
+            viewer,
         }));
         if let Stage::Run(run) = &mut self.stage {
             run.screens.sql.learn(self.library.clone());
@@ -217,7 +232,7 @@ impl App {
     }
 
     /// The run has changed.
-    fn changed(&mut self, company: Arc<Company>) {
+    pub(super) fn changed(&mut self, company: Arc<Company>) {
         if let Stage::Run(run) = &mut self.stage {
             run.company = company;
             run.changes += 1;

@@ -19,7 +19,20 @@ impl App {
     }
 
     fn follow_one(&mut self, effect: Effect) {
+        if effect.changes_run() && self.is_replay() {
+            return self.complain_of_replay();
+        }
         match effect {
+            Effect::Replay { recorded, goal, follow } => {
+                let job = Job::Replay(self.runs.clone(), recorded, goal, follow);
+                self.start("opening the record", job);
+            }
+            Effect::Go(goal) => self.go(goal),
+            Effect::TakeOver(mode) => self.start("starting a run from here", Job::TakeOver(mode)),
+            Effect::Rescue(id) => {
+                let job = Job::Rescue(self.runs.clone(), id);
+                self.start("opening what is good of the run", job);
+            }
             Effect::Create(new) => {
                 let new = crate::session::NewRun {
                     storage: crate::session::Storage::Runs(self.runs.clone()),

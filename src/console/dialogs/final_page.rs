@@ -16,11 +16,12 @@ use crate::console::screens::Look;
 use crate::console::text::{short_dollars, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Line, chart};
+use crate::console::worker::Recorded;
 use crate::notation::{dollars, grouped, percent};
 use crate::report::Story;
 use crate::report::measures::{ChannelSkill, Measures};
 use crate::report::ranking::{Standing, Whose, published_targeted_shares, standing};
-use crate::session::{Ended, ForecastScore};
+use crate::session::{Ended, ForecastScore, Goal};
 
 /// Widest that reads well.
 const WIDEST: u16 = 124;
@@ -28,6 +29,25 @@ const WIDEST: u16 = 124;
 const TWO_COLUMNS: (u16, u16) = (104, 26);
 /// Width of the names of facts.
 const NAMES: usize = 22;
+
+/// What can be done from here.
+const KEYS: [Action; 5] =
+    [Action::ReportOfRun, Action::ReplayOfRun, Action::WhatIf, Action::StayInRun, Action::ToMenu];
+
+/// Shows a moment of the run, from which it can be played again or taken over.
+fn replay(company: &Company, goal: Goal) -> Outcome {
+    match (&company.folder, company.replayed) {
+        (_, true) => Outcome::close_with(vec![Effect::Go(goal)]),
+        (Some(_), _) => {
+            let recorded = Recorded::Run(company.seen.run.clone());
+            Outcome::with(vec![Effect::Replay { recorded, goal, follow: false }])
+        }
+        (None, _) => {
+            let text = "this run is kept in memory: there is no record of it to play again";
+            Outcome::with(vec![Effect::Complain(text.to_owned())])
+        }
+    }
+}
 
 /// The final page.
 pub struct FinalPage {
@@ -48,11 +68,14 @@ impl Dialog for FinalPage {
     }
 
     fn hints(&self) -> Vec<Action> {
-        vec![Action::ReportOfRun, Action::StayInRun, Action::ToMenu]
+        KEYS.to_vec()
     }
 
-    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
         match action {
+            Action::ReplayOfRun => replay(look.company, Goal::First),
+            // The last decision: the week that ended the run is not run yet.
+            Action::WhatIf => replay(look.company, Goal::Week(look.company.seen.week.saturating_sub(1))),
             Action::ToMenu => Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun => Outcome::close(),
             Action::ReportOfRun => Outcome::with(vec![Effect::WriteReport]),
@@ -84,7 +107,7 @@ impl Dialog for FinalPage {
             let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
             draw_cash(canvas, below, company);
         }
-        canvas.pane_keys(own, &look.hints(&[Action::ReportOfRun, Action::StayInRun, Action::ToMenu]));
+        canvas.pane_keys(own, &look.hints(&KEYS));
     }
 }
 

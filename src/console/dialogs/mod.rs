@@ -10,6 +10,8 @@ pub mod palette;
 pub mod reader;
 pub mod report;
 pub mod rows;
+pub mod seek;
+pub mod take_over;
 
 use std::sync::Arc;
 

@@ -114,6 +114,8 @@ fn recent(company: &Company) -> Vec<&'static str> {
 fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
     let acts = |tool: &str| find(tool).is_some_and(|tool| tool.spec().kind.acts());
     match effect {
+        Effect::Do(Action::NextWeek | Action::Undo) if company.replayed => Some("this is a replay"),
+        Effect::ShowTool(tool) if acts(tool) && company.replayed => Some("this is a replay"),
         Effect::Do(Action::NextWeek | Action::Undo) if !company.is_running() => Some("the run is over"),
         Effect::Do(Action::Report) if company.weeks.is_empty() => Some("no week has passed yet"),
         Effect::ShowTool(tool) if acts(tool) && !company.is_running() => Some("the run is over"),
@@ -122,8 +124,8 @@ fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
 }
 
 fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
-    let commands =
-        ACTIONS.iter().filter(|entry| entry.scope == Scope::Global && entry.action != Action::Palette);
+    let everywhere = |scope: Scope| scope == Scope::Global || (scope == Scope::Viewer && company.replayed);
+    let commands = ACTIONS.iter().filter(|entry| everywhere(entry.scope) && entry.action != Action::Palette);
     let mut list: Vec<Entry> = commands
         .map(|entry| Entry {
             kind: "command",

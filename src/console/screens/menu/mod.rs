@@ -16,6 +16,7 @@ use ratatui::layout::Rect;
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Align, Canvas};
 use crate::console::effect::Effect;
+use crate::console::message::Instead;
 use crate::console::theme::Role;
 use crate::console::widgets::Table;
 use crate::session::{Configuration, RunCourse, RunSummary};
@@ -95,8 +96,9 @@ impl Menu {
         self.courses.insert(id, Some(course));
     }
 
-    /// A run could not be started or opened.
-    pub fn refused(&mut self, problem: String) {
+    /// A run could not be started or opened; what can be done instead is asked.
+    pub fn refused(&mut self, problem: String, instead: Option<Instead>) {
+        self.asked = instead.map(|instead| Asked::Instead(instead, problem.clone()));
         self.form.refused = Some(problem);
     }
 
@@ -134,7 +136,7 @@ impl Menu {
     /// Scopes of the page.
     pub fn scopes(&self) -> Vec<Scope> {
         match self.page {
-            Page::Runs if self.asked.is_some() => vec![Scope::Dialog],
+            _ if self.asked.is_some() => vec![Scope::Dialog],
             Page::Runs if self.table.is_typing() => vec![Scope::Field],
             Page::NewRun if self.form.is_typing() => vec![Scope::Field],
             Page::NewRun | Page::Compare | Page::Paper => vec![Scope::List],
@@ -145,13 +147,14 @@ impl Menu {
     /// Actions worth showing.
     pub fn hints(&self) -> Vec<Action> {
         match self.page {
+            _ if self.asked.is_some() => vec![Action::Confirm, Action::Cancel],
             Page::Home if self.latest().is_none() => vec![Action::Open, Action::NewRun, Action::Quit],
             Page::Home => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],
             Page::NewRun => vec![Action::Open, Action::Left, Action::Right, Action::Close],
-            Page::Runs if self.asked.is_some() => vec![Action::Confirm, Action::Cancel],
             Page::Runs if self.table.is_typing() => vec![Action::Commit, Action::Discard],
             Page::Runs => vec![
                 Action::Open,
+                Action::ReplayRun,
                 Action::MarkRun,
                 Action::CompareRuns,
                 Action::EndRun,
@@ -183,6 +186,7 @@ impl Menu {
         match (action, self.page) {
             (Action::NewRun, _) => self.open_form(),
             (Action::ContinueRun, _) => return self.open_latest(),
+            (Action::ReplayRun, Page::Home) => return self.replay(self.list().first()),
             (_, Page::Runs) => return self.act_on_runs(action),
             (Action::Close | Action::Discard, Page::Compare) => self.page = Page::Runs,
             (Action::Close | Action::Discard, _) => self.go_home(),
@@ -310,5 +314,6 @@ impl Menu {
             Page::Compare => self.draw_compare(canvas, body),
             Page::Paper => self.draw_paper(canvas, body),
         }
+        self.draw_instead(canvas, body);
     }
 }

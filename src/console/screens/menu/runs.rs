@@ -5,20 +5,24 @@ use ratatui::layout::Rect;
 use super::home::draw_run;
 use super::{Courses, Menu};
 use crate::console::action::Action;
-use crate::console::canvas::{Canvas, rows_of};
+use crate::console::canvas::{Canvas, centered, rows_of};
 use crate::console::effect::Effect;
+use crate::console::message::Instead;
 use crate::console::text::{short_dollars, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::chart::zero_if_near;
 use crate::console::widgets::{Axis, Cell, Column, Line, chart};
+use crate::console::worker::Recorded;
 use crate::notation::{dollars, grouped};
-use crate::session::{Ended, Mode, RunCourse, RunSummary};
+use crate::session::{Ended, Goal, Mode, RunCourse, RunSummary};
 
 /// Something that cannot be taken back and is asked about first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Asked {
     GiveUp(String),
     Delete(String),
+    /// What can be done with a run that does not open, and why it does not.
+    Instead(Instead, String),
 }
 
 /// Most runs that are compared.
@@ -83,6 +87,7 @@ impl Menu {
             Action::Open => {
                 return self.chosen().map(|run| Effect::Open(run.id.clone())).into_iter().collect();
             }
+            Action::ReplayRun => return self.replay(self.chosen()),
             Action::MarkRun => return self.mark(),
             Action::CompareRuns => return self.compare(),
             Action::EndRun => {
@@ -96,6 +101,15 @@ impl Menu {
             _ => {}
         }
         Vec::new()
+    }
+
+    /// Plays a run again from its first day.
+    pub(super) fn replay(&self, run: Option<&RunSummary>) -> Vec<Effect> {
+        let replay = |run: &RunSummary| {
+            let recorded = Recorded::Run(run.id.clone());
+            vec![Effect::Replay { recorded, goal: Goal::First, follow: false }]
+        };
+        run.map(replay).unwrap_or_default()
     }
 
     fn mark(&mut self) -> Vec<Effect> {
@@ -143,6 +157,10 @@ impl Menu {
         match (action, self.asked.take()) {
             (Action::Confirm, Some(Asked::GiveUp(id))) => vec![Effect::EndRun(id)],
             (Action::Confirm, Some(Asked::Delete(id))) => vec![Effect::DeleteRun(id)],
+            (Action::Confirm, Some(Asked::Instead(Instead::Watch(id), _))) => {
+                vec![Effect::Replay { recorded: Recorded::Run(id), goal: Goal::Last, follow: true }]
+            }
+            (Action::Confirm, Some(Asked::Instead(Instead::Rescue(id), _))) => vec![Effect::Rescue(id)],
             (Action::Cancel, _) => Vec::new(),
             (_, asked) => {
                 self.asked = asked;
@@ -154,18 +172,20 @@ impl Menu {
     fn question(&self) -> Option<(&'static str, String)> {
         let id = match self.asked.as_ref()? {
             Asked::GiveUp(id) | Asked::Delete(id) => id,
+            Asked::Instead(..) => return None,
         };
         let run = self.list().iter().find(|run| run.id == *id)?;
         let stand = format!("day {} of {}, {}", run.day, run.days, dollars(run.cash));
-        Some(match self.asked.as_ref()? {
-            Asked::GiveUp(_) => (
+        let give_up = matches!(self.asked, Some(Asked::GiveUp(_)));
+        Some(match give_up {
+            true => (
                 "Give up",
                 format!(
                     "Run {id} stands at {stand}. If you give it up, it ends there for good and has no score. It can still \
                      be looked at, and branched from."
                 ),
             ),
-            Asked::Delete(_) => (
+            false => (
                 "Delete",
                 format!(
                     "Run {id} stands at {stand}. Deleting it removes its record and everything in its folder. It cannot \
@@ -173,6 +193,37 @@ impl Menu {
                 ),
             ),
         })
+    }
+
+    /// The question what to do with a run that does not open, over any page.
+    pub(super) fn draw_instead(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let Some(Asked::Instead(instead, problem)) = &self.asked else { return };
+        let (title, offer) = match instead {
+            Instead::Watch(_) => {
+                ("In use", "Watch it from here, read-only? What is played there appears here.")
+            }
+            Instead::Rescue(_) => {
+                ("Damaged", "Open the good beginning as a branch? The damaged run is not touched.")
+            }
+        };
+        let width = 76.min(area.width);
+        let mut lines = wrapped(problem, width.saturating_sub(4) as usize);
+        lines.push(String::new());
+        let offered = wrapped(offer, width.saturating_sub(4) as usize);
+        let from = lines.len();
+        lines.extend(offered);
+        let own = centered(area, width, lines.len() as u16 + 4);
+        canvas.clear(own, Role::Text);
+        let inside = canvas.pane(own, title, "", true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        // The question must be seen, however long the reason is.
+        let room = inside.height.saturating_sub(1) as usize;
+        let skipped = lines.len().saturating_sub(room);
+        let shown = lines.iter().enumerate().skip(if room < lines.len() { skipped } else { 0 });
+        for (row, (at, line)) in rows_of(inside).zip(shown) {
+            canvas.text(row, line, if at < from { Role::Warning } else { Role::Strong });
+        }
+        canvas.pane_keys(own, "y yes · esc no");
     }
 
     pub(super) fn draw_runs(&self, canvas: &mut Canvas<'_>, area: Rect) {

@@ -1,0 +1,243 @@
+//! What the keys of a replay do, and what its arrivals change.
+
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use super::{App, Busy, Closing, Order, Run, Stage};
+use crate::console::action::{Action, Scope};
+use crate::console::dialogs::reader::Reader;
+use crate::console::dialogs::seek::Seek;
+use crate::console::dialogs::take_over::TakeOver;
+use crate::console::message::Arrival;
+use crate::console::viewer::{Viewer, told};
+use crate::console::worker::Job;
+use crate::session::Goal;
+
+/// What only the person who plays can do.
+const OF_PLAYERS: [Action; 14] = [
+    Action::NextWeek,
+    Action::Undo,
+    Action::Tour,
+    Action::Apply,
+    Action::SendOffer,
+    Action::TakeAsk,
+    Action::RejectOffer,
+    Action::Compose,
+    Action::Reply,
+    Action::SendPost,
+    Action::EditMemo,
+    Action::SaveMemo,
+    Action::FindGroup,
+    Action::StudyGroup,
+];
+
+impl Run {
+    /// Scopes of the focused place of the screen. The keys of a replay come first, but not where text is typed.
+    pub(super) fn scopes(&self) -> Vec<Scope> {
+        let mut scopes = self.screens.get(self.here).scopes();
+        let typing = scopes.first().is_some_and(|scope| scope.is_text());
+        if self.viewer.is_some() && !typing {
+            scopes.insert(0, Scope::Viewer);
+        }
+        scopes
+    }
+
+    /// Actions worth showing in the last line.
+    pub(super) fn hints(&self) -> Vec<Action> {
+        let own = self.screens.get(self.here).hints();
+        let typing = self.scopes().first().is_some_and(|scope| scope.is_text());
+        let replay =
+            [Action::WeekBack, Action::WeekForward, Action::PlayPause, Action::TakeOver, Action::LeaveViewer];
+        match &self.viewer {
+            Some(_) if !typing => replay
+                .into_iter()
+                .chain(own.into_iter().filter(|action| !OF_PLAYERS.contains(action)))
+                .collect(),
+            _ => own,
+        }
+    }
+}
+
+impl App {
+    /// Whether a recorded run is played again.
+    pub(super) fn is_replay(&self) -> bool {
+        self.run().is_some_and(|run| run.viewer.is_some())
+    }
+
+    fn viewer(&mut self) -> Option<&mut Viewer> {
+        match &mut self.stage {
+            Stage::Run(run) => run.viewer.as_mut(),
+            Stage::Menu(_) => None,
+        }
+    }
+
+    pub(super) fn complain_of_replay(&mut self) {
+        let key = self.keys.label(Action::TakeOver).unwrap_or_default();
+        self.complain(format!("this is a replay; take over with {key}"));
+    }
+
+    /// Refuses what changes a run, in a replay. True if it did.
+    pub(super) fn refuses_in_replay(&mut self, action: Action) -> bool {
+        // At the end the same key shows the final page.
+        let shows_end = action == Action::NextWeek && self.run().is_some_and(|run| !run.company.is_running());
+        let refused = self.is_replay() && OF_PLAYERS.contains(&action) && !shows_end;
+        if refused {
+            self.complain_of_replay();
+        }
+        refused
+    }
+
+    /// Stops a way through the record that takes long. True if there was one.
+    pub(super) fn stop_on_the_way(&mut self) -> bool {
+        let goes = self.busy.is_some();
+        match self.viewer() {
+            Some(viewer) if goes && viewer.goes => {
+                viewer.stop.store(true, Ordering::Relaxed);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Does an action of a replay.
+    pub(super) fn act_in_viewer(&mut self, action: Action) {
+        let beside = self.window.0 >= Viewer::BESIDE;
+        let Some(viewer) = self.viewer() else { return };
+        match action {
+            Action::WeekBack => self.go(Goal::Weeks(-1)),
+            Action::WeekForward => self.go(Goal::Weeks(1)),
+            Action::LineBack => self.go(Goal::Lines(-1)),
+            Action::LineForward => self.go(Goal::Lines(1)),
+            Action::ReelStart => self.go(Goal::First),
+            Action::ReelEnd => self.go(Goal::Last),
+            Action::SeekWeek => {
+                let weeks = viewer.place.weeks;
+                self.open(Seek::new(weeks));
+            }
+            Action::PlayPause => self.play_or_pause(),
+            Action::Faster | Action::Slower => {
+                viewer.change_speed(action == Action::Faster);
+                let text = viewer.speed_in_words();
+                self.say(text);
+            }
+            Action::Decisions if beside => viewer.shows_decisions = !viewer.shows_decisions,
+            Action::Decisions | Action::DecisionsWhole => self.show_decisions(),
+            Action::DecisionsUp => viewer.scroll_by(-3),
+            Action::DecisionsDown => viewer.scroll_by(3),
+            Action::TakeOver => self.ask_to_take_over(),
+            Action::LeaveViewer => self.leave(Closing::ToMenu),
+            _ => {}
+        }
+    }
+
+    fn show_decisions(&mut self) {
+        let Some(viewer) = self.viewer() else { return };
+        let (title, text) = (told::title(&viewer.place.chapter), told::whole(&viewer.place));
+        self.open(Reader::new(title, text));
+    }
+
+    fn ask_to_take_over(&mut self) {
+        let Some(place) = self.viewer().map(|viewer| viewer.place.clone()) else { return };
+        match place.no_branch {
+            Some(reason) => self.complain(reason),
+            None => self.open(TakeOver::new(place.day, place.chapter.week)),
+        }
+    }
+
+    /// Goes somewhere in the record.
+    pub(super) fn go(&mut self, goal: Goal) {
+        if self.busy.is_some() {
+            return self.complain("on the way already; esc stops it");
+        }
+        let Some(viewer) = self.viewer() else { return };
+        let place = &viewer.place;
+        if place.at_end && goal == Goal::Weeks(1) {
+            let text =
+                if place.follows { "nothing more has been played yet" } else { "the record ends here" };
+            viewer.playing = false;
+            return self.say(text);
+        }
+        let target = match goal {
+            Goal::First => 0,
+            Goal::Last => place.recorded_day,
+            Goal::Week(week) => 7 * week.min(place.weeks),
+            Goal::Weeks(weeks) => place.day.saturating_add_signed(7 * weeks),
+            Goal::Lines(_) => place.day,
+        };
+        let back = target < place.day || matches!(goal, Goal::Lines(count) if count < 0);
+        let from = if back { 0 } else { place.day };
+        viewer.stop.store(false, Ordering::Relaxed);
+        viewer.goes = true;
+        let stop = viewer.stop.clone();
+        self.busy = Some(Busy {
+            what: "on the way",
+            days: Some((from, target.max(from), from)),
+            since: Instant::now(),
+        });
+        self.orders.push(Order::Job(Job::Go(goal, stop)));
+    }
+
+    fn play_or_pause(&mut self) {
+        let Some(viewer) = self.viewer() else { return };
+        if viewer.playing {
+            viewer.playing = false;
+            viewer.ordered = false;
+            self.orders.push(Order::Job(Job::Hold));
+            return self.say("paused");
+        }
+        if viewer.place.at_end {
+            return self.say("the record ends here; go back to play it");
+        }
+        viewer.playing = true;
+        let text = viewer.speed_in_words();
+        self.say(format!("playing, {text}"));
+        self.play_on();
+    }
+
+    /// An answer for a screen has come: once it shows everything, the next week may follow.
+    pub(super) fn play_on_when_known(&mut self) {
+        if let Some(viewer) = self.viewer() {
+            viewer.unanswered = viewer.unanswered.saturating_sub(1);
+            self.play_on();
+        }
+    }
+
+    fn play_on(&mut self) {
+        let busy = self.busy.is_some();
+        let Some(viewer) = self.viewer() else { return };
+        if viewer.playing && !viewer.ordered && viewer.unanswered == 0 && !busy {
+            viewer.ordered = true;
+            let pause = viewer.pause();
+            self.orders.push(Order::Job(Job::GoOn(pause)));
+        }
+    }
+
+    /// A moment of the record was reached, as asked or by itself.
+    pub(super) fn arrived(&mut self, arrival: Arrival, asked: bool) {
+        let Arrival { company, place, interrupt, problem } = arrival;
+        if asked {
+            self.busy = None;
+        }
+        let Stage::Run(run) = &mut self.stage else { return };
+        let Some(viewer) = &mut run.viewer else { return };
+        let news = place.lines != viewer.place.lines && place.line == viewer.place.line;
+        viewer.arrive(place, asked);
+        let ends = viewer.playing && viewer.place.at_end;
+        if ends {
+            viewer.playing = false;
+        }
+        if let Some(interrupt) = interrupt {
+            run.interrupt = Some(interrupt);
+        }
+        if let Some(company) = company {
+            self.changed(company);
+        }
+        match problem {
+            Some(problem) => self.complain(problem),
+            None if ends => self.say("the record ends here"),
+            None if news => self.say("more has been played"),
+            None => {}
+        }
+        self.play_on();
+    }
+}

@@ -1,0 +1,109 @@
+//! Going on from a moment of a replay: which mode the new run has.
+
+use ratatui::layout::Rect;
+
+use super::{Dialog, Outcome};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, Click, centered, rows_of};
+use crate::console::effect::Effect;
+use crate::console::screens::Look;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::session::Mode;
+
+/// Modes that are offered; a branch is never a baseline.
+const MODES: [Mode; 2] = [Mode::Sandbox, Mode::Debug];
+
+/// Asks how to go on.
+pub struct TakeOver {
+    day: u32,
+    week: u32,
+    selected: usize,
+}
+
+impl TakeOver {
+    /// From a day on, before a week.
+    pub fn new(day: u32, week: u32) -> TakeOver {
+        TakeOver { day, week, selected: 0 }
+    }
+
+    fn take(&self) -> Outcome {
+        Outcome::close_with(vec![Effect::TakeOver(MODES[self.selected])])
+    }
+}
+
+impl Dialog for TakeOver {
+    fn scopes(&self) -> Vec<Scope> {
+        vec![Scope::List, Scope::Dialog]
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        vec![Action::Open, Action::Close]
+    }
+
+    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
+        match action {
+            Action::Open | Action::Confirm => return self.take(),
+            Action::Close | Action::Cancel => return Outcome::close(),
+            Action::Down | Action::Last => self.selected = (self.selected + 1).min(MODES.len() - 1),
+            Action::Up | Action::First => self.selected = self.selected.saturating_sub(1),
+            _ => {}
+        }
+        Outcome::stay()
+    }
+
+    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+        let again = self.selected == row;
+        self.selected = row.min(MODES.len() - 1);
+        if again { self.take() } else { Outcome::stay() }
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let text = format!(
+            "A new run begins here, on day {} before week {}, with everything that was done up to this moment. The \
+             recorded run stays as it is.",
+            self.day, self.week
+        );
+        let lines = wrapped(&text, 58);
+        let own = centered(area, 64, lines.len() as u16 + MODES.len() as u16 + 4);
+        canvas.clear(own, Role::Text);
+        let inside = canvas.pane(own, "Take over", "", true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        for (row, line) in rows_of(inside).zip(&lines) {
+            canvas.text(row, line, Role::Text);
+        }
+        let used = (lines.len() as u16 + 1).min(inside.height);
+        let list = Rect { y: inside.y + used, height: inside.height - used, ..inside };
+        for (at, (row, mode)) in rows_of(list).zip(MODES).enumerate() {
+            let here = at == self.selected;
+            let role = if here { Role::Selection } else { Role::Text };
+            if here {
+                canvas.clear(row, Role::Selection);
+            }
+            let mark = if here { "›" } else { " " };
+            canvas.text(row, &format!("{mark} {:<8} {}", mode.id(), mode.purpose()), role);
+            canvas.click(row, Click::Row(0, at));
+        }
+        canvas.pane_keys(own, &look.hints(&[Action::Open, Action::Close]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::{company, dialog_picture, in_dialog};
+
+    #[test]
+    fn the_mode_is_chosen_and_nothing_happens_without_a_yes() {
+        let company = company();
+        let mut dialog = TakeOver::new(84, 13);
+        let picture = dialog_picture(&dialog, &company, 80, 24);
+        assert!(picture.contains("on day 84 before week 13") && picture.contains("› sandbox"), "{picture}");
+        assert!(in_dialog(&mut dialog, Action::Close, &company).effects.is_empty());
+        let first = in_dialog(&mut dialog, Action::Open, &company);
+        assert!(matches!(first.effects[..], [Effect::TakeOver(Mode::Sandbox)]) && first.close);
+        in_dialog(&mut dialog, Action::Down, &company);
+        let second = in_dialog(&mut dialog, Action::Confirm, &company);
+        assert!(matches!(second.effects[..], [Effect::TakeOver(Mode::Debug)]));
+    }
+}

@@ -1,0 +1,91 @@
+//! The line below the screens of a replay: where it is between the first day and the last, and whether it plays.
+
+use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
+
+use super::Viewer;
+use crate::console::action::Action;
+use crate::console::canvas::{Canvas, Click};
+use crate::console::theme::Role;
+
+/// Least columns of the bar.
+const LEAST_BAR: u16 = 8;
+
+impl Viewer {
+    /// Draws the line.
+    pub fn draw_strip(&self, canvas: &mut Canvas<'_>, row: Rect) {
+        canvas.clear(row, Role::SelectionIdle);
+        let place = &self.place;
+        let wide = row.width >= 100;
+        let state = match (self.playing, place.at_end, place.follows) {
+            (true, ..) => format!("playing, {}", self.speed_in_words()),
+            (false, true, true) => "live".to_owned(),
+            (false, false, true) => "paused, more is being played".to_owned(),
+            (false, true, false) => "end of the record".to_owned(),
+            (false, false, false) => "paused".to_owned(),
+        };
+        let back = if place.line > 1 { Role::Key } else { Role::Dim };
+        let on = if place.at_end { Role::Dim } else { Role::Key };
+        let chapter = &place.chapter;
+        let action = format!("action {}/{}", chapter.done, chapter.entries.len());
+        let pieces: [(String, Role, Option<Action>); 6] = [
+            (" ◂ ".to_owned(), back, Some(Action::WeekBack)),
+            (format!("week {}/{}", place.week, place.weeks), Role::Strong, Some(Action::SeekWeek)),
+            (" ▸ ".to_owned(), on, Some(Action::WeekForward)),
+            (format!(" day {} ", place.day), Role::Text, None),
+            (if wide { format!(" {action} ") } else { String::new() }, Role::Dim, None),
+            (
+                format!(" {state} "),
+                if self.playing { Role::Good } else { Role::Warning },
+                Some(Action::PlayPause),
+            ),
+        ];
+        let mut left = row;
+        for (text, role, action) in pieces {
+            let width = text.width() as u16;
+            if width > left.width {
+                break;
+            }
+            let own = Rect { width, ..left };
+            // The background of the line, the colour of the meaning.
+            let style = canvas.style(role);
+            canvas.text(own, &text, Role::SelectionIdle);
+            if let Some(colour) = style.fg {
+                canvas
+                    .buffer
+                    .set_style(own, ratatui::style::Style::new().fg(colour).add_modifier(style.add_modifier));
+            }
+            action.iter().for_each(|action| canvas.click(own, Click::Do(*action)));
+            left = Rect { x: left.x + width, width: left.width - width, ..left };
+        }
+        if left.width > LEAST_BAR + 2 {
+            let own = Rect { x: left.x + 1, width: left.width - 2, ..left };
+            canvas.text(own, &bar(place.line, place.lines, own.width), Role::SelectionIdle);
+        }
+    }
+}
+
+/// A position between the first line and the last: `━━━━●────`.
+fn bar(line: usize, lines: usize, width: u16) -> String {
+    let room = width.max(1) as usize - 1;
+    let before = match lines {
+        0 | 1 => 0,
+        _ => line.saturating_sub(1).min(lines - 1) * room / (lines - 1),
+    };
+    format!("{}●{}", "━".repeat(before), "─".repeat(room - before))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bar_is_full_at_the_end_only() {
+        assert_eq!(bar(1, 5, 5), "●────");
+        assert_eq!(bar(3, 5, 5), "━━●──");
+        assert_eq!(bar(4, 5, 5), "━━━●─");
+        assert_eq!(bar(5, 5, 5), "━━━━●");
+        assert_eq!(bar(0, 0, 3), "●──");
+        assert_eq!(bar(9, 5, 1), "●");
+    }
+}

@@ -1,0 +1,190 @@
+//! The session's thread with a recorded run: opening it, going somewhere in it, going on by itself.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use super::{BETWEEN_DAYS, Open, Recorded, SessionThread};
+use crate::console::company::Company;
+use crate::console::message::{Arrival, Instead, Message, News};
+use crate::session::{
+    Access, Goal, Mode, Playback, RunError, Session, Went, find_run, find_run_to_read, rescue,
+};
+
+/// Lines of somebody else are looked for this often.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(400);
+
+impl SessionThread {
+    fn playback(&mut self) -> Option<&mut Playback> {
+        match &mut self.open {
+            Some(Open::Replayed(playback)) => Some(playback),
+            _ => None,
+        }
+    }
+
+    /// How long to wait for work before going on; none while there is nothing to go on with.
+    pub(super) fn patience(&mut self) -> Option<Duration> {
+        let follows = self.playback().is_some_and(|playback| playback.follows());
+        let look = follows.then(|| self.looked + BETWEEN_LOOKS);
+        let next = [self.due, look].into_iter().flatten().min();
+        next.map(|moment| moment.saturating_duration_since(Instant::now()))
+    }
+
+    /// Goes on with what is due: a week of the replay, or what somebody else has played since.
+    pub(super) fn go_on(&mut self) {
+        let now = Instant::now();
+        if self.due.is_some_and(|due| due <= now) {
+            self.due = None;
+            let never = AtomicBool::new(false);
+            if let Some(arrival) = self.arrive(Goal::Weeks(1), &never) {
+                self.say(News::WentOn(Box::new(arrival)));
+            }
+        }
+        if now.saturating_duration_since(self.looked) >= BETWEEN_LOOKS {
+            self.looked = now;
+            self.look_for_more();
+        }
+    }
+
+    fn look_for_more(&mut self) {
+        let Some(playback) = self.playback().filter(|playback| playback.follows()) else { return };
+        let at_end = playback.at_end();
+        let arrival = match playback.look_for_more() {
+            Ok(false) => return,
+            Ok(true) if at_end => self.arrive(Goal::Last, &AtomicBool::new(false)),
+            // Whoever looks back stays there, and sees that the record has grown.
+            Ok(true) => {
+                Some(Arrival { company: None, place: playback.place(), interrupt: None, problem: None })
+            }
+            Err(problem) => {
+                let problem = Some(format!("{problem}. It is not watched any more"));
+                Some(Arrival { company: None, place: playback.place(), interrupt: None, problem })
+            }
+        };
+        if let Some(arrival) = arrival {
+            self.say(News::WentOn(Box::new(arrival)));
+        }
+    }
+
+    /// Opens a recorded run; whatever was open is closed then, and stays if that fails.
+    pub(super) fn replay(&mut self, runs: &Path, recorded: Recorded, goal: Goal, follow: bool) {
+        let id = match &recorded {
+            Recorded::Run(id) => id.clone(),
+            Recorded::File(_) => String::new(),
+        };
+        let path = match recorded {
+            Recorded::File(path) => Ok(path),
+            Recorded::Run(id) if follow => find_run(runs, &id),
+            Recorded::Run(id) => find_run_to_read(runs, &id),
+        };
+        let opened = path.and_then(|path| self.open_playback(&path, goal, follow));
+        let playback = match opened {
+            Ok(playback) => playback,
+            Err(problem) => {
+                let damaged = matches!(problem, RunError::Damaged { .. }) && !id.is_empty();
+                let instead = damaged.then_some(Instead::Rescue(id));
+                return self.say(News::NotOpened(problem.to_string(), instead));
+            }
+        };
+        if let Some(open) = &mut self.open {
+            // Everything confirmed is on the disk already; what is left are rows that can be made again.
+            let _ = open.session().save();
+        }
+        let interrupt = self.hand_desks(playback.session());
+        let company = Arc::new(company_of(&playback, None));
+        let place = playback.place();
+        (self.company, self.due) = (Some(company.clone()), None);
+        self.open = Some(Open::Replayed(Box::new(playback)));
+        self.say(News::Replays(company, interrupt, Box::new(place)));
+    }
+
+    fn open_playback(&self, path: &Path, goal: Goal, follow: bool) -> Result<Playback, RunError> {
+        let mut playback = Playback::open(path)?;
+        if follow {
+            playback.follow();
+        }
+        let mut told = Instant::now();
+        playback.go(goal, &mut |day| self.tell(&mut told, day))?;
+        Ok(playback)
+    }
+
+    /// Tells a day that was reached, not too often.
+    fn tell(&self, told: &mut Instant, day: u32) -> ControlFlow<()> {
+        if told.elapsed() >= BETWEEN_DAYS {
+            *told = Instant::now();
+            let _ = self.news.send(Message::News(News::Day(day, day)));
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Goes somewhere, unless it is stopped.
+    pub(super) fn go(&mut self, goal: Goal, stop: &AtomicBool) {
+        self.due = None;
+        if let Some(arrival) = self.arrive(goal, stop) {
+            self.say(News::Went(Box::new(arrival)));
+        }
+    }
+
+    fn arrive(&mut self, goal: Goal, stop: &AtomicBool) -> Option<Arrival> {
+        let Some(Open::Replayed(mut playback)) = self.open.take() else { return None };
+        let mut told = Instant::now();
+        let went = playback.go(goal, &mut |day| match stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => self.tell(&mut told, day),
+        });
+        // What went wrong on the way has led to a new session, too.
+        let anew = !matches!(went, Ok(Went::There | Went::Stopped));
+        let interrupt = if anew { self.hand_desks(playback.session()) } else { None };
+        let before = self.company.take().filter(|_| !anew);
+        let company = Arc::new(company_of(&playback, before.as_deref()));
+        self.company = Some(company.clone());
+        let place = playback.place();
+        self.open = Some(Open::Replayed(playback));
+        let problem = match went {
+            Ok(Went::Stopped) => Some("stopped on the way".to_owned()),
+            Ok(_) => None,
+            Err(error) => Some(error.to_string()),
+        };
+        Some(Arrival { company: Some(company), place, interrupt, problem })
+    }
+
+    /// Opens a branch that begins at this moment.
+    pub(super) fn take_over(&mut self, mode: Mode) {
+        let Some(playback) = self.playback() else { return };
+        let branch = playback.take_over(mode);
+        let parent = playback.session().manifest().id.clone();
+        match branch {
+            Ok(session) => {
+                let (own, day) = (session.manifest().id.clone(), session.day());
+                let remark =
+                    format!("this is run {own} now, yours from day {day}; run {parent} is as it was");
+                self.take(Ok(session), "", Some(remark));
+            }
+            Err(refusal) => self.say(News::NotOpened(refusal.to_string(), None)),
+        }
+    }
+
+    /// Opens the good beginning of a damaged run as a branch.
+    pub(super) fn rescue(&mut self, runs: &Path, id: &str) {
+        let rescued = find_run_to_read(runs, id).and_then(|folder| rescue(&folder));
+        let opened = rescued.and_then(|found| {
+            let remark = format!(
+                "run {} holds lines 1 to {} of run {id}, which is as it was; {}",
+                found.run, found.lines, found.problem
+            );
+            Session::open(&runs.join(&found.run), Access::Write, true).map(|session| (session, remark))
+        });
+        match opened {
+            Ok((session, remark)) => self.take(Ok(session), "", Some(remark)),
+            Err(problem) => self.take(Err(problem), "", None),
+        }
+    }
+}
+
+/// What a moment of a replay shows. Notes that were written later are not there yet.
+fn company_of(playback: &Playback, before: Option<&Company>) -> Company {
+    let memo = playback.memo().unwrap_or_default();
+    Company { memo, replayed: true, ..Company::after(playback.session(), before) }
+}

@@ -1,0 +1,297 @@
+//! Played again: every week has the recorded state, in every direction, and the disk stays as it was.
+
+use std::collections::BTreeMap;
+
+use serde_json::json;
+
+use super::*;
+use crate::session::{Configuration, Forecasts, NewRun, Storage, Via, verify};
+
+/// A run that was recorded into a folder.
+pub(in crate::session) struct Recorded {
+    _runs: tempfile::TempDir,
+    pub folder: PathBuf,
+    pub id: String,
+}
+
+/// A run of some weeks, with calls, a refusal, a question, notes and a look at a screen; closed.
+pub(in crate::session) fn recorded(mode: Mode, weeks: u32) -> Recorded {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = play(runs.path(), mode, weeks);
+    let (folder, id) = (session.folder().expect("a folder").to_owned(), session.manifest().id.clone());
+    drop(session);
+    Recorded { _runs: runs, folder, id }
+}
+
+fn play(runs: &Path, mode: Mode, weeks: u32) -> Session {
+    let new = NewRun {
+        seed: Some(7),
+        days: Some(35),
+        mode,
+        storage: Storage::Runs(runs.to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    session.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
+    let quotas = json!({"A": 60_000, "B": 250_000, "C": 1_200_000});
+    session.call("set_usage_quotas", &quotas, Via::Form).expect("quotas");
+    session.call("set_prices", &json!({"A": -1}), Via::Form).expect_err("a price below zero");
+    let ads = json!({"targeted_spend": {"content_marketing": {"S1": 750}}});
+    session.call("set_targeted_ad_spend", &ads, Via::Form).expect("ads");
+    for week in 0..weeks {
+        let forecasts = session.naive_forecasts();
+        session.advance("if it holds", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+        if week + 1 < weeks {
+            session
+                .call("set_daily_spend", &json!({"operations": 10 * week, "development": 5}), Via::Form)
+                .expect("spend");
+            session.query("SELECT count(*) FROM customers").expect("an answer");
+            session.set_memo("remember the ads").expect("notes");
+            session.note_view("cash", "overview", 1_500);
+        }
+    }
+    session
+}
+
+/// Every file of a folder with what it holds.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    entries.map(|path| (path.clone(), std::fs::read(path).expect("a file"))).collect()
+}
+
+fn go(playback: &mut Playback, goal: Goal) -> Went {
+    playback.go(goal, &mut |_| ControlFlow::Continue(())).expect("it goes there")
+}
+
+/// Hashes that the trajectory recorded, by day.
+fn hashes(folder: &Path) -> BTreeMap<u32, String> {
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");
+    let hash = |line: &Line| Some((line.day, line.fields.get("state_hash")?.as_str()?.to_owned()));
+    trajectory.lines.iter().filter_map(hash).collect()
+}
+
+#[test]
+fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
+    let run = recorded(Mode::Sandbox, 5);
+    let before = files(&run.folder);
+    let recorded = hashes(&run.folder);
+    let mut playback = Playback::open(&run.folder).expect("it opens");
+    assert_eq!((playback.place().day, playback.place().week, playback.place().weeks), (0, 0, 5));
+    let check = |playback: &mut Playback, week: u32| {
+        assert_eq!(playback.session().day(), 7 * week);
+        assert_eq!(playback.place().week, week);
+        assert_eq!(playback.session().state_hash().0, recorded[&(7 * week)], "week {week}");
+        let days = playback.session_mut().query("SELECT max(day) FROM ledger").expect("an answer");
+        assert_eq!(days.rows[0][0], crate::session::Cell::Integer(i64::from(7 * week)), "the database");
+    };
+    for week in 1..=5 {
+        assert_eq!(go(&mut playback, Goal::Weeks(1)), Went::There);
+        check(&mut playback, week);
+    }
+    assert_eq!(
+        playback.session().ended(),
+        Some(crate::session::Ended::Horizon),
+        "the end comes with its week"
+    );
+    assert!(playback.at_end());
+    for week in [4, 3] {
+        assert_eq!(go(&mut playback, Goal::Weeks(-1)), Went::Anew);
+        check(&mut playback, week);
+    }
+    for week in [1, 5, 2, 4] {
+        go(&mut playback, Goal::Week(week));
+        check(&mut playback, week);
+    }
+    go(&mut playback, Goal::Weeks(-100));
+    assert_eq!((playback.session().day(), playback.place().line), (0, 1));
+    go(&mut playback, Goal::Weeks(3));
+    check(&mut playback, 3);
+    go(&mut playback, Goal::Last);
+    check(&mut playback, 5);
+    go(&mut playback, Goal::Week(99));
+    check(&mut playback, 5);
+    go(&mut playback, Goal::First);
+    assert_eq!(playback.place().line, 1);
+    drop(playback);
+    assert_eq!(files(&run.folder), before, "something on the disk was changed");
+}
+
+#[test]
+fn single_actions_show_the_company_between_the_weeks() {
+    let run = recorded(Mode::Sandbox, 2);
+    let mut playback = Playback::open(&run.folder).expect("it opens");
+    let price = |playback: &Playback| playback.session().current("set_prices")["A"].as_f64();
+    assert_eq!(price(&playback), Some(0.0));
+    go(&mut playback, Goal::Lines(1));
+    assert_eq!(price(&playback), Some(12.0));
+    let chapter = playback.place().chapter;
+    assert_eq!((chapter.week, chapter.day, chapter.done, chapter.entries.len()), (1, 0, 1, 6));
+    assert!(matches!(&chapter.entries[2].act, Act::Refused { tool, .. } if tool == "set_prices"));
+    go(&mut playback, Goal::Lines(-1));
+    assert_eq!(price(&playback), Some(0.0));
+    go(&mut playback, Goal::Lines(5));
+    assert!(matches!(playback.place().chapter.entries[4].act, Act::Advance { .. }));
+    assert_eq!(playback.session().day(), 0, "the week is filed, but has not run");
+    go(&mut playback, Goal::Lines(1));
+    assert_eq!((playback.session().day(), playback.place().chapter.done), (7, 0));
+}
+
+#[test]
+fn an_outcome_is_known_when_its_day_has_come_and_marked_before() {
+    let run = recorded(Mode::Sandbox, 5);
+    let mut playback = Playback::open(&run.folder).expect("it opens");
+    let foreseen = |playback: &Playback| {
+        let chapter = playback.place().chapter;
+        let advance = chapter.entries.into_iter().find_map(|entry| match entry.act {
+            Act::Advance { forecasts, .. } => Some(forecasts),
+            _ => None,
+        });
+        advance.expect("a week was filed")
+    };
+    let early = foreseen(&playback);
+    assert!(early[0].later && early[1].later && early[2].later);
+    assert!(early[0].outcome.is_some() && early[1].outcome.is_some(), "days 7 and 28 were recorded");
+    assert_eq!(early[2].outcome, None, "day 84 was not");
+    go(&mut playback, Goal::Last);
+    let late = foreseen(&playback);
+    assert_eq!((late[0].due, late[0].later), (35, false), "the last chapter stays at the end");
+    assert_eq!(late[0].outcome, playback.session().cash_by_day().last().copied());
+}
+
+#[test]
+fn the_notes_are_shown_from_when_they_were_written() {
+    let run = recorded(Mode::Sandbox, 3);
+    let mut playback = Playback::open(&run.folder).expect("it opens");
+    assert_eq!(playback.memo(), None);
+    go(&mut playback, Goal::Last);
+    assert_eq!(playback.memo().as_deref(), Some("remember the ads"));
+}
+
+#[test]
+fn nothing_can_be_done_and_a_long_way_can_be_stopped() {
+    let run = recorded(Mode::Sandbox, 4);
+    let mut playback = Playback::open(&run.folder).expect("it opens");
+    let refusal =
+        playback.session_mut().call("set_prices", &json!({"A": 1}), Via::Form).expect_err("read-only");
+    assert_eq!(refusal.code, "read_only");
+    let mut days = Vec::new();
+    let stopped = playback.go(Goal::Last, &mut |day| {
+        days.push(day);
+        if day < 14 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    assert_eq!((stopped.expect("no problem"), playback.session().day()), (Went::Stopped, 14));
+    assert_eq!(days, [7, 14]);
+    go(&mut playback, Goal::Last);
+    let back = playback.go(Goal::Week(2), &mut |_| ControlFlow::Break(())).expect("no problem");
+    assert_eq!((back, playback.session().day()), (Went::Stopped, 28), "back is all or nothing");
+}
+
+#[test]
+fn what_is_taken_over_is_a_run_of_its_own_with_everything_up_to_there() {
+    let run = recorded(Mode::Sandbox, 5);
+    let mut playback = Playback::open(&run.folder).expect("it opens");
+    go(&mut playback, Goal::Week(2));
+    go(&mut playback, Goal::Lines(1));
+    let mut branch = playback.take_over(Mode::Debug).expect("a branch");
+    assert_eq!((branch.day(), branch.manifest().mode), (14, Mode::Debug));
+    assert_eq!(branch.current("set_daily_spend")["operations"], 10.0, "this week's first call is in it");
+    assert_eq!(branch.manifest().parent.as_ref().map(|parent| parent.run.as_str()), Some(run.id.as_str()));
+    let forecasts = branch.naive_forecasts();
+    branch.advance("otherwise", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+    let folder = branch.folder().expect("a folder").to_owned();
+    drop(branch);
+    assert_eq!(verify(&folder).expect("an intact run").day, 21);
+    // A week that was filed and has not run is decided anew.
+    go(&mut playback, Goal::First);
+    go(&mut playback, Goal::Lines(5));
+    assert_eq!(playback.take_over(Mode::Sandbox).expect("a branch").day(), 0);
+    assert_eq!(playback.take_over(Mode::Baseline).err().expect("no baseline").code, "not_in_this_mode");
+    go(&mut playback, Goal::Last);
+    assert_eq!(playback.take_over(Mode::Sandbox).err().expect("it is over").code, "run_over");
+}
+
+#[test]
+fn an_unfinished_baseline_is_not_taken_over() {
+    let run = recorded(Mode::Baseline, 2);
+    let playback = Playback::open(&run.folder).expect("it opens");
+    assert!(playback.place().no_branch.expect("a reason").contains("end it first"));
+    assert_eq!(playback.take_over(Mode::Sandbox).err().expect("refused").code, "not_in_this_mode");
+    crate::session::end_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
+    let playback = Playback::open(&run.folder).expect("it opens");
+    assert_eq!(playback.take_over(Mode::Sandbox).expect("a branch").day(), 0);
+}
+
+#[test]
+fn a_trajectory_that_stands_alone_is_played_too() {
+    let run = recorded(Mode::Sandbox, 3);
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    let file = elsewhere.path().join("of a participant.jsonl");
+    std::fs::copy(run.folder.join("trajectory.jsonl"), &file).expect("copied");
+    let mut playback = Playback::open(&file).expect("it opens");
+    go(&mut playback, Goal::Last);
+    assert_eq!(playback.session().state_hash().0, hashes(&run.folder)[&21]);
+    assert_eq!(playback.take_over(Mode::Sandbox).err().expect("refused").code, "not_possible");
+    let problem = Playback::open(&elsewhere.path().join("none.jsonl")).err().expect("there is none");
+    assert!(problem.to_string().contains("none.jsonl"), "{problem}");
+}
+
+#[test]
+fn a_run_that_is_played_elsewhere_is_followed() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut played = play(runs.path(), Mode::Sandbox, 2);
+    let folder = played.folder().expect("a folder").to_owned();
+    let mut playback = Playback::open(&folder).expect("it opens beside the writer");
+    playback.follow();
+    go(&mut playback, Goal::Last);
+    assert_eq!(playback.session().day(), 14);
+    assert!(!playback.look_for_more().expect("no problem"), "nothing has happened");
+    played.call("set_prices", &json!({"A": 15}), Via::Form).expect("a price");
+    assert!(playback.look_for_more().expect("no problem"));
+    go(&mut playback, Goal::Last);
+    assert_eq!(playback.session().current("set_prices")["A"], 15.0);
+    // A line that is half written is not there yet.
+    let path = folder.join("trajectory.jsonl");
+    let whole = std::fs::read(&path).expect("a trajectory");
+    let forecasts: Forecasts = played.naive_forecasts();
+    played.advance("go on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+    let after = std::fs::read(&path).expect("a trajectory");
+    drop(played);
+    std::fs::write(&path, &after[..whole.len() + 40]).expect("a part of a line");
+    assert!(!playback.look_for_more().expect("no problem"));
+    std::fs::write(&path, &after).expect("the rest");
+    assert!(playback.look_for_more().expect("no problem"));
+    go(&mut playback, Goal::Last);
+    assert_eq!(playback.session().state_hash().0, hashes(&folder)[&21]);
+    std::fs::write(&path, &after[..60]).expect("a file that became shorter");
+    assert!(playback.look_for_more().expect_err("lines are gone").to_string().contains("taken away"));
+}
+
+#[test]
+fn a_state_that_is_not_reached_again_stops_before_it() {
+    let run = recorded(Mode::Sandbox, 4);
+    let path = run.folder.join("trajectory.jsonl");
+    // A chain that holds and tells something else: the price of the first call, chained anew.
+    let read = Trajectory::read(&path).expect("a trajectory");
+    let mut writer_lines = read.lines.clone();
+    let target = writer_lines.iter().rposition(|line| line.kind == "call").expect("a call");
+    writer_lines[target].fields["args"] = json!({"operations": 77, "development": 5});
+    writer_lines[target].fields["result"] = json!({"operations": 77.0, "development": 5.0});
+    let copy = run.folder.with_file_name("other.jsonl");
+    let mut writer = TrajectoryWriter::create(&copy).expect("a file");
+    for line in &writer_lines {
+        let frame = ["seq", "kind", "day", "at", "prev"];
+        let own = line.fields.iter().filter(|(name, _)| !frame.contains(&name.as_str()));
+        let own = own.map(|(name, value)| (name.clone(), value.clone())).collect();
+        writer
+            .append(&line.kind, line.day, own, super::super::trajectory::Durability::Written)
+            .expect("a line");
+    }
+    let mut playback = Playback::open(&copy).expect("the chain is whole");
+    let problem = playback.go(Goal::Last, &mut |_| ControlFlow::Continue(())).expect_err("another state");
+    assert!(problem.to_string().contains("line"), "{problem}");
+    let reached = playback.session().day();
+    assert!(reached == 21, "{reached}");
+    assert_eq!(playback.session().state_hash().0, hashes(&run.folder)[&21]);
+    go(&mut playback, Goal::Last);
+    assert_eq!(playback.session().day(), 21, "it never goes beyond");
+}

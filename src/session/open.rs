@@ -177,7 +177,7 @@ impl Session {
 }
 
 /// The first line must say what the manifest says: otherwise one of the two files belongs to another run.
-fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
+pub(super) fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
     let damaged = |problem: &str| RunError::Damaged {
         path: path.to_owned(),
         line: 1,
@@ -211,7 +211,7 @@ fn same_figures(reached: &serde_json::Map<String, Value>, line: &Line) -> Result
 
 /// Nothing follows the last line and vouches for it, but the database remembers it: a line that was changed or
 /// cut off at the end shows here.
-fn check_end(path: &Path, folder: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
+pub(super) fn check_end(path: &Path, folder: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
     let location = Location::File(folder.join("world.db"));
     let (Some(last), Some(position)) = (trajectory.lines.last(), position_of(&location)) else {
         return Ok(());

@@ -2,7 +2,9 @@
 //! tool can read it without this program (chapter 90 §5).
 
 use std::path::Path;
+use std::time::Duration;
 
+use rusqlite::backup::Backup;
 use rusqlite::{Connection, Transaction, params};
 
 use super::blocks::Shelf;
@@ -19,6 +21,9 @@ CREATE INDEX ads_revenue_by_customer ON ads_revenue (customer_id, day);
 DROP TABLE usage_blocks;
 DROP TABLE ads_blocks;";
 
+/// Pages that are copied at a time.
+const PAGES: i32 = 4096;
+
 impl Projector {
     /// Writes everything handed over so far into a new file that any SQLite tool can open.
     ///
@@ -33,8 +38,8 @@ impl Projector {
 }
 
 fn copy(source: &Connection, shelf: &Shelf, file: &Path) -> rusqlite::Result<()> {
-    source.execute("VACUUM INTO ?1", params![file.to_string_lossy()])?;
     let mut copy = Connection::open(file)?;
+    Backup::new(source, &mut copy)?.run_to_completion(PAGES, Duration::ZERO, None)?;
     // One file without companions, and nothing to save it from: what is half written is thrown away.
     copy.pragma_update(None, "journal_mode", "OFF")?;
     copy.pragma_update(None, "synchronous", "OFF")?;

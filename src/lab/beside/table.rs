@@ -4,8 +4,8 @@ use super::{Beside, Range, Row};
 use crate::notation::{dollars, grouped, percent};
 use crate::report::ranking::published;
 
-/// Weeks of cash that the text leaves out between two that it tells.
-const CASH_EVERY: usize = 4;
+/// Most days whose cash the text tells; of longer runs it leaves weeks out.
+const CASH_ROWS: usize = 20;
 
 /// The comparison as text: aligned columns.
 pub fn as_text(beside: &Beside) -> String {
@@ -20,7 +20,8 @@ pub fn as_text(beside: &Beside) -> String {
     rows.extend(beside.figures.iter().map(text_row));
     rows.push(vec![String::new(); beside.runs.len() + 2]);
     let last = beside.cash.len().saturating_sub(1);
-    let told = beside.cash.iter().enumerate().filter(|(at, _)| at % CASH_EVERY == 0 || *at == last);
+    let every = beside.cash.len().div_ceil(CASH_ROWS).max(1);
+    let told = beside.cash.iter().enumerate().filter(|(at, _)| at % every == 0 || *at == last);
     rows.extend(told.map(|(_, row)| text_row(row)));
     let mut text = aligned(&rows);
     text += &decisions(beside);

@@ -62,7 +62,7 @@ impl From<RunError> for Failure {
     fn from(error: RunError) -> Failure {
         match error {
             RunError::NotPossible(_) | RunError::NoScenario { .. } => Failure::usage(error.to_string()),
-            RunError::InUse { .. } => Failure::failed(error.to_string()),
+            RunError::InUse { .. } | RunError::Exists(_) => Failure::failed(error.to_string()),
             _ => Failure::unreadable(error.to_string()),
         }
     }

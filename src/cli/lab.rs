@@ -1,4 +1,6 @@
-//! `novamind lab`: comparison with reference figures.
+//! `novamind lab`: comparison with reference figures, and of runs with each other.
+
+mod beside;
 
 use std::path::{Path, PathBuf};
 
@@ -20,6 +22,8 @@ pub struct Options {
 enum Laboratory {
     /// Run the policies of a reference folder over many seeds and compare with its figures.
     Golden(Golden),
+    /// Put runs side by side: cash by week, decisions, behaviour measures, and the paper's published figures.
+    Compare(beside::Options),
 }
 
 /// Options of `lab golden`.
@@ -57,6 +61,7 @@ const SHARE_OF_ALL: f64 = 0.97;
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.command {
         Laboratory::Golden(golden) => run_golden(golden, context),
+        Laboratory::Compare(options) => beside::run(options, context),
     }
 }
 

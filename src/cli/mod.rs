@@ -48,7 +48,7 @@ enum Command {
     Play(play::Options),
     /// Play a policy without a person.
     Run(run::Options),
-    /// List, show, end and delete runs.
+    /// List, show, end, delete, export and import runs.
     Runs(runs::Options),
     /// Simulate a recorded run again and compare every state.
     Replay(replay::Options),
@@ -66,7 +66,7 @@ enum Command {
     Pictures(pictures::Options),
     /// Show the scenarios and their parameters.
     Scenario(scenario::Options),
-    /// Compare policies with reference figures.
+    /// Compare policies with reference figures, and runs with each other.
     Lab(lab::Options),
     /// Measure the speed of this machine's simulator.
     Bench(bench::Options),

@@ -5,14 +5,17 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::{Context, Failure, print};
-use crate::report::{Story, as_html, as_markdown};
-use crate::session::{Access, Session, find_run_to_read};
+use crate::report::{Logbook, Story, as_html, as_markdown, session_as_html, session_as_markdown};
+use crate::session::{Access, Session, Trajectory, find_run_to_read};
 
 /// Options of `report`.
 #[derive(Debug, Args)]
 pub struct Options {
     /// Run, or `latest`: the newest.
     run: String,
+    /// How it was played instead of what came of it: time, breaks, screens, queries and tools by week.
+    #[arg(long)]
+    session: bool,
     /// Format of the report.
     #[arg(long, value_enum, default_value = "markdown")]
     format: Format,
@@ -28,12 +31,17 @@ pub enum Format {
     Markdown,
     /// One page with charts, without scripts and other files.
     Html,
+    /// One JSON object; only with --session.
+    Json,
 }
 
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
-    let text = report_of(&folder, options.format)?;
+    let text = match options.session {
+        true => session_of(&folder, options.format)?,
+        false => report_of(&folder, options.format)?,
+    };
     let Some(path) = &options.out else {
         return print(&text);
     };
@@ -43,11 +51,33 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 
 /// The report of the run in a folder; nothing of the run is changed.
 fn report_of(folder: &Path, format: Format) -> Result<String, Failure> {
-    let story = Story::of(&Session::open(folder, Access::Read, true)?);
+    let told = |write: fn(&Story) -> String| -> Result<String, Failure> {
+        Ok(write(&Story::of(&Session::open(folder, Access::Read, true)?)))
+    };
+    match format {
+        Format::Markdown => told(as_markdown),
+        Format::Html => told(as_html),
+        Format::Json => Err(Failure::usage(
+            "a report is told as markdown or html; --session has json, and `novamind query` the figures",
+        )),
+    }
+}
+
+/// How the run in a folder was played; nothing of the run is changed.
+fn session_of(folder: &Path, format: Format) -> Result<String, Failure> {
+    let logbook = logbook_of(folder)?;
     Ok(match format {
-        Format::Markdown => as_markdown(&story),
-        Format::Html => as_html(&story),
+        Format::Markdown => session_as_markdown(&logbook),
+        Format::Html => session_as_html(&logbook),
+        Format::Json => serde_json::to_string_pretty(&logbook).unwrap_or_default() + "\n",
     })
+}
+
+/// The logbook of the run in a folder.
+pub fn logbook_of(folder: &Path) -> Result<Logbook, Failure> {
+    let session = Session::open(folder, Access::Read, true)?;
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
+    Ok(Logbook::of(&session, &trajectory.lines))
 }
 
 #[cfg(test)]
@@ -72,7 +102,8 @@ mod tests {
         };
         let written = |format: Format, name: &str| {
             let path = runs.path().join(name);
-            let options = Options { run: "latest".to_owned(), format, out: Some(path.clone()) };
+            let options =
+                Options { run: "latest".to_owned(), session: false, format, out: Some(path.clone()) };
             run(&options, &context).expect("a report");
             std::fs::read_to_string(path).expect("a file")
         };
@@ -83,9 +114,14 @@ mod tests {
         );
         assert!(markdown.contains("“wait and see”"), "{markdown}");
         assert!(written(Format::Html, "report.html").contains("<svg "));
-        let nowhere = Options { run: id, format: Format::Html, out: Some("/nowhere/at/all.html".into()) };
+        let nowhere = Options {
+            run: id,
+            session: true,
+            format: Format::Html,
+            out: Some("/nowhere/at/all.html".into()),
+        };
         assert_eq!(run(&nowhere, &context).expect_err("no such folder").code, 1);
-        let unknown = Options { run: "zzzz".to_owned(), format: Format::Html, out: None };
+        let unknown = Options { run: "zzzz".to_owned(), session: false, format: Format::Html, out: None };
         assert_eq!(run(&unknown, &context).expect_err("no such run").code, 3);
     }
 }

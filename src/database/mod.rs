@@ -16,6 +16,7 @@ mod help;
 mod interrupt;
 mod location;
 mod memory;
+mod plain_copy;
 mod projector;
 mod rows;
 

@@ -63,8 +63,8 @@ enum Job {
 pub struct Projector {
     jobs: Option<SyncSender<Job>>,
     thread: Option<JoinHandle<()>>,
-    location: Location,
-    shelf: SharedShelf,
+    pub(super) location: Location,
+    pub(super) shelf: SharedShelf,
     gate: Arc<RwLock<()>>,
 }
 

@@ -5,6 +5,7 @@
 
 mod answers;
 pub mod bench;
+pub mod beside;
 mod golden;
 mod metrics;
 mod policy;

@@ -72,7 +72,7 @@ fn targeted(rules: &RuleBased, seen: &Observation, on: bool, params: &Params) ->
 }
 
 /// The channel with the highest starting yield for a group; the first in channel order on a tie.
-fn best_starting_channel(group: Group, params: &Params) -> Channel {
+pub(super) fn best_starting_channel(group: Group, params: &Params) -> Channel {
     let yields = params.starting_yields();
     let better =
         |best: Channel, next: Channel| if yields[next][group] > yields[best][group] { next } else { best };

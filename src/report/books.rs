@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
+
 use crate::session::{Cell, Rows, Session, number_at, text_at};
 use crate::world::identifiers::Group;
 
@@ -31,7 +33,7 @@ const LEDGER: &str = "SELECT (day + 6) / 7 AS week, category, sum(amount) FROM l
 const OUTAGES: &str = "SELECT day, downtime_minutes FROM service_day WHERE downtime_minutes > 0 ORDER BY day";
 
 /// Ads on one channel for one group.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChannelRow {
     /// Group.
     pub group: String,
@@ -101,6 +103,13 @@ impl Books {
         let outage = |row: &Vec<Cell>| (number_at(row, 0) as u32, number_at(row, 1) as u32);
         let outages = ask("outages", OUTAGES).rows.iter().map(outage).collect();
         Books { groups, channels, ledger, outages, missing }
+    }
+
+    /// Only the ads, for those who need no more; empty if the database does not say.
+    pub fn channels_of(session: &Session) -> Vec<ChannelRow> {
+        let desk = session.wait_for_database().and_then(|()| session.open_desk()).ok();
+        let rows = desk.and_then(|desk| desk.ask(CHANNELS, session.query_limits()).ok());
+        rows.map(|rows| rows.rows.iter().map(|row| channel_of(row)).collect()).unwrap_or_default()
     }
 
     /// Dollars by category over the whole run.

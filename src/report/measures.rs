@@ -2,8 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use serde::Serialize;
+
 use super::books::ChannelRow;
-use crate::session::{Decisions, Ended, ForecastScore, JournalEntry};
+use crate::session::{Decisions, Ended, ForecastScore, JournalEntry, Session};
 
 /// Words that show somebody weighing what may come.
 pub const PLANNING_WORDS: [&str; 16] = [
@@ -26,7 +28,7 @@ pub const PLANNING_WORDS: [&str; 16] = [
 ];
 
 /// All measures.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measures {
     /// Days that the company has lived.
     pub survival_days: u32,
@@ -46,6 +48,23 @@ pub struct Measures {
     pub planning: Planning,
 }
 
+impl Measures {
+    /// Measures of a run, with what its ads brought.
+    pub fn of(session: &Session, channels: &[ChannelRow]) -> Measures {
+        let (journal, day) = (session.journal(), session.day());
+        Measures {
+            survival_days: survival_days(session.ended(), day, session.manifest().days),
+            cash: session.cash_by_day().last().copied().unwrap_or(session.manifest().cash),
+            channels: best_channel_share(channels),
+            targeted_development: targeted_development(session.decisions()),
+            forecasts: session.forecast_scores(),
+            filled_naively: filled_naively(journal),
+            tools: tool_use(journal),
+            planning: planning(journal),
+        }
+    }
+}
+
 /// Days that the company has lived: to its bankruptcy, or so far.
 pub fn survival_days(ended: Option<Ended>, day: u32, last_day: u32) -> u32 {
     match ended {
@@ -55,7 +74,7 @@ pub fn survival_days(ended: Option<Ended>, day: u32, last_day: u32) -> u32 {
 }
 
 /// Ads of one group.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GroupAds {
     /// Group.
     pub group: String,
@@ -72,7 +91,7 @@ pub struct GroupAds {
 }
 
 /// Ad spend on the best channels.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChannelSkill {
     /// Share of all ad spend that went to the best channel of its group.
     pub share: f64,
@@ -134,7 +153,7 @@ pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
 }
 
 /// Calls of tools.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ToolUse {
     /// All confirmed calls that did something.
     pub calls: u32,
@@ -163,7 +182,7 @@ pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
 }
 
 /// What was written before the weeks.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Planning {
     /// Rationales.
     pub rationales: u32,
@@ -173,18 +192,53 @@ pub struct Planning {
     pub planning_each: f64,
 }
 
+/// Words of a text.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Wording {
+    /// All words.
+    pub words: usize,
+    /// [`PLANNING_WORDS`] among them.
+    pub planning: usize,
+    /// How often it says "if".
+    pub ifs: usize,
+}
+
+impl Wording {
+    /// Counts the words of a text.
+    pub fn of(text: &str) -> Wording {
+        let bare = text.split(|letter: char| !letter.is_alphabetic()).map(str::to_lowercase);
+        let weighing: Vec<String> = bare.filter(|word| PLANNING_WORDS.contains(&word.as_str())).collect();
+        Wording {
+            words: text.split_whitespace().count(),
+            planning: weighing.len(),
+            ifs: weighing.iter().filter(|word| *word == "if").count(),
+        }
+    }
+
+    /// Words of planning in a hundred words; none if there are no words.
+    pub fn planning_per_hundred(&self) -> Option<f64> {
+        (self.words > 0).then(|| 100.0 * self.planning as f64 / self.words as f64)
+    }
+}
+
+impl std::ops::AddAssign for Wording {
+    fn add_assign(&mut self, other: Wording) {
+        self.words += other.words;
+        self.planning += other.planning;
+        self.ifs += other.ifs;
+    }
+}
+
 /// How long rationales are and how much they weigh what may come.
 pub fn planning(journal: &[JournalEntry]) -> Planning {
-    let (mut rationales, mut words, mut weighing) = (0u32, 0usize, 0usize);
+    let (mut rationales, mut all) = (0u32, Wording::default());
     for entry in journal {
         let JournalEntry::Advance { rationale, .. } = entry else { continue };
         rationales += 1;
-        words += rationale.split_whitespace().count();
-        let bare = rationale.split(|letter: char| !letter.is_alphabetic());
-        weighing += bare.filter(|word| PLANNING_WORDS.contains(&word.to_lowercase().as_str())).count();
+        all += Wording::of(rationale);
     }
     let each = |count: usize| count as f64 / f64::from(rationales.max(1));
-    Planning { rationales, words_each: each(words), planning_each: each(weighing) }
+    Planning { rationales, words_each: each(all.words), planning_each: each(all.planning) }
 }
 
 /// Weeks whose forecasts were filled by the naive projection, and all weeks.

@@ -9,6 +9,7 @@ pub mod causes;
 pub mod chapters;
 pub mod highlights;
 pub mod html;
+pub mod logbook;
 pub mod markdown;
 pub mod measures;
 pub mod movement;
@@ -23,6 +24,7 @@ pub mod turn;
 pub mod week;
 mod words;
 
+pub use logbook::Logbook;
 pub use story::Story;
 pub use week::WeekReport;
 
@@ -34,4 +36,14 @@ pub fn as_markdown(story: &Story) -> String {
 /// The report of a run as one page for a browser, without scripts and without other files.
 pub fn as_html(story: &Story) -> String {
     html::write(&outline::page_of(story))
+}
+
+/// How a run was played, for whoever led the session, as Markdown.
+pub fn session_as_markdown(logbook: &Logbook) -> String {
+    markdown::write(&logbook::page_of(logbook))
+}
+
+/// How a run was played, for whoever led the session, as one page for a browser.
+pub fn session_as_html(logbook: &Logbook) -> String {
+    html::write(&logbook::page_of(logbook))
 }

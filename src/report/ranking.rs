@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::words::{dollar_tick, whole};
 use crate::session::Observation;
@@ -10,18 +10,21 @@ use crate::session::Observation;
 /// Published results (read once).
 #[derive(Debug, Deserialize)]
 pub struct Published {
-    source: String,
+    /// Where they come from.
+    pub source: String,
     start_cash: f64,
     /// Cash of the rule-based policy, dollars.
     pub rule_based_baseline: f64,
     /// What a perfect player might reach, dollars.
     pub estimated_upper_bound: f64,
+    /// Share of ad spend that falls on the best channel by chance.
+    pub best_channel_random_share: f64,
     /// Results of agents.
     pub agent: Vec<Agent>,
 }
 
 /// Results of one agent.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 pub struct Agent {
     /// Model.
     pub name: String,
@@ -31,8 +34,15 @@ pub struct Agent {
     pub runs: u32,
     /// Cash of the best run, dollars.
     pub best_cash: f64,
+    /// Longest life of a run, days.
+    pub max_survival_days: f64,
+    /// Mean life of a run, days.
+    pub mean_survival_days: f64,
+    /// Turns of the agent in a week.
+    pub turns_per_week: f64,
+    /// Targeted share of development spend, where it was published.
     #[serde(default)]
-    targeted_development_share: Option<f64>,
+    pub targeted_development_share: Option<f64>,
 }
 
 /// The run that the published results were made with: seed and days.

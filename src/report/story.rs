@@ -3,7 +3,7 @@
 use super::books::Books;
 use super::chapters::{Chapter, chapters};
 use super::highlights::{Highlight, highlights};
-use super::measures::{self, Measures};
+use super::measures::Measures;
 use super::ranking::{Standing, standing};
 use super::turn::{Cost, costs, turned};
 use crate::session::{Ended, Filed, Observation, Session, WeekFigures, filed_forecasts};
@@ -60,16 +60,7 @@ impl Story {
             costs: costs(&books.totals()),
             turned: turned(weeks),
         });
-        let measures = Measures {
-            survival_days: measures::survival_days(seen.ended, seen.day, seen.last_day),
-            cash: seen.cash,
-            channels: measures::best_channel_share(&books.channels),
-            targeted_development: measures::targeted_development(session.decisions()),
-            forecasts: session.forecast_scores(),
-            filled_naively: measures::filled_naively(journal),
-            tools: measures::tool_use(journal),
-            planning: measures::planning(journal),
-        };
+        let measures = Measures::of(session, &books.channels);
         Story {
             version: session.manifest().version.clone(),
             start_cash,

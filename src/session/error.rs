@@ -112,6 +112,19 @@ pub enum RunError {
         /// Where it was looked for.
         folder: PathBuf,
     },
+    /// A file is no archive of a run, or not the one that was sealed.
+    #[error("{path}: {problem}. {safe}", path = .path.display())]
+    Archive {
+        /// The archive.
+        path: PathBuf,
+        /// What is wrong with it; names the file inside.
+        problem: String,
+        /// What is still good, and what can be done.
+        safe: String,
+    },
+    /// Something would be overwritten.
+    #[error("{0}")]
+    Exists(String),
     /// There is no such scenario.
     #[error("there is no scenario {name}; there are {known}")]
     NoScenario {

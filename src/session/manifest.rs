@@ -102,6 +102,12 @@ impl Manifest {
     pub fn read(folder: &Path) -> Result<Manifest, RunError> {
         let path = folder.join("run.toml");
         let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
+        // A later format may have fields that this program does not know.
+        let format = text.parse::<Table>().ok().and_then(|table| table.get("format")?.as_integer());
+        if let Some(format) = format.filter(|format| *format > i64::from(FORMAT)) {
+            let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            return Err(RunError::OtherFormat { id, format: format as u32, known: FORMAT });
+        }
         let manifest: Manifest = toml::from_str(&text).map_err(|error| RunError::Damaged {
             line: error.span().map_or(1, |span| text[..span.start].matches('\n').count() + 1),
             problem: error.message().to_owned(),

@@ -6,6 +6,7 @@
 
 mod act;
 mod advance;
+pub mod archive;
 mod ask;
 mod branch;
 mod changes;
@@ -48,6 +49,7 @@ use serde::{Deserialize, Serialize};
 
 pub use act::{Preview, Via};
 pub use advance::{DayReport, Week};
+pub use archive::{Export, Imported, Seal, import_run};
 pub use ask::{desk_of_file, rows_as_json};
 pub use changes::{Change, Decisions};
 pub use configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
@@ -72,7 +74,7 @@ pub use runs::{
 };
 pub use scripts::Calculated;
 pub use terms::{RunningStudy, StudyLevel, Terms};
-pub use trajectory::{Line, Trajectory};
+pub use trajectory::{Line, Trajectory, seconds as moment_of};
 pub use week::{Forecasts, WeekFigures, week_of};
 pub use xray::Xray;
 

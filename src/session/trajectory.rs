@@ -46,6 +46,11 @@ impl Line {
     pub fn position(&self) -> Position {
         Position { seq: self.seq, line_hash: self.hash.clone() }
     }
+
+    /// When it was written, seconds since 1970; 0 if that cannot be read.
+    pub fn moment(&self) -> f64 {
+        seconds(&self.at)
+    }
 }
 
 /// Hash of a line's bytes, in hexadecimal digits.
@@ -294,8 +299,15 @@ impl Trajectory {
     /// # Errors
     /// The file cannot be read, or a line is damaged; the error names it and says what is still good.
     pub fn read(path: &Path) -> Result<Trajectory, RunError> {
-        let bytes = std::fs::read(path).map_err(RunError::io(path))?;
-        Trajectory::parse(&bytes).map_err(damaged_at(path))
+        Trajectory::of_file(path, &std::fs::read(path).map_err(RunError::io(path))?)
+    }
+
+    /// Checks the bytes of a file as [`Trajectory::read`] does.
+    ///
+    /// # Errors
+    /// A line is damaged; the error names it and says what is still good.
+    pub fn of_file(path: &Path, bytes: &[u8]) -> Result<Trajectory, RunError> {
+        Trajectory::parse(bytes).map_err(damaged_at(path))
     }
 
     /// Checks bytes as [`Trajectory::read`] does.

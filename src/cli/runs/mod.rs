@@ -1,4 +1,10 @@
-//! `novamind runs`: list, show, end, delete.
+//! `novamind runs`: list, show, end, delete, export, import.
+
+mod transfer;
+
+pub use transfer::as_csv;
+
+use std::path::Path;
 
 use clap::{Args, Subcommand};
 
@@ -11,6 +17,9 @@ use crate::session::{RunSummary, delete_run, end_run, find_run, find_run_to_read
 pub struct Options {
     #[command(subcommand)]
     command: Option<Choice>,
+    /// Only runs of this participant.
+    #[arg(long, value_name = "LABEL")]
+    participant: Option<String>,
     /// As JSON.
     #[arg(long, global = true)]
     json: bool,
@@ -18,6 +27,12 @@ pub struct Options {
 
 #[derive(Debug, Subcommand)]
 enum Choice {
+    /// List the runs, the last played first; this is what happens without a word, too.
+    List {
+        /// Only runs of this participant.
+        #[arg(long, value_name = "LABEL")]
+        participant: Option<String>,
+    },
     /// Show what a run is and how far it has come.
     Show {
         /// Run, or `latest`: the newest.
@@ -46,24 +61,26 @@ enum Choice {
         #[arg(long)]
         yes: bool,
     },
+    /// Seal a run into one file to hand over, or all runs with tables of their runs and weeks.
+    Export(transfer::Export),
+    /// Take in the run of an archive, after checking every byte of it.
+    Import(transfer::Import),
+    /// Explain every column of the tables that `export --all` writes.
+    Columns,
+    /// Print the JSON Schema of a line of a trajectory.
+    Schema,
 }
+
+/// What a line of a trajectory may be.
+const SCHEMA: &str = include_str!("../../../assets/trajectory.schema.json");
 
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs()?;
     match &options.command {
-        None => {
-            let list = list_runs(&runs)?;
-            if options.json {
-                return print(&(serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"));
-            }
-            if list.is_empty() {
-                return print(&format!(
-                    "There are no runs in {} yet; `novamind` starts one.\n",
-                    runs.display()
-                ));
-            }
-            print(&list.iter().map(line).collect::<String>())
+        None => list(&runs, options.participant.as_deref(), options.json),
+        Some(Choice::List { participant }) => {
+            list(&runs, participant.as_deref().or(options.participant.as_deref()), options.json)
         }
         Some(Choice::Show { run }) => {
             let folder = find_run_to_read(&runs, run)?;
@@ -98,6 +115,27 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             delete_run(&runs, run)?;
             print(&format!("run {run} is deleted\n"))
         }
+        Some(Choice::Export(export)) => export.run(&runs, options.json),
+        Some(Choice::Import(import)) => import.run(&runs, options.json),
+        Some(Choice::Columns) => transfer::explain_columns(options.json),
+        Some(Choice::Schema) => print(SCHEMA),
+    }
+}
+
+fn list(runs: &Path, participant: Option<&str>, json: bool) -> Result<(), Failure> {
+    let mut list = list_runs(runs)?;
+    list.retain(|run| participant.is_none_or(|label| run.participant.as_deref() == Some(label)));
+    if json {
+        return print(&(serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"));
+    }
+    match participant {
+        Some(label) if list.is_empty() => {
+            print(&format!("There are no runs of {label} in {}.\n", runs.display()))
+        }
+        None if list.is_empty() => {
+            print(&format!("There are no runs in {} yet; `novamind` starts one.\n", runs.display()))
+        }
+        _ => print(&list.iter().map(line).collect::<String>()),
     }
 }
 

@@ -1,0 +1,50 @@
+//! `novamind lab compare`: runs side by side.
+
+use clap::Args;
+use serde_json::json;
+
+use crate::cli::run::progress_bar;
+use crate::cli::runs::as_csv;
+use crate::cli::{Context, Failure, print};
+use crate::lab::beside::{Compared, as_rows, as_text, beside};
+use crate::report::ranking::published;
+use crate::session::{Access, Session, Trajectory, find_run_to_read};
+
+/// Options of `lab compare`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Runs, or `latest`: the newest.
+    #[arg(required = true, value_name = "RUN")]
+    runs: Vec<String>,
+    /// As one JSON object, with the logbook of every run.
+    #[arg(long, conflicts_with = "csv")]
+    json: bool,
+    /// As comma-separated values: a figure or a day a row.
+    #[arg(long)]
+    csv: bool,
+}
+
+/// Runs the command; nothing of the runs is changed.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let folder = context.runs()?;
+    let progress = progress_bar(options.runs.len() as u64, "runs");
+    let mut compared = Vec::new();
+    for name in &options.runs {
+        let own = find_run_to_read(&folder, name)?;
+        let session = Session::open(&own, Access::Read, true)?;
+        let trajectory = Trajectory::read(&own.join("trajectory.jsonl"))?;
+        compared.push(Compared::of(&session, &trajectory.lines));
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    let all = beside(&compared);
+    if options.csv {
+        return print(&as_csv(&as_rows(&all))?);
+    }
+    if !options.json {
+        return print(&as_text(&all));
+    }
+    let agents = json!({ "source": published().source, "agents": published().agent });
+    let object = json!({ "comparison": all, "runs": compared, "published": agents });
+    print(&(serde_json::to_string_pretty(&object).unwrap_or_default() + "\n"))
+}

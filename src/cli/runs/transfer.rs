@@ -1,0 +1,243 @@
+//! `novamind runs export` and `import`: runs as sealed archives, and their tables.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use crate::cli::run::progress_bar;
+use crate::cli::{Failure, print};
+use crate::report::Logbook;
+use crate::report::logbook::columns::{RUNS, Unread, WEEKS, runs_table, weeks_table};
+use crate::session::{
+    Export as Sealing, Imported, RunError, RunSummary, Seal, find_run_to_read, import_run, list_runs,
+};
+
+/// Options of `runs export`.
+#[derive(Debug, Args)]
+pub struct Export {
+    /// Run, or `latest`: the newest.
+    #[arg(required_unless_present = "all", conflicts_with = "all")]
+    run: Option<String>,
+    /// Every run, with the tables runs.csv, weeks.csv and columns.csv.
+    #[arg(long)]
+    all: bool,
+    /// With --all: only runs of this participant.
+    #[arg(long, value_name = "LABEL", requires = "all")]
+    participant: Option<String>,
+    /// File of the archive, compressed when its name ends in .gz or .tgz; with --all a folder.
+    #[arg(long, value_name = "PATH")]
+    out: PathBuf,
+}
+
+/// Options of `runs import`.
+#[derive(Debug, Args)]
+pub struct Import {
+    /// Archives, as `runs export` makes them.
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+}
+
+impl Export {
+    /// Runs the command.
+    pub fn run(&self, runs: &Path, json: bool) -> Result<(), Failure> {
+        match &self.run {
+            Some(run) => self.export_one(runs, run, json),
+            None => self.export_all(runs, json),
+        }
+    }
+
+    fn export_one(&self, runs: &Path, run: &str, json: bool) -> Result<(), Failure> {
+        let beside = match self.out.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        if self.out.exists() {
+            // Said before the run is simulated again, not after.
+            let message = format!("{} exists already: choose another name, or remove it", self.out.display());
+            return Err(Failure::failed(message));
+        }
+        if !beside.is_dir() {
+            return Err(Failure::failed(format!("{} is no folder; nothing was written", beside.display())));
+        }
+        let export = Sealing::prepare(&find_run_to_read(runs, run)?, &beside)?;
+        let seal = export.write(&self.out, false)?;
+        let remarks = export.session().remarks();
+        if json {
+            return print(&format!("{}\n", told(&seal, &self.out, export.session().day())));
+        }
+        let remarks: String = remarks.iter().map(|remark| format!("{remark}\n")).collect();
+        print(&format!("{remarks}{}", line(&seal, &self.out, export.session().day())))
+    }
+
+    fn export_all(&self, runs: &Path, json: bool) -> Result<(), Failure> {
+        let mut list = list_runs(runs)?;
+        // A damaged run does not say whose it is, so it is always named.
+        let label = self.participant.as_deref();
+        list.retain(|run| {
+            run.problem.is_some() || label.is_none_or(|label| run.participant.as_deref() == Some(label))
+        });
+        list.sort_by(|left, right| (&left.created, &left.id).cmp(&(&right.created, &right.id)));
+        std::fs::create_dir_all(&self.out)
+            .map_err(|error| Failure::failed(format!("{}: {error}", self.out.display())))?;
+        let progress = progress_bar(list.len() as u64, "runs");
+        let (mut books, mut answers, mut worst) = (Vec::new(), Vec::new(), None);
+        for run in &list {
+            let exported = self.export_into(runs, run);
+            progress.inc(1);
+            match exported {
+                Ok((book, seal, archive)) => {
+                    answers.push(if json {
+                        told(&seal, &archive, book.day).to_string() + "\n"
+                    } else {
+                        line(&seal, &archive, book.day)
+                    });
+                    books.push(Ok(book));
+                }
+                Err(error) => {
+                    let problem = error.to_string();
+                    let failure = Failure::from(error);
+                    let answer = json!({ "run": run.id, "problem": problem });
+                    answers.push(if json {
+                        format!("{answer}\n")
+                    } else {
+                        format!("{}  not exported: {problem}\n", run.id)
+                    });
+                    books.push(Err(Unread { run: run.id.clone(), problem }));
+                    worst = Some(worst.map_or(failure.code, |code: u8| code.max(failure.code)));
+                }
+            }
+        }
+        progress.finish_and_clear();
+        self.write_table("runs.csv", &runs_table(&books))?;
+        self.write_table("weeks.csv", &weeks_table(books.iter().flatten()))?;
+        self.write_table("columns.csv", &columns_table())?;
+        print(&answers.concat())?;
+        let good = books.iter().filter(|book| book.is_ok()).count();
+        if !json {
+            print(&format!(
+                "{good} of {} runs and their tables are in {}\n",
+                list.len(),
+                self.out.display()
+            ))?;
+        }
+        match worst {
+            None => Ok(()),
+            Some(code) => {
+                let message = format!(
+                    "{} of {} runs could not be exported; the others are complete",
+                    list.len() - good,
+                    list.len()
+                );
+                Err(if code == 3 { Failure::unreadable(message) } else { Failure::failed(message) })
+            }
+        }
+    }
+
+    /// One run of many. An older archive of it makes room: trajectories only grow.
+    fn export_into(&self, runs: &Path, run: &RunSummary) -> Result<(Logbook, Seal, PathBuf), RunError> {
+        let export = Sealing::prepare(&runs.join(&run.id), &self.out)?;
+        let archive = self.out.join(format!("{}.tar.gz", run.id));
+        let seal = export.write(&archive, true)?;
+        Ok((Logbook::of(export.session(), &export.trajectory().lines), seal, archive))
+    }
+
+    fn write_table(&self, name: &str, rows: &[Vec<String>]) -> Result<(), Failure> {
+        let path = self.out.join(name);
+        std::fs::write(&path, as_csv(rows)?)
+            .map_err(|error| Failure::failed(format!("{}: {error}", path.display())))
+    }
+}
+
+/// Rows as comma-separated values.
+pub fn as_csv(rows: &[Vec<String>]) -> Result<String, Failure> {
+    let wrong = |error: String| Failure::failed(format!("the table cannot be written as CSV: {error}"));
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.write_record(row).map_err(|error| wrong(error.to_string()))?;
+    }
+    let bytes = writer.into_inner().map_err(|error| wrong(error.to_string()))?;
+    String::from_utf8(bytes).map_err(|error| wrong(error.to_string()))
+}
+
+/// Table, column, unit and meaning of everything that is exported.
+fn columns_table() -> Vec<Vec<String>> {
+    let row = |table: &str, name: &str, unit: &str, meaning: &str| {
+        [table, name, unit, meaning].map(str::to_owned).to_vec()
+    };
+    let mut rows = vec![row("table", "column", "unit", "meaning")];
+    rows.extend(RUNS.iter().map(|column| row("runs", column.name, column.unit, column.meaning)));
+    rows.extend(WEEKS.iter().map(|column| row("weeks", column.name, column.unit, column.meaning)));
+    rows
+}
+
+/// Prints what every column means.
+pub fn explain_columns(json: bool) -> Result<(), Failure> {
+    if json {
+        let all = json!({ "runs": RUNS, "weeks": WEEKS });
+        return print(&(serde_json::to_string_pretty(&all).unwrap_or_default() + "\n"));
+    }
+    let mut text = String::new();
+    for row in columns_table().iter().skip(1) {
+        text += &format!("{:<5}  {:<28}  {:<15}  {}\n", row[0], row[1], row[2], row[3]);
+    }
+    print(&text)
+}
+
+fn line(seal: &Seal, archive: &Path, day: u32) -> String {
+    format!(
+        "{}  day {day}, {} lines  {}\n  checksum {}\n",
+        seal.run,
+        seal.last_seq + 1,
+        archive.display(),
+        seal.checksum
+    )
+}
+
+fn told(seal: &Seal, archive: &Path, day: u32) -> Value {
+    json!({ "run": seal.run, "day": day, "lines": seal.last_seq + 1, "file": archive, "checksum": seal.checksum })
+}
+
+impl Import {
+    /// Runs the command. One archive that cannot be taken does not keep the others out.
+    pub fn run(&self, runs: &Path, json: bool) -> Result<(), Failure> {
+        let mut failures: Vec<Failure> = Vec::new();
+        for file in &self.files {
+            match import_run(runs, file) {
+                Ok((seal, imported)) => print(&import_answer(&seal, &imported, json))?,
+                Err(error) => failures.push(error.into()),
+            }
+        }
+        // The last one said is the one that names the exit code: the highest.
+        failures.sort_by_key(|failure| std::cmp::Reverse(failure.code));
+        let mut failures = failures.into_iter();
+        match failures.next() {
+            None => Ok(()),
+            Some(worst) => {
+                let texts: Vec<String> = std::iter::once(worst.to_string())
+                    .chain(failures.map(|other| other.to_string()))
+                    .collect();
+                let message = texts.join("; ");
+                Err(if worst.code == 3 { Failure::unreadable(message) } else { Failure::failed(message) })
+            }
+        }
+    }
+}
+
+fn import_answer(seal: &Seal, imported: &Imported, json: bool) -> String {
+    let (new, remark) = match imported {
+        Imported::New(_) => (true, "imported; its database is made when it is first opened"),
+        Imported::Same { other_memo: false } => {
+            (false, "is there already, line for line; nothing was changed")
+        }
+        Imported::Same { other_memo: true } => {
+            (false, "is there already, line for line, with other notes; nothing was changed")
+        }
+    };
+    if json {
+        let answer =
+            json!({ "run": seal.run, "new": new, "lines": seal.last_seq + 1, "checksum": seal.checksum });
+        return format!("{answer}\n");
+    }
+    format!("run {} {remark}\n  checksum {}\n", seal.run, seal.checksum)
+}

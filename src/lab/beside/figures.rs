@@ -1,0 +1,210 @@
+//! The figures that runs are compared by.
+
+use std::collections::BTreeSet;
+
+use super::{Compared, Range, Row, range};
+use crate::report::ranking::published;
+use crate::session::ForecastScore;
+
+/// A figure: where its values come from.
+pub struct Figure {
+    name: &'static str,
+    of: &'static str,
+    unit: &'static str,
+    value: fn(&Compared) -> Option<f64>,
+    published: fn() -> Option<Range>,
+}
+
+impl Figure {
+    pub(super) fn row(&self, runs: &[Compared]) -> Row {
+        Row {
+            figure: self.name.to_owned(),
+            of: self.of.to_owned(),
+            unit: self.unit,
+            values: runs.iter().map(self.value).collect(),
+            published: (self.published)(),
+        }
+    }
+}
+
+const fn figure(
+    name: &'static str,
+    of: &'static str,
+    unit: &'static str,
+    value: fn(&Compared) -> Option<f64>,
+    published: fn() -> Option<Range>,
+) -> Figure {
+    Figure { name, of, unit, value, published }
+}
+
+fn nothing() -> Option<Range> {
+    None
+}
+
+fn forecast(run: &Compared, horizon: u32, of: fn(&ForecastScore) -> f64) -> Option<f64> {
+    let mut scores = run.logbook.measures.forecasts.iter();
+    scores.find(|score| score.horizon_days == horizon && score.scored > 0).map(of)
+}
+
+fn error(score: &ForecastScore) -> f64 {
+    score.mean_error
+}
+
+fn coverage(score: &ForecastScore) -> f64 {
+    f64::from(score.covered) / f64::from(score.scored)
+}
+
+fn per_week(run: &Compared, count: u32) -> Option<f64> {
+    let weeks = run.logbook.weeks.len();
+    (weeks > 0).then(|| f64::from(count) / weeks as f64)
+}
+
+/// Half of the two-sided weight of a 95 percent interval is expected outside.
+const NOMINAL: Range = Range { least: 0.95, most: 0.95, what: "what a 95 % interval should hold" };
+
+/// Figures of the whole run, in the order they are told.
+pub const FIGURES: &[Figure] = &[
+    figure(
+        "final cash",
+        "",
+        "dollars",
+        |run| Some(run.logbook.cash),
+        || range("best of three runs of each agent", |agent| Some(agent.best_cash)),
+    ),
+    figure(
+        "score",
+        "",
+        "dollars",
+        |run| run.logbook.score,
+        || {
+            let cash = published().rule_based_baseline;
+            Some(Range { least: cash, most: cash, what: "rule-based baseline" })
+        },
+    ),
+    figure(
+        "survival",
+        "",
+        "days",
+        |run| Some(f64::from(run.logbook.measures.survival_days)),
+        || range("mean of three runs of each agent", |agent| Some(agent.mean_survival_days)),
+    ),
+    figure("minutes played", "", "minutes", |run| Some(run.logbook.total.active_seconds / 60.0), nothing),
+    figure("seconds for a week, median", "", "seconds", |run| run.logbook.median_week_seconds, nothing),
+    figure(
+        "calls that act, a week",
+        "",
+        "per week",
+        |run| per_week(run, run.logbook.measures.tools.calls),
+        || range("turns a week of each agent", |agent| Some(agent.turns_per_week)),
+    ),
+    figure("all calls, a week", "", "per week", |run| per_week(run, run.logbook.total.calls), nothing),
+    figure("queries, a week", "", "per week", |run| per_week(run, run.logbook.total.queries), nothing),
+    figure("refused calls", "", "count", |run| Some(f64::from(run.logbook.total.refused)), nothing),
+    figure(
+        "decisions",
+        "",
+        "count",
+        |run| Some(run.logbook.weeks.iter().map(|week| week.decisions.len()).sum::<usize>() as f64),
+        nothing,
+    ),
+    figure(
+        "weeks with a decision",
+        "",
+        "count",
+        |run| Some(run.logbook.weeks.iter().filter(|week| !week.decisions.is_empty()).count() as f64),
+        nothing,
+    ),
+    figure(
+        "ad spend on the best channel, as measured",
+        "",
+        "share",
+        |run| run.logbook.measures.channels.as_ref().map(|skill| skill.share),
+        chance,
+    ),
+    figure("ad spend on the truly best channel", "", "share", |run| run.truly_best_share, chance),
+    figure(
+        "targeted share of development",
+        "",
+        "share",
+        |run| run.logbook.measures.targeted_development,
+        || range("agents it was published of", |agent| agent.targeted_development_share),
+    ),
+    figure("forecast error", "7", "share", |run| forecast(run, 7, error), nothing),
+    figure("forecast error", "28", "share", |run| forecast(run, 28, error), nothing),
+    figure("forecast error", "84", "share", |run| forecast(run, 84, error), nothing),
+    figure("forecast error", "182", "share", |run| forecast(run, 182, error), nothing),
+    figure("forecast coverage", "7", "share", |run| forecast(run, 7, coverage), || Some(NOMINAL)),
+    figure("forecast coverage", "28", "share", |run| forecast(run, 28, coverage), || Some(NOMINAL)),
+    figure("forecast coverage", "84", "share", |run| forecast(run, 84, coverage), || Some(NOMINAL)),
+    figure("forecast coverage", "182", "share", |run| forecast(run, 182, coverage), || Some(NOMINAL)),
+    figure(
+        "weeks forecast by the naive projection",
+        "",
+        "count",
+        |run| Some(f64::from(run.logbook.measures.filled_naively.0)),
+        nothing,
+    ),
+    figure(
+        "words of a rationale",
+        "",
+        "words",
+        |run| Some(run.logbook.measures.planning.words_each),
+        nothing,
+    ),
+    figure(
+        "words of planning in 100",
+        "",
+        "per 100 words",
+        |run| run.logbook.wording.planning_per_hundred(),
+        nothing,
+    ),
+    figure("\"if\" in rationales", "", "count", |run| Some(run.logbook.wording.ifs as f64), nothing),
+];
+
+fn chance() -> Option<Range> {
+    let share = published().best_channel_random_share;
+    Some(Range { least: share, most: share, what: "by chance" })
+}
+
+/// Share of each group's ad spend on the channel that brought it most leads per dollar.
+pub(super) fn by_group(runs: &[Compared]) -> Vec<Row> {
+    let ads =
+        |run: &Compared| run.logbook.measures.channels.clone().map(|skill| skill.groups).unwrap_or_default();
+    let by_run: Vec<_> = runs.iter().map(ads).collect();
+    let groups: BTreeSet<&str> = by_run.iter().flatten().map(|own| own.group.as_str()).collect();
+    let row = |group: &str| Row {
+        figure: "ad spend on the best channel, as measured".to_owned(),
+        of: group.to_owned(),
+        unit: "share",
+        values: by_run
+            .iter()
+            .map(|own| own.iter().find(|ads| ads.group == group).map(|ads| ads.share))
+            .collect(),
+        published: chance(),
+    };
+    groups.into_iter().map(row).collect()
+}
+
+/// Cash at the end of each week that any of the runs has.
+pub(super) fn cash(runs: &[Compared]) -> Vec<Row> {
+    let cash_of = |run: &Compared, day: u32| {
+        if day == 0 {
+            return Some(run.logbook.start_cash);
+        }
+        let mut weeks = run.logbook.weeks.iter();
+        weeks.find(|week| week.day == day)?.figures.get("cash")?.as_f64()
+    };
+    let mut days: Vec<u32> =
+        runs.iter().flat_map(|run| run.logbook.weeks.iter().map(|week| week.day)).collect();
+    days.push(0);
+    days.sort_unstable();
+    days.dedup();
+    let row = |day: u32| Row {
+        figure: "cash".to_owned(),
+        of: day.to_string(),
+        unit: "dollars",
+        values: runs.iter().map(|run| cash_of(run, day)).collect(),
+        published: None,
+    };
+    days.into_iter().map(row).collect()
+}

@@ -1,0 +1,128 @@
+//! Runs side by side as text for people and as rows for programs.
+
+use super::{Beside, Range, Row};
+use crate::notation::{dollars, grouped, percent};
+use crate::report::ranking::published;
+
+/// Most days whose cash the text tells; of longer runs it leaves weeks out.
+const CASH_ROWS: usize = 20;
+
+/// The comparison as text: aligned columns.
+pub fn as_text(beside: &Beside) -> String {
+    let mut head = vec![String::new()];
+    head.extend(beside.runs.iter().cloned());
+    head.push("published".to_owned());
+    let mut rows = vec![head];
+    let mut players = vec!["participant".to_owned()];
+    players.extend(beside.participants.iter().map(|who| who.clone().unwrap_or_else(|| "-".to_owned())));
+    players.push(String::new());
+    rows.push(players);
+    rows.extend(beside.figures.iter().map(text_row));
+    rows.push(vec![String::new(); beside.runs.len() + 2]);
+    let last = beside.cash.len().saturating_sub(1);
+    let every = beside.cash.len().div_ceil(CASH_ROWS).max(1);
+    let told = beside.cash.iter().enumerate().filter(|(at, _)| at % every == 0 || *at == last);
+    rows.extend(told.map(|(_, row)| text_row(row)));
+    let mut text = aligned(&rows);
+    text += &decisions(beside);
+    text += &agents();
+    for caveat in &beside.caveats {
+        text += &format!("{caveat}\n");
+    }
+    text += &format!("Published: {}.\n", published().source);
+    text
+}
+
+fn text_row(row: &Row) -> Vec<String> {
+    let name = match (row.figure.as_str(), row.of.as_str()) {
+        (figure, "") => figure.to_owned(),
+        ("cash", day) => format!("cash on day {day}"),
+        (figure, days) if days.bytes().all(|byte| byte.is_ascii_digit()) => format!("{figure}, {days} days"),
+        (figure, of) => format!("{figure}, {of}"),
+    };
+    let mut cells = vec![name];
+    cells.extend(row.values.iter().map(|value| value.map_or("-".to_owned(), |value| shown(value, row.unit))));
+    cells.push(row.published.map(|range| range_in_words(&range, row.unit)).unwrap_or_default());
+    cells
+}
+
+fn range_in_words(range: &Range, unit: &str) -> String {
+    let (least, most) = (shown(range.least, unit), shown(range.most, unit));
+    if least == most {
+        format!("{least} ({})", range.what)
+    } else {
+        format!("{least} to {most} ({})", range.what)
+    }
+}
+
+fn shown(value: f64, unit: &str) -> String {
+    match unit {
+        "dollars" => dollars(value),
+        "share" => percent(value, 1),
+        "count" | "days" => grouped(value, 0),
+        _ => grouped(value, 1),
+    }
+}
+
+/// Cells under each other: the first and the last column to the left, numbers to the right.
+fn aligned(rows: &[Vec<String>]) -> String {
+    let columns = rows.first().map_or(0, Vec::len);
+    let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for row in rows {
+        let mut line = String::new();
+        for (at, (cell, width)) in row.iter().zip(&widths).enumerate() {
+            let left = at == 0 || at + 1 == columns;
+            line += &if left { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };
+        }
+        text += line.trim_end();
+        text.push('\n');
+    }
+    text
+}
+
+fn decisions(beside: &Beside) -> String {
+    let mut text = "\nDecisions\n".to_owned();
+    for decided in &beside.decisions {
+        text += &format!("  day {}\n", decided.day);
+        for (run, own) in beside.runs.iter().zip(&decided.by_run).filter(|(_, own)| !own.is_empty()) {
+            text += &format!("    {run}  {}\n", own.join("; "));
+        }
+    }
+    text + "\n"
+}
+
+/// The published agents, the best first.
+fn agents() -> String {
+    let head = ["published agent", "best cash", "mean survival", "turns a week", "targeted development"];
+    let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];
+    for agent in &published().agent {
+        rows.push(vec![
+            agent.name.clone(),
+            dollars(agent.best_cash),
+            format!("{:.1} days", agent.mean_survival_days),
+            format!("{:.2}", agent.turns_per_week),
+            agent.targeted_development_share.map_or("-".to_owned(), |share| percent(share, 0)),
+        ]);
+    }
+    aligned(&rows) + "\n"
+}
+
+/// The comparison as rows of a table, the first of them names: a figure and a day a row.
+pub fn as_rows(beside: &Beside) -> Vec<Vec<String>> {
+    let mut head = ["figure", "of", "unit"].map(str::to_owned).to_vec();
+    head.extend(beside.runs.iter().cloned());
+    head.extend(["published_least", "published_most", "published_what"].map(str::to_owned));
+    let mut rows = vec![head];
+    for row in beside.figures.iter().chain(&beside.cash) {
+        let mut cells = vec![row.figure.clone(), row.of.clone(), row.unit.to_owned()];
+        cells.extend(row.values.iter().map(|value| value.map(|value| value.to_string()).unwrap_or_default()));
+        cells.extend(match row.published {
+            Some(range) => [range.least.to_string(), range.most.to_string(), range.what.to_owned()],
+            None => [String::new(), String::new(), String::new()],
+        });
+        rows.push(cells);
+    }
+    rows
+}

@@ -1,0 +1,190 @@
+//! The columns of `weeks.csv`.
+
+use super::{WeekColumn, maybe, pairs, rounded};
+use crate::report::logbook::{Logbook, WeekForecast, WeekLog};
+
+fn said(week: &WeekLog, horizon_days: u32, part: impl Fn(&WeekForecast) -> Option<f64>) -> String {
+    maybe(week.forecasts.iter().find(|forecast| forecast.horizon_days == horizon_days).and_then(part))
+}
+
+fn figure(week: &WeekLog, name: &str) -> String {
+    week.figures.get(name).filter(|value| value.is_number()).map(ToString::to_string).unwrap_or_default()
+}
+
+const fn column(
+    name: &'static str,
+    unit: &'static str,
+    meaning: &'static str,
+    cell: fn(&Logbook, &WeekLog) -> String,
+) -> WeekColumn {
+    WeekColumn { name, unit, meaning, cell }
+}
+
+/// The columns, in their order.
+pub const WEEKS: &[WeekColumn] = &[
+    column("run", "name", "name of the run", |run, _| run.run.clone()),
+    column("participant", "label", "who played", |run, _| run.participant.clone().unwrap_or_default()),
+    column("week", "number", "number of the week, from 1", |_, week| week.week.to_string()),
+    column("decision_day", "day", "day on which it was decided", |_, week| week.decision_day.to_string()),
+    column("day", "day", "last day of the week", |_, week| week.day.to_string()),
+    column(
+        "days_run",
+        "days",
+        "days that ran: 7 but in a shortened last week, a bankruptcy, or steps of a debug run",
+        |_, week| week.days_run.to_string(),
+    ),
+    column(
+        "inherited",
+        "0 or 1",
+        "1: taken over from the run that this one branched from; nobody played it here",
+        |_, week| u8::from(week.inherited).to_string(),
+    ),
+    column(
+        "began_at",
+        "RFC 3339",
+        "when deciding began: the end of the week before, or the start of the run",
+        |_, week| week.began_at.clone(),
+    ),
+    column("decided_at", "RFC 3339", "when rationale and forecasts were filed", |_, week| {
+        week.decided_at.clone()
+    }),
+    column("seconds_elapsed", "seconds", "time from the one to the other, breaks included", |_, week| {
+        rounded(week.effort.elapsed_seconds)
+    }),
+    column(
+        "seconds_active",
+        "seconds",
+        "the same without breaks (more than ten minutes without a line)",
+        |_, week| rounded(week.effort.active_seconds),
+    ),
+    column("breaks", "count", "breaks", |_, week| week.effort.breaks.to_string()),
+    column("calls", "count", "calls of tools that were accepted", |_, week| week.effort.calls.to_string()),
+    column("refused", "count", "calls of tools that were refused", |_, week| week.effort.refused.to_string()),
+    column("undone", "count", "accepted calls that took back another", |_, week| {
+        week.effort.undone.to_string()
+    }),
+    column("tools", "tool=count", "accepted calls by tool", |_, week| pairs(&week.effort.tools)),
+    column("queries", "count", "SQL queries", |_, week| week.effort.queries.to_string()),
+    column("queries_failed", "count", "queries that were refused or failed", |_, week| {
+        week.effort.queries_failed.to_string()
+    }),
+    column("views", "count", "views of screens (console only)", |_, week| week.effort.views.to_string()),
+    column("screens", "screen=seconds", "time on each screen, breaks left out (console only)", |_, week| {
+        pairs(&week.effort.screens)
+    }),
+    column("memos", "count", "changes of the notes", |_, week| week.effort.memos.to_string()),
+    column(
+        "decisions",
+        "count",
+        "settings that differ from the week before, purchases, offers and posts",
+        |_, week| week.decisions.len().to_string(),
+    ),
+    column("rationale_words", "count", "words of the rationale", |_, week| week.wording.words.to_string()),
+    column("planning_words", "count", "words of planning among them (as in runs.csv)", |_, week| {
+        week.wording.planning.to_string()
+    }),
+    column("if_words", "count", "how often it says \"if\"", |_, week| week.wording.ifs.to_string()),
+    column("filled_naively", "0 or 1", "1: the forecasts were filled by the naive projection", |_, week| {
+        week.filled_naively.map(|naive| u8::from(naive).to_string()).unwrap_or_default()
+    }),
+    column("forecast_7_point", "dollars", "cash expected 7 days ahead", |_, week| {
+        said(week, 7, |forecast| Some(forecast.point))
+    }),
+    column("forecast_7_lower", "dollars", "lower end of its interval", |_, week| {
+        said(week, 7, |forecast| Some(forecast.lower))
+    }),
+    column("forecast_7_upper", "dollars", "upper end of its interval", |_, week| {
+        said(week, 7, |forecast| Some(forecast.upper))
+    }),
+    column(
+        "forecast_7_outcome",
+        "dollars",
+        "what came; empty before its day, or when the run ended before",
+        |_, week| said(week, 7, |forecast| forecast.outcome),
+    ),
+    column("forecast_28_point", "dollars", "cash expected 28 days ahead", |_, week| {
+        said(week, 28, |forecast| Some(forecast.point))
+    }),
+    column("forecast_28_lower", "dollars", "lower end of its interval", |_, week| {
+        said(week, 28, |forecast| Some(forecast.lower))
+    }),
+    column("forecast_28_upper", "dollars", "upper end of its interval", |_, week| {
+        said(week, 28, |forecast| Some(forecast.upper))
+    }),
+    column(
+        "forecast_28_outcome",
+        "dollars",
+        "what came; empty before its day, or when the run ended before",
+        |_, week| said(week, 28, |forecast| forecast.outcome),
+    ),
+    column("forecast_84_point", "dollars", "cash expected 84 days ahead", |_, week| {
+        said(week, 84, |forecast| Some(forecast.point))
+    }),
+    column("forecast_84_lower", "dollars", "lower end of its interval", |_, week| {
+        said(week, 84, |forecast| Some(forecast.lower))
+    }),
+    column("forecast_84_upper", "dollars", "upper end of its interval", |_, week| {
+        said(week, 84, |forecast| Some(forecast.upper))
+    }),
+    column(
+        "forecast_84_outcome",
+        "dollars",
+        "what came; empty before its day, or when the run ended before",
+        |_, week| said(week, 84, |forecast| forecast.outcome),
+    ),
+    column("forecast_182_point", "dollars", "cash expected 182 days ahead", |_, week| {
+        said(week, 182, |forecast| Some(forecast.point))
+    }),
+    column("forecast_182_lower", "dollars", "lower end of its interval", |_, week| {
+        said(week, 182, |forecast| Some(forecast.lower))
+    }),
+    column("forecast_182_upper", "dollars", "upper end of its interval", |_, week| {
+        said(week, 182, |forecast| Some(forecast.upper))
+    }),
+    column(
+        "forecast_182_outcome",
+        "dollars",
+        "what came; empty before its day, or when the run ended before",
+        |_, week| said(week, 182, |forecast| forecast.outcome),
+    ),
+    column("cash", "dollars", "cash at the end of the week", |_, week| figure(week, "cash")),
+    column("individual_subscribers", "count", "active subscriptions of individuals", |_, week| {
+        figure(week, "individual_subscribers")
+    }),
+    column("enterprise_seats", "count", "seats of active companies", |_, week| {
+        figure(week, "enterprise_seats")
+    }),
+    column("open_issues", "count", "active subscribers with an open issue", |_, week| {
+        figure(week, "open_issues")
+    }),
+    column("usage", "units", "units used in the week", |_, week| figure(week, "usage")),
+    column("new_individual_leads", "count", "leads of individuals", |_, week| {
+        figure(week, "new_individual_leads")
+    }),
+    column("new_enterprise_leads", "count", "leads of companies that opened a thread", |_, week| {
+        figure(week, "new_enterprise_leads")
+    }),
+    column("new_individual_subscribers", "count", "individuals who signed up", |_, week| {
+        figure(week, "new_individual_subscribers")
+    }),
+    column("new_enterprise_seats", "count", "seats of companies that signed", |_, week| {
+        figure(week, "new_enterprise_seats")
+    }),
+    column("cancellations", "count", "cancellations of individuals", |_, week| figure(week, "cancellations")),
+    column("upgrades", "count", "switches to dearer plans", |_, week| figure(week, "upgrades")),
+    column("downgrades", "count", "switches to cheaper plans", |_, week| figure(week, "downgrades")),
+    column("overload_peak", "share", "largest overload of a day", |_, week| figure(week, "overload_peak")),
+    column("downtime_minutes", "minutes", "minutes of outages", |_, week| figure(week, "downtime_minutes")),
+    column("p95_ms_peak", "milliseconds", "highest latency of a day (95th percentile)", |_, week| {
+        figure(week, "p95_ms_peak")
+    }),
+    column("error_rate_peak", "share", "highest error rate of a day", |_, week| {
+        figure(week, "error_rate_peak")
+    }),
+    column("payments", "dollars", "payments of subscribers", |_, week| figure(week, "payments")),
+    column("costs", "dollars", "running costs", |_, week| figure(week, "costs")),
+    column("recurring_revenue", "dollars a month", "monthly recurring revenue at the end", |_, week| {
+        figure(week, "recurring_revenue")
+    }),
+    column("state_hash", "hash", "state after the week", |_, week| week.state_hash.clone()),
+];

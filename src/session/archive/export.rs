@@ -1,0 +1,183 @@
+//! Making an archive.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+use super::seal::{SEAL_FORMAT, Seal, SealedFile};
+use super::workshop::Workshop;
+use super::{DATABASE, MANIFEST, MEMO, SEAL, TRAJECTORY, is_compressed};
+use crate::session::create::new_id;
+use crate::session::error::RunError;
+use crate::session::manifest::{Manifest, sync_folder};
+use crate::session::open::check_start;
+use crate::session::trajectory::{Trajectory, now};
+use crate::session::witness::Witnesses;
+use crate::session::{Access, Session};
+
+/// A run that was read, simulated again and found whole: ready to be sealed, and to be looked at.
+///
+/// It is the run as it was on the disk at one moment; whoever plays it on meanwhile is not disturbed.
+pub struct Export {
+    session: Session,
+    trajectory: Trajectory,
+    /// Copies of the files; must outlive the session that reads them.
+    workshop: Workshop,
+}
+
+impl Export {
+    /// Reads the run in a folder and simulates it again. The files are put together in a hidden folder in `beside`,
+    /// which should be on the disk that the archive goes to.
+    ///
+    /// # Errors
+    /// The run is damaged or of another version; the error names the place and what is safe. Or `beside` cannot be
+    /// written.
+    pub fn prepare(folder: &Path, beside: &Path) -> Result<Export, RunError> {
+        let manifest = Manifest::read(folder)?;
+        let path = folder.join(TRAJECTORY);
+        let witnesses = Witnesses::of(folder);
+        let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
+        let mut trajectory = Trajectory::of_file(&path, &bytes)?;
+        check_start(&path, trajectory.lines.first(), &manifest)?;
+        witnesses.check(&path, &trajectory)?;
+        let workshop = Workshop::within(beside)?;
+        let own = workshop.path();
+        let put = |name: &str, bytes: &[u8]| {
+            let path = own.join(name);
+            std::fs::write(&path, bytes).map_err(RunError::io(&path))
+        };
+        put(MANIFEST, &std::fs::read(folder.join(MANIFEST)).map_err(RunError::io(&folder.join(MANIFEST)))?)?;
+        // A line without its end was never confirmed: it may be in the middle of being written.
+        put(TRAJECTORY, bytes.get(..trajectory.length as usize).unwrap_or(&bytes))?;
+        trajectory.unfinished = 0;
+        let memo = folder.join(MEMO);
+        match std::fs::read(&memo) {
+            Ok(bytes) => put(MEMO, &bytes)?,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+            Err(error) => return Err(RunError::Io { path: memo, error }),
+        }
+        let session = Session::open(own, Access::Read, true).map_err(|error| moved(error, own, folder))?;
+        Ok(Export { session, trajectory, workshop })
+    }
+
+    /// The run, open to read.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// Its lines.
+    pub fn trajectory(&self) -> &Trajectory {
+        &self.trajectory
+    }
+
+    /// Writes the archive: whole or not at all.
+    ///
+    /// # Errors
+    /// [`RunError::Exists`] when the file is there and may not be replaced; the disk refuses.
+    pub fn write(&self, archive: &Path, replace: bool) -> Result<Seal, RunError> {
+        if !replace && archive.exists() {
+            let message = format!("{} exists already: choose another name, or remove it", archive.display());
+            return Err(RunError::Exists(message));
+        }
+        let database = self.workshop.path().join(DATABASE);
+        // An archive may be written twice; the database is made for each.
+        let _ = std::fs::remove_file(&database);
+        self.session.copy_database(&database)?;
+        let seal = self.seal()?;
+        let folder = match archive.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        let draft = folder.join(format!(".novamind-{}.draft", new_id()));
+        let written = self.pack(&draft, is_compressed(archive), &seal);
+        let placed = written.and_then(|()| std::fs::rename(&draft, archive));
+        if let Err(error) = placed {
+            let _ = std::fs::remove_file(&draft);
+            return Err(RunError::Io { path: archive.to_owned(), error });
+        }
+        sync_folder(&folder)?;
+        Ok(seal)
+    }
+
+    fn seal(&self) -> Result<Seal, RunError> {
+        let folder = self.workshop.path();
+        let there =
+            [MANIFEST, TRAJECTORY, MEMO, DATABASE].into_iter().filter(|name| folder.join(name).exists());
+        let file = there.map(|name| SealedFile::of(folder, name)).collect::<Result<_, _>>()?;
+        let last = self.trajectory.lines.last();
+        let seal = Seal {
+            format: SEAL_FORMAT,
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            created: now(),
+            run: self.session.manifest().id.clone(),
+            last_seq: last.map_or(0, |line| line.seq),
+            last_hash: last.map(|line| line.hash.clone()).unwrap_or_default(),
+            checksum: String::new(),
+            file,
+        };
+        Ok(seal.signed())
+    }
+
+    fn pack(&self, draft: &Path, compressed: bool, seal: &Seal) -> std::io::Result<()> {
+        let file = BufWriter::new(File::create_new(draft)?);
+        let file = if compressed {
+            let packer = GzEncoder::new(file, Compression::default());
+            self.fill(packer, seal)?.finish()?
+        } else {
+            self.fill(file, seal)?
+        };
+        file.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all()
+    }
+
+    fn fill<W: Write>(&self, out: W, seal: &Seal) -> std::io::Result<W> {
+        let mut archive = tar::Builder::new(out);
+        let text = seal.text();
+        archive.append(&header(&seal.run, SEAL, text.len() as u64)?, text.as_bytes())?;
+        for sealed in &seal.file {
+            let file = File::open(self.workshop.path().join(&sealed.name))?;
+            archive.append(&header(&seal.run, &sealed.name, sealed.bytes)?, file)?;
+        }
+        archive.into_inner()
+    }
+}
+
+/// What stands before a file. Nothing of the machine is in it: no owner, no moment.
+fn header(run: &str, name: &str, bytes: u64) -> std::io::Result<tar::Header> {
+    let mut header = tar::Header::new_ustar();
+    header.set_path(format!("{run}/{name}"))?;
+    header.set_size(bytes);
+    header.set_mode(0o644);
+    header.set_entry_type(tar::EntryType::Regular);
+    header.set_cksum();
+    Ok(header)
+}
+
+/// An error of the copies, told of the files they were made from.
+fn moved(error: RunError, copies: &Path, folder: &Path) -> RunError {
+    let original = |path: PathBuf| match path.strip_prefix(copies) {
+        Ok(name) => folder.join(name),
+        Err(_) => path,
+    };
+    match error {
+        RunError::Damaged { path, line, problem, safe } => {
+            RunError::Damaged { path: original(path), line, problem, safe }
+        }
+        other => other,
+    }
+}
+
+impl Session {
+    /// Writes the observable company into a new file that any SQLite tool can open.
+    ///
+    /// # Errors
+    /// The run is played without a database, or the file cannot be written.
+    pub fn copy_database(&self, file: &Path) -> Result<(), RunError> {
+        match &self.projector {
+            Some(projector) => Ok(projector.copy_for_other_programs(file)?),
+            None => Err(RunError::NotPossible("this run is played without a database".to_owned())),
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! Taking an archive in.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use flate2::read::MultiGzDecoder;
+
+use super::seal::{SEAL_FORMAT, Seal, SealedFile, copy_hashed};
+use super::workshop::Workshop;
+use super::{DATABASE, FILES, MANIFEST, MEMO, SEAL, TRAJECTORY, is_run_name, refused};
+use crate::session::error::RunError;
+use crate::session::manifest::{Manifest, sync_folder};
+use crate::session::open::check_start;
+use crate::session::trajectory::Trajectory;
+
+/// What became of an archive.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Imported {
+    /// The run is there now, in this folder.
+    New(PathBuf),
+    /// The same run, line for line, was there already; nothing was changed.
+    Same {
+        /// The notes that came with the archive differ from those that are there.
+        other_memo: bool,
+    },
+}
+
+/// Takes the run of an archive into a folder of runs. Everything is checked before anything is there: the seal, the hash
+/// of every file, the chain of the trajectory, and that nothing else is in the archive.
+///
+/// # Errors
+/// [`RunError::Archive`] for what is damaged, foreign or dangerous, naming the file; [`RunError::Exists`] when another
+/// state of the run is there. Nothing has changed then.
+pub fn import_run(runs: &Path, archive: &Path) -> Result<(Seal, Imported), RunError> {
+    let workshop = Workshop::within(runs)?;
+    let unpacked = unpack(archive, workshop.path())?;
+    let seal = check_seal(archive, &unpacked)?;
+    let draft = workshop.path().join(&seal.run);
+    check_run(archive, &draft, &seal)?;
+    let place = runs.join(&seal.run);
+    if place.exists() {
+        let same = compare(&draft, &place, &seal)?;
+        return Ok((seal, same));
+    }
+    sync_folder(&draft)?;
+    std::fs::rename(&draft, &place).map_err(RunError::io(&place))?;
+    sync_folder(runs)?;
+    Ok((seal, Imported::New(place)))
+}
+
+/// What was found in an archive.
+struct Unpacked {
+    run: String,
+    files: Vec<SealedFile>,
+    seal: String,
+}
+
+/// Copies the files of an archive into `workshop/<run>/`, but for the database, which is only measured.
+fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
+    let broken =
+        |error: io::Error| refused(archive, format!("this is no archive of a run, or it is torn ({error})"));
+    let mut tar = tar::Archive::new(open(archive)?);
+    let mut found = Unpacked { run: String::new(), files: Vec::new(), seal: String::new() };
+    // Raw: extensions that rename or enlarge the next file are not followed but refused.
+    for entry in tar.entries().map_err(broken)?.raw(true) {
+        let mut entry = entry.map_err(broken)?;
+        let name = String::from_utf8_lossy(&entry.path_bytes()).into_owned();
+        let kind = entry.header().entry_type();
+        if kind == tar::EntryType::Directory && is_run_name(name.trim_end_matches('/')) {
+            continue;
+        }
+        if kind != tar::EntryType::Regular {
+            return Err(refused(archive, format!("{name} is no ordinary file")));
+        }
+        let (run, file) =
+            parts(&name).ok_or_else(|| refused(archive, format!("{name} does not belong to a run")))?;
+        let (file, most) = *FILES
+            .iter()
+            .find(|(known, _)| *known == file)
+            .ok_or_else(|| refused(archive, format!("{name} does not belong to a run")))?;
+        if !found.run.is_empty() && found.run != run {
+            return Err(refused(archive, format!("{name} is of another run than {}", found.run)));
+        }
+        if found.files.iter().any(|known| known.name == file) {
+            return Err(refused(archive, format!("{name} is there twice")));
+        }
+        let size = entry.size();
+        if size > most {
+            return Err(refused(
+                archive,
+                format!("{name} is too large: {size} bytes, at most {most} are expected"),
+            ));
+        }
+        found.run = run.to_owned();
+        let measured = store(&mut entry, &workshop.join(run), file)
+            .map_err(|error| error.into_run_error(archive, &name))?;
+        if file == SEAL {
+            let path = workshop.join(run).join(SEAL);
+            found.seal =
+                std::fs::read_to_string(&path).map_err(|error| broken_file(archive, &name, &error))?;
+            std::fs::remove_file(&path).map_err(RunError::io(&path))?;
+        }
+        found.files.push(measured);
+    }
+    // The end of a compressed file vouches for all of it.
+    io::copy(&mut tar.into_inner().take(1 << 20), &mut io::sink()).map_err(broken)?;
+    Ok(found)
+}
+
+/// Opens an archive, compressed or not.
+fn open(archive: &Path) -> Result<Box<dyn Read>, RunError> {
+    let mut file = File::open(archive).map_err(RunError::io(archive))?;
+    let mut start = [0u8; 2];
+    let count = file.read(&mut start).map_err(RunError::io(archive))?;
+    file.seek(SeekFrom::Start(0)).map_err(RunError::io(archive))?;
+    let reader = BufReader::new(file);
+    let compressed = count == 2 && start == [0x1f, 0x8b];
+    Ok(if compressed { Box::new(MultiGzDecoder::new(reader)) } else { Box::new(reader) })
+}
+
+/// Run and file of a name, if it has exactly this form.
+fn parts(name: &str) -> Option<(&str, &str)> {
+    let (run, file) = name.strip_prefix("./").unwrap_or(name).split_once('/')?;
+    is_run_name(run).then_some((run, file))
+}
+
+/// Which side failed while a file was copied.
+enum StoreError {
+    Archive(io::Error),
+    Disk(PathBuf, io::Error),
+}
+
+impl StoreError {
+    fn into_run_error(self, archive: &Path, name: &str) -> RunError {
+        match self {
+            StoreError::Archive(error) => broken_file(archive, name, &error),
+            StoreError::Disk(path, error) => RunError::Io { path, error },
+        }
+    }
+}
+
+fn broken_file(archive: &Path, name: &str, error: &io::Error) -> RunError {
+    refused(archive, format!("{name} cannot be read ({error})"))
+}
+
+fn store(entry: &mut dyn Read, folder: &Path, file: &str) -> Result<SealedFile, StoreError> {
+    let name = file.to_owned();
+    if file == DATABASE {
+        // A projection: it is made anew from the trajectory, but its hash counts.
+        let (bytes, blake3) = copy_hashed(entry, &mut io::sink()).map_err(StoreError::Archive)?;
+        return Ok(SealedFile { name, bytes, blake3 });
+    }
+    let path = folder.join(file);
+    let made = std::fs::create_dir_all(folder).and_then(|()| File::create_new(&path));
+    let mut out = made.map_err(|error| StoreError::Disk(path.clone(), error))?;
+    let (bytes, blake3) = copy_hashed(entry, &mut out).map_err(StoreError::Archive)?;
+    out.sync_all().map_err(|error| StoreError::Disk(path, error))?;
+    Ok(SealedFile { name, bytes, blake3 })
+}
+
+/// Reads the seal and compares it with what was found.
+fn check_seal(archive: &Path, found: &Unpacked) -> Result<Seal, RunError> {
+    if found.seal.is_empty() {
+        return Err(refused(archive, "seal.toml is missing: this is no archive of a run"));
+    }
+    let seal: Seal = toml::from_str(&found.seal)
+        .map_err(|error| refused(archive, format!("seal.toml cannot be read ({})", error.message())))?;
+    if seal.format > SEAL_FORMAT {
+        let problem = format!(
+            "version {} made it in format {}, this program reads format {SEAL_FORMAT}: use that version",
+            seal.program, seal.format
+        );
+        return Err(refused(archive, problem));
+    }
+    if !seal.is_intact() || seal.run != found.run {
+        return Err(refused(archive, "seal.toml was changed: its checksum does not fit"));
+    }
+    let there: BTreeMap<&str, &SealedFile> =
+        found.files.iter().map(|file| (file.name.as_str(), file)).collect();
+    for sealed in &seal.file {
+        match there.get(sealed.name.as_str()) {
+            None => return Err(refused(archive, format!("{} is missing", sealed.name))),
+            Some(own) if *own != sealed => {
+                return Err(refused(archive, format!("{} is not the file that was sealed", sealed.name)));
+            }
+            Some(_) => {}
+        }
+    }
+    let sealed = |name: &str| seal.file.iter().any(|file| file.name == name);
+    match found.files.iter().find(|file| file.name != SEAL && !sealed(&file.name)) {
+        Some(stranger) => Err(refused(archive, format!("{} was added after the sealing", stranger.name))),
+        None => Ok(seal),
+    }
+}
+
+/// Checks the run itself: manifest, chain of the trajectory, and that they belong together.
+fn check_run(archive: &Path, draft: &Path, seal: &Seal) -> Result<(), RunError> {
+    for name in [MANIFEST, TRAJECTORY] {
+        if !draft.join(name).exists() {
+            return Err(refused(archive, format!("{name} is missing")));
+        }
+    }
+    let inside = |error: RunError| refused(archive, problem_inside(error));
+    let manifest = Manifest::read(draft).map_err(|error| match error {
+        other @ RunError::OtherFormat { .. } => other,
+        error => inside(error),
+    })?;
+    let path = draft.join(TRAJECTORY);
+    let trajectory = Trajectory::read(&path).map_err(inside)?;
+    check_start(&path, trajectory.lines.first(), &manifest).map_err(inside)?;
+    let last = trajectory.lines.last().map(|line| (line.seq, line.hash.as_str()));
+    if trajectory.unfinished > 0 || last != Some((seal.last_seq, &seal.last_hash)) || manifest.id != seal.run
+    {
+        return Err(refused(archive, "trajectory.jsonl does not end with the line that was sealed"));
+    }
+    Ok(())
+}
+
+/// An error of the copies in words that do not name their places.
+fn problem_inside(error: RunError) -> String {
+    match error {
+        RunError::Damaged { path, line, problem, .. } => {
+            let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            format!("{name}, line {line}: {problem}")
+        }
+        other => other.to_string(),
+    }
+}
+
+/// Whether the run that is there is the one of the archive.
+fn compare(draft: &Path, place: &Path, seal: &Seal) -> Result<Imported, RunError> {
+    let read = |folder: &Path, name: &str| std::fs::read(folder.join(name)).unwrap_or_default();
+    let (own, there) = (read(draft, TRAJECTORY), read(place, TRAJECTORY));
+    if read(draft, MANIFEST) == read(place, MANIFEST) && own == there {
+        return Ok(Imported::Same { other_memo: read(draft, MEMO) != read(place, MEMO) });
+    }
+    let how = if there.starts_with(&own) {
+        "it is the same run, played on since the archive was made"
+    } else if own.starts_with(&there) {
+        "the archive holds a later state of it; delete or move the older one to import it"
+    } else {
+        "it is another one, or was changed"
+    };
+    Err(RunError::Exists(format!(
+        "run {} is there already in {}: {how}. Nothing was changed",
+        seal.run,
+        place.display()
+    )))
+}

@@ -1,0 +1,130 @@
+//! `seal.toml`: what an archive holds.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::session::error::RunError;
+
+/// Format of seals that this program writes.
+pub const SEAL_FORMAT: u32 = 1;
+
+/// What an archive holds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Seal {
+    /// Format of the archive.
+    pub format: u32,
+    /// Version of the program that made it.
+    pub program: String,
+    /// When it was made, RFC 3339.
+    pub created: String,
+    /// Run.
+    pub run: String,
+    /// Number of the last line of the trajectory.
+    pub last_seq: u64,
+    /// Hash of the last line of the trajectory.
+    pub last_hash: String,
+    /// Hash of the seal with this field empty: it vouches for everything.
+    pub checksum: String,
+    /// The files beside the seal.
+    pub file: Vec<SealedFile>,
+}
+
+/// A file of an archive.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SealedFile {
+    /// Name.
+    pub name: String,
+    /// Length.
+    pub bytes: u64,
+    /// BLAKE3 hash in hexadecimal digits.
+    pub blake3: String,
+}
+
+impl SealedFile {
+    /// Measures a file.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn of(folder: &Path, name: &str) -> Result<SealedFile, RunError> {
+        let path = folder.join(name);
+        let mut file = File::open(&path).map_err(RunError::io(&path))?;
+        let (bytes, blake3) = copy_hashed(&mut file, &mut io::sink()).map_err(RunError::io(&path))?;
+        Ok(SealedFile { name: name.to_owned(), bytes, blake3 })
+    }
+}
+
+impl Seal {
+    /// The seal with the checksum that belongs to it.
+    pub fn signed(self) -> Seal {
+        Seal { checksum: self.own_checksum(), ..self }
+    }
+
+    /// Whether the checksum is the one that belongs to it.
+    pub fn is_intact(&self) -> bool {
+        self.checksum == self.own_checksum()
+    }
+
+    /// The seal as the file holds it.
+    pub fn text(&self) -> String {
+        toml::to_string(self).expect("a seal holds plain values")
+    }
+
+    fn own_checksum(&self) -> String {
+        let bare = Seal { checksum: String::new(), ..self.clone() };
+        blake3::hash(bare.text().as_bytes()).to_hex().to_string()
+    }
+}
+
+/// Copies everything; returns how much it was and its hash.
+pub fn copy_hashed(from: &mut dyn Read, to: &mut dyn Write) -> io::Result<(u64, String)> {
+    let (mut hasher, mut length) = (blake3::Hasher::new(), 0u64);
+    let mut buffer = vec![0u8; 1 << 16];
+    loop {
+        let count = match from.read(&mut buffer) {
+            Ok(0) => return Ok((length, hasher.finalize().to_hex().to_string())),
+            Ok(count) => count,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error),
+        };
+        hasher.update(&buffer[..count]);
+        to.write_all(&buffer[..count])?;
+        length += count as u64;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_change_of_a_seal_shows() {
+        let file = SealedFile { name: "run.toml".to_owned(), bytes: 3, blake3: "00".to_owned() };
+        let seal = Seal {
+            format: SEAL_FORMAT,
+            program: "0.1.0".to_owned(),
+            created: "2026-11-21T10:00:00Z".to_owned(),
+            run: "0123abcd".to_owned(),
+            last_seq: 12,
+            last_hash: "ff".to_owned(),
+            checksum: String::new(),
+            file: vec![file],
+        };
+        assert!(!seal.is_intact());
+        let seal = seal.signed();
+        assert!(seal.is_intact());
+        assert_eq!(toml::from_str::<Seal>(&seal.text()).expect("it reads back"), seal);
+        let text = seal.text();
+        for (at, byte) in text.bytes().enumerate().filter(|(_, byte)| byte.is_ascii_alphanumeric()) {
+            let mut changed = text.clone().into_bytes();
+            changed[at] = if byte == b'1' { b'2' } else { b'1' };
+            let changed = String::from_utf8(changed).expect("ASCII");
+            let accepted = toml::from_str::<Seal>(&changed).is_ok_and(|seal| seal.is_intact());
+            assert!(!accepted, "character {at} was changed unseen");
+        }
+    }
+}

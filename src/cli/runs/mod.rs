@@ -4,13 +4,15 @@ mod transfer;
 
 pub use transfer::as_csv;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
 use super::{Context, Failure, print};
 use crate::notation::dollars;
-use crate::session::{RunSummary, delete_run, end_run, find_run, find_run_to_read, list_runs, rescue};
+use crate::session::{
+    RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs, rescue,
+};
 
 /// Options of `runs`.
 #[derive(Debug, Args)]
@@ -77,23 +79,28 @@ const SCHEMA: &str = include_str!("../../../assets/trajectory.schema.json");
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs()?;
+    // Participants see their own; whoever is nobody in particular sees everything.
+    let folders = match context.participant {
+        Some(_) => vec![runs.clone()],
+        None => all_run_folders(&runs),
+    };
     match &options.command {
-        None => list(&runs, options.participant.as_deref(), options.json),
+        None => list(&runs, &folders, options.participant.as_deref(), options.json),
         Some(Choice::List { participant }) => {
-            list(&runs, participant.as_deref().or(options.participant.as_deref()), options.json)
+            list(&runs, &folders, participant.as_deref().or(options.participant.as_deref()), options.json)
         }
         Some(Choice::Show { run }) => {
-            let folder = find_run_to_read(&runs, run)?;
+            let folder = find_in(&folders, run)?;
             let text = std::fs::read_to_string(folder.join("run.toml"))
                 .map_err(|error| Failure::unreadable(format!("{}: {error}", folder.display())))?;
             let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-            let summary = list_runs(&runs)?.into_iter().find(|summary| summary.id == id);
+            let summary = list_all(&folders)?.into_iter().map(|(_, run)| run).find(|run| run.id == id);
             if options.json {
                 return print(&(serde_json::to_string_pretty(&summary).unwrap_or_default() + "\n"));
             }
             print(&format!("{}\n{text}", summary.as_ref().map(line).unwrap_or_default()))
         }
-        Some(Choice::Path { run }) => print(&format!("{}\n", find_run_to_read(&runs, run)?.display())),
+        Some(Choice::Path { run }) => print(&format!("{}\n", find_in(&folders, run)?.display())),
         Some(Choice::End { run }) => {
             end_run(&runs, run)?;
             print(&format!("run {run} is ended; it can still be read\n"))
@@ -115,15 +122,33 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             delete_run(&runs, run)?;
             print(&format!("run {run} is deleted\n"))
         }
-        Some(Choice::Export(export)) => export.run(&runs, options.json),
+        Some(Choice::Export(export)) => export.run(&folders, options.json),
         Some(Choice::Import(import)) => import.run(&runs, options.json),
         Some(Choice::Columns) => transfer::explain_columns(options.json),
         Some(Choice::Schema) => print(SCHEMA),
     }
 }
 
-fn list(runs: &Path, participant: Option<&str>, json: bool) -> Result<(), Failure> {
-    let mut list = list_runs(runs)?;
+/// Every run of some folders, each with its own.
+pub(super) fn list_all(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
+    let mut all = Vec::new();
+    for folder in folders {
+        all.extend(list_runs(folder)?.into_iter().map(|run| (folder.join(&run.id), run)));
+    }
+    all.sort_by(|(_, left), (_, right)| right.played.cmp(&left.played).then_with(|| left.id.cmp(&right.id)));
+    Ok(all)
+}
+
+/// The folder of a run in one of some folders.
+pub(super) fn find_in(folders: &[PathBuf], run: &str) -> Result<PathBuf, Failure> {
+    let mut found = folders.iter().map(|folder| find_run_to_read(folder, run));
+    let first = found.next().ok_or_else(|| Failure::usage("there is no folder of runs"))?;
+    // The first folder's answer tells best why there is none.
+    first.or_else(|error| found.find_map(Result::ok).ok_or(error)).map_err(Failure::from)
+}
+
+fn list(runs: &Path, folders: &[PathBuf], participant: Option<&str>, json: bool) -> Result<(), Failure> {
+    let mut list: Vec<RunSummary> = list_all(folders)?.into_iter().map(|(_, run)| run).collect();
     list.retain(|run| participant.is_none_or(|label| run.participant.as_deref() == Some(label)));
     if json {
         return print(&(serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"));

@@ -5,13 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::{find_in, list_all};
 use crate::cli::run::progress_bar;
 use crate::cli::{Failure, print};
 use crate::report::Logbook;
 use crate::report::logbook::columns::{RUNS, Unread, WEEKS, runs_table, weeks_table};
-use crate::session::{
-    Export as Sealing, Imported, RunError, RunSummary, Seal, find_run_to_read, import_run, list_runs,
-};
+use crate::session::{Export as Sealing, Imported, RunError, RunSummary, Seal, import_run};
 
 /// Options of `runs export`.
 #[derive(Debug, Args)]
@@ -40,14 +39,14 @@ pub struct Import {
 
 impl Export {
     /// Runs the command.
-    pub fn run(&self, runs: &Path, json: bool) -> Result<(), Failure> {
+    pub fn run(&self, folders: &[PathBuf], json: bool) -> Result<(), Failure> {
         match &self.run {
-            Some(run) => self.export_one(runs, run, json),
-            None => self.export_all(runs, json),
+            Some(run) => self.export_one(&find_in(folders, run)?, json),
+            None => self.export_all(folders, json),
         }
     }
 
-    fn export_one(&self, runs: &Path, run: &str, json: bool) -> Result<(), Failure> {
+    fn export_one(&self, folder: &Path, json: bool) -> Result<(), Failure> {
         let beside = match self.out.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
             _ => PathBuf::from("."),
@@ -60,7 +59,7 @@ impl Export {
         if !beside.is_dir() {
             return Err(Failure::failed(format!("{} is no folder; nothing was written", beside.display())));
         }
-        let export = Sealing::prepare(&find_run_to_read(runs, run)?, &beside)?;
+        let export = Sealing::prepare(folder, &beside)?;
         let seal = export.write(&self.out, false)?;
         let remarks = export.session().remarks();
         if json {
@@ -70,20 +69,20 @@ impl Export {
         print(&format!("{remarks}{}", line(&seal, &self.out, export.session().day())))
     }
 
-    fn export_all(&self, runs: &Path, json: bool) -> Result<(), Failure> {
-        let mut list = list_runs(runs)?;
+    fn export_all(&self, folders: &[PathBuf], json: bool) -> Result<(), Failure> {
+        let mut list = list_all(folders)?;
         // A damaged run does not say whose it is, so it is always named.
         let label = self.participant.as_deref();
-        list.retain(|run| {
+        list.retain(|(_, run)| {
             run.problem.is_some() || label.is_none_or(|label| run.participant.as_deref() == Some(label))
         });
-        list.sort_by(|left, right| (&left.created, &left.id).cmp(&(&right.created, &right.id)));
+        list.sort_by(|(_, left), (_, right)| (&left.created, &left.id).cmp(&(&right.created, &right.id)));
         std::fs::create_dir_all(&self.out)
             .map_err(|error| Failure::failed(format!("{}: {error}", self.out.display())))?;
         let progress = progress_bar(list.len() as u64, "runs");
         let (mut books, mut answers, mut worst) = (Vec::new(), Vec::new(), None);
-        for run in &list {
-            let exported = self.export_into(runs, run);
+        for (folder, run) in &list {
+            let exported = self.export_into(folder, run);
             progress.inc(1);
             match exported {
                 Ok((book, seal, archive)) => {
@@ -135,8 +134,8 @@ impl Export {
     }
 
     /// One run of many. An older archive of it makes room: trajectories only grow.
-    fn export_into(&self, runs: &Path, run: &RunSummary) -> Result<(Logbook, Seal, PathBuf), RunError> {
-        let export = Sealing::prepare(&runs.join(&run.id), &self.out)?;
+    fn export_into(&self, folder: &Path, run: &RunSummary) -> Result<(Logbook, Seal, PathBuf), RunError> {
+        let export = Sealing::prepare(folder, &self.out)?;
         let archive = self.out.join(format!("{}.tar.gz", run.id));
         let seal = export.write(&archive, true)?;
         Ok((Logbook::of(export.session(), &export.trajectory().lines), seal, archive))

@@ -39,7 +39,7 @@ pub struct Arguments {
     runs_dir: Option<PathBuf>,
     /// Whose runs these are: they stand in a folder of their own, carry this label, and no others are shown.
     #[arg(long = "as", global = true, env = "NOVAMIND_PARTICIPANT", value_name = "LABEL")]
-    participant: Option<String>,
+    whose: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -108,7 +108,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let context = Context {
         configuration: Configuration::of_user(),
         runs: arguments.runs_dir.or_else(Configuration::runs_folder),
-        participant: arguments.participant.filter(|label| !label.is_empty()),
+        participant: arguments.whose.filter(|label| !label.is_empty()),
     };
     match arguments.command {
         None => play::run(arguments.play, &context),

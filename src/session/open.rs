@@ -68,7 +68,7 @@ impl Session {
             Access::Read => None,
         };
         let path = folder.join("trajectory.jsonl");
-        let mut witnesses = Witnesses::of(folder);
+        let mut witnesses = Witnesses::of(folder, &manifest.id);
         let trajectory = Trajectory::read(&path)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;
         witnesses.check(&path, &trajectory)?;
@@ -101,7 +101,9 @@ impl Session {
 
     /// Notes that are not the ones that were kept last are told; they are the person's own, and stay as they are.
     fn check_memo(&mut self, trajectory: &Trajectory) {
-        let Some(line) = trajectory.lines.iter().rev().find(|line| line.kind == "memo") else { return };
+        let last = trajectory.lines.iter().rev().find(|line| line.kind == "memo");
+        // Once a run is over, notes are kept without a line.
+        let Some(line) = last.filter(|_| self.ended.is_none()) else { return };
         let digest = |text: &str| Value::from(blake3::hash(text.as_bytes()).to_hex().as_str());
         let kept = self.memo().ok().map(|text| digest(&text));
         if kept.as_ref() != line.fields.get("digest") {

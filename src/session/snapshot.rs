@@ -134,10 +134,14 @@ impl Snapshot {
         self.header.database.as_deref()
     }
 
-    /// Whether it was written by this version for this run.
+    /// Whether it is one of this run.
+    pub(super) fn is_of(&self, run: &str) -> bool {
+        self.header.run == run
+    }
+
+    /// Whether it was written by this version under these parameters.
     pub(super) fn fits(&self, manifest: &Manifest) -> bool {
         self.header.version == env!("CARGO_PKG_VERSION")
-            && self.header.run == manifest.id
             && self.header.parameters_digest == manifest.parameters_digest
     }
 

@@ -22,13 +22,15 @@ pub(super) struct Witnesses {
 
 impl Witnesses {
     /// Asks them. Has to come before the trajectory is read, which may grow in between.
-    pub(super) fn of(folder: &Path) -> Witnesses {
+    pub(super) fn of(folder: &Path, run: &str) -> Witnesses {
         let mut remarks = Vec::new();
         let snapshot = Snapshot::read(folder).unwrap_or_else(|problem| {
             remarks
                 .push(format!("{FILE} {problem} and is not used: the run was simulated from its beginning."));
             None
         });
+        // A stranger's snapshot says nothing about this run.
+        let snapshot = snapshot.filter(|snapshot| snapshot.is_of(run));
         Witnesses { snapshot, database: position_of(&location(folder)), remarks }
     }
 

@@ -38,7 +38,7 @@ impl Export {
     pub fn prepare(folder: &Path, beside: &Path) -> Result<Export, RunError> {
         let manifest = Manifest::read(folder)?;
         let path = folder.join(TRAJECTORY);
-        let witnesses = Witnesses::of(folder);
+        let witnesses = Witnesses::of(folder, &manifest.id);
         let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
         let mut trajectory = Trajectory::of_file(&path, &bytes)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;

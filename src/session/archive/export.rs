@@ -23,8 +23,9 @@ use crate::session::{Access, Session};
 pub struct Export {
     session: Session,
     trajectory: Trajectory,
-    /// Copies of the files; must outlive the session that reads them.
-    workshop: Workshop,
+    /// Copies of the files, in a folder that must outlive the session.
+    copies: PathBuf,
+    _workshop: Workshop,
 }
 
 impl Export {
@@ -36,13 +37,10 @@ impl Export {
     /// written.
     pub fn prepare(folder: &Path, beside: &Path) -> Result<Export, RunError> {
         let manifest = Manifest::read(folder)?;
-        let path = folder.join(TRAJECTORY);
-        let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
-        let mut trajectory = Trajectory::of_file(&path, &bytes)?;
-        check_start(&path, trajectory.lines.first(), &manifest)?;
-        check_end(&path, folder, &trajectory)?;
+        let (bytes, mut trajectory) = read_settled(folder, &manifest)?;
         let workshop = Workshop::within(beside)?;
-        let own = workshop.path();
+        let own = &workshop.path().join(&manifest.id);
+        std::fs::create_dir(own).map_err(RunError::io(own))?;
         let put = |name: &str, bytes: &[u8]| {
             let path = own.join(name);
             std::fs::write(&path, bytes).map_err(RunError::io(&path))
@@ -58,7 +56,7 @@ impl Export {
             Err(error) => return Err(RunError::Io { path: memo, error }),
         }
         let session = Session::open(own, Access::Read, true).map_err(|error| moved(error, own, folder))?;
-        Ok(Export { session, trajectory, workshop })
+        Ok(Export { session, trajectory, copies: own.clone(), _workshop: workshop })
     }
 
     /// The run, open to read.
@@ -80,7 +78,7 @@ impl Export {
             let message = format!("{} exists already: choose another name, or remove it", archive.display());
             return Err(RunError::Exists(message));
         }
-        let database = self.workshop.path().join(DATABASE);
+        let database = self.copies.join(DATABASE);
         // An archive may be written twice; the database is made for each.
         let _ = std::fs::remove_file(&database);
         self.session.copy_database(&database)?;
@@ -101,7 +99,7 @@ impl Export {
     }
 
     fn seal(&self) -> Result<Seal, RunError> {
-        let folder = self.workshop.path();
+        let folder = &self.copies;
         let there =
             [MANIFEST, TRAJECTORY, MEMO, DATABASE].into_iter().filter(|name| folder.join(name).exists());
         let file = there.map(|name| SealedFile::of(folder, name)).collect::<Result<_, _>>()?;
@@ -135,11 +133,33 @@ impl Export {
         let text = seal.text();
         archive.append(&header(&seal.run, SEAL, text.len() as u64)?, text.as_bytes())?;
         for sealed in &seal.file {
-            let file = File::open(self.workshop.path().join(&sealed.name))?;
+            let file = File::open(self.copies.join(&sealed.name))?;
             archive.append(&header(&seal.run, &sealed.name, sealed.bytes)?, file)?;
         }
         archive.into_inner()
     }
+}
+
+/// Reads a trajectory that somebody may be writing, and checks it against manifest and database.
+fn read_settled(folder: &Path, manifest: &Manifest) -> Result<(Vec<u8>, Trajectory), RunError> {
+    const TRIES: u32 = 5;
+    let path = folder.join(TRAJECTORY);
+    for last in (0..TRIES).rev() {
+        let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
+        let trajectory = Trajectory::of_file(&path, &bytes)?;
+        check_start(&path, trajectory.lines.first(), manifest)?;
+        match check_end(&path, folder, &trajectory) {
+            Ok(()) => return Ok((bytes, trajectory)),
+            // The database may be ahead of what was read only because lines were written meanwhile.
+            Err(_)
+                if last > 0 && std::fs::metadata(&path).is_ok_and(|now| now.len() > bytes.len() as u64) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Err(RunError::InUse {
+        id: manifest.id.clone(),
+        holder: "it writes faster than the run can be read".to_owned(),
+    })
 }
 
 /// What stands before a file. Nothing of the machine is in it: no owner, no moment.

@@ -94,6 +94,7 @@ fn header(name: &str, size: u64, kind: tar::EntryType) -> tar::Header {
 fn a_run_goes_out_sealed_and_comes_back_the_same() {
     let (home, other) = (Home::new(), Home::new());
     let run = played(&home, "P01");
+    let before = bytes_of(&run, "trajectory.jsonl");
     for name in ["run.tar.gz", "run.tar"] {
         let (archive, said) = export(&home, &run, name);
         assert_eq!(said.code, 0, "{}", said.err);
@@ -117,7 +118,7 @@ fn a_run_goes_out_sealed_and_comes_back_the_same() {
     import(&other, &home.0.path().join("run.tar")).fails(1, &["there already", "played on since"]);
     let (later, _) = export(&other, &run, "later.tar");
     import(&home, &later).fails(1, &["there already", "later state"]);
-    assert_eq!(bytes_of(&home.runs().join(id(&run)), "run.toml"), bytes_of(&run, "run.toml"));
+    assert_eq!(bytes_of(&run, "trajectory.jsonl"), before, "nothing was overwritten");
 }
 
 #[test]
@@ -373,4 +374,17 @@ fn sessions_are_summed_up_and_runs_compared() {
         csv.lines().next().expect("a head").starts_with(&format!("figure,of,unit,{},{}", names[0], names[1]))
     );
     home.run(&["lab", "compare", "zzzz"]).fails(3, &["there is no run"]);
+}
+
+#[test]
+fn the_documents_say_what_the_program_says() {
+    let said = Home::new().run(&["runs", "columns"]);
+    assert_eq!(said.out, include_str!("../../assets/columns.md"), "write it anew: novamind runs columns");
+    let readme = include_str!("../../README.md");
+    let examples: Vec<Value> = readme
+        .lines()
+        .filter_map(|line| line.strip_prefix("    {\"seq\""))
+        .map(|line| serde_json::from_str(&format!("{{\"seq\"{line}")).expect("JSON"))
+        .collect();
+    schema::check_examples(&examples);
 }

@@ -133,6 +133,17 @@ fn kinds(root: &Value) -> BTreeSet<String> {
     references.map(|own| own["$ref"].as_str().expect("a reference").replace("#/$defs/", "")).collect()
 }
 
+/// Examples of a document: valid lines, one of each kind.
+pub fn check_examples(examples: &[Value]) {
+    let root = schema();
+    for example in examples {
+        assert_eq!(against(&root, example), Vec::<String>::new());
+    }
+    let shown: BTreeSet<String> =
+        examples.iter().filter_map(|line| line["kind"].as_str()).map(str::to_owned).collect();
+    assert_eq!(shown, kinds(&root));
+}
+
 fn lines_of(folder: &Path) -> Vec<Value> {
     let text = std::fs::read_to_string(folder.join("trajectory.jsonl")).expect("a trajectory");
     text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()

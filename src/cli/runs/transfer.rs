@@ -176,11 +176,20 @@ pub fn explain_columns(json: bool) -> Result<(), Failure> {
         let all = json!({ "runs": RUNS, "weeks": WEEKS });
         return print(&(serde_json::to_string_pretty(&all).unwrap_or_default() + "\n"));
     }
-    let mut text = String::new();
-    for row in columns_table().iter().skip(1) {
-        text += &format!("{:<5}  {:<28}  {:<15}  {}\n", row[0], row[1], row[2], row[3]);
-    }
-    print(&text)
+    print(&markdown_table(&columns_table()))
+}
+
+/// Rows as a table of Markdown, aligned, the first of them its head.
+fn markdown_table(rows: &[Vec<String>]) -> String {
+    let columns = rows.first().map_or(0, Vec::len);
+    let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+        format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
+    };
+    let rule: Vec<String> = widths.iter().map(|width| "-".repeat(*width)).collect();
+    rows.iter().take(1).map(line).chain([line(&rule)]).chain(rows.iter().skip(1).map(line)).collect()
 }
 
 fn line(seal: &Seal, archive: &Path, day: u32) -> String {

@@ -24,8 +24,9 @@ use crate::session::{Access, Session};
 pub struct Export {
     session: Session,
     trajectory: Trajectory,
-    /// Copies of the files; must outlive the session that reads them.
-    workshop: Workshop,
+    /// Copies of the files, in a folder that must outlive the session.
+    copies: PathBuf,
+    _workshop: Workshop,
 }
 
 impl Export {
@@ -37,14 +38,10 @@ impl Export {
     /// written.
     pub fn prepare(folder: &Path, beside: &Path) -> Result<Export, RunError> {
         let manifest = Manifest::read(folder)?;
-        let path = folder.join(TRAJECTORY);
-        let witnesses = Witnesses::of(folder, &manifest.id);
-        let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
-        let mut trajectory = Trajectory::of_file(&path, &bytes)?;
-        check_start(&path, trajectory.lines.first(), &manifest)?;
-        witnesses.check(&path, &trajectory)?;
+        let (bytes, mut trajectory) = read_settled(folder, &manifest)?;
         let workshop = Workshop::within(beside)?;
-        let own = workshop.path();
+        let own = &workshop.path().join(&manifest.id);
+        std::fs::create_dir(own).map_err(RunError::io(own))?;
         let put = |name: &str, bytes: &[u8]| {
             let path = own.join(name);
             std::fs::write(&path, bytes).map_err(RunError::io(&path))
@@ -60,7 +57,7 @@ impl Export {
             Err(error) => return Err(RunError::Io { path: memo, error }),
         }
         let session = Session::open(own, Access::Read, true).map_err(|error| moved(error, own, folder))?;
-        Ok(Export { session, trajectory, workshop })
+        Ok(Export { session, trajectory, copies: own.clone(), _workshop: workshop })
     }
 
     /// The run, open to read.
@@ -82,7 +79,7 @@ impl Export {
             let message = format!("{} exists already: choose another name, or remove it", archive.display());
             return Err(RunError::Exists(message));
         }
-        let database = self.workshop.path().join(DATABASE);
+        let database = self.copies.join(DATABASE);
         // An archive may be written twice; the database is made for each.
         let _ = std::fs::remove_file(&database);
         self.session.copy_database(&database)?;
@@ -103,7 +100,7 @@ impl Export {
     }
 
     fn seal(&self) -> Result<Seal, RunError> {
-        let folder = self.workshop.path();
+        let folder = &self.copies;
         let there =
             [MANIFEST, TRAJECTORY, MEMO, DATABASE].into_iter().filter(|name| folder.join(name).exists());
         let file = there.map(|name| SealedFile::of(folder, name)).collect::<Result<_, _>>()?;
@@ -137,11 +134,23 @@ impl Export {
         let text = seal.text();
         archive.append(&header(&seal.run, SEAL, text.len() as u64)?, text.as_bytes())?;
         for sealed in &seal.file {
-            let file = File::open(self.workshop.path().join(&sealed.name))?;
+            let file = File::open(self.copies.join(&sealed.name))?;
             archive.append(&header(&seal.run, &sealed.name, sealed.bytes)?, file)?;
         }
         archive.into_inner()
     }
+}
+
+/// Reads a trajectory that somebody may be writing, and checks it against manifest and witnesses. They are asked first:
+/// whatever they remember is then in what is read.
+fn read_settled(folder: &Path, manifest: &Manifest) -> Result<(Vec<u8>, Trajectory), RunError> {
+    let path = folder.join(TRAJECTORY);
+    let witnesses = Witnesses::of(folder, &manifest.id);
+    let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
+    let trajectory = Trajectory::of_file(&path, &bytes)?;
+    check_start(&path, trajectory.lines.first(), manifest)?;
+    witnesses.check(&path, &trajectory)?;
+    Ok((bytes, trajectory))
 }
 
 /// What stands before a file. Nothing of the machine is in it: no owner, no moment.

@@ -95,7 +95,7 @@ impl Options {
             scenario: self.scenario.clone().unwrap_or(standard.scenario),
             overrides: self.set.clone(),
             mode: self.mode.unwrap_or(standard.mode),
-            participant: self.participant.clone().or_else(|| context.participant.clone()),
+            participant: self.participant.clone(),
             agreed: self.consent,
             storage: Storage::Runs(context.runs()?),
             projection: true,

@@ -60,6 +60,8 @@ pub enum News {
     WentOn(Box<Arrival>),
     /// A run could not be opened or created; with what can be done instead.
     NotOpened(String, Option<Instead>),
+    /// A participant has to agree to a text before this run begins.
+    ConsentAsked(Box<crate::session::NewRun>, String),
     /// What a call would do; the number says which question this answers.
     Checked(u64, Result<Preview, Refusal>),
     /// A tool was called.

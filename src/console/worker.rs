@@ -270,10 +270,10 @@ impl SessionThread {
                 let done = delete_run(&runs, &id).map_err(|error| error.to_string());
                 self.say_kept(&runs, done.map(|()| format!("run {id} is deleted")));
             }
-            Job::Create(new) => {
-                let made = Session::create(*new, &self.configuration);
-                self.take(made, "", None);
-            }
+            Job::Create(new) => match Session::create((*new).clone(), &self.configuration) {
+                Err(RunError::ConsentNeeded(text)) => self.say(News::ConsentAsked(new, text.text)),
+                made => self.take(made, "", None),
+            },
             Job::Open(runs, id, access) => {
                 let found = match access {
                     Access::Write => find_run(&runs, &id),
@@ -317,7 +317,9 @@ impl SessionThread {
             Ok(session) => session,
             Err(problem) => {
                 let instead = match &problem {
-                    RunError::InUse { id, .. } => Some(Instead::Watch(id.clone())),
+                    RunError::InUse { id, .. } | RunError::NotWritable { id, .. } => {
+                        Some(Instead::Watch(id.clone()))
+                    }
                     RunError::Damaged { .. } if !id.is_empty() => Some(Instead::Rescue(id.to_owned())),
                     _ => None,
                 };

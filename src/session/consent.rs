@@ -66,13 +66,17 @@ impl Configuration {
 ///
 /// # Errors
 /// `ConsentNeeded` with the text, if neither is the case; the file cannot be read.
-pub(super) fn agreed(new: &NewRun, configuration: &Configuration) -> Result<Option<Consent>, RunError> {
+pub(super) fn agreed(
+    new: &NewRun,
+    participant: Option<&str>,
+    configuration: &Configuration,
+) -> Result<Option<Consent>, RunError> {
     let Some(text) = configuration.consent()? else { return Ok(None) };
     let digest = text.digest();
     if new.agreed {
         return Ok(Some(Consent { digest, at: now() }));
     }
-    let earlier = match (&new.storage, &new.participant) {
+    let earlier = match (&new.storage, participant) {
         (Storage::Runs(runs), Some(participant)) => earlier_consent(runs, participant, &digest),
         _ => None,
     };

@@ -12,7 +12,7 @@ use super::feed::Feed;
 use super::manifest::{FORMAT, Manifest, differences, sync_folder};
 use super::mode::Mode;
 use super::record::FactsChain;
-use super::runs::{earlier_runs, lock_run};
+use super::runs::{earlier_runs, label_of, lock_run};
 use super::scripts::Office;
 use super::trajectory::{Durability, SUMS, TrajectoryWriter, now};
 use super::week::WeekFigures;
@@ -44,7 +44,7 @@ pub struct NewRun {
     pub overrides: Vec<(String, String)>,
     /// Mode.
     pub mode: Mode,
-    /// Who plays, as the experimenter names them.
+    /// Who plays, as the experimenter names them; if left out, whoever the folder of runs belongs to.
     pub participant: Option<String>,
     /// Whether the person has agreed to the text that the experimenter asks for; baseline runs only.
     pub agreed: bool,
@@ -250,8 +250,13 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         Storage::Runs(runs) => earlier_runs(runs, seed, &scenario.name),
         Storage::Memory => 0,
     };
+    let of_folder = match &new.storage {
+        Storage::Runs(runs) => label_of(runs),
+        Storage::Memory => None,
+    };
+    let participant = new.participant.clone().or(of_folder);
     let consent = match new.mode {
-        Mode::Baseline => agreed(new, configuration)?,
+        Mode::Baseline => agreed(new, participant.as_deref(), configuration)?,
         Mode::Sandbox | Mode::Lesson | Mode::Debug => None,
     };
     let manifest = Manifest {
@@ -265,7 +270,7 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         cash,
         scenario: scenario.name,
         mode: new.mode,
-        participant: new.participant.clone(),
+        participant,
         earlier_runs,
         consent,
         parameters_digest: params.digest(),

@@ -65,11 +65,16 @@ pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
     Ok(runs.join(PARTICIPANTS).join(label))
 }
 
+/// Whose runs a folder holds, if it is a participant's own.
+pub(super) fn label_of(runs: &Path) -> Option<String> {
+    let own = runs.parent()?.file_name()? == PARTICIPANTS;
+    runs.file_name().filter(|_| own).map(|label| label.to_string_lossy().into_owned())
+}
+
 /// Every folder of runs that belongs with this one: the common one, then those of the participants by their labels.
 pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
-    let of_participant =
-        runs.parent().filter(|parent| parent.file_name().is_some_and(|name| name == PARTICIPANTS));
-    let base = of_participant.and_then(Path::parent).unwrap_or(runs);
+    let of_participant = label_of(runs).and_then(|_| runs.parent()?.parent());
+    let base = of_participant.unwrap_or(runs);
     let entries = std::fs::read_dir(base.join(PARTICIPANTS)).into_iter().flatten().flatten();
     let mut own: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
     own.sort_unstable();
@@ -256,4 +261,37 @@ pub(super) fn earlier_runs(runs: &Path, seed: u64, scenario: &str) -> u32 {
         Manifest::read(folder).is_ok_and(|manifest| manifest.seed == seed && manifest.scenario == scenario)
     };
     entries.map(|entry| entry.path()).filter(same).count() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::{Configuration, NewRun, Storage};
+
+    #[test]
+    fn participants_have_folders_and_labels_of_their_own() {
+        let place = tempfile::tempdir().expect("a folder");
+        let base = place.path().join("runs");
+        let play = |runs: &Path| {
+            let storage = Storage::Runs(runs.to_owned());
+            let new = NewRun { storage, projection: false, days: Some(28), ..NewRun::default() };
+            Session::create(new, &Configuration::shipped()).expect("a run").manifest().clone()
+        };
+        let [first, second] = ["P01", "P02"].map(|label| participant_folder(&base, label).expect("a label"));
+        assert_eq!(play(&base).participant, None);
+        assert_eq!(play(&first).participant.as_deref(), Some("P01"));
+        let last = play(&second);
+        assert_eq!(
+            (last.participant.as_deref(), last.earlier_runs),
+            (Some("P02"), 2),
+            "seeds count everywhere"
+        );
+        for folder in [&base, &first, &second] {
+            assert_eq!(list_runs(folder).expect("a list").len(), 1, "nobody sees the others' runs");
+            assert_eq!(all_run_folders(folder), [&base, &first, &second]);
+        }
+        for label in ["", ".", "..", "a/b", "a\\b", "P 01", "\u{fc}", &"x".repeat(41)] {
+            assert!(participant_folder(&base, label).is_err(), "{label}");
+        }
+    }
 }

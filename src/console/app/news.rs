@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::{App, Layer, Order, Run, Screens, Stage};
 use crate::console::action::Action;
 use crate::console::company::Company;
+use crate::console::dialogs::consent::Consent;
 use crate::console::dialogs::filing::Filing;
 use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::report::Report;
@@ -57,6 +58,10 @@ impl App {
                     menu.refused(problem.clone(), instead);
                 }
                 self.complain(problem);
+            }
+            News::ConsentAsked(new, text) => {
+                self.busy = None;
+                self.layers.push(Layer::Dialog(Box::new(Consent::new(*new, &text))));
             }
             News::Day(day, _) => {
                 if let Some(Some((_, _, last))) = self.busy.as_mut().map(|busy| busy.days.as_mut()) {

@@ -200,7 +200,7 @@ impl Menu {
         let Some(Asked::Instead(instead, problem)) = &self.asked else { return };
         let (title, offer) = match instead {
             Instead::Watch(_) => {
-                ("In use", "Watch it from here, read-only? What is played there appears here.")
+                ("To read only", "Watch it from here, read-only? What is played elsewhere appears here.")
             }
             Instead::Rescue(_) => {
                 ("Damaged", "Open the good beginning as a branch? The damaged run is not touched.")

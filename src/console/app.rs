@@ -314,6 +314,7 @@ impl App {
             return;
         }
         self.note_view();
+        self.stop_on_the_way();
         self.closing = Some(closing);
         match &self.stage {
             Stage::Run(_) => {

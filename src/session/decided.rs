@@ -61,8 +61,6 @@ pub enum Act {
     Memo {
         /// Bytes of the text.
         length: u64,
-        /// Digest of the text.
-        digest: String,
     },
     /// The week was let pass.
     Advance {
@@ -140,7 +138,7 @@ impl Act {
                 took_ms: fields.get("took_ms").and_then(Value::as_f64).unwrap_or(0.0),
             },
             "view" => Act::View { screen: word(fields, "screen"), for_ms: count(fields, "for_ms") },
-            "memo" => Act::Memo { length: count(fields, "length"), digest: word(fields, "digest") },
+            "memo" => Act::Memo { length: count(fields, "length") },
             "advance" => advance(line, outcome),
             "week" | "step" => Act::Closing {
                 days_run: count(fields, "days_run") as u32,

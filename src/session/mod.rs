@@ -25,6 +25,7 @@ mod manifest;
 mod mode;
 mod observe;
 mod open;
+mod place;
 mod playback;
 mod record;
 mod rescue;
@@ -66,7 +67,8 @@ pub use manifest::{FORMAT, Manifest, Parent};
 pub use mode::Mode;
 pub use observe::{Observation, WaitingThread};
 pub use open::{Access, Verification, verify};
-pub use playback::{Chapter, Goal, Place, Playback, Went};
+pub use place::{Chapter, Goal, Place, Went};
+pub use playback::{Playback, verify_record};
 pub use rescue::{Rescued, rescue};
 pub use runs::{
     RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,

@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Session;
-use super::decided::{Act, Decided, cash_of};
+use super::decided::{Decided, cash_of};
 use super::error::RunError;
 use super::manifest::Manifest;
 use super::mode::Mode;
-use super::open::check_start;
+use super::open::{Verification, check_start};
+use super::place::{Chapter, Goal, Place, Went};
 use super::trajectory::{Line, Trajectory, TrajectoryWriter, damaged_at};
 use super::week::week_of;
 use crate::database::{Location, Projector};
@@ -20,70 +21,6 @@ use crate::tools::Refusal;
 use crate::world::events::Facts;
 use crate::world::params::Params;
 use crate::world::state::World;
-
-/// Where a playback is to go.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Goal {
-    /// Before the first action.
-    First,
-    /// After the last line.
-    Last,
-    /// So many weeks on, or back if negative. Single steps of debug runs count for themselves.
-    Weeks(i32),
-    /// So many lines on, or back if negative.
-    Lines(i32),
-    /// After a week, by its number; 0 is the beginning.
-    Week(u32),
-}
-
-/// What became of going somewhere.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Went {
-    /// It is there.
-    There,
-    /// It is there with a new session: desks on the old one's database tell nothing new.
-    Anew,
-    /// It was stopped on the way; what was reached is shown, and going back leaves everything where it was.
-    Stopped,
-}
-
-/// Where a playback is.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Place {
-    /// Lines that were applied.
-    pub line: usize,
-    /// Lines that there are.
-    pub lines: usize,
-    /// Day of the company.
-    pub day: u32,
-    /// Weeks that have passed.
-    pub week: u32,
-    /// Last day that was recorded.
-    pub recorded_day: u32,
-    /// Weeks that were recorded.
-    pub weeks: u32,
-    /// New lines are awaited: somebody else is playing.
-    pub follows: bool,
-    /// Nothing comes after this moment.
-    pub at_end: bool,
-    /// What was decided before the next week, or before the last one at the end.
-    pub chapter: Chapter,
-    /// Why the run cannot be taken over here.
-    pub no_branch: Option<String>,
-}
-
-/// What was decided before a week.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Chapter {
-    /// Number of the week, from 1.
-    pub week: u32,
-    /// Decision day.
-    pub day: u32,
-    /// What was done, in order, up to the line that closes the week.
-    pub entries: Vec<Decided>,
-    /// How many of them were applied: the others are still to come.
-    pub done: usize,
-}
 
 /// A line that closes a week or single steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -347,14 +284,9 @@ impl Playback {
     /// The notes of the run, if they had already been written as they are now: earlier texts are not recorded.
     pub fn memo(&self) -> Option<String> {
         let text = self.session.memo().ok()?;
-        let digest = blake3::hash(text.as_bytes()).to_hex();
-        let none = |_: u32| (None, true);
-        let applied = self.trajectory.lines[..self.applied].iter().rev();
-        let last = applied.map(|line| Decided::of(line, &none).act).find_map(|act| match act {
-            Act::Memo { digest, .. } => Some(digest),
-            _ => None,
-        });
-        (last.as_deref() == Some(digest.as_str())).then_some(text)
+        let last = self.trajectory.lines[..self.applied].iter().rfind(|line| line.kind == "memo")?;
+        let digest = last.fields.get("digest")?.as_str()?;
+        (digest == blake3::hash(text.as_bytes()).to_hex().as_str()).then_some(text)
     }
 
     fn no_branch(&self) -> Option<Refusal> {
@@ -423,6 +355,30 @@ fn apply(
         }
     }
     (lines.len().max(applied), Ok(ControlFlow::Continue(())))
+}
+
+/// Simulates a recorded run again, the one of a folder or a trajectory file that stands alone, and compares every
+/// recorded state; nothing is changed.
+///
+/// # Errors
+/// The first line that does not fit.
+pub fn verify_record(path: &Path) -> Result<Verification, RunError> {
+    let (origin, trajectory) = read(path)?;
+    let Origin { path, manifest, params, .. } = origin;
+    let run = manifest.id.clone();
+    let mut session = Session::unwritten(manifest, None, params, None);
+    let (_, end) = apply(&mut session, &path, &trajectory.lines, 0, &mut |_| ControlFlow::Continue(()));
+    if let Err((_, error)) = end {
+        return Err(error);
+    }
+    let states = || trajectory.lines.iter().filter_map(|line| line.fields.get("state_hash")?.as_str());
+    Ok(Verification {
+        run,
+        lines: trajectory.lines.len(),
+        states: states().count(),
+        day: session.day(),
+        state_hash: states().next_back().unwrap_or_default().to_owned(),
+    })
 }
 
 fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {

@@ -39,7 +39,7 @@ fn decide(session: &mut Session, week: u32) {
         session.set_memo(&format!("week {week}: watch the ads")).expect("notes");
     }
     session.note_view("cash", "overview", 4_200);
-    session.call("set_prices", &json!({"A": 0.001}), Via::Form).expect_err("a price that is too low");
+    session.call("set_prices", &json!({"A": -1}), Via::Form).expect_err("a price below zero");
     session.call("set_prices", &json!({"A": 12 + week}), Via::Form).expect("a price");
     session.call("set_daily_spend", &json!({"development": 100 * week}), Via::Form).expect("spending");
     let forecasts = session.naive_forecasts();

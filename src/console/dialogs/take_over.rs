@@ -64,8 +64,8 @@ impl Dialog for TakeOver {
              recorded run stays as it is.",
             self.day, self.week
         );
-        let lines = wrapped(&text, 58);
-        let own = centered(area, 64, lines.len() as u16 + MODES.len() as u16 + 4);
+        let lines = wrapped(&text, 72);
+        let own = centered(area, 78, lines.len() as u16 + MODES.len() as u16 + 4);
         canvas.clear(own, Role::Text);
         let inside = canvas.pane(own, "Take over", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
@@ -84,7 +84,8 @@ impl Dialog for TakeOver {
             canvas.text(row, &format!("{mark} {:<8} {}", mode.id(), mode.purpose()), role);
             canvas.click(row, Click::Row(0, at));
         }
-        canvas.pane_keys(own, &look.hints(&[Action::Open, Action::Close]));
+        let key = look.keys.label(Action::Open).unwrap_or_default();
+        canvas.pane_keys(own, &format!("{key} begin there · {}", look.hint(Action::Close)));
     }
 }
 

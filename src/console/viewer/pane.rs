@@ -27,7 +27,7 @@ impl Viewer {
     /// Draws the decisions; what was not done yet at this moment is dim.
     pub fn draw_decisions(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let chapter = &self.place.chapter;
-        let note = format!("{} of {} done", chapter.done, chapter.entries.len());
+        let note = format!("{}/{} done", chapter.done, chapter.entries.len());
         let inside = canvas.pane(area, &told::title(chapter), &note, false);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let mut rows: Vec<(String, Role)> = Vec::new();
@@ -42,6 +42,7 @@ impl Viewer {
                 let mark = match (part, done) {
                     (0, true) => "✓ ",
                     (0, false) if at == chapter.done => "▸ ",
+                    (0, false) => "· ",
                     _ => "  ",
                 };
                 let lines = wrapped(&text, inside.width.saturating_sub(2) as usize);
@@ -62,8 +63,9 @@ impl Viewer {
         for (row, (text, role)) in rows_of(inside).zip(rows.iter().skip(from)) {
             canvas.text(row, text, *role);
         }
-        let keys = [Action::LineBack, Action::LineForward, Action::DecisionsWhole];
-        canvas.pane_keys(area, &look.hints(&keys));
+        let [back, on, whole] = [Action::LineBack, Action::LineForward, Action::DecisionsWhole]
+            .map(|action| look.keys.label(action).unwrap_or_default());
+        canvas.pane_keys(area, &format!("{back} {on} single actions · {whole} in full"));
         canvas.click(area, Click::Do(Action::DecisionsWhole));
     }
 }

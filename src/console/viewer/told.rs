@@ -6,6 +6,9 @@ use crate::console::theme::Role;
 use crate::notation::{dollars, grouped};
 use crate::session::{Act, Chapter, Decided, Foreseen, Place};
 
+/// Longest JSON that is written in one line, in bytes.
+const ONE_LINE: usize = 90;
+
 /// What the decisions are of.
 pub fn title(chapter: &Chapter) -> String {
     format!("Decided before week {}", chapter.week)
@@ -65,7 +68,7 @@ fn foreseen_in_brief(foreseen: &Foreseen) -> (String, Role) {
             };
             (format!("{said}, {came} {} {verdict}", short_dollars(*cash)), role)
         }
-        _ => (format!("{said}, day {} was not recorded", foreseen.due), Role::Dim),
+        _ => (format!("{said}, day {} not recorded", foreseen.due), Role::Dim),
     }
 }
 
@@ -86,6 +89,10 @@ pub fn whole(place: &Place) -> String {
 
 fn in_full(act: &Act) -> String {
     let pretty = |value: &serde_json::Value| {
+        let short = value.to_string();
+        if short.len() <= ONE_LINE {
+            return format!("    {short}");
+        }
         let text = serde_json::to_string_pretty(value).unwrap_or_default();
         text.lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n")
     };
@@ -195,7 +202,7 @@ mod tests {
             (Some(1.55e6), false, "came $1.55M inside"),
             (Some(1.75e6), false, "came $1.75M OUTSIDE"),
             (Some(1.55e6), true, "later $1.55M inside"),
-            (None, true, "day 42 was not recorded"),
+            (None, true, "day 42 not recorded"),
         ] {
             let (text, _) = foreseen_in_brief(&foreseen(outcome, later));
             assert!(text.ends_with(words), "{text}");

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::*;
+use crate::session::decided::Act;
 use crate::session::{Configuration, Forecasts, NewRun, Storage, Via, verify};
 
 /// A run that was recorded into a folder.
@@ -230,6 +231,9 @@ fn a_trajectory_that_stands_alone_is_played_too() {
     let mut playback = Playback::open(&file).expect("it opens");
     go(&mut playback, Goal::Last);
     assert_eq!(playback.session().state_hash().0, hashes(&run.folder)[&21]);
+    let verified = verify_record(&file).expect("it verifies");
+    assert_eq!(verified, verify(&run.folder).expect("as the run does"));
+    assert_eq!((verified.day, verified.states), (21, 3));
     assert_eq!(playback.take_over(Mode::Sandbox).err().expect("refused").code, "not_possible");
     let problem = Playback::open(&elsewhere.path().join("none.jsonl")).err().expect("there is none");
     assert!(problem.to_string().contains("none.jsonl"), "{problem}");

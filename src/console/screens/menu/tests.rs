@@ -4,7 +4,8 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
 use crate::console::test_kit::painted;
-use crate::session::{Ended, Mode};
+use crate::console::worker::Recorded;
+use crate::session::{Ended, Goal, Mode};
 
 /// An unfinished run.
 pub(in crate::console) fn summary(id: &str) -> RunSummary {
@@ -204,6 +205,50 @@ fn every_page_is_drawn_in_every_window() {
                     shown(&menu, width, height);
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn a_run_is_played_again_from_the_list_and_from_the_first_page() {
+    let mut menu = three();
+    let replays = |effects: Vec<Effect>, wanted: &str| {
+        let [Effect::Replay { recorded: Recorded::Run(id), goal: Goal::First, follow: false }] = &effects[..]
+        else {
+            panic!("{effects:?}")
+        };
+        assert_eq!(id, wanted);
+    };
+    replays(menu.act(Action::ReplayRun), "aaaa0001");
+    menu.page = Page::Runs;
+    menu.act(Action::Down);
+    replays(menu.act(Action::ReplayRun), "bbbb0002");
+}
+
+#[test]
+fn a_run_that_does_not_open_is_offered_another_way_after_a_question() {
+    let long = "trajectory.jsonl, line 8: the line does not follow from the one before. ".repeat(12);
+    for (instead, words) in [
+        (Instead::Watch("aaaa0001".to_owned()), "Watch it from here"),
+        (Instead::Rescue("aaaa0001".to_owned()), "as a branch?"),
+    ] {
+        for page in [Page::Home, Page::Runs] {
+            let mut menu = three();
+            menu.page = page;
+            menu.refused(long.clone(), Some(instead.clone()));
+            for (width, height) in [(60, 15), (80, 23), (120, 39)] {
+                let screen = shown(&menu, width, height);
+                assert!(screen.contains(words), "{screen}");
+            }
+            assert_eq!(menu.scopes(), [Scope::Dialog]);
+            assert!(menu.act(Action::Down).is_empty() && menu.asked.is_some(), "only an answer counts");
+            match (&instead, &menu.act(Action::Confirm)[..]) {
+                (Instead::Watch(_), [Effect::Replay { goal: Goal::Last, follow: true, .. }]) => {}
+                (Instead::Rescue(_), [Effect::Rescue(id)]) => assert_eq!(id, "aaaa0001"),
+                (_, other) => panic!("{other:?}"),
+            }
+            menu.refused(long.clone(), Some(instead.clone()));
+            assert!(menu.act(Action::Cancel).is_empty() && menu.asked.is_none());
         }
     }
 }

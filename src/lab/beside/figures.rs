@@ -59,7 +59,7 @@ fn per_week(run: &Compared, count: u32) -> Option<f64> {
     (weeks > 0).then(|| f64::from(count) / weeks as f64)
 }
 
-/// Half of the two-sided weight of a 95 percent interval is expected outside.
+/// What forecasts promise: their intervals are meant to hold 95 outcomes in a hundred.
 const NOMINAL: Range = Range { least: 0.95, most: 0.95, what: "what a 95 % interval should hold" };
 
 /// Figures of the whole run, in the order they are told.

@@ -51,7 +51,7 @@ pub const RUNS: &[RunColumn] = &[
         "consent",
         "text",
         "what was agreed to before the first day; empty if nothing was recorded",
-        |run| consent(run),
+        consent,
     ),
     column("version", "version", "version of the program that recorded it", |run| run.version.clone()),
     column("created", "RFC 3339", "when it was created", |run| run.created.clone()),

@@ -13,22 +13,43 @@ pub struct CanonicalHasher {
     pending: Vec<u8>,
 }
 
+/// Bytes that are hashed together; also the most that one list hands over at a time.
 const PIECE: usize = 1 << 16;
 
 impl Default for CanonicalHasher {
     fn default() -> Self {
-        CanonicalHasher { hasher: blake3::Hasher::new(), pending: Vec::with_capacity(PIECE + 16) }
+        CanonicalHasher { hasher: blake3::Hasher::new(), pending: Vec::with_capacity(2 * PIECE) }
     }
 }
 
 impl CanonicalHasher {
     /// Appends bytes.
+    #[inline]
     pub fn bytes(&mut self, bytes: &[u8]) {
         self.pending.extend_from_slice(bytes);
         if self.pending.len() >= PIECE {
-            self.hasher.update(&self.pending);
-            self.pending.clear();
+            self.hash_pending();
         }
+    }
+
+    /// Appends the bytes of many equal values: columns are most of the state, so they go by the thousand.
+    fn column<T: Copy, const WIDTH: usize>(&mut self, values: &[T], bytes_of: impl Fn(T) -> [u8; WIDTH]) {
+        for values in values.chunks(PIECE / WIDTH) {
+            let from = self.pending.len();
+            self.pending.resize(from + values.len() * WIDTH, 0);
+            for (place, value) in self.pending[from..].chunks_exact_mut(WIDTH).zip(values) {
+                place.copy_from_slice(&bytes_of(*value));
+            }
+            if self.pending.len() >= PIECE {
+                self.hash_pending();
+            }
+        }
+    }
+
+    #[cold]
+    fn hash_pending(&mut self) {
+        self.hasher.update(&self.pending);
+        self.pending.clear();
     }
 
     /// The hash of everything fed so far.
@@ -42,6 +63,14 @@ impl CanonicalHasher {
 pub trait Canonical {
     /// Feeds the bytes of this value.
     fn feed(&self, hasher: &mut CanonicalHasher);
+
+    /// Feeds the bytes of these values, one after the other.
+    fn feed_all(values: &[Self], hasher: &mut CanonicalHasher)
+    where
+        Self: Sized,
+    {
+        values.iter().for_each(|value| value.feed(hasher));
+    }
 }
 
 /// Hash of one value.
@@ -54,8 +83,13 @@ pub fn hash_of(value: &impl Canonical) -> blake3::Hash {
 macro_rules! canonical_numbers {
     ($($number:ty),*) => {$(
         impl Canonical for $number {
+            #[inline]
             fn feed(&self, hasher: &mut CanonicalHasher) {
                 hasher.bytes(&self.to_le_bytes());
+            }
+
+            fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
+                hasher.column(values, <$number>::to_le_bytes);
             }
         }
     )*};
@@ -63,14 +97,24 @@ macro_rules! canonical_numbers {
 canonical_numbers!(u8, u16, u32, u64, i64);
 
 impl Canonical for f64 {
+    #[inline]
     fn feed(&self, hasher: &mut CanonicalHasher) {
         hasher.bytes(&self.to_bits().to_le_bytes());
+    }
+
+    fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
+        hasher.column(values, |value| value.to_bits().to_le_bytes());
     }
 }
 
 impl Canonical for bool {
+    #[inline]
     fn feed(&self, hasher: &mut CanonicalHasher) {
         hasher.bytes(&[u8::from(*self)]);
+    }
+
+    fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
+        hasher.column(values, |value| [u8::from(value)]);
     }
 }
 
@@ -90,7 +134,7 @@ impl Canonical for String {
 impl<T: Canonical> Canonical for [T] {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         (self.len() as u64).feed(hasher);
-        self.iter().for_each(|value| value.feed(hasher));
+        T::feed_all(self, hasher);
     }
 }
 
@@ -102,7 +146,7 @@ impl<T: Canonical> Canonical for Vec<T> {
 
 impl<T: Canonical, const LENGTH: usize> Canonical for [T; LENGTH] {
     fn feed(&self, hasher: &mut CanonicalHasher) {
-        self.iter().for_each(|value| value.feed(hasher));
+        T::feed_all(self, hasher);
     }
 }
 
@@ -137,8 +181,13 @@ impl Canonical for Group {
 }
 
 impl Canonical for Plan {
+    #[inline]
     fn feed(&self, hasher: &mut CanonicalHasher) {
         (self.index() as u8).feed(hasher);
+    }
+
+    fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
+        hasher.column(values, |plan| [plan.index() as u8]);
     }
 }
 
@@ -223,5 +272,25 @@ mod tests {
         let mut piecewise = CanonicalHasher::default();
         long.iter().for_each(|byte| piecewise.bytes(&[*byte]));
         assert_eq!(piecewise.finish(), blake3::hash(&long));
+    }
+
+    #[test]
+    fn a_column_has_the_bytes_of_its_values() {
+        let numbers: Vec<u32> = (0..100_000).map(|value: u32| value.wrapping_mul(2_654_435_761)).collect();
+        let floats: Vec<f64> = numbers.iter().map(|value| f64::from(*value) / 7.0).collect();
+        let signs: Vec<bool> = numbers.iter().map(|value| value % 3 == 0).collect();
+        let plans: Vec<Plan> = numbers.iter().map(|value| Plan::ALL[*value as usize % 3]).collect();
+        let (mut columns, mut singly) = (CanonicalHasher::default(), CanonicalHasher::default());
+        7u8.feed(&mut columns);
+        7u8.feed(&mut singly);
+        u32::feed_all(&numbers, &mut columns);
+        f64::feed_all(&floats, &mut columns);
+        bool::feed_all(&signs, &mut columns);
+        Plan::feed_all(&plans, &mut columns);
+        numbers.iter().for_each(|value| value.feed(&mut singly));
+        floats.iter().for_each(|value| value.feed(&mut singly));
+        signs.iter().for_each(|value| value.feed(&mut singly));
+        plans.iter().for_each(|value| value.feed(&mut singly));
+        assert_eq!(columns.finish(), singly.finish());
     }
 }

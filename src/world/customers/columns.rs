@@ -128,14 +128,11 @@ columns! {
 }
 
 fn drop_positions<T: Copy>(column: &mut Vec<T>, gone: &[usize]) {
-    let (mut next, mut kept) = (gone.iter().copied().peekable(), gone[0]);
-    for at in gone[0]..column.len() {
-        if next.peek() == Some(&at) {
-            next.next();
-        } else {
-            column[kept] = column[at];
-            kept += 1;
-        }
+    let mut kept = gone[0];
+    for (number, &at) in gone.iter().enumerate() {
+        let next = gone.get(number + 1).copied().unwrap_or(column.len());
+        column.copy_within(at + 1..next, kept);
+        kept += next - at - 1;
     }
     column.truncate(kept);
 }
@@ -167,7 +164,14 @@ impl Block {
         }
     }
 
+    /// Positions of those who are billed on days with this remainder.
+    pub fn due(&self, billing_day: u8) -> Vec<usize> {
+        let days = self.billing_day.iter().enumerate();
+        days.filter(|(_, day)| **day == billing_day).map(|(at, _)| at).collect()
+    }
+
     /// Place of a row in its block's stream of random words.
+    #[inline]
     pub fn place(&self, at: usize) -> usize {
         ((self.n[at] - 1) % BLOCK) as usize
     }

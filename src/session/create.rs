@@ -158,7 +158,7 @@ impl Session {
             _lock: lock,
             params,
             world,
-            facts,
+            facts: facts.into(),
             trace: DayTrace::default(),
             position: trajectory.position(),
             trajectory: Some(trajectory),
@@ -186,7 +186,7 @@ impl Session {
     /// Hands the set-up of day 0 to the database.
     pub(super) fn project_opening(&self) {
         if let Some(projector) = &self.projector {
-            projector.write(self.entry_of(self.facts.clone()));
+            projector.write(self.entry());
             projector.commit(self.position.clone());
         }
     }

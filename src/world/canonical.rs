@@ -3,7 +3,10 @@
 //! Little endian, floats by their bits, fields in declaration order, lists preceded by their length
 //! (specification, chapter 70 §5). Two worlds with equal bytes behave alike from here on.
 
+use std::sync::Arc;
+
 use indexmap::IndexMap;
+use rayon::prelude::*;
 
 use super::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 
@@ -11,6 +14,8 @@ use super::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 pub struct CanonicalHasher {
     hasher: blake3::Hasher,
     pending: Vec<u8>,
+    /// As soon as this many bytes are pending, they are hashed.
+    piece: usize,
 }
 
 /// Bytes that are hashed together; also the most that one list hands over at a time.
@@ -18,17 +23,41 @@ const PIECE: usize = 1 << 16;
 
 impl Default for CanonicalHasher {
     fn default() -> Self {
-        CanonicalHasher { hasher: blake3::Hasher::new(), pending: Vec::with_capacity(2 * PIECE) }
+        CanonicalHasher {
+            hasher: blake3::Hasher::new(),
+            pending: Vec::with_capacity(2 * PIECE),
+            piece: PIECE,
+        }
     }
 }
+
+/// Large values whose bytes a thread collects at a time, and how many threads may do so.
+const SHARE: usize = 8;
+const SHARES: usize = 4;
 
 impl CanonicalHasher {
     /// Appends bytes.
     #[inline]
     pub fn bytes(&mut self, bytes: &[u8]) {
         self.pending.extend_from_slice(bytes);
-        if self.pending.len() >= PIECE {
+        if self.pending.len() >= self.piece {
             self.hash_pending();
+        }
+    }
+
+    /// Appends the bytes of large values, collected and hashed on several threads; the hash is the same.
+    pub fn large_values<T: Canonical + Sync>(&mut self, values: &[T]) {
+        let collector = || CanonicalHasher { piece: usize::MAX, ..CanonicalHasher::default() };
+        let mut shares: Vec<CanonicalHasher> = (0..SHARES).map(|_| collector()).collect();
+        self.hash_pending();
+        for some in values.chunks(SHARES * SHARE) {
+            shares.par_iter_mut().zip(some.par_chunks(SHARE)).for_each(|(share, own)| {
+                share.pending.clear();
+                own.iter().for_each(|value| value.feed(share));
+            });
+            for (share, _) in shares.iter().zip(some.chunks(SHARE)) {
+                self.hasher.update_rayon(&share.pending);
+            }
         }
     }
 
@@ -40,7 +69,7 @@ impl CanonicalHasher {
             for (place, value) in self.pending[from..].chunks_exact_mut(WIDTH).zip(values) {
                 place.copy_from_slice(&bytes_of(*value));
             }
-            if self.pending.len() >= PIECE {
+            if self.pending.len() >= self.piece {
                 self.hash_pending();
             }
         }
@@ -141,6 +170,12 @@ impl<T: Canonical> Canonical for [T] {
 impl<T: Canonical> Canonical for Vec<T> {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         self.as_slice().feed(hasher);
+    }
+}
+
+impl<T: Canonical> Canonical for Arc<T> {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.as_ref().feed(hasher);
     }
 }
 
@@ -292,5 +327,22 @@ mod tests {
         signs.iter().for_each(|value| value.feed(&mut singly));
         plans.iter().for_each(|value| value.feed(&mut singly));
         assert_eq!(columns.finish(), singly.finish());
+    }
+
+    #[test]
+    fn large_values_are_hashed_like_small_ones() {
+        for count in [0, 1, 8, 33, 100] {
+            let values: Vec<Pair> = (0..count)
+                .map(|first| Pair { first, second: vec![f64::from(first); 300 * first as usize] })
+                .collect();
+            let (mut together, mut singly) = (CanonicalHasher::default(), CanonicalHasher::default());
+            5u32.feed(&mut together);
+            5u32.feed(&mut singly);
+            together.large_values(&values);
+            values.iter().for_each(|value| value.feed(&mut singly));
+            9u32.feed(&mut together);
+            9u32.feed(&mut singly);
+            assert_eq!(together.finish(), singly.finish(), "{count} values");
+        }
     }
 }

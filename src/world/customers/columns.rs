@@ -61,6 +61,10 @@ macro_rules! columns {
             fn feed(&self, hasher: &mut CanonicalHasher) {
                 $(self.$column.feed(hasher);)*
             }
+
+            fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
+                hasher.large_values(values);
+            }
         }
     };
 }

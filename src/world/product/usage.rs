@@ -1,5 +1,7 @@
 //! Usage of the day (chapter 20 §12, step 4).
 
+use std::sync::Arc;
+
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::day::Morning;
@@ -42,7 +44,7 @@ pub fn meter(customers: &mut Customers, morning: &Morning, params: &Params, fact
             metered.by_plan[plan] += by_plan[plan];
             metered.total += by_plan[plan];
         }
-        facts.usage.push(rows);
+        facts.usage.push(Arc::new(rows));
     }
     metered
 }

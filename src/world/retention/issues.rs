@@ -97,14 +97,14 @@ pub fn read_calls(
         let mut words = [0u32; BLOCK as usize];
         streams.open(Part::IssueOpening, keys).fill(&mut words);
         let (mut open, mut new) = (Vec::new(), Vec::new());
-        let rows = block.open_issue_days.iter().zip(&block.satisfaction).zip(&block.seats);
-        for (at, ((&open_days, &satisfaction), &seats)) in rows.enumerate() {
+        for (at, (&open_days, &satisfaction)) in
+            block.open_issue_days.iter().zip(&block.satisfaction).enumerate()
+        {
             if open_days > 0 {
                 open.push(at as u16);
                 continue;
             }
-            // An individual is one seat, whole already.
-            let seats = if group.is_enterprise() { seats.trunc() } else { seats };
+            let seats = if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 };
             if word_below(words[block.place(at)], issue_probability(satisfaction, outage, seats, law)) {
                 new.push(at as u16);
             }

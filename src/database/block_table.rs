@@ -291,9 +291,9 @@ mod tests {
     use crate::world::identifiers::Group;
 
     fn connection() -> Connection {
-        let rows = |first: u32| UsageRows {
-            customers: vec![first, first + 2, first + 4],
-            units: vec![first, 10, 20],
+        let rows = |first: u32| {
+            let customers = vec![first, first + 2, first + 4];
+            Arc::new(UsageRows { customers, units: vec![first, 10, 20] })
         };
         let usage =
             (1..=5).map(|day| Arc::new(UsageDay { day, runs: vec![rows(2), rows(100)] })).collect::<Vec<_>>();

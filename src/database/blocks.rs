@@ -10,7 +10,7 @@ use crate::world::identifiers::Group;
 pub(super) struct UsageDay {
     pub day: u32,
     /// Runs of ascending customer numbers.
-    pub runs: Vec<UsageRows>,
+    pub runs: Vec<Arc<UsageRows>>,
 }
 
 /// Ad revenue of one day.
@@ -141,7 +141,7 @@ impl UsageDay {
             .map(|_| {
                 let customers = unpacker.ascending()?;
                 let units = customers.iter().map(|_| unpacker.small()).collect::<Option<_>>()?;
-                Some(UsageRows { customers, units })
+                Some(Arc::new(UsageRows { customers, units }))
             })
             .collect::<Option<_>>()?;
         unpacker.0.is_empty().then_some(UsageDay { day, runs })
@@ -206,7 +206,7 @@ mod tests {
         fn usage_comes_back_as_it_went(runs in proptest::collection::vec(ascending(), 0..5), seed in any::<u32>()) {
             let runs = runs.into_iter().map(|customers| {
                 let units = customers.iter().map(|customer| customer.wrapping_mul(seed)).collect();
-                UsageRows { customers, units }
+                Arc::new(UsageRows { customers, units })
             });
             let day = UsageDay { day: 9, runs: runs.collect() };
             prop_assert_eq!(UsageDay::unpack(9, &day.pack()), Some(day));

@@ -24,7 +24,7 @@ fn entry(facts: Facts) -> Entry {
             .filter(|arrival| arrival.group.is_enterprise())
             .map(|arrival| (arrival.customer, format!("{}@example.com", arrival.customer)))
             .collect(),
-        facts,
+        facts: facts.into(),
         ..Entry::default()
     }
 }

@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::changes::{Change, changes, daily_cost};
 use super::error::RunError;
+use super::record::to_fill;
 use super::trajectory::Durability;
 use super::{JournalEntry, Session, UndoStep};
 use crate::notation::cents;
@@ -184,7 +185,7 @@ impl Session {
             | Deed::RejectDeals(_)
             | Deed::Post(_) => {}
         }
-        self.world.apply(deed, &self.params, &mut self.facts);
+        self.world.apply(deed, &self.params, to_fill(&mut self.facts));
         self.called.extend_from_slice(&self.facts.ledger);
         self.after_call();
     }

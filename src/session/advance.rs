@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::act::{Via, not_saved};
+use super::record::to_fill;
 use super::scripts::as_field;
 use super::snapshot::WEEKS_BETWEEN;
 use super::trajectory::{Durability, Line, seconds};
@@ -160,7 +161,8 @@ impl Session {
         let week_end = self.next_decision_day();
         self.notices.clear();
         while self.world.day < until && !self.world.is_over(&self.params) {
-            let (figures, trace) = step_day(&mut self.world, &self.params, &self.streams, &mut self.facts);
+            let (figures, trace) =
+                step_day(&mut self.world, &self.params, &self.streams, to_fill(&mut self.facts));
             self.trace = trace;
             self.judge_own_posts();
             self.word_posts();

@@ -163,7 +163,7 @@ impl Session {
             _lock: lock,
             params,
             world,
-            facts,
+            facts: facts.into(),
             trace: DayTrace::default(),
             position: trajectory.position(),
             trajectory: Some(trajectory),
@@ -191,7 +191,7 @@ impl Session {
     /// Hands the set-up of day 0 to the database.
     pub(super) fn project_opening(&self) {
         if let Some(projector) = &self.projector {
-            projector.write(self.entry_of(self.facts.clone()));
+            projector.write(self.entry());
             projector.commit(self.position.clone());
         }
     }

@@ -5,6 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Session;
+use super::record::to_fill;
 use crate::tools::PublicPost;
 use crate::voice;
 use crate::voice::judge::{self, Circumstances, Judgement, Lexicon, Original, Submission};
@@ -106,7 +107,8 @@ impl Session {
             verdicts.push(Verdict { post: at as u32 + 1, effects });
             self.feed.judgements[at] = judgements;
         }
-        reach::receive(&mut self.world, &verdicts, &self.params, &self.streams, &mut self.facts);
+        let facts = to_fill(&mut self.facts);
+        reach::receive(&mut self.world, &verdicts, &self.params, &self.streams, facts);
     }
 
     /// Puts today's posts into words and keeps them.

@@ -134,7 +134,7 @@ pub struct Session {
     streams: Streams,
     world: World,
     /// Facts of the last day or call.
-    facts: Facts,
+    facts: Arc<Facts>,
     trace: DayTrace,
     /// None when the run is only read.
     trajectory: Option<TrajectoryWriter>,

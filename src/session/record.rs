@@ -1,6 +1,7 @@
 //! What a session records besides its lines: rows for the database, and the state hash.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
@@ -67,9 +68,19 @@ impl FactsChain {
     }
 }
 
+/// Facts to be filled: these if nobody reads them any more, new ones otherwise. The facts of a day that is not handed
+/// over yet stay.
+pub(super) fn to_fill(facts: &mut Arc<Facts>) -> &mut Facts {
+    if Arc::strong_count(facts) > 1 {
+        *facts = Arc::default();
+    }
+    Arc::make_mut(facts)
+}
+
 impl Session {
-    /// Facts with the words that belong to them.
-    pub(super) fn entry_of(&self, facts: Facts) -> Entry {
+    /// The facts of the last day or call with the words that belong to them.
+    pub(super) fn entry(&self) -> Entry {
+        let facts = &self.facts;
         let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
         let writers = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
         let named = companies.map(|arrival| arrival.customer).chain(writers.map(|turn| turn.customer));
@@ -78,9 +89,9 @@ impl Session {
             notices: facts.notices.iter().map(|notice| self.notice_text(notice)).collect(),
             readings: facts.readings.iter().map(voice::reading).collect(),
             turns: facts.turns.iter().map(|turn| voice::message(turn, personas)).collect(),
-            posts: self.words_of_posts(&facts),
+            posts: self.words_of_posts(facts),
             addresses: named.map(|customer| (customer, voice::address(customer, &personas.email))).collect(),
-            facts,
+            facts: facts.clone(),
             ..Entry::default()
         }
     }
@@ -90,11 +101,11 @@ impl Session {
         self.facts_chain.add(&self.facts);
     }
 
-    /// Hands the facts of a day or call to the database, if there is one; the session's own are then empty
-    /// unless a debug run may still look at them.
+    /// Hands the facts of a day or call to the database, if there is one. Nothing is copied: the writer reads what
+    /// the session still shows, and the session fills new facts while the writer needs these.
     pub(super) fn project_facts(&mut self) {
         if let Some(projector) = &self.projector {
-            projector.write(self.entry_of(self.facts.clone()));
+            projector.write(self.entry());
         }
     }
 

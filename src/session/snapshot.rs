@@ -16,7 +16,7 @@ use super::record::{FactsChain, state_hash};
 use super::{Calculated, Decisions, Ended, JournalEntry, Manifest, Session, ThisWeek, UndoStep, WeekFigures};
 use crate::database::Position;
 use crate::tools::{Notebook, find};
-use crate::world::canonical::{Canonical, CanonicalReader, Restore};
+use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
 use crate::world::day::DayTrace;
 use crate::world::events::{Facts, LedgerEntry};
 use crate::world::settings::Settings;
@@ -166,10 +166,10 @@ impl Snapshot {
 }
 
 impl Canonical for UndoStep {
-    fn feed(&self, sink: &mut impl crate::world::canonical::Sink) {
-        self.seq.feed(sink);
-        self.tool.feed(sink);
-        self.before.feed(sink);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.seq.feed(hasher);
+        self.tool.feed(hasher);
+        self.before.feed(hasher);
     }
 }
 
@@ -222,7 +222,7 @@ impl Session {
             facts_chain: (self.facts_chain.hash().to_hex().to_string(), self.facts_chain.is_closed()),
             ended: self.ended,
         };
-        let mut bytes = Vec::new();
+        let mut bytes = CanonicalHasher::collector();
         serde_json::to_string(&notes).unwrap_or_default().feed(&mut bytes);
         self.world.feed(&mut bytes);
         self.facts.feed(&mut bytes);
@@ -231,7 +231,7 @@ impl Session {
         self.called.feed(&mut bytes);
         self.this_week.settings.feed(&mut bytes);
         self.this_week.undo.feed(&mut bytes);
-        bytes
+        bytes.into_bytes()
     }
 
     /// Takes over what a snapshot kept besides world and facts.
@@ -251,8 +251,7 @@ impl Session {
 
 /// Writes a snapshot in place of the old one. Not synced: after a power cut its digest tells whether it is whole.
 fn write(path: &Path, header: &Header, state: &[u8]) {
-    let mut body = Vec::with_capacity(state.len() + 1024);
-    serde_json::to_string(header).unwrap_or_default().feed(&mut body);
+    let mut body = bytes_of(&serde_json::to_string(header).unwrap_or_default());
     body.extend_from_slice(state);
     let draft = path.with_extension("draft");
     let written = std::fs::write(&draft, [TITLE, blake3::hash(&body).as_bytes(), &body].concat())

@@ -6,7 +6,10 @@
 
 mod restore;
 
+use std::sync::Arc;
+
 use indexmap::IndexMap;
+use rayon::prelude::*;
 
 pub use restore::{CanonicalReader, Restore, restored};
 
@@ -16,39 +19,85 @@ use super::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 pub struct CanonicalHasher {
     hasher: blake3::Hasher,
     pending: Vec<u8>,
+    /// As soon as this many bytes are pending, they are hashed.
+    piece: usize,
 }
 
+/// Bytes that are hashed together; also the most that one list hands over at a time.
 const PIECE: usize = 1 << 16;
 
 impl Default for CanonicalHasher {
     fn default() -> Self {
-        CanonicalHasher { hasher: blake3::Hasher::new(), pending: Vec::with_capacity(PIECE + 16) }
-    }
-}
-
-/// Takes canonical bytes.
-pub trait Sink {
-    /// Appends bytes.
-    fn bytes(&mut self, bytes: &[u8]);
-}
-
-impl Sink for Vec<u8> {
-    fn bytes(&mut self, bytes: &[u8]) {
-        self.extend_from_slice(bytes);
-    }
-}
-
-impl Sink for CanonicalHasher {
-    fn bytes(&mut self, bytes: &[u8]) {
-        self.pending.extend_from_slice(bytes);
-        if self.pending.len() >= PIECE {
-            self.hasher.update(&self.pending);
-            self.pending.clear();
+        CanonicalHasher {
+            hasher: blake3::Hasher::new(),
+            pending: Vec::with_capacity(2 * PIECE),
+            piece: PIECE,
         }
     }
 }
 
+/// Large values whose bytes a thread collects at a time, and how many threads may do so.
+const SHARE: usize = 8;
+const SHARES: usize = 4;
+
 impl CanonicalHasher {
+    /// Appends bytes.
+    #[inline]
+    pub fn bytes(&mut self, bytes: &[u8]) {
+        self.pending.extend_from_slice(bytes);
+        if self.pending.len() >= self.piece {
+            self.hash_pending();
+        }
+    }
+
+    /// One that hashes nothing and keeps the bytes.
+    pub fn collector() -> CanonicalHasher {
+        CanonicalHasher { piece: usize::MAX, ..CanonicalHasher::default() }
+    }
+
+    /// The bytes of a collector.
+    pub fn into_bytes(self) -> Vec<u8> {
+        self.pending
+    }
+
+    /// Appends the bytes of large values, collected and hashed on several threads; the hash is the same.
+    pub fn large_values<T: Canonical + Sync>(&mut self, values: &[T]) {
+        if self.piece == usize::MAX {
+            return values.iter().for_each(|value| value.feed(self));
+        }
+        let mut shares: Vec<CanonicalHasher> = (0..SHARES).map(|_| CanonicalHasher::collector()).collect();
+        self.hash_pending();
+        for some in values.chunks(SHARES * SHARE) {
+            shares.par_iter_mut().zip(some.par_chunks(SHARE)).for_each(|(share, own)| {
+                share.pending.clear();
+                own.iter().for_each(|value| value.feed(share));
+            });
+            for (share, _) in shares.iter().zip(some.chunks(SHARE)) {
+                self.hasher.update_rayon(&share.pending);
+            }
+        }
+    }
+
+    /// Appends the bytes of many equal values: columns are most of the state, so they go by the thousand.
+    fn column<T: Copy, const WIDTH: usize>(&mut self, values: &[T], bytes_of: impl Fn(T) -> [u8; WIDTH]) {
+        for values in values.chunks(PIECE / WIDTH) {
+            let from = self.pending.len();
+            self.pending.resize(from + values.len() * WIDTH, 0);
+            for (place, value) in self.pending[from..].chunks_exact_mut(WIDTH).zip(values) {
+                place.copy_from_slice(&bytes_of(*value));
+            }
+            if self.pending.len() >= self.piece {
+                self.hash_pending();
+            }
+        }
+    }
+
+    #[cold]
+    fn hash_pending(&mut self) {
+        self.hasher.update(&self.pending);
+        self.pending.clear();
+    }
+
     /// The hash of everything fed so far.
     pub fn finish(mut self) -> blake3::Hash {
         self.hasher.update(&self.pending);
@@ -59,7 +108,15 @@ impl CanonicalHasher {
 /// A part of the state that has canonical bytes.
 pub trait Canonical {
     /// Feeds the bytes of this value.
-    fn feed(&self, sink: &mut impl Sink);
+    fn feed(&self, hasher: &mut CanonicalHasher);
+
+    /// Feeds the bytes of these values, one after the other.
+    fn feed_all(values: &[Self], hasher: &mut CanonicalHasher)
+    where
+        Self: Sized,
+    {
+        values.iter().for_each(|value| value.feed(hasher));
+    }
 }
 
 /// Hash of one value.
@@ -71,16 +128,21 @@ pub fn hash_of(value: &impl Canonical) -> blake3::Hash {
 
 /// Canonical bytes of one value.
 pub fn bytes_of(value: &impl Canonical) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    value.feed(&mut bytes);
-    bytes
+    let mut collector = CanonicalHasher::collector();
+    value.feed(&mut collector);
+    collector.into_bytes()
 }
 
 macro_rules! canonical_numbers {
     ($($number:ty),*) => {$(
         impl Canonical for $number {
-            fn feed(&self, sink: &mut impl Sink) {
-                sink.bytes(&self.to_le_bytes());
+            #[inline]
+            fn feed(&self, hasher: &mut CanonicalHasher) {
+                hasher.bytes(&self.to_le_bytes());
+            }
+
+            fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
+                hasher.column(values, <$number>::to_le_bytes);
             }
         }
     )*};
@@ -88,106 +150,127 @@ macro_rules! canonical_numbers {
 canonical_numbers!(u8, u16, u32, u64, i64);
 
 impl Canonical for f64 {
-    fn feed(&self, sink: &mut impl Sink) {
-        sink.bytes(&self.to_bits().to_le_bytes());
+    #[inline]
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        hasher.bytes(&self.to_bits().to_le_bytes());
+    }
+
+    fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
+        hasher.column(values, |value| value.to_bits().to_le_bytes());
     }
 }
 
 impl Canonical for bool {
-    fn feed(&self, sink: &mut impl Sink) {
-        sink.bytes(&[u8::from(*self)]);
+    #[inline]
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        hasher.bytes(&[u8::from(*self)]);
+    }
+
+    fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
+        hasher.column(values, |value| [u8::from(value)]);
     }
 }
 
 impl Canonical for str {
-    fn feed(&self, sink: &mut impl Sink) {
-        (self.len() as u64).feed(sink);
-        sink.bytes(self.as_bytes());
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        (self.len() as u64).feed(hasher);
+        hasher.bytes(self.as_bytes());
     }
 }
 
 impl Canonical for String {
-    fn feed(&self, sink: &mut impl Sink) {
-        self.as_str().feed(sink);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.as_str().feed(hasher);
     }
 }
 
 impl<T: Canonical> Canonical for [T] {
-    fn feed(&self, sink: &mut impl Sink) {
-        (self.len() as u64).feed(sink);
-        self.iter().for_each(|value| value.feed(sink));
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        (self.len() as u64).feed(hasher);
+        T::feed_all(self, hasher);
     }
 }
 
 impl<T: Canonical> Canonical for Vec<T> {
-    fn feed(&self, sink: &mut impl Sink) {
-        self.as_slice().feed(sink);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.as_slice().feed(hasher);
+    }
+}
+
+impl<T: Canonical> Canonical for Arc<T> {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.as_ref().feed(hasher);
     }
 }
 
 impl<T: Canonical, const LENGTH: usize> Canonical for [T; LENGTH] {
-    fn feed(&self, sink: &mut impl Sink) {
-        self.iter().for_each(|value| value.feed(sink));
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        T::feed_all(self, hasher);
     }
 }
 
 impl<T: Canonical> Canonical for Option<T> {
-    fn feed(&self, sink: &mut impl Sink) {
-        self.is_some().feed(sink);
-        self.iter().for_each(|value| value.feed(sink));
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.is_some().feed(hasher);
+        self.iter().for_each(|value| value.feed(hasher));
     }
 }
 
 impl<A: Canonical, B: Canonical> Canonical for (A, B) {
-    fn feed(&self, sink: &mut impl Sink) {
-        self.0.feed(sink);
-        self.1.feed(sink);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.0.feed(hasher);
+        self.1.feed(hasher);
     }
 }
 
 impl<K: Canonical, V: Canonical> Canonical for IndexMap<K, V> {
-    fn feed(&self, sink: &mut impl Sink) {
-        (self.len() as u64).feed(sink);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        (self.len() as u64).feed(hasher);
         for (key, value) in self {
-            key.feed(sink);
-            value.feed(sink);
+            key.feed(hasher);
+            value.feed(hasher);
         }
     }
 }
 
 impl Canonical for Group {
-    fn feed(&self, sink: &mut impl Sink) {
-        (self.index() as u8).feed(sink);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        (self.index() as u8).feed(hasher);
     }
 }
 
 impl Canonical for Plan {
-    fn feed(&self, sink: &mut impl Sink) {
-        (self.index() as u8).feed(sink);
+    #[inline]
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        (self.index() as u8).feed(hasher);
+    }
+
+    fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
+        hasher.column(values, |plan| [plan.index() as u8]);
     }
 }
 
 impl Canonical for Channel {
-    fn feed(&self, sink: &mut impl Sink) {
-        (self.index() as u8).feed(sink);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        (self.index() as u8).feed(hasher);
     }
 }
 
 impl<T: Canonical> Canonical for ByGroup<T> {
-    fn feed(&self, sink: &mut impl Sink) {
-        self.0.feed(sink);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.0.feed(hasher);
     }
 }
 
 impl<T: Canonical> Canonical for ByPlan<T> {
-    fn feed(&self, sink: &mut impl Sink) {
-        self.0.feed(sink);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.0.feed(hasher);
     }
 }
 
 impl<T: Canonical> Canonical for ByChannel<T> {
-    fn feed(&self, sink: &mut impl Sink) {
-        self.0.feed(sink);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.0.feed(hasher);
     }
 }
 
@@ -195,9 +278,9 @@ impl<T: Canonical> Canonical for ByChannel<T> {
 macro_rules! canonical {
     ($($name:ident { $($field:ident),* $(,)? })*) => {$(
         impl $crate::world::canonical::Canonical for $name {
-            fn feed(&self, sink: &mut impl $crate::world::canonical::Sink) {
+            fn feed(&self, hasher: &mut $crate::world::canonical::CanonicalHasher) {
                 let $name { $($field),* } = self;
-                $($crate::world::canonical::Canonical::feed($field, sink);)*
+                $($crate::world::canonical::Canonical::feed($field, hasher);)*
             }
         }
 
@@ -215,9 +298,9 @@ pub(crate) use canonical;
 macro_rules! canonical_codes {
     ($($name:ident { $($value:ident),* $(,)? })*) => {$(
         impl $crate::world::canonical::Canonical for $name {
-            fn feed(&self, sink: &mut impl $crate::world::canonical::Sink) {
+            fn feed(&self, hasher: &mut $crate::world::canonical::CanonicalHasher) {
                 match self {
-                    $($name::$value)|* => sink.bytes(&[*self as u8]),
+                    $($name::$value)|* => hasher.bytes(&[*self as u8]),
                 }
             }
         }
@@ -271,5 +354,42 @@ mod tests {
         let mut piecewise = CanonicalHasher::default();
         long.iter().for_each(|byte| piecewise.bytes(&[*byte]));
         assert_eq!(piecewise.finish(), blake3::hash(&long));
+    }
+
+    #[test]
+    fn a_column_has_the_bytes_of_its_values() {
+        let numbers: Vec<u32> = (0..100_000).map(|value: u32| value.wrapping_mul(2_654_435_761)).collect();
+        let floats: Vec<f64> = numbers.iter().map(|value| f64::from(*value) / 7.0).collect();
+        let signs: Vec<bool> = numbers.iter().map(|value| value % 3 == 0).collect();
+        let plans: Vec<Plan> = numbers.iter().map(|value| Plan::ALL[*value as usize % 3]).collect();
+        let (mut columns, mut singly) = (CanonicalHasher::default(), CanonicalHasher::default());
+        7u8.feed(&mut columns);
+        7u8.feed(&mut singly);
+        u32::feed_all(&numbers, &mut columns);
+        f64::feed_all(&floats, &mut columns);
+        bool::feed_all(&signs, &mut columns);
+        Plan::feed_all(&plans, &mut columns);
+        numbers.iter().for_each(|value| value.feed(&mut singly));
+        floats.iter().for_each(|value| value.feed(&mut singly));
+        signs.iter().for_each(|value| value.feed(&mut singly));
+        plans.iter().for_each(|value| value.feed(&mut singly));
+        assert_eq!(columns.finish(), singly.finish());
+    }
+
+    #[test]
+    fn large_values_are_hashed_like_small_ones() {
+        for count in [0, 1, 8, 33, 100] {
+            let values: Vec<Pair> = (0..count)
+                .map(|first| Pair { first, second: vec![f64::from(first); 300 * first as usize] })
+                .collect();
+            let (mut together, mut singly) = (CanonicalHasher::default(), CanonicalHasher::default());
+            5u32.feed(&mut together);
+            5u32.feed(&mut singly);
+            together.large_values(&values);
+            values.iter().for_each(|value| value.feed(&mut singly));
+            9u32.feed(&mut together);
+            9u32.feed(&mut singly);
+            assert_eq!(together.finish(), singly.finish(), "{count} values");
+        }
     }
 }

@@ -226,16 +226,22 @@ fn earn_from_ads(customers: &mut Customers, ads: &AdLoad<'_>, finance: &mut Fina
 
 /// Cash, recurring revenue and stocks as they stand.
 pub fn closing_figures(world: &World) -> DayFigures {
-    let (mut mrr, mut individual_subscribers, mut enterprise_seats) = (0.0, 0, 0);
-    for (group, block) in world.customers.blocks() {
+    // Sums of blocks, in block order: adding up money is as long a chain as there are subscribers.
+    let by_block = world.customers.survey(|group, block| {
         if group.is_enterprise() {
             let seats = || block.seats.iter().map(|seats| seats.trunc());
-            mrr += block.effective_price.iter().zip(seats()).map(|(price, seats)| price * seats).sum::<f64>();
-            enterprise_seats += seats().sum::<f64>() as u32;
+            let paid =
+                block.effective_price.iter().zip(seats()).map(|(price, seats)| price * seats).sum::<f64>();
+            (paid, 0, seats().sum::<f64>() as u32)
         } else {
-            mrr += block.effective_price.iter().sum::<f64>();
-            individual_subscribers += block.len() as u32;
+            (block.effective_price.iter().sum::<f64>(), block.len() as u32, 0)
         }
+    });
+    let (mut mrr, mut individual_subscribers, mut enterprise_seats) = (0.0, 0, 0);
+    for (paid, individuals, seats) in by_block {
+        mrr += paid;
+        individual_subscribers += individuals;
+        enterprise_seats += seats;
     }
     DayFigures {
         day: world.day,

@@ -43,11 +43,13 @@ impl Group {
     }
 
     /// Position in the fixed order, 0..26.
+    #[inline]
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 
     /// Companies negotiate; individuals decide alone.
+    #[inline]
     pub fn is_enterprise(self) -> bool {
         matches!(self.0, 3..=5 | 16..=25)
     }
@@ -91,6 +93,7 @@ impl Plan {
     }
 
     /// Position in evaluation order, 0..3.
+    #[inline]
     pub fn index(self) -> usize {
         self as usize
     }
@@ -144,6 +147,7 @@ impl Channel {
     }
 
     /// Position in channel order, 0..5.
+    #[inline]
     pub fn index(self) -> usize {
         self as usize
     }
@@ -208,12 +212,14 @@ macro_rules! table_by {
 
         impl<T> Index<$key> for $name<T> {
             type Output = T;
+            #[inline]
             fn index(&self, key: $key) -> &T {
                 &self.0[key.index()]
             }
         }
 
         impl<T> IndexMut<$key> for $name<T> {
+            #[inline]
             fn index_mut(&mut self, key: $key) -> &mut T {
                 &mut self.0[key.index()]
             }

@@ -8,6 +8,8 @@
 //! numbers come from the inverse distribution function (algorithm AS 241 of Wichura), which needs one word,
 //! no rejection, and no more than a logarithm.
 
+#[cfg_attr(not(target_arch = "x86_64"), path = "random/no_lanes.rs")]
+mod lanes;
 mod quantile;
 
 use rand_chacha::ChaCha8Rng;
@@ -120,13 +122,91 @@ impl Streams {
 
     /// The stream of a part for up to four entity keys. Equal arguments always give the same stream.
     pub fn open<const KEYS: usize>(&self, part: Part, entity: [u64; KEYS]) -> Stream {
+        Stream::of(self.key(part, entity))
+    }
+
+    fn key<const KEYS: usize>(&self, part: Part, entity: [u64; KEYS]) -> StreamKey {
         const { assert!(KEYS <= 4) };
         let mut bytes = [0u8; 32];
         for (slot, key) in bytes.chunks_exact_mut(8).zip(entity) {
             slot.copy_from_slice(&key.to_le_bytes());
         }
-        let key = blake3::keyed_hash(&self.keys[part as usize], &bytes[..8 * KEYS]);
-        Stream(ChaCha8Rng::from_seed(*key.as_bytes()))
+        StreamKey(*blake3::keyed_hash(&self.keys[part as usize], &bytes[..8 * KEYS]).as_bytes())
+    }
+
+    /// Keys of the streams of a part for many entities; [`Stream::of`] opens one as [`Streams::open`] does.
+    pub fn keys<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<StreamKey> {
+        together(
+            entities,
+            |entity| self.key(part, entity),
+            |some| lanes::keys(&self.keys[part as usize], some).map(|keys| keys.map(StreamKey::of_words)),
+        )
+    }
+
+    /// The first word of the stream of each of many entities: all there is to know of streams of one draw.
+    pub fn first_words<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<Word> {
+        together(
+            entities,
+            |entity| self.open(part, entity).word(),
+            |some| lanes::first_words(&self.keys[part as usize], some).map(|words| words.map(Word)),
+        )
+    }
+}
+
+/// Works on entities eight by eight where the processor can, and one by one where it cannot or for the last few.
+fn together<E: Copy, R>(
+    entities: &[E],
+    single: impl Fn(E) -> R,
+    eight: impl Fn(&[E; lanes::LANES]) -> Option<[R; lanes::LANES]>,
+) -> Vec<R> {
+    let mut results = Vec::with_capacity(entities.len());
+    let (eights, last) = entities.as_chunks();
+    for some in eights {
+        match eight(some) {
+            Some(found) => results.extend(found),
+            None => results.extend(some.iter().copied().map(&single)),
+        }
+    }
+    results.extend(last.iter().copied().map(single));
+    results
+}
+
+/// What a stream is opened with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StreamKey([u8; 32]);
+
+impl StreamKey {
+    fn of_words(words: lanes::Key) -> StreamKey {
+        let mut bytes = [0u8; 32];
+        for (bytes, word) in bytes.chunks_exact_mut(4).zip(words) {
+            bytes.copy_from_slice(&word.to_le_bytes());
+        }
+        StreamKey(bytes)
+    }
+}
+
+/// 64 random bits: one draw of a stream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Word(u64);
+
+impl Word {
+    /// Uniform in [0, 1), with 53 random bits.
+    #[inline]
+    pub fn uniform(self) -> f64 {
+        (self.0 >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+    }
+
+    /// Uniform in [low, high).
+    #[inline]
+    pub fn between(self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// Standard normal number.
+    #[inline]
+    pub fn standard_normal(self) -> f64 {
+        let middle = (self.0 >> 11) as f64 + 0.5;
+        inverse_normal(middle * (1.0 / (1u64 << 53) as f64))
     }
 }
 
@@ -135,14 +215,23 @@ impl Streams {
 pub struct Stream(ChaCha8Rng);
 
 impl Stream {
+    /// The stream with this key.
+    pub fn of(key: StreamKey) -> Stream {
+        Stream(ChaCha8Rng::from_seed(key.0))
+    }
+
+    fn word(&mut self) -> Word {
+        Word(self.0.next_u64())
+    }
+
     /// Uniform in [0, 1), with 53 random bits.
     pub fn uniform(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+        self.word().uniform()
     }
 
     /// Uniform in [low, high).
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.uniform()
+        self.word().between(low, high)
     }
 
     /// Uniform whole number in low..=high. The bias of the multiplication is below 2^-32.
@@ -163,8 +252,7 @@ impl Stream {
 
     /// Standard normal number.
     pub fn standard_normal(&mut self) -> f64 {
-        let middle = (self.0.next_u64() >> 11) as f64 + 0.5;
-        inverse_normal(middle * (1.0 / (1u64 << 53) as f64))
+        self.word().standard_normal()
     }
 
     /// Normal number with this mean and standard deviation.
@@ -193,13 +281,20 @@ impl Stream {
 
     /// Fills a slice with raw words, one per position: for blocks where each customer has a fixed place.
     pub fn fill(&mut self, words: &mut [u32]) {
-        for word in words {
-            *word = self.0.next_u32();
+        const PIECE: usize = 64;
+        let mut bytes = [0u8; 4 * PIECE];
+        for words in words.chunks_mut(PIECE) {
+            let bytes = &mut bytes[..4 * words.len()];
+            self.0.fill_bytes(bytes);
+            for (word, four) in words.iter_mut().zip(bytes.chunks_exact(4)) {
+                *word = u32::from_le_bytes([four[0], four[1], four[2], four[3]]);
+            }
         }
     }
 }
 
 /// True with probability `p`, decided by a raw word of [`Stream::fill`] (resolution 2^-32).
+#[inline]
 pub fn word_below(word: u32, p: f64) -> bool {
     f64::from(word) < p * 4_294_967_296.0
 }
@@ -264,6 +359,34 @@ mod tests {
         assert_ne!(first(&streams, Part::Traits, [0, 1]), first(&streams, Part::Traits, [0, 2]));
         assert_ne!(first(&streams, Part::Traits, [0, 1]), first(&streams, Part::LeadNoise, [0, 1]));
         assert_ne!(first(&streams, Part::Traits, [0, 1]), first(&Streams::new(43), Part::Traits, [0, 1]));
+    }
+
+    #[test]
+    fn streams_opened_together_are_those_opened_one_by_one() {
+        let streams = Streams::new(42);
+        for count in [0, 1, 7, 8, 9, 100] {
+            let entities: Vec<[u64; 3]> = (0..count).map(|n| [n, n << 33 | 5, u64::MAX - n]).collect();
+            let singly = entities.iter().map(|keys| streams.open(Part::UsageRate, *keys));
+            let first: Vec<Word> = singly.clone().map(|mut stream| stream.word()).collect();
+            assert_eq!(streams.first_words(Part::UsageRate, &entities), first);
+            let together = streams.keys(Part::UsageRate, &entities).into_iter().map(Stream::of);
+            for (mut one, mut other) in together.zip(singly) {
+                assert!((0..40).all(|_| one.word() == other.word()));
+            }
+        }
+        let single = streams.open(Part::Macro, [77]).word();
+        assert_eq!(streams.first_words(Part::Macro, &[[77]]), [single]);
+        let four = streams.open(Part::Macro, [1, 2, 3, 4]).word();
+        assert_eq!(streams.first_words(Part::Macro, &[[1, 2, 3, 4]]), [four]);
+    }
+
+    #[test]
+    fn words_that_fill_a_block_are_those_of_the_stream() {
+        let stream = Streams::new(5).open(Part::IssueOpening, [1, 2, 3]);
+        let mut words = [0; 1000];
+        stream.clone().fill(&mut words);
+        let mut singly = stream;
+        assert!(words.iter().all(|word| *word == singly.0.next_u32()));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The whole hidden truth of a company and its market.
 
-use super::canonical::{Canonical, CanonicalHasher, Sink, canonical, hash_of};
+use super::canonical::{Canonical, CanonicalHasher, canonical, hash_of};
 use super::customers::Customers;
 use super::enterprise::Enterprise;
 use super::events::{Category, Facts, LedgerEntry, LedgerNote, SettingsChange};

@@ -25,7 +25,7 @@ use crate::world::params::Params;
 #[derive(Debug, Clone, Default)]
 pub struct Entry {
     /// Facts.
-    pub facts: Facts,
+    pub facts: Arc<Facts>,
     /// Text of each notice of the facts.
     pub notices: Vec<String>,
     /// Description of each published reading of the facts.

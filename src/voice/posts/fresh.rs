@@ -13,9 +13,26 @@ const DRAFTS: usize = 24;
 /// Drafts that are tried at most to find one that is new as a whole.
 const MOST_DRAFTS: usize = 400;
 
-/// The last texts without capitals, oldest first.
+/// The last texts, oldest first.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Recent(VecDeque<String>);
+pub struct Recent(VecDeque<Remembered>);
+
+/// A text without capitals, taken apart once: it is compared with hundreds of drafts.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Remembered {
+    text: String,
+    sentences: Vec<String>,
+    opening: Vec<String>,
+}
+
+impl Remembered {
+    fn of(text: &str) -> Remembered {
+        let text = text.to_lowercase();
+        let sentences = sentences(&text).map(str::to_owned).collect();
+        let opening = opening(&text).map(str::to_owned).collect();
+        Remembered { text, sentences, opening }
+    }
+}
 
 impl Recent {
     /// Takes the freshest of some drafts, and remembers it. A text that was written within the last 60 is taken
@@ -42,19 +59,19 @@ impl Recent {
         if self.0.len() == MEMORY {
             self.0.pop_front();
         }
-        self.0.push_back(text.to_lowercase());
+        self.0.push_back(Remembered::of(text));
     }
 
     /// How much of a text was read lately: sentences, the beginning, or, far worse, all of it.
     fn staleness(&self, text: &str) -> usize {
         let text = text.to_lowercase();
-        if self.0.iter().any(|other| *other == text) {
+        if self.0.iter().any(|other| other.text == text) {
             return MOST_DRAFTS;
         }
-        let known =
-            sentences(&text).filter(|own| self.0.iter().any(|other| sentences(other).any(|it| it == *own)));
-        let alike = self.0.iter().rev().take(OPENINGS).any(|other| opening(other) == opening(&text));
-        2 * known.count() + usize::from(alike)
+        let was_read = |own: &&str| self.0.iter().any(|other| other.sentences.iter().any(|it| it == own));
+        let known = sentences(&text).filter(was_read).count();
+        let alike = self.0.iter().rev().take(OPENINGS).any(|other| opening(&text).eq(&other.opening));
+        2 * known + usize::from(alike)
     }
 }
 
@@ -64,8 +81,8 @@ fn sentences(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// The first three words.
-fn opening(text: &str) -> Vec<&str> {
-    text.split_whitespace().take(3).collect()
+fn opening(text: &str) -> impl Iterator<Item = &str> {
+    text.split_whitespace().take(3)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! their numbers. A daily sweep goes through whole blocks, on any thread; a customer's random word stands at
 //! its fixed place of the block's stream, so nobody's fate shifts another's (chapter 20 §4).
 
-use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink};
+use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 use crate::world::identifiers::Plan;
 
 use super::curve::Curve;
@@ -52,8 +52,8 @@ macro_rules! columns {
         }
 
         impl Canonical for $Row {
-            fn feed(&self, sink: &mut impl Sink) {
-                $(self.$column.feed(sink);)*
+            fn feed(&self, hasher: &mut CanonicalHasher) {
+                $(self.$column.feed(hasher);)*
             }
         }
 
@@ -74,8 +74,12 @@ macro_rules! columns {
         }
 
         impl Canonical for $Block {
-            fn feed(&self, sink: &mut impl Sink) {
-                $(self.$column.feed(sink);)*
+            fn feed(&self, hasher: &mut CanonicalHasher) {
+                $(self.$column.feed(hasher);)*
+            }
+
+            fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
+                hasher.large_values(values);
             }
         }
     };
@@ -144,14 +148,11 @@ columns! {
 }
 
 fn drop_positions<T: Copy>(column: &mut Vec<T>, gone: &[usize]) {
-    let (mut next, mut kept) = (gone.iter().copied().peekable(), gone[0]);
-    for at in gone[0]..column.len() {
-        if next.peek() == Some(&at) {
-            next.next();
-        } else {
-            column[kept] = column[at];
-            kept += 1;
-        }
+    let mut kept = gone[0];
+    for (number, &at) in gone.iter().enumerate() {
+        let next = gone.get(number + 1).copied().unwrap_or(column.len());
+        column.copy_within(at + 1..next, kept);
+        kept += next - at - 1;
     }
     column.truncate(kept);
 }
@@ -183,7 +184,14 @@ impl Block {
         }
     }
 
+    /// Positions of those who are billed on days with this remainder.
+    pub fn due(&self, billing_day: u8) -> Vec<usize> {
+        let days = self.billing_day.iter().enumerate();
+        days.filter(|(_, day)| **day == billing_day).map(|(at, _)| at).collect()
+    }
+
     /// Place of a row in its block's stream of random words.
+    #[inline]
     pub fn place(&self, at: usize) -> usize {
         ((self.n[at] - 1) % BLOCK) as usize
     }

@@ -35,6 +35,7 @@ impl Curve {
 }
 
 /// Logistic function with the argument clamped (chapter 20, notation).
+#[inline]
 pub fn sigmoid(z: f64, participation: &Participation) -> f64 {
     1.0 / (1.0 + libm::exp(-z.clamp(participation.sigmoid_input_min, participation.sigmoid_input_max)))
 }
@@ -43,6 +44,7 @@ pub fn sigmoid(z: f64, participation: &Participation) -> f64 {
 ///
 /// Above the budget it is q_max. Below, the released form has two logistic halves that jump at half the
 /// budget; the paper's form (`required_quality = "blended"`) blends both sigmoids (chapter 20 §8, §23).
+#[inline]
 pub fn required_quality(price: f64, curve: &Curve, params: &Params) -> f64 {
     let form = &params.participation;
     if price > curve.c_max {

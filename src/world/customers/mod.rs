@@ -143,17 +143,52 @@ impl Customers {
     /// Works through all blocks that hold anybody, on several threads when there are many; the results stand
     /// in group and block order whatever the number of threads.
     pub fn sweep<R: Send>(&mut self, work: impl Fn(Group, u32, &mut Block) -> R + Sync) -> Vec<R> {
-        let mut jobs: Vec<(Group, u32, &mut Block)> = Vec::new();
+        let jobs = self.jobs();
+        if jobs.len() < PARALLEL_FROM {
+            jobs.into_iter().map(|(group, at, block)| work(group, at, block)).collect()
+        } else {
+            jobs.into_par_iter().map(|(group, at, block)| work(group, at, block)).collect()
+        }
+    }
+
+    /// Works through all blocks that hold anybody like [`Customers::sweep`], with what an earlier sweep found out
+    /// about each of them.
+    pub fn sweep_with<T: Send, R: Send>(
+        &mut self,
+        found: Vec<T>,
+        work: impl Fn(Group, u32, &mut Block, T) -> R + Sync,
+    ) -> Vec<R> {
+        let jobs = self.jobs();
+        debug_assert_eq!(jobs.len(), found.len(), "nobody may have come or left in between");
+        if jobs.len() < PARALLEL_FROM {
+            let each = jobs.into_iter().zip(found);
+            each.map(|((group, at, block), own)| work(group, at, block, own)).collect()
+        } else {
+            let each = jobs.into_par_iter().zip(found);
+            each.map(|((group, at, block), own)| work(group, at, block, own)).collect()
+        }
+    }
+
+    /// Blocks that hold anybody, with their group and number.
+    fn jobs(&mut self) -> Vec<(Group, u32, &mut Block)> {
+        let mut jobs = Vec::new();
         for (group, own) in Group::all().zip(&mut self.groups.0) {
             let blocks = own.blocks.iter_mut().enumerate();
             jobs.extend(
                 blocks.filter(|(_, block)| !block.is_empty()).map(|(at, block)| (group, at as u32, block)),
             );
         }
-        if jobs.len() < PARALLEL_FROM {
-            jobs.into_iter().map(|(group, at, block)| work(group, at, block)).collect()
+        jobs
+    }
+
+    /// Looks at all blocks that hold anybody, on several threads when there are many; the results stand in group
+    /// and block order.
+    pub fn survey<R: Send>(&self, look: impl Fn(Group, &Block) -> R + Sync) -> Vec<R> {
+        let blocks: Vec<(Group, &Block)> = self.blocks().collect();
+        if blocks.len() < PARALLEL_FROM {
+            blocks.into_iter().map(|(group, block)| look(group, block)).collect()
         } else {
-            jobs.into_par_iter().map(|(group, at, block)| work(group, at, block)).collect()
+            blocks.into_par_iter().map(|(group, block)| look(group, block)).collect()
         }
     }
 

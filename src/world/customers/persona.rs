@@ -1,6 +1,6 @@
 //! Picks of a customer's profile: codes only; words are made when a row is written (chapter 10.5).
 
-use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink};
+use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 use crate::world::identifiers::Group;
 use crate::world::params::Params;
 use crate::world::random::Stream;
@@ -13,8 +13,8 @@ use crate::world::random::Stream;
 pub struct PersonaPicks(pub [u8; 7]);
 
 impl Canonical for PersonaPicks {
-    fn feed(&self, sink: &mut impl Sink) {
-        sink.bytes(&self.0);
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        hasher.bytes(&self.0);
     }
 }
 

@@ -44,7 +44,12 @@ pub struct Negotiator {
 
 /// Traits of the n-th customer of a group; `deal_velocity` is today's macro multiplier of that name.
 pub fn draw_traits(group: Group, n: u32, deal_velocity: f64, params: &Params, streams: &Streams) -> Traits {
-    let mut stream = streams.open(Part::Traits, [group.index() as u64, u64::from(n)]);
+    let stream = streams.open(Part::Traits, [group.index() as u64, u64::from(n)]);
+    traits_from(stream, group, deal_velocity, params)
+}
+
+/// Traits of the customer of a group whose stream this is.
+pub fn traits_from(mut stream: Stream, group: Group, deal_velocity: f64, params: &Params) -> Traits {
     let (own, bounds) = (params.group(group), &params.customer_generation);
     let steepness = |exponential: f64, offset: f64, low, high| (exponential + offset).clamp(low, high);
     let steepness_left = steepness(

@@ -1,6 +1,6 @@
 //! Companies that negotiate: what stays the same about them, and where they stand.
 
-use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink, canonical};
+use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical};
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Subscriber;
 use crate::world::customers::persona::PersonaPicks;
@@ -47,11 +47,11 @@ canonical! {
 }
 
 impl Canonical for Standing {
-    fn feed(&self, sink: &mut impl Sink) {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
         match self {
-            Standing::Lead(row) => (0u8, *row).feed(sink),
-            Standing::Subscriber => 1u8.feed(sink),
-            Standing::Gone(row) => (2u8, *row).feed(sink),
+            Standing::Lead(row) => (0u8, *row).feed(hasher),
+            Standing::Subscriber => 1u8.feed(hasher),
+            Standing::Gone(row) => (2u8, *row).feed(hasher),
         }
     }
 }

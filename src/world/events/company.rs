@@ -1,6 +1,6 @@
 //! The company and its environment: settings, service, research, notifications.
 
-use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink, canonical};
+use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical};
 use crate::world::identifiers::Group;
 use crate::world::market::economy::Reading;
 use crate::world::market::studies::Study;
@@ -51,15 +51,15 @@ impl SettingsChange {
 }
 
 impl Canonical for SettingsChange {
-    fn feed(&self, sink: &mut impl Sink) {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
         match self {
-            SettingsChange::Core(value) => (0u8, *value).feed(sink),
-            SettingsChange::Promotion(value) => (1u8, value.clone()).feed(sink),
-            SettingsChange::LeadPromotion(value) => (2u8, value.clone()).feed(sink),
-            SettingsChange::AdsStrength(value) => (3u8, value.clone()).feed(sink),
-            SettingsChange::TargetedAds(value) => (4u8, value.clone()).feed(sink),
-            SettingsChange::TargetedOperations(value) => (5u8, value.clone()).feed(sink),
-            SettingsChange::TargetedDevelopment(value) => (6u8, value.clone()).feed(sink),
+            SettingsChange::Core(value) => (0u8, *value).feed(hasher),
+            SettingsChange::Promotion(value) => (1u8, value.clone()).feed(hasher),
+            SettingsChange::LeadPromotion(value) => (2u8, value.clone()).feed(hasher),
+            SettingsChange::AdsStrength(value) => (3u8, value.clone()).feed(hasher),
+            SettingsChange::TargetedAds(value) => (4u8, value.clone()).feed(hasher),
+            SettingsChange::TargetedOperations(value) => (5u8, value.clone()).feed(hasher),
+            SettingsChange::TargetedDevelopment(value) => (6u8, value.clone()).feed(hasher),
         }
     }
 }
@@ -126,10 +126,10 @@ pub enum ResearchChange {
 }
 
 impl Canonical for ResearchChange {
-    fn feed(&self, sink: &mut impl Sink) {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
         match self {
-            ResearchChange::Started(project) => (0u8, *project).feed(sink),
-            ResearchChange::Completed(project) => (1u8, *project).feed(sink),
+            ResearchChange::Started(project) => (0u8, *project).feed(hasher),
+            ResearchChange::Completed(project) => (1u8, *project).feed(hasher),
         }
     }
 }
@@ -238,20 +238,20 @@ impl Notice {
 }
 
 impl Canonical for Notice {
-    fn feed(&self, sink: &mut impl Sink) {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
         match *self {
-            Notice::EnterpriseLead => 0u8.feed(sink),
-            Notice::LeadLostByTimeout { days } => (1u8, days).feed(sink),
-            Notice::ResearchComplete { tier, number } => (2u8, (tier, number)).feed(sink),
-            Notice::EconomyUpdate(reading) => (3u8, reading).feed(sink),
-            Notice::GroupFound { group, attempt } => (4u8, (group, attempt)).feed(sink),
-            Notice::StudyComplete { study, noise } => (5u8, (study, noise)).feed(sink),
-            Notice::LeadSilent => 10u8.feed(sink),
-            Notice::CounterOffer { customer } => (11u8, customer).feed(sink),
-            Notice::ChurnThreat { customer } => (12u8, customer).feed(sink),
-            Notice::PlanWish { customer, upgrade } => (13u8, (customer, upgrade)).feed(sink),
-            Notice::DealWon { price } => (14u8, price).feed(sink),
-            Notice::OwnPostSeen(reaction) => (20u8, reaction).feed(sink),
+            Notice::EnterpriseLead => 0u8.feed(hasher),
+            Notice::LeadLostByTimeout { days } => (1u8, days).feed(hasher),
+            Notice::ResearchComplete { tier, number } => (2u8, (tier, number)).feed(hasher),
+            Notice::EconomyUpdate(reading) => (3u8, reading).feed(hasher),
+            Notice::GroupFound { group, attempt } => (4u8, (group, attempt)).feed(hasher),
+            Notice::StudyComplete { study, noise } => (5u8, (study, noise)).feed(hasher),
+            Notice::LeadSilent => 10u8.feed(hasher),
+            Notice::CounterOffer { customer } => (11u8, customer).feed(hasher),
+            Notice::ChurnThreat { customer } => (12u8, customer).feed(hasher),
+            Notice::PlanWish { customer, upgrade } => (13u8, (customer, upgrade)).feed(hasher),
+            Notice::DealWon { price } => (14u8, price).feed(hasher),
+            Notice::OwnPostSeen(reaction) => (20u8, reaction).feed(hasher),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Movements of cash.
 
-use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink, canonical, canonical_codes};
+use crate::world::canonical::{
+    Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes,
+};
 use crate::world::market::studies::Study;
 
 canonical! {
@@ -116,13 +118,13 @@ pub enum LedgerNote {
 }
 
 impl Canonical for LedgerNote {
-    fn feed(&self, sink: &mut impl Sink) {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
         match *self {
-            LedgerNote::General => (0u8, 0u32).feed(sink),
-            LedgerNote::Targeted => (1u8, 0u32).feed(sink),
-            LedgerNote::Subscribers(count) => (2u8, count).feed(sink),
-            LedgerNote::Project(tier, number) => (3u8, (tier, number)).feed(sink),
-            LedgerNote::Study(study) => (4u8, study).feed(sink),
+            LedgerNote::General => (0u8, 0u32).feed(hasher),
+            LedgerNote::Targeted => (1u8, 0u32).feed(hasher),
+            LedgerNote::Subscribers(count) => (2u8, count).feed(hasher),
+            LedgerNote::Project(tier, number) => (3u8, (tier, number)).feed(hasher),
+            LedgerNote::Study(study) => (4u8, study).feed(hasher),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Social media: what is written in public. Codes and numbers only; `voice` finds the words.
 
-use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink, canonical, canonical_codes};
+use crate::world::canonical::{
+    Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes,
+};
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::events::ThreadKind;
 use crate::world::identifiers::{Group, Plan};
@@ -91,15 +93,15 @@ pub enum Matter {
 }
 
 impl Canonical for Matter {
-    fn feed(&self, sink: &mut impl Sink) {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
         match *self {
-            Matter::Opinion(opinion) => (0u8, opinion).feed(sink),
-            Matter::Reading(reading) => (1u8, reading).feed(sink),
-            Matter::Economy { trend, pmi, perspective } => (2u8, ((trend, pmi), perspective)).feed(sink),
+            Matter::Opinion(opinion) => (0u8, opinion).feed(hasher),
+            Matter::Reading(reading) => (1u8, reading).feed(hasher),
+            Matter::Economy { trend, pmi, perspective } => (2u8, ((trend, pmi), perspective)).feed(hasher),
             Matter::Rival { name, perspective, severity, estimate } => {
-                (3u8, ((name, perspective), (severity, estimate))).feed(sink)
+                (3u8, ((name, perspective), (severity, estimate))).feed(hasher)
             }
-            Matter::Comment { own_post, group, effect } => (4u8, ((own_post, group), effect)).feed(sink),
+            Matter::Comment { own_post, group, effect } => (4u8, ((own_post, group), effect)).feed(hasher),
         }
     }
 }
@@ -178,7 +180,7 @@ pub enum Cause {
 }
 
 impl Canonical for Cause {
-    fn feed(&self, sink: &mut impl Sink) {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
         let code = match self {
             Cause::Overload => 0u8,
             Cause::Outage => 1,
@@ -190,9 +192,9 @@ impl Canonical for Cause {
             Cause::Cancelled => 7,
             Cause::Lost { .. } => 8,
         };
-        code.feed(sink);
+        code.feed(hasher);
         if let Cause::Lost { thread, unanswered } = self {
-            (*thread, *unanswered).feed(sink);
+            (*thread, *unanswered).feed(hasher);
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Negotiations with companies.
 
-use crate::world::canonical::{Canonical, CanonicalReader, Restore, Sink, canonical, canonical_codes};
+use crate::world::canonical::{
+    Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes,
+};
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::identifiers::{Group, Plan};
 
@@ -113,19 +115,19 @@ pub enum TurnContent {
 }
 
 impl Canonical for TurnContent {
-    fn feed(&self, sink: &mut impl Sink) {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
         match self {
-            TurnContent::Opening => 0u8.feed(sink),
+            TurnContent::Opening => 0u8.feed(hasher),
             TurnContent::Offer(offerings) => {
-                1u8.feed(sink);
-                offerings.feed(sink);
+                1u8.feed(hasher);
+                offerings.feed(hasher);
             }
-            TurnContent::Rejection => 2u8.feed(sink),
-            TurnContent::Threat => 3u8.feed(sink),
-            TurnContent::PlanWish { from, to } => (4u8, (*from, *to)).feed(sink),
-            TurnContent::Counter { asked, offered } => (5u8, (*asked, *offered)).feed(sink),
-            TurnContent::Acceptance(offering) => (6u8, *offering).feed(sink),
-            TurnContent::Closing(offering) => (7u8, *offering).feed(sink),
+            TurnContent::Rejection => 2u8.feed(hasher),
+            TurnContent::Threat => 3u8.feed(hasher),
+            TurnContent::PlanWish { from, to } => (4u8, (*from, *to)).feed(hasher),
+            TurnContent::Counter { asked, offered } => (5u8, (*asked, *offered)).feed(hasher),
+            TurnContent::Acceptance(offering) => (6u8, *offering).feed(hasher),
+            TurnContent::Closing(offering) => (7u8, *offering).feed(hasher),
         }
     }
 }

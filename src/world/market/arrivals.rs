@@ -6,7 +6,7 @@ use super::leads::{LeadContext, LeadFactors, lead_factors};
 use crate::world::customers::choice::{Choice, Offer, accepts, choose_plan, passes_gate};
 use crate::world::customers::columns::Subscriber;
 use crate::world::customers::curve::Curve;
-use crate::world::customers::traits::{Traits, draw_traits};
+use crate::world::customers::traits::{Traits, traits_from};
 use crate::world::customers::{ArrivalRun, Customers};
 use crate::world::day::Morning;
 use crate::world::enterprise::{Company, Enterprise, Standing};
@@ -16,7 +16,7 @@ use crate::world::market::Market;
 use crate::world::market::economy::Dimension;
 use crate::world::params::{DriftCounted, Params, ServicePenalty};
 use crate::world::product::quality::quota_demand;
-use crate::world::random::{Part, Streams};
+use crate::world::random::{Part, Stream, Streams, Word};
 use crate::world::retention::refresh_required;
 use crate::world::retention::renewal::ongoing_discount;
 use crate::world::settings::Settings;
@@ -108,15 +108,42 @@ pub fn arrive(
     counts
 }
 
+/// Leads whose streams are opened together: a round number of lanes, and little enough work to share out.
+const LEADS_TOGETHER: usize = 64;
+
 fn evaluate(arrivals: &Arrivals<'_>, factors: &LeadFactors, run: &ArrivalRun) -> Vec<Lead> {
     let offers = offers(arrivals, run.group);
-    let numbers = run.first_n..run.first_n + run.count;
-    let lead = |n: u32| evaluate_lead(arrivals, factors, &offers, run.group, n);
-    if run.count < 64 {
-        numbers.map(lead).collect()
+    let group = run.group.index() as u64;
+    let keys: Vec<[u64; 2]> = (run.first_n..run.first_n + run.count).map(|n| [group, n.into()]).collect();
+    let some = |keys: &[[u64; 2]]| evaluate_some(arrivals, factors, &offers, run.group, keys);
+    if keys.len() <= LEADS_TOGETHER {
+        some(&keys)
     } else {
-        numbers.into_par_iter().with_min_len(32).map(lead).collect()
+        keys.par_chunks(LEADS_TOGETHER).flat_map_iter(some).collect()
     }
+}
+
+/// Draws and evaluates the leads with these keys (group and running number) of one group.
+fn evaluate_some(
+    arrivals: &Arrivals<'_>,
+    factors: &LeadFactors,
+    offers: &ByPlan<Offer>,
+    group: Group,
+    keys: &[[u64; 2]],
+) -> Vec<Lead> {
+    let &Arrivals { market, params, streams, .. } = arrivals;
+    let velocity = market.economy.multiplier(group, Dimension::DealVelocity, params);
+    let traits = streams.keys(Part::Traits, keys);
+    let sources = streams.first_words(Part::LeadSource, keys);
+    let noises = streams.first_words(Part::LeadNoise, keys);
+    let draws = traits.into_iter().zip(sources).zip(noises);
+    draws
+        .map(|((key, source), noise)| {
+            let traits = traits_from(Stream::of(key), group, velocity, params);
+            let source = factors.source(source.uniform());
+            evaluate_lead(arrivals, offers, group, traits, source, noise)
+        })
+        .collect()
 }
 
 fn offers(arrivals: &Arrivals<'_>, group: Group) -> ByPlan<Offer> {
@@ -134,19 +161,16 @@ fn offers(arrivals: &Arrivals<'_>, group: Group) -> ByPlan<Offer> {
 
 fn evaluate_lead(
     arrivals: &Arrivals<'_>,
-    factors: &LeadFactors,
     offers: &ByPlan<Offer>,
     group: Group,
-    n: u32,
+    traits: Traits,
+    source: Source,
+    noise: Word,
 ) -> Lead {
-    let &Arrivals { morning, settings, market, params, streams, .. } = arrivals;
-    let velocity = market.economy.multiplier(group, Dimension::DealVelocity, params);
-    let traits = draw_traits(group, n, velocity, params, streams);
+    let &Arrivals { morning, settings, params, .. } = arrivals;
     let expectation = morning.expectations[group];
     let floor = params.customer_generation.c_max_min;
     let curve = traits.curve.drifted(expectation.quality, expectation.c_max, floor);
-    let keys = [group.index() as u64, u64::from(n)];
-    let source = factors.source(streams.open(Part::LeadSource, keys).uniform());
     let rate = traits.usage_demand * traits.seats;
     let demand = quota_demand(rate, rate, params);
     let outcome = if group.is_enterprise() {
@@ -156,9 +180,7 @@ fn evaluate_lead(
             settings.lead_promotion.sum(group, source.channel()).max(params.promotions.lead_promotion_min);
         let choice = choose_plan(offers, discount, demand, &curve, params);
         let quality = &params.quality;
-        let noise = streams
-            .open(Part::LeadNoise, keys)
-            .between(quality.initial_decision_noise_min, quality.initial_decision_noise_max);
+        let noise = noise.between(quality.initial_decision_noise_min, quality.initial_decision_noise_max);
         if accepts(&choice, noise, &curve, params) {
             Outcome::Subscribes { choice, discount }
         } else {

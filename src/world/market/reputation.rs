@@ -37,6 +37,7 @@ impl ReputationBook {
 }
 
 /// What one subscriber contributes: 0.0005 S, twice as much when S is negative.
+#[inline]
 pub fn contribution(satisfaction: f64, law: &Reputation) -> f64 {
     let weight = if satisfaction < 0.0 { law.negative_satisfaction_multiplier } else { 1.0 };
     law.base_rep_per_customer * weight * satisfaction

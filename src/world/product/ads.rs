@@ -29,11 +29,13 @@ impl<'a> AdLoad<'a> {
     }
 
     /// What decisions and negotiations see: global + group.
+    #[inline]
     pub fn for_group(&self, group: Group) -> f64 {
         self.by_group[group]
     }
 
     /// What satisfaction feels and revenue counts: global + group + customer.
+    #[inline]
     pub fn for_customer(&self, group: Group, customer: u32) -> f64 {
         if !self.personal {
             return self.by_group[group];

@@ -3,11 +3,13 @@
 use crate::world::params::{Ads, Params, PerceivedQuality, Quality};
 
 /// Quality delivered to a group on a plan: (base + shared + group bonus) times the model's multiplier.
+#[inline]
 pub fn delivered_quality(base: f64, shared_bonus: f64, group_bonus: f64, multiplier: f64) -> f64 {
     (base + shared_bonus + group_bonus) * multiplier
 }
 
 /// Share of a demand that a quota covers, 0..=1; no demand is always covered.
+#[inline]
 pub fn quota_factor(quota: f64, demand: f64, quality: &Quality) -> f64 {
     if demand <= 0.0 {
         return 1.0;
@@ -16,11 +18,13 @@ pub fn quota_factor(quota: f64, demand: f64, quality: &Quality) -> f64 {
 }
 
 /// Quality lost to overload and outages today: 0.08 o + 0.20 outage (0 or 1).
+#[inline]
 pub fn service_penalty(overload: f64, outage: bool, quality: &Quality) -> f64 {
     quality.service_overload_weight * overload + if outage { quality.service_outage_weight } else { 0.0 }
 }
 
 /// Bonus of a good relationship, malus of a bad one; the stored value as it is.
+#[inline]
 pub fn relationship_bonus(relationship: f64, quality: &Quality) -> f64 {
     quality.relationship_quality_bonus_max
         * (relationship - quality.relationship_neutral_point)
@@ -28,6 +32,7 @@ pub fn relationship_bonus(relationship: f64, quality: &Quality) -> f64 {
 }
 
 /// A relationship of exactly 0 is read as neutral by most rules (chapter 10.3, note).
+#[inline]
 pub fn relationship_as_read(relationship: f64, quality: &Quality) -> f64 {
     if relationship == 0.0 { quality.fallback_relationship } else { relationship }
 }
@@ -48,6 +53,7 @@ impl TenureTable {
     }
 
     /// The bonus after this many days.
+    #[inline]
     pub fn bonus(&self, days_subscribed: u32) -> f64 {
         self.0[days_subscribed as usize]
     }
@@ -78,6 +84,7 @@ pub struct Experience {
 
 /// Perceived quality: (delivered + relationship + tenure) quota - issues - ads in the release; the paper
 /// multiplies everything by the quota factor.
+#[inline]
 pub fn perceived_quality(experience: Experience, form: PerceivedQuality) -> f64 {
     let Experience { delivered, relationship, tenure, quota, issues, ads } = experience;
     match form {
@@ -87,6 +94,7 @@ pub fn perceived_quality(experience: Experience, form: PerceivedQuality) -> f64 
 }
 
 /// What a quota is compared with: units a day, or of a whole billing period.
+#[inline]
 pub fn quota_demand(daily_demand_today: f64, daily_rate: f64, params: &Params) -> f64 {
     match params.fidelity.usage_quota {
         crate::world::params::UsageQuota::Daily => daily_demand_today,

@@ -1,5 +1,7 @@
 //! Usage of the day (chapter 20 §12, step 4).
 
+use std::sync::Arc;
+
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::day::Morning;
@@ -18,12 +20,14 @@ pub struct Metered {
 
 /// Usage rate of a billing period, units a day for the whole account: max(0, N(u, 0.2 u)) times seats;
 /// `z` is a standard normal draw.
+#[inline]
 pub fn usage_rate(usage_demand: f64, seats: f64, z: f64, bounds: &CustomerGeneration) -> f64 {
     let spread = bounds.daily_usage_rate_std_fraction * usage_demand;
     (usage_demand + spread * z).max(bounds.daily_usage_rate_min) * seats
 }
 
 /// Usage of one account today: its rate on this weekday, limited by the quota, rounded half away from zero.
+#[inline]
 pub fn usage_today(usage_rate: f64, weekday: f64, quota: f64) -> u32 {
     let limited = (usage_rate * weekday).min(quota.max(0.0));
     // Casting truncates; the remainder decides. Faster than a rounding call, and equal to it below 2^32.
@@ -40,25 +44,24 @@ pub fn meter(customers: &mut Customers, morning: &Morning, params: &Params, fact
             metered.by_plan[plan] += by_plan[plan];
             metered.total += by_plan[plan];
         }
-        facts.usage.push(rows);
+        facts.usage.push(Arc::new(rows));
     }
     metered
 }
 
 fn meter_block(block: &mut Block, morning: &Morning, params: &Params) -> (ByPlan<u64>, UsageRows) {
     let mut by_plan = ByPlan([0u64; 3]);
-    let mut units = Vec::with_capacity(block.len());
     let per_period = params.fidelity.usage_quota == UsageQuota::Period;
-    for at in 0..block.len() {
-        let plan = block.plan[at];
-        let mut quota = morning.quotas[plan];
-        if per_period {
-            quota = (quota - block.period_usage[at] as f64).max(0.0);
-        }
-        let used = usage_today(block.usage_rate[at], morning.weekday, quota);
-        by_plan[plan] += u64::from(used);
-        units.push(used);
-    }
+    let (weekday, quotas) = (morning.weekday, morning.quotas);
+    let rows = block.plan.iter().zip(&block.usage_rate).zip(&block.period_usage);
+    let units: Vec<u32> = rows
+        .map(|((&plan, &rate), &so_far)| {
+            let quota = if per_period { (quotas[plan] - so_far as f64).max(0.0) } else { quotas[plan] };
+            let used = usage_today(rate, weekday, quota);
+            by_plan[plan] += u64::from(used);
+            used
+        })
+        .collect();
     if per_period {
         block.period_usage.iter_mut().zip(&units).for_each(|(sum, used)| *sum += u64::from(*used));
     }

@@ -11,7 +11,7 @@ use crate::world::events::{Facts, Payment, TermsChanged};
 use crate::world::identifiers::Group;
 use crate::world::params::Params;
 use crate::world::product::usage::usage_rate;
-use crate::world::random::{Part, Streams};
+use crate::world::random::{Part, Streams, Word};
 use crate::world::settings::Settings;
 
 /// What bills of a day share.
@@ -48,11 +48,14 @@ pub fn collect(customers: &mut Customers, bill: &Terms<'_>, facts: &mut Facts) -
 
 fn bill_block(group: Group, block: &mut Block, bill: &Terms<'_>) -> (Vec<Payment>, Vec<TermsChanged>) {
     let today = (bill.morning.day % bill.params.billing.billing_period_days) as u8;
-    let (mut payments, mut changes) = (Vec::new(), Vec::new());
-    for at in 0..block.len() {
-        if block.billing_day[at] != today {
-            continue;
-        }
+    let due = block.due(today);
+    let (mut payments, mut changes) = (Vec::with_capacity(due.len()), Vec::new());
+    let keys: Vec<[u64; 3]> = due
+        .iter()
+        .map(|at| [group.index() as u64, u64::from(block.n[*at]), u64::from(bill.morning.day)])
+        .collect();
+    let rates = bill.streams.first_words(Part::UsageRate, &keys);
+    for (at, rate) in due.into_iter().zip(rates) {
         if !bill.suspended.contains(&block.customer[at]) {
             let before = terms(block, at);
             payments.push(pay(group, block, at, bill));
@@ -62,7 +65,7 @@ fn bill_block(group: Group, block: &mut Block, bill: &Terms<'_>) -> (Vec<Payment
                 changes.push(after);
             }
         }
-        start_period(group, block, at, bill);
+        start_period(block, at, rate, bill.params);
     }
     (payments, changes)
 }
@@ -89,12 +92,10 @@ fn pay(group: Group, block: &mut Block, at: usize, bill: &Terms<'_>) -> Payment 
     Payment { customer, amount: price * block.seats[at].trunc() }
 }
 
-/// Draws the usage of the new period, at today's seats.
-fn start_period(group: Group, block: &mut Block, at: usize, bill: &Terms<'_>) {
-    let keys = [group.index() as u64, u64::from(block.n[at]), u64::from(bill.morning.day)];
-    let z = bill.streams.open(Part::UsageRate, keys).standard_normal();
-    let seats = block.seats[at].trunc();
-    block.usage_rate[at] = usage_rate(block.usage_demand[at], seats, z, &bill.params.customer_generation);
+/// Sets the usage of the new period from its draw, at today's seats.
+fn start_period(block: &mut Block, at: usize, rate: Word, params: &Params) {
+    let (z, seats) = (rate.standard_normal(), block.seats[at].trunc());
+    block.usage_rate[at] = usage_rate(block.usage_demand[at], seats, z, &params.customer_generation);
     block.period_usage[at] = 0;
 }
 

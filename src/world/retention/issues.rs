@@ -14,6 +14,7 @@ use crate::world::random::{Part, Streams, word_below};
 use crate::world::settings::Settings;
 
 /// Chance of a new issue today, from the satisfaction of the start of the day and whole seats.
+#[inline]
 pub fn issue_probability(satisfaction: f64, outage: bool, seats: f64, issues: &Issues) -> f64 {
     let rate = issues.base_issue_rate
         + issues.issue_quality_factor * (issues.issue_satisfaction_reference - satisfaction)
@@ -90,19 +91,21 @@ pub fn read_calls(
     params: &Params,
     streams: &Streams,
 ) -> Vec<Calls> {
+    let law = &params.issues;
     customers.sweep(|group, block_number, block| {
         let keys = [u64::from(day), group.index() as u64, u64::from(block_number)];
         let mut words = [0u32; BLOCK as usize];
         streams.open(Part::IssueOpening, keys).fill(&mut words);
         let (mut open, mut new) = (Vec::new(), Vec::new());
-        for at in 0..block.len() {
-            if block.open_issue_days[at] > 0 {
+        for (at, (&open_days, &satisfaction)) in
+            block.open_issue_days.iter().zip(&block.satisfaction).enumerate()
+        {
+            if open_days > 0 {
                 open.push(at as u16);
                 continue;
             }
-            let seats = block.seats[at].trunc();
-            let chance = issue_probability(block.satisfaction[at], outage, seats, &params.issues);
-            if word_below(words[block.place(at)], chance) {
+            let seats = if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 };
+            if word_below(words[block.place(at)], issue_probability(satisfaction, outage, seats, law)) {
                 new.push(at as u16);
             }
         }
@@ -128,33 +131,54 @@ pub fn settle(
         Resolution { day, calls: &mut calls, customers, params, streams }.run(settings);
         facts.issues_aged = true;
     }
-    for own in &calls {
-        let block = &mut customers.groups[own.group].blocks[own.block as usize];
-        for (&at, &solved) in own.open.iter().zip(&own.solved) {
-            let at = usize::from(at);
-            if solved {
-                let days = block.open_issue_days[at];
-                block.relationship[at] =
-                    relationship_after_solution(block.relationship[at], days, outage, params);
-                block.open_issue_days[at] = 0;
-                facts.issues_resolved.push(std::mem::take(&mut block.issue[at]));
-            } else {
-                block.open_issue_days[at] += 1;
-                block.relationship[at] =
-                    relationship_after_waiting(block.relationship[at], &params.issues, &params.quality);
-            }
+    // New issues are numbered in the order of their blocks.
+    let mut next_issue = desk.next_issue;
+    let numbered: Vec<(Calls, u32)> = calls
+        .into_iter()
+        .map(|own| {
+            let first = next_issue;
+            next_issue += own.new.len() as u32;
+            (own, first)
+        })
+        .collect();
+    desk.next_issue = next_issue;
+    let by_block = customers.sweep_with(numbered, |_, _, block, (own, first)| {
+        let resolved = settle_open(block, &own, outage, params);
+        (resolved, open_new(block, &own, first, params))
+    });
+    for (resolved, opened) in by_block {
+        facts.issues_resolved.extend(resolved);
+        facts.issues_opened.extend(opened);
+    }
+}
+
+/// Solves or ages the open issues of a block; returns the numbers of the solved ones.
+fn settle_open(block: &mut Block, own: &Calls, outage: bool, params: &Params) -> Vec<u32> {
+    let mut resolved = Vec::new();
+    for (&at, &solved) in own.open.iter().zip(&own.solved) {
+        let at = usize::from(at);
+        let (relationship, days) = (&mut block.relationship[at], &mut block.open_issue_days[at]);
+        if solved {
+            *relationship = relationship_after_solution(*relationship, *days, outage, params);
+            *days = 0;
+            resolved.push(std::mem::take(&mut block.issue[at]));
+        } else {
+            *days += 1;
+            *relationship = relationship_after_waiting(*relationship, &params.issues, &params.quality);
         }
     }
-    for own in &calls {
-        let block = &mut customers.groups[own.group].blocks[own.block as usize];
-        for at in own.new.iter().map(|&at| usize::from(at)) {
-            block.open_issue_days[at] = params.issues.new_issue_open_days;
-            block.issue[at] = desk.next_issue;
-            let (issue, customer) = (desk.next_issue, block.customer[at]);
-            facts.issues_opened.push(IssueOpened { issue, customer, group: own.group });
-            desk.next_issue += 1;
-        }
-    }
+    resolved
+}
+
+/// Opens the new issues of a block, numbered from `first`.
+fn open_new(block: &mut Block, own: &Calls, first: u32, params: &Params) -> Vec<IssueOpened> {
+    let open = |(issue, &at): (u32, &u16)| {
+        let at = usize::from(at);
+        block.open_issue_days[at] = params.issues.new_issue_open_days;
+        block.issue[at] = issue;
+        IssueOpened { issue, customer: block.customer[at], group: own.group }
+    };
+    (first..).zip(&own.new).map(open).collect()
 }
 
 /// A pool of open issues that shares one amount of money.

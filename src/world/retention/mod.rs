@@ -15,6 +15,7 @@ use super::params::{DriftCounted, Params};
 /// last bill and the group's budget drift, before the market's expectations are added.
 ///
 /// The budget floor applies only where the drift is not 0 (chapter 20 §15).
+#[inline]
 pub fn refresh_required(block: &mut Block, at: usize, c_drift: f64, params: &Params) {
     let remembered = block.effective_c_max[at];
     let budget = if remembered != 0.0 { remembered } else { block.c_max[at] };

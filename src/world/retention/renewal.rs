@@ -166,7 +166,7 @@ fn decide_block(
     let morning = judgement.morning;
     let today = (morning.day % 30) as u8;
     let mut outcome = BlockOutcome::default();
-    let due: Vec<usize> = (0..block.len()).filter(|at| block.billing_day[*at] == today).collect();
+    let due = block.due(today);
     if due.is_empty() {
         return outcome;
     }

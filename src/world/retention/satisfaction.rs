@@ -14,6 +14,7 @@ use crate::world::product::quality::{
 };
 
 /// Moving average: (1 - alpha) old + alpha instant.
+#[inline]
 pub fn moved_satisfaction(old: f64, instant: f64, alpha: f64) -> f64 {
     (1.0 - alpha) * old + alpha * instant
 }
@@ -52,36 +53,41 @@ pub fn update(customers: &mut Customers, conditions: &Conditions<'_>) -> ByGroup
     moods
 }
 
+/// One linear pass over the columns it needs. What all rows share is copied out first: the compiler cannot know that
+/// no column overlaps the parameters, and would read them again for every row.
 fn update_block(group: Group, block: &mut Block, conditions: &Conditions<'_>) -> Mood {
     let &Conditions { morning, service, ads, tenure, params } = conditions;
-    let quality = &params.quality;
-    let penalty = service_penalty(service.overload, service.outage, quality);
+    let (quality, reputation) = (params.quality.clone(), params.reputation.clone());
+    let penalty = service_penalty(service.overload, service.outage, &quality);
     let delivered = ByPlan::from_fn(|plan| morning.delivered(group, plan) - penalty);
+    let (day, weekday, quotas) = (morning.day, morning.weekday, morning.quotas);
     let expectation = morning.expectations[group].quality;
+    let form = params.fidelity.perceived_quality;
     let alpha = params.satisfaction.satisfaction_ema_alpha;
+    let rows = block.len();
+    let (plan, rate, start_day) = (&block.plan[..rows], &block.usage_rate[..rows], &block.start_day[..rows]);
+    let (relationship, open_days) = (&block.relationship[..rows], &block.open_issue_days[..rows]);
+    let (customer, sensitivity) = (&block.customer[..rows], &block.ads_quality_sensitivity[..rows]);
+    let (required, satisfaction) = (&block.required[..rows], &mut block.satisfaction[..rows]);
     let mut sum = 0.0;
-    for at in 0..block.len() {
-        let (plan, rate) = (block.plan[at], block.usage_rate[at]);
-        let demand = quota_demand(rate * morning.weekday, rate, params);
-        let relationship = relationship_as_read(block.relationship[at], quality);
-        let effect = ads.for_customer(group, block.customer[at]);
+    for at in 0..rows {
+        let demand = quota_demand(rate[at] * weekday, rate[at], params);
         let perceived = perceived_quality(
             Experience {
-                delivered: delivered[plan],
-                relationship: relationship_bonus(relationship, quality),
-                tenure: tenure.bonus(morning.day - block.start_day[at]),
-                quota: quota_factor(morning.quotas[plan], demand, quality),
-                issues: quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]),
-                ads: block.ads_quality_sensitivity[at] * effect,
+                delivered: delivered[plan[at]],
+                relationship: relationship_bonus(relationship_as_read(relationship[at], &quality), &quality),
+                tenure: tenure.bonus(day - start_day[at]),
+                quota: quota_factor(quotas[plan[at]], demand, &quality),
+                issues: quality.issue_penalty_per_open_day * f64::from(open_days[at]),
+                ads: sensitivity[at] * ads.for_customer(group, customer[at]),
             },
-            params.fidelity.perceived_quality,
+            form,
         );
-        let instant = perceived - (block.required[at] + expectation);
-        let satisfaction = moved_satisfaction(block.satisfaction[at], instant, alpha);
-        block.satisfaction[at] = satisfaction;
-        sum += contribution(satisfaction, &params.reputation);
+        let instant = perceived - (required[at] + expectation);
+        satisfaction[at] = moved_satisfaction(satisfaction[at], instant, alpha);
+        sum += contribution(satisfaction[at], &reputation);
     }
-    Mood { sum, count: block.len() as u32 }
+    Mood { sum, count: rows as u32 }
 }
 
 #[cfg(test)]

@@ -138,10 +138,10 @@ fn find(
         if sums[number] <= 0.0 {
             continue;
         }
-        let rows = (0..block.len()).filter(|at| !taken(number, *at));
+        let mut rows = (0..block.len()).filter(|at| !taken(number, *at));
         if target >= sums[number] {
             target -= sums[number];
-            last = rows.last().map(|at| (number, at)).or(last);
+            last = rows.next_back().map(|at| (number, at)).or(last);
             continue;
         }
         for at in rows {

@@ -22,6 +22,7 @@ pub struct Loudness {
 }
 
 /// Weight of a subscriber.
+#[inline]
 pub fn post_weight(voice: &Loudness, law: &Social) -> f64 {
     let s = voice.satisfaction;
     let mut weight = 1.0 + law.weight_abs_satisfaction_coef * s.abs();

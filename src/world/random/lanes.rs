@@ -1,0 +1,199 @@
+//! Eight streams opened side by side, on processors that can.
+//!
+//! Opening a stream is one block of BLAKE3 and one of ChaCha8, and each is a chain of steps that wait for each other: a
+//! processor spends most of that time idle. Thousands of streams a day are opened for a single draw (bills, leads), so
+//! eight of them go through the same steps together, one lane of a vector register each: a fifth of the time. The
+//! bits are those of [`super::Streams::open`], which serves where there are no such registers; the tests compare them.
+#![expect(unsafe_code, reason = "vector instructions need to be asked for; see the safety comments")]
+
+use std::arch::x86_64::{
+    __m256i, _mm256_add_epi32, _mm256_extract_epi32, _mm256_or_si256, _mm256_set_epi32, _mm256_set1_epi32,
+    _mm256_slli_epi32, _mm256_srli_epi32, _mm256_xor_si256,
+};
+
+/// Streams that are opened together.
+pub const LANES: usize = 8;
+
+/// Key of a stream, as the words of its bytes.
+pub type Key = [u32; 8];
+
+/// The initial state of BLAKE3, of which four words enter every block.
+const START: [u32; 4] = [0x6a09_e667, 0xbb67_ae85, 0x3c6e_f372, 0xa54f_f53a];
+/// The order of a block's words in each round of BLAKE3.
+const ORDER: [[usize; 16]; 7] = [
+    [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
+    [2, 6, 3, 10, 7, 0, 4, 13, 1, 11, 12, 5, 9, 14, 15, 8],
+    [3, 4, 10, 12, 13, 2, 7, 14, 6, 5, 9, 0, 11, 15, 8, 1],
+    [10, 7, 12, 9, 14, 3, 13, 15, 4, 0, 11, 2, 5, 8, 1, 6],
+    [12, 13, 9, 11, 15, 10, 14, 8, 7, 2, 5, 3, 0, 1, 6, 4],
+    [9, 14, 11, 5, 8, 12, 15, 1, 13, 3, 0, 10, 2, 6, 4, 7],
+    [11, 15, 5, 0, 1, 9, 8, 6, 14, 10, 2, 12, 3, 4, 7, 13],
+];
+/// Marks of a keyed hash whose input is a single block: first of a chunk, last of a chunk, root, keyed.
+const SINGLE_KEYED_BLOCK: u32 = 1 | 2 | 8 | 16;
+/// The constant words of ChaCha.
+const EXPAND: [u32; 4] = [0x6170_7865, 0x3320_646e, 0x7962_2d32, 0x6b20_6574];
+
+/// Whether this processor has the registers.
+pub fn available() -> bool {
+    is_x86_feature_detected!("avx2")
+}
+
+/// Keys of the streams of these entities, eight by eight; none where [`available`] says no.
+pub fn keys<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> Option<[Key; LANES]> {
+    // SAFETY: the processor was asked.
+    available().then(|| unsafe { keys_in_lanes(part, entities) })
+}
+
+/// The first 64-bit words of the streams of these entities; none where [`available`] says no.
+pub fn first_words<const KEYS: usize>(
+    part: &[u8; 32],
+    entities: &[[u64; KEYS]; LANES],
+) -> Option<[u64; LANES]> {
+    // SAFETY: the processor was asked.
+    available().then(|| unsafe { first_words_in_lanes(part, entities) })
+}
+
+#[target_feature(enable = "avx2")]
+fn keys_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> [Key; LANES] {
+    let mut keys = [[0u32; 8]; LANES];
+    for (at, word) in hash(part, entities).into_iter().enumerate() {
+        for (key, own) in keys.iter_mut().zip(lanes(word)) {
+            key[at] = own;
+        }
+    }
+    keys
+}
+
+/// The head of the first ChaCha8 block of each stream.
+#[target_feature(enable = "avx2")]
+fn first_words_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> [u64; LANES] {
+    let mut state = [same(0); 16];
+    state[4..12].copy_from_slice(&hash(part, entities));
+    for (word, constant) in state.iter_mut().zip(EXPAND) {
+        *word = same(constant);
+    }
+    for _ in 0..4 {
+        cipher_step(&mut state, [0, 4, 8, 12]);
+        cipher_step(&mut state, [1, 5, 9, 13]);
+        cipher_step(&mut state, [2, 6, 10, 14]);
+        cipher_step(&mut state, [3, 7, 11, 15]);
+        cipher_step(&mut state, [0, 5, 10, 15]);
+        cipher_step(&mut state, [1, 6, 11, 12]);
+        cipher_step(&mut state, [2, 7, 8, 13]);
+        cipher_step(&mut state, [3, 4, 9, 14]);
+    }
+    let low = lanes(_mm256_add_epi32(state[0], same(EXPAND[0])));
+    let high = lanes(_mm256_add_epi32(state[1], same(EXPAND[1])));
+    let mut words = [0; LANES];
+    for lane in 0..LANES {
+        words[lane] = u64::from(low[lane]) | u64::from(high[lane]) << 32;
+    }
+    words
+}
+
+/// The keyed BLAKE3 hash of the bytes of each entity's keys, which is the key of its stream.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn hash<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> [__m256i; 8] {
+    let mut message = [same(0); 16];
+    for at in 0..KEYS {
+        let (mut low, mut high) = ([0; LANES], [0; LANES]);
+        for (lane, entity) in entities.iter().enumerate() {
+            (low[lane], high[lane]) = (entity[at] as u32, (entity[at] >> 32) as u32);
+        }
+        (message[2 * at], message[2 * at + 1]) = (one_each(low), one_each(high));
+    }
+    let mut state = [same(0); 16];
+    for (word, bytes) in state.iter_mut().zip(part.chunks_exact(4)) {
+        *word = same(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
+    }
+    for (word, start) in state[8..].iter_mut().zip(START) {
+        *word = same(start);
+    }
+    state[14] = same(8 * KEYS as u32);
+    state[15] = same(SINGLE_KEYED_BLOCK);
+    for order in ORDER {
+        hash_step(&mut state, [0, 4, 8, 12], message[order[0]], message[order[1]]);
+        hash_step(&mut state, [1, 5, 9, 13], message[order[2]], message[order[3]]);
+        hash_step(&mut state, [2, 6, 10, 14], message[order[4]], message[order[5]]);
+        hash_step(&mut state, [3, 7, 11, 15], message[order[6]], message[order[7]]);
+        hash_step(&mut state, [0, 5, 10, 15], message[order[8]], message[order[9]]);
+        hash_step(&mut state, [1, 6, 11, 12], message[order[10]], message[order[11]]);
+        hash_step(&mut state, [2, 7, 8, 13], message[order[12]], message[order[13]]);
+        hash_step(&mut state, [3, 4, 9, 14], message[order[14]], message[order[15]]);
+    }
+    let mut key = [same(0); 8];
+    for (at, word) in key.iter_mut().enumerate() {
+        *word = _mm256_xor_si256(state[at], state[at + 8]);
+    }
+    key
+}
+
+/// The mixing function of BLAKE3.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn hash_step(state: &mut [__m256i; 16], [a, b, c, d]: [usize; 4], first: __m256i, second: __m256i) {
+    state[a] = _mm256_add_epi32(_mm256_add_epi32(state[a], state[b]), first);
+    state[d] = turned::<16, 16>(_mm256_xor_si256(state[d], state[a]));
+    state[c] = _mm256_add_epi32(state[c], state[d]);
+    state[b] = turned::<20, 12>(_mm256_xor_si256(state[b], state[c]));
+    state[a] = _mm256_add_epi32(_mm256_add_epi32(state[a], state[b]), second);
+    state[d] = turned::<24, 8>(_mm256_xor_si256(state[d], state[a]));
+    state[c] = _mm256_add_epi32(state[c], state[d]);
+    state[b] = turned::<25, 7>(_mm256_xor_si256(state[b], state[c]));
+}
+
+/// The quarter round of ChaCha.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn cipher_step(state: &mut [__m256i; 16], [a, b, c, d]: [usize; 4]) {
+    state[a] = _mm256_add_epi32(state[a], state[b]);
+    state[d] = turned::<16, 16>(_mm256_xor_si256(state[d], state[a]));
+    state[c] = _mm256_add_epi32(state[c], state[d]);
+    state[b] = turned::<12, 20>(_mm256_xor_si256(state[b], state[c]));
+    state[a] = _mm256_add_epi32(state[a], state[b]);
+    state[d] = turned::<8, 24>(_mm256_xor_si256(state[d], state[a]));
+    state[c] = _mm256_add_epi32(state[c], state[d]);
+    state[b] = turned::<7, 25>(_mm256_xor_si256(state[b], state[c]));
+}
+
+/// Every lane rotated to the left.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn turned<const LEFT: i32, const RIGHT: i32>(word: __m256i) -> __m256i {
+    const { assert!(LEFT + RIGHT == 32) };
+    _mm256_or_si256(_mm256_slli_epi32::<LEFT>(word), _mm256_srli_epi32::<RIGHT>(word))
+}
+
+/// The same word in every lane.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn same(word: u32) -> __m256i {
+    _mm256_set1_epi32(word.cast_signed())
+}
+
+/// A word of its own in each lane.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn one_each(words: [u32; LANES]) -> __m256i {
+    let [a, b, c, d, e, f, g, h] = words.map(u32::cast_signed);
+    _mm256_set_epi32(h, g, f, e, d, c, b, a)
+}
+
+/// The words of the lanes.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn lanes(word: __m256i) -> [u32; LANES] {
+    [
+        _mm256_extract_epi32::<0>(word),
+        _mm256_extract_epi32::<1>(word),
+        _mm256_extract_epi32::<2>(word),
+        _mm256_extract_epi32::<3>(word),
+        _mm256_extract_epi32::<4>(word),
+        _mm256_extract_epi32::<5>(word),
+        _mm256_extract_epi32::<6>(word),
+        _mm256_extract_epi32::<7>(word),
+    ]
+    .map(i32::cast_unsigned)
+}

@@ -288,7 +288,7 @@ mod tests {
         );
         for folder in [&base, &first, &second] {
             assert_eq!(list_runs(folder).expect("a list").len(), 1, "nobody sees the others' runs");
-            assert_eq!(all_run_folders(folder), [&base, &first, &second]);
+            assert_eq!(all_run_folders(folder), [base.clone(), first.clone(), second.clone()]);
         }
         for label in ["", ".", "..", "a/b", "a\\b", "P 01", "\u{fc}", &"x".repeat(41)] {
             assert!(participant_folder(&base, label).is_err(), "{label}");

@@ -79,7 +79,7 @@ fn one_steps_forward_and_back_by_weeks_and_by_actions_and_seeks() {
     assert_eq!(day(&console), 14);
     console.shows("Decided before week 3");
     console.shows("“If week 2 keeps its leads");
-    console.shows("inside");
+    console.shows("later $982k OUTSIDE");
     console.shows("refused: ");
     console.press("<");
     assert_eq!(day(&console), 7);
@@ -167,8 +167,9 @@ fn it_plays_by_itself_until_the_end_and_pauses_at_a_key() {
 #[test]
 fn the_final_page_offers_a_replay_and_another_run_from_the_last_decision() {
     let runs = tempfile::tempdir().expect("a folder");
-    left(runs.path(), Mode::Baseline, 12);
-    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    let folder = left(runs.path(), Mode::Baseline, 12);
+    let mut console = Console::start(runs.path(), (120, 40));
+    console.open(&folder.file_name().expect("a name").to_string_lossy()).expect("it opens");
     console.shows("Day 84. You end with");
     console.shows("v replay");
     console.press("v");

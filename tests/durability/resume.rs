@@ -42,8 +42,10 @@ fn a_snapshot_holds_everything_at_every_week_and_between() {
         }
         assert_eq!(left, right, "after week {number}");
     }
+    let day = straight.day();
+    assert!(day >= 35, "the company went bankrupt too early to say much: day {day}");
     drop(straight);
-    assert_eq!(verify(&folder).expect("it verifies").day, 98);
+    assert_eq!(verify(&folder).expect("it verifies").day, day);
 }
 
 /// Without a snapshot, with an old one, with one of another run: only time is lost.

@@ -30,13 +30,13 @@ impl Deed {
     pub fn any(dice: &mut Dice, waiting: &[u32]) -> Deed {
         match dice.roll(24) {
             0 => Deed::Undo,
-            1 => Deed::Query(*dice.pick(&[
+            1 => Deed::Query(dice.pick(&[
                 "SELECT COUNT(*) FROM customers",
                 "SELECT nothing FROM ledger",
                 "SELECT * FROM service_day",
             ])),
             2 => Deed::Memo(format!("plan {}: größer, if cash allows", dice.roll(1000))),
-            3 => Deed::View(*dice.pick(&["overview", "cash", "inbox", "sql"])),
+            3 => Deed::View(dice.pick(&["overview", "cash", "inbox", "sql"])),
             _ => {
                 let (tool, args) = call(dice, waiting);
                 Deed::Call(tool, args)

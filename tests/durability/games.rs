@@ -8,6 +8,9 @@ use crate::dice::Dice;
 const GROUPS: [&str; 8] = ["S1", "S2", "S3", "E1", "E2", "E3", "D_S01", "D_E01"];
 const CHANNELS: [&str; 5] =
     ["social_media", "search_ads", "linkedin", "content_marketing", "referral_program"];
+const SCREENS: [&str; 4] = ["overview", "cash", "inbox", "sql"];
+const QUERIES: [&str; 3] =
+    ["SELECT COUNT(*) FROM customers", "SELECT nothing FROM ledger", "SELECT * FROM service_day"];
 const PLANS: [&str; 3] = ["A", "B", "C"];
 
 /// One thing that is done.
@@ -30,13 +33,9 @@ impl Deed {
     pub fn any(dice: &mut Dice, waiting: &[u32]) -> Deed {
         match dice.roll(24) {
             0 => Deed::Undo,
-            1 => Deed::Query(dice.pick(&[
-                "SELECT COUNT(*) FROM customers",
-                "SELECT nothing FROM ledger",
-                "SELECT * FROM service_day",
-            ])),
+            1 => Deed::Query(QUERIES[dice.roll(QUERIES.len())]),
             2 => Deed::Memo(format!("plan {}: größer, if cash allows", dice.roll(1000))),
-            3 => Deed::View(dice.pick(&["overview", "cash", "inbox", "sql"])),
+            3 => Deed::View(SCREENS[dice.roll(SCREENS.len())]),
             _ => {
                 let (tool, args) = call(dice, waiting);
                 Deed::Call(tool, args)

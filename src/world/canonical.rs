@@ -2,7 +2,7 @@
 //!
 //! Little endian, floats by their bits, fields in declaration order, lists preceded by their length
 //! (specification, chapter 70 §5). Two worlds with equal bytes behave alike from here on, and a world can be read
-//! back from them ([`restore`]).
+//! back from them ([`Restore`]).
 
 mod restore;
 

@@ -6,6 +6,12 @@ use std::time::Duration;
 
 use rusqlite::{Connection, OpenFlags};
 
+/// Memory a connection may use for pages and sorting, as SQLite wants it said: less than 0 are KiB.
+const CACHE: i64 = -65_536;
+
+/// Compiled statements a connection keeps.
+const STATEMENTS: usize = 64;
+
 /// Place of a database.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Location {
@@ -39,13 +45,18 @@ impl Location {
             connection.pragma_update(None, "journal_mode", "WAL")?;
             connection.pragma_update(None, "synchronous", "NORMAL")?;
         }
-        connection.pragma_update(None, "cache_size", -65_536)?;
+        connection.pragma_update(None, "cache_size", CACHE)?;
+        // More statements than a day needs: one that is forgotten is compiled again every day.
+        connection.set_prepared_statement_cache_capacity(STATEMENTS);
         Ok(connection)
     }
 
     /// Opens a connection that only reads.
     pub(super) fn open_reader(&self) -> rusqlite::Result<Connection> {
-        self.open(OpenFlags::SQLITE_OPEN_READ_ONLY)
+        let connection = self.open(OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+        // Room to sort a table of the largest runs without a temporary file.
+        connection.pragma_update(None, "cache_size", CACHE)?;
+        Ok(connection)
     }
 
     fn open(&self, flags: OpenFlags) -> rusqlite::Result<Connection> {

@@ -6,6 +6,12 @@ use std::time::Duration;
 
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
+/// Memory a connection may use for pages and sorting, as SQLite wants it said: less than 0 are KiB.
+const CACHE: i64 = -65_536;
+
+/// Compiled statements a connection keeps.
+const STATEMENTS: usize = 64;
+
 /// Place of a database.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Location {
@@ -39,7 +45,9 @@ impl Location {
             connection.pragma_update(None, "journal_mode", "WAL")?;
             connection.pragma_update(None, "synchronous", "NORMAL")?;
         }
-        connection.pragma_update(None, "cache_size", -65_536)?;
+        connection.pragma_update(None, "cache_size", CACHE)?;
+        // More statements than a day needs: one that is forgotten is compiled again every day.
+        connection.set_prepared_statement_cache_capacity(STATEMENTS);
         Ok(connection)
     }
 
@@ -49,14 +57,17 @@ impl Location {
             connection.query_row("SELECT COUNT(*) FROM sqlite_master", [], |_| Ok(()))?;
             Ok(connection)
         });
-        match (opened, self.path().and_then(Path::to_str)) {
+        let connection = match (opened, self.path().and_then(Path::to_str)) {
             // Where nothing can be written, SQLite has no place for its marks between readers and a writer.
             (Err(error), Some(path)) if error.sqlite_error_code() == Some(ErrorCode::CannotOpen) => {
                 let escaped = path.replace('%', "%25").replace('?', "%3f").replace('#', "%23");
                 Location::Memory(format!("file:{escaped}?immutable=1")).open(OpenFlags::SQLITE_OPEN_READ_ONLY)
             }
             (opened, _) => opened,
-        }
+        }?;
+        // Room to sort a table of the largest runs without a temporary file.
+        connection.pragma_update(None, "cache_size", CACHE)?;
+        Ok(connection)
     }
 
     fn open(&self, flags: OpenFlags) -> rusqlite::Result<Connection> {

@@ -131,6 +131,9 @@ CREATE TABLE ledger_rows (
     note TEXT
 );
 
+-- Serves questions about days and about what money was for without the rows themselves.
+CREATE INDEX ledger_by_day ON ledger_rows (day, category, amount);
+
 CREATE VIEW ledger AS
 SELECT
     id,

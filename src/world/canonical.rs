@@ -36,8 +36,7 @@ impl Default for CanonicalHasher {
     }
 }
 
-/// Large values whose bytes a thread collects at a time, and how many threads may do so.
-const SHARE: usize = 8;
+/// Shares of large values whose bytes are collected side by side before they are hashed.
 const SHARES: usize = 4;
 
 impl CanonicalHasher {
@@ -60,20 +59,21 @@ impl CanonicalHasher {
         self.pending
     }
 
-    /// Appends the bytes of large values, collected and hashed on several threads; the hash is the same.
-    pub fn large_values<T: Canonical + Sync>(&mut self, values: &[T]) {
-        if self.piece == usize::MAX {
+    /// Appends the bytes of large values, collected and hashed on several threads; the hash is the same. A share of
+    /// them should have some hundred thousand bytes: enough to be worth a thread, and all shares still in its cache.
+    pub fn large_values<T: Canonical + Sync>(&mut self, values: &[T], share: usize) {
+        if values.len() <= share || self.piece == usize::MAX {
             return values.iter().for_each(|value| value.feed(self));
         }
         let mut shares: Vec<CanonicalHasher> = (0..SHARES).map(|_| CanonicalHasher::collector()).collect();
         self.hash_pending();
-        for some in values.chunks(SHARES * SHARE) {
-            shares.par_iter_mut().zip(some.par_chunks(SHARE)).for_each(|(share, own)| {
-                share.pending.clear();
-                own.iter().for_each(|value| value.feed(share));
+        for some in values.chunks(SHARES * share) {
+            shares.par_iter_mut().zip(some.par_chunks(share)).for_each(|(collector, own)| {
+                collector.pending.clear();
+                own.iter().for_each(|value| value.feed(collector));
             });
-            for (share, _) in shares.iter().zip(some.chunks(SHARE)) {
-                self.hasher.update_rayon(&share.pending);
+            for (collector, _) in shares.iter().zip(some.chunks(share)) {
+                self.hasher.update_rayon(&collector.pending);
             }
         }
     }
@@ -385,7 +385,7 @@ mod tests {
             let (mut together, mut singly) = (CanonicalHasher::default(), CanonicalHasher::default());
             5u32.feed(&mut together);
             5u32.feed(&mut singly);
-            together.large_values(&values);
+            together.large_values(&values, 8);
             values.iter().for_each(|value| value.feed(&mut singly));
             9u32.feed(&mut together);
             9u32.feed(&mut singly);

@@ -2,6 +2,7 @@
 
 mod create;
 mod direct;
+mod many;
 mod posts;
 mod threads;
 
@@ -20,6 +21,7 @@ use crate::world::events::{
 };
 use crate::world::identifiers::{Group, Plan};
 use crate::world::params::Params;
+use many::{NOTHING, insert_rows, or_nothing, real, text, whole};
 
 /// What is to be written: the facts of a day or a call, and the words that belong to them.
 #[derive(Debug, Clone, Default)]
@@ -251,25 +253,22 @@ impl RowWriter {
 
     fn arrivals(&mut self, transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
         let facts = &entry.facts;
-        if !facts.arrivals.is_empty() {
-            let mut insert = transaction.prepare_cached(
-                "INSERT INTO customer_rows VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, NULL)",
-            )?;
-            for arrival in &facts.arrivals {
-                let company = arrival.group.is_enterprise();
-                insert.execute(params![
-                    arrival.customer,
-                    arrival.group.id(),
-                    facts.day,
-                    arrival.source as u8,
-                    packed_persona(company, arrival.persona),
-                    self.usage_label(arrival),
-                    self.budget_label(arrival),
-                    company.then_some(arrival.seats),
-                    entry.addresses.get(&arrival.customer),
-                ])?;
-            }
-        }
+        let rows = facts.arrivals.iter().map(|arrival| {
+            let company = arrival.group.is_enterprise();
+            [
+                whole(arrival.customer),
+                text(arrival.group.id()),
+                whole(facts.day),
+                whole(arrival.source as u8),
+                whole(packed_persona(company, arrival.persona)),
+                whole(self.usage_label(arrival)),
+                whole(self.budget_label(arrival)),
+                or_nothing(company.then_some(arrival.seats), whole),
+                or_nothing(entry.addresses.get(&arrival.customer), |address| text(address)),
+                NOTHING,
+            ]
+        });
+        insert_rows(transaction, "INSERT INTO customer_rows VALUES", rows)?;
         for opened in &facts.openings {
             self.new_subscriptions.insert(opened.customer, opened_row(opened, facts.day));
         }
@@ -303,24 +302,24 @@ impl RowWriter {
 
     /// Lead costs, payments, then everything else, as chapter 60 §5 orders them.
     fn ledger(&self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-        let mut insert = transaction.prepare_cached(
-            "INSERT INTO ledger_rows (day, category, amount, about, note) VALUES (?1, ?2, ?3, ?4, ?5)",
-        )?;
-        let nobody: Option<&str> = None;
+        const HEAD: &str = "INSERT INTO ledger_rows (day, category, amount, about, note) VALUES";
         let lead_cost = -self.params.leads.lead_acquisition_cost;
-        for arrival in &facts.arrivals {
-            let category = Category::LeadAcquisitionCost as u8;
-            insert.execute(params![facts.day, category, lead_cost, arrival.customer, nobody])?;
-        }
-        for payment in &facts.payments {
-            let category = Category::SubscriptionPayment as u8;
-            insert.execute(params![facts.day, category, payment.amount, payment.customer, nobody])?;
-        }
-        for entry in &facts.ledger {
-            let note = self.note(entry.category, entry.note);
-            insert.execute(params![facts.day, entry.category as u8, entry.amount, None::<u32>, note])?;
-        }
-        Ok(())
+        let leads =
+            facts.arrivals.iter().map(|arrival| (Category::LeadAcquisitionCost, lead_cost, arrival.customer));
+        let payments = facts
+            .payments
+            .iter()
+            .map(|payment| (Category::SubscriptionPayment, payment.amount, payment.customer));
+        let rows = leads.chain(payments).map(|(category, amount, about)| {
+            [whole(facts.day), whole(category as u8), real(amount), whole(about), NOTHING]
+        });
+        insert_rows(transaction, HEAD, rows)?;
+        let notes: Vec<String> =
+            facts.ledger.iter().map(|entry| self.note(entry.category, entry.note)).collect();
+        let rows = facts.ledger.iter().zip(&notes).map(|(entry, note)| {
+            [whole(facts.day), whole(entry.category as u8), real(entry.amount), NOTHING, text(note)]
+        });
+        insert_rows(transaction, HEAD, rows)
     }
 
     fn note(&self, category: Category, note: LedgerNote) -> String {
@@ -351,20 +350,19 @@ impl RowWriter {
     /// Writes what was kept back. The shelf follows with [`RowWriter::publish`], once the commit succeeded.
     pub fn flush(&mut self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         self.flush_subscriptions(transaction)?;
-        let mut insert =
-            transaction.prepare_cached("INSERT INTO issue_rows VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")?;
-        for (issue, row) in std::mem::take(&mut self.new_issues) {
+        let rows = std::mem::take(&mut self.new_issues).into_iter().map(|(issue, row)| {
             let (day, aged_to) = row.resolved.unzip();
-            insert.execute(params![
-                issue,
-                row.customer,
-                row.group.id(),
-                row.open_day,
-                row.aged_from,
-                aged_to,
-                day
-            ])?;
-        }
+            [
+                whole(issue),
+                whole(row.customer),
+                text(row.group.id()),
+                whole(row.open_day),
+                whole(row.aged_from),
+                or_nothing(aged_to, whole),
+                or_nothing(day, whole),
+            ]
+        });
+        insert_rows(transaction, "INSERT INTO issue_rows VALUES", rows)?;
         let mut resolve = transaction
             .prepare_cached("UPDATE issue_rows SET resolved_day = ?2, aged_to = ?3 WHERE issue_id = ?1")?;
         for (issue, (day, aged_to)) in std::mem::take(&mut self.resolved_issues) {
@@ -375,26 +373,24 @@ impl RowWriter {
     }
 
     fn flush_subscriptions(&mut self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
-        let mut insert = transaction.prepare_cached(
-            "INSERT INTO subscription_rows VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
-        )?;
         let period = self.params.billing.billing_period_days;
-        for (customer, row) in std::mem::take(&mut self.new_subscriptions) {
-            insert.execute(params![
-                customer,
-                row.subscription,
-                row.plan,
-                row.listed_price,
-                row.promotion,
-                row.start_day,
-                row.end_day,
-                row.status as u8,
-                row.opened_day % period,
-                row.seats,
-                row.contract_end_day,
-                row.billed_once,
-            ])?;
-        }
+        let rows = std::mem::take(&mut self.new_subscriptions).into_iter().map(|(customer, row)| {
+            [
+                whole(customer),
+                whole(row.subscription),
+                text(row.plan),
+                real(row.listed_price),
+                real(row.promotion),
+                whole(row.start_day),
+                or_nothing(row.end_day, whole),
+                whole(row.status as u8),
+                whole(row.opened_day % period),
+                whole(row.seats),
+                or_nothing(row.contract_end_day, whole),
+                whole(row.billed_once),
+            ]
+        });
+        insert_rows(transaction, "INSERT INTO subscription_rows VALUES", rows)?;
         let mut deal = transaction.prepare_cached(
             "UPDATE subscription_rows SET contract_end_day = ?2, start_day = coalesce(?3, start_day), \
              status = coalesce(?4, status) WHERE customer_id = ?1",

@@ -47,7 +47,9 @@ pub fn choose_plan(
     let mut best = (params.participation.lead_min_satisfaction_exclusive, None);
     for plan in Plan::ALL {
         let choice = candidate(plan);
-        if choice.price > curve.c_max {
+        // No price requires less than the floor of the curve: most plans need no closer look.
+        let most = choice.quality - curve.q_min.min(curve.q_max);
+        if choice.price > curve.c_max || most <= best.0 {
             continue;
         }
         let surplus = choice.quality - required_quality(choice.price, curve, params);

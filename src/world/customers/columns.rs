@@ -79,7 +79,7 @@ macro_rules! columns {
             }
 
             fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
-                hasher.large_values(values);
+                hasher.large_values(values, 2);
             }
         }
     };

@@ -48,7 +48,9 @@ pub fn best_plan(
 ) -> Option<Plan> {
     let mut best: Option<(f64, Plan)> = None;
     for plan in Plan::ALL {
-        if prices[plan] > curve.c_max {
+        // No price requires less than the floor of the curve: most plans need no closer look.
+        let most = qualities[plan] - curve.q_min.min(curve.q_max);
+        if prices[plan] > curve.c_max || most < 0.0 || best.is_some_and(|(surplus, _)| most <= surplus) {
             continue;
         }
         let surplus = qualities[plan] - required_quality(prices[plan], curve, params);

@@ -1,0 +1,147 @@
+//! The kernels of a day, one by one: `cargo bench`. `novamind bench` measures whole days.
+//!
+//! All of them work on one company that has grown through the simulator itself, so that its blocks are as full, its
+//! issues as many and its bills as spread as they are in a run.
+
+use std::collections::BTreeSet;
+use std::sync::{Arc, LazyLock};
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use novamind::database::{Entry, Location, Position, Projector};
+use novamind::world::customers::Customers;
+use novamind::world::customers::traits::draw_traits;
+use novamind::world::day::{Morning, step_day};
+use novamind::world::events::{Facts, ServiceDay};
+use novamind::world::identifiers::{ByPlan, Channel, Group};
+use novamind::world::params::Params;
+use novamind::world::product::ads::AdLoad;
+use novamind::world::product::quality::TenureTable;
+use novamind::world::product::usage;
+use novamind::world::random::Streams;
+use novamind::world::retention::billing::{self, Terms};
+use novamind::world::retention::{issues, satisfaction};
+use novamind::world::state::World;
+
+/// Days the company has grown: about 30,000 subscribers.
+const DAYS: u32 = 125;
+
+fn main() {
+    divan::main();
+}
+
+/// The company, and the facts of its last day.
+struct Company {
+    params: Arc<Params>,
+    streams: Streams,
+    world: World,
+    facts: Arc<Facts>,
+}
+
+static COMPANY: LazyLock<Company> = LazyLock::new(|| {
+    let (params, streams) = (Arc::new(Params::shipped()), Streams::new(42));
+    let mut facts = Facts::default();
+    let mut world = World::open(500, 1e9, &params, &mut facts);
+    let s1 = Group::at(0).expect("S1");
+    let settings = &mut world.settings;
+    settings.core.prices = ByPlan([12.0, 25.0, 55.0]);
+    settings.core.tiers = ByPlan([1, 2, 4]);
+    settings.core.quotas = ByPlan([60_000, 250_000, 1_200_000]);
+    settings.core.operations = 1_000.0;
+    settings.core.capacity_tier = 5;
+    settings.targeted_development.targeted_spend.insert(s1, 6_000.0);
+    let ads = [(s1, 750.0)].into_iter().collect();
+    settings.targeted_ads.targeted_spend.insert(Channel::ContentMarketing, ads);
+    for _ in 0..DAYS {
+        step_day(&mut world, &params, &streams, &mut facts);
+    }
+    Company { params, streams, world, facts: Arc::new(facts) }
+});
+
+impl Company {
+    fn morning(&self) -> Morning {
+        Morning::of(&self.world, &self.params)
+    }
+
+    fn subscribers(&self) -> ItemsCount {
+        ItemsCount::new(self.world.customers.active().iter().sum::<u32>())
+    }
+}
+
+/// Runs a kernel on a copy of the company's customers, once for each copy.
+fn on_customers<R>(bencher: Bencher<'_, '_>, items: ItemsCount, kernel: impl Fn(&mut Customers) -> R + Sync) {
+    bencher.counter(items).with_inputs(|| COMPANY.world.customers.clone()).bench_local_refs(kernel);
+}
+
+#[divan::bench]
+fn quality_and_satisfaction_sweep(bencher: Bencher<'_, '_>) {
+    let company = &*COMPANY;
+    let (morning, service) = (company.morning(), ServiceDay::quiet());
+    let ads = AdLoad::of(&company.world.settings.ads_strength, &company.params);
+    let tenure = TenureTable::up_to(DAYS, &company.params.quality);
+    let (morning, service, ads, tenure, params) = (&morning, &service, &ads, &tenure, &*company.params);
+    let conditions = satisfaction::Conditions { morning, service, ads, tenure, params };
+    on_customers(bencher, company.subscribers(), |customers| satisfaction::update(customers, &conditions));
+}
+
+#[divan::bench]
+fn usage_metering(bencher: Bencher<'_, '_>) {
+    let company = &*COMPANY;
+    let morning = company.morning();
+    on_customers(bencher, company.subscribers(), |customers| {
+        usage::meter(customers, &morning, &company.params, &mut Facts::default())
+    });
+}
+
+#[divan::bench]
+fn issue_pass(bencher: Bencher<'_, '_>) {
+    let company = &*COMPANY;
+    let (params, streams, settings) = (&*company.params, &company.streams, &company.world.settings);
+    on_customers(bencher, company.subscribers(), |customers| {
+        let (mut desk, mut facts) = (company.world.issue_desk.clone(), Facts::default());
+        let calls = issues::read_calls(DAYS + 1, false, customers, params, streams);
+        issues::settle(DAYS + 1, false, calls, settings, customers, &mut desk, params, streams, &mut facts);
+        facts.issues_opened.len()
+    });
+}
+
+#[divan::bench]
+fn customer_generation(bencher: Bencher<'_, '_>) {
+    const COUNT: u32 = 1_000;
+    let (params, streams) = (Params::shipped(), Streams::new(42));
+    let s1 = Group::at(0).expect("S1");
+    bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
+        (1..=COUNT).map(|n| draw_traits(s1, black_box(n), 1.0, &params, &streams).curve.c_max).sum::<f64>()
+    });
+}
+
+#[divan::bench]
+fn billing_of_a_day(bencher: Bencher<'_, '_>) {
+    let company = &*COMPANY;
+    let (morning, suspended) = (company.morning(), BTreeSet::new());
+    let bill = Terms {
+        morning: &morning,
+        settings: &company.world.settings,
+        suspended: &suspended,
+        params: &company.params,
+        streams: &company.streams,
+    };
+    let bills = ItemsCount::new(company.facts.payments.len());
+    on_customers(bencher, bills, |customers| billing::collect(customers, &bill, &mut Facts::default()));
+}
+
+#[divan::bench]
+fn row_writing_of_a_day(bencher: Bencher<'_, '_>) {
+    let company = &*COMPANY;
+    let rows = company.facts.arrivals.len() + company.facts.payments.len() + company.facts.openings.len();
+    let empty = || {
+        let (projector, _) =
+            Projector::start(Location::memory(), company.params.clone(), |_| false).expect("a database");
+        (projector, Entry { facts: company.facts.clone(), ..Entry::default() })
+    };
+    bencher.counter(ItemsCount::new(rows)).with_inputs(empty).bench_local_values(|(projector, entry)| {
+        projector.write(entry);
+        projector.commit(Position { seq: 1, line_hash: String::new() });
+        projector.wait().expect("the rows are written");
+    });
+}

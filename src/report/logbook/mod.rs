@@ -18,7 +18,7 @@ pub use timeline::{BREAK_SECONDS, Pause};
 use super::books::{Books, ChannelRow};
 use super::chapters::change_in_words;
 use super::measures::{Measures, Wording};
-use crate::session::{Ended, Line, Mode, Session};
+use crate::session::{Consent, Ended, Line, Mode, Session};
 use timeline::{Span, Timeline};
 
 /// How a run was played.
@@ -28,8 +28,8 @@ pub struct Logbook {
     pub run: String,
     /// Who played, as the experimenter named them.
     pub participant: Option<String>,
-    /// What was agreed to before the first day, as the first line that says so has it.
-    pub consent: Option<Value>,
+    /// Which text was agreed to before the first day, and when; none if none was asked for.
+    pub consent: Option<Consent>,
     /// Mode.
     pub mode: Mode,
     /// Scenario.
@@ -185,7 +185,7 @@ impl Logbook {
         Logbook {
             run: manifest.id.clone(),
             participant: manifest.participant.clone(),
-            consent: lines.iter().find_map(|line| line.fields.get("consent").cloned()),
+            consent: manifest.consent.clone(),
             mode: manifest.mode,
             scenario: manifest.scenario.clone(),
             seed: manifest.seed,

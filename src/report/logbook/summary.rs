@@ -65,14 +65,14 @@ fn headline(book: &Logbook) -> String {
 fn facts(book: &Logbook) -> Vec<Fact> {
     let total = &book.total;
     let failed = |number: u32, how: &str| if number == 0 { String::new() } else { format!("{number} {how}") };
-    let consent = match &book.consent {
-        Some(consent) => consent.as_str().map_or_else(|| consent.to_string(), str::to_owned),
-        None => "not recorded".to_owned(),
+    let (consent, text) = match &book.consent {
+        Some(consent) => (minute(&consent.at), format!("text {}", consent.digest.get(..16).unwrap_or_default())),
+        None => ("none was asked for".to_owned(), String::new()),
     };
     let ended = book.ended.map_or(String::new(), |ended| ended.id().to_owned());
     vec![
         Fact::new("Participant", book.participant.as_deref().unwrap_or("no label"), ""),
-        Fact::new("Consent", consent, ""),
+        Fact::new("Agreed", consent, text),
         Fact::new("Started", minute(&book.created), ""),
         Fact::new("Ended", book.ended_at.as_deref().map_or("not yet".to_owned(), minute), ended),
         Fact::new("Last line", minute(&book.last_at), ""),
@@ -221,7 +221,7 @@ mod tests {
         let text = crate::report::markdown::write(&page_of(&book));
         for part in [
             "P 07 played 2 weeks",
-            "not recorded",
+            "none was asked for",
             "cash 2 s",
             "set\\_prices",
             "There were none.",

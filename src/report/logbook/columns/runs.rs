@@ -12,12 +12,6 @@ fn scored(run: &Logbook, horizon_days: u32) -> String {
     score(run, horizon_days).map_or(0, |score| score.scored).to_string()
 }
 
-fn consent(run: &Logbook) -> String {
-    let text =
-        |consent: &serde_json::Value| consent.as_str().map_or_else(|| consent.to_string(), str::to_owned);
-    run.consent.as_ref().map(text).unwrap_or_default()
-}
-
 const fn column(
     name: &'static str,
     unit: &'static str,
@@ -48,11 +42,14 @@ pub const RUNS: &[RunColumn] = &[
         |run| run.earlier_runs.to_string(),
     ),
     column(
-        "consent",
-        "text",
-        "what was agreed to before the first day; empty if nothing was recorded",
-        consent,
+        "consent_at",
+        "RFC 3339",
+        "when the text for participants was agreed to; empty if none was asked for",
+        |run| run.consent.as_ref().map(|consent| consent.at.clone()).unwrap_or_default(),
     ),
+    column("consent_digest", "hash", "BLAKE3 hash of that text", |run| {
+        run.consent.as_ref().map(|consent| consent.digest.clone()).unwrap_or_default()
+    }),
     column("version", "version", "version of the program that recorded it", |run| run.version.clone()),
     column("created", "RFC 3339", "when it was created", |run| run.created.clone()),
     column("last_at", "RFC 3339", "when its last line was written", |run| run.last_at.clone()),

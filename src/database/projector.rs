@@ -88,13 +88,11 @@ impl Projector {
         let gate = Arc::new(RwLock::new(()));
         let (jobs, queue) = sync_channel(QUEUE);
         let (writer_gate, writer_shelf) = (gate.clone(), shelf.clone());
-        let early = location.path().is_some();
         let thread = std::thread::Builder::new()
             .name("projection".to_owned())
             .spawn(move || {
                 let rows = RowWriter::new(params, writer_shelf, issue_clock);
-                Worker { connection: &mut connection, rows, gate: writer_gate, early, failed: None }
-                    .run(&queue);
+                Worker { connection: &mut connection, rows, gate: writer_gate, failed: None }.run(&queue);
             })
             .map_err(|error| ProjectionError(error.to_string()))?;
         Ok((Projector { jobs: Some(jobs), thread: Some(thread), location, shelf, gate }, position))
@@ -162,13 +160,12 @@ struct Worker<'a> {
     connection: &'a mut Connection,
     rows: RowWriter,
     gate: Arc<RwLock<()>>,
-    /// Whether a transaction may begin before its commit is due: in a file readers see the state before it, in
-    /// memory they would have to wait.
-    early: bool,
     failed: Option<ProjectionError>,
 }
 
 impl Worker<'_> {
+    /// Works when a week or call is complete, not while it happens: the days have all processors until the player
+    /// reads what came of them, and readers of a database in memory wait for one short transaction at most.
     fn run(mut self, queue: &Receiver<Job>) {
         let mut pending: Vec<Entry> = Vec::new();
         loop {
@@ -178,15 +175,10 @@ impl Worker<'_> {
                     let _ = done.send(self.failed.clone().map_or(Ok(()), Err));
                 }
                 Job::Then(errand) => errand(self.connection),
-                Job::Commit(position) => {
-                    self.try_to(|worker| worker.transact(&mut pending, Some(&position), queue))
-                }
-                Job::Write(entry) => {
-                    pending.push(*entry);
-                    if self.early {
-                        self.try_to(|worker| worker.transact(&mut pending, None, queue));
-                    }
-                }
+                Job::Commit(position) => self.try_to(|worker| worker.transact(&mut pending, &position)),
+                // After a failure nothing is written any more, so nothing is kept.
+                Job::Write(entry) if self.failed.is_none() => pending.push(*entry),
+                Job::Write(_) => pending.clear(),
             }
         }
     }
@@ -200,31 +192,12 @@ impl Worker<'_> {
         }
     }
 
-    /// One transaction: writes what is pending and what still comes, until the commit.
-    fn transact(
-        &mut self,
-        pending: &mut Vec<Entry>,
-        position: Option<&Position>,
-        queue: &Receiver<Job>,
-    ) -> rusqlite::Result<()> {
+    /// One transaction: writes what is pending.
+    fn transact(&mut self, pending: &mut Vec<Entry>, position: &Position) -> rusqlite::Result<()> {
         let transaction = self.connection.transaction()?;
         for entry in pending.drain(..) {
             self.rows.write(&transaction, &entry)?;
         }
-        let (mut waiting, mut errands) = (Vec::new(), Vec::new());
-        let position = match position {
-            Some(position) => position.clone(),
-            None => loop {
-                match queue.recv() {
-                    Ok(Job::Write(entry)) => self.rows.write(&transaction, &entry)?,
-                    Ok(Job::Commit(position)) => break position,
-                    Ok(Job::Wait(done)) => waiting.push(done),
-                    Ok(Job::Then(errand)) => errands.push(errand),
-                    // The program ends in the middle of a week: the week is simulated again when the run is opened.
-                    Err(_) => return Ok(()),
-                }
-            },
-        };
         self.rows.flush(&transaction)?;
         transaction.execute(
             "INSERT OR REPLACE INTO projection VALUES (1, ?1, ?2, ?3)",
@@ -234,10 +207,6 @@ impl Worker<'_> {
         transaction.commit()?;
         self.rows.publish();
         drop(closed);
-        errands.into_iter().for_each(|errand| errand(self.connection));
-        for done in waiting {
-            let _ = done.send(Ok(()));
-        }
         Ok(())
     }
 }

@@ -131,8 +131,9 @@ CREATE TABLE ledger_rows (
     note TEXT
 );
 
--- Serves questions about days and about what money was for without the rows themselves.
-CREATE INDEX ledger_by_day ON ledger_rows (day, category, amount);
+-- Serves questions about days and about what money was for without the rows themselves. In the order in which rows
+-- come: they go to its end, and a question without an order is answered as before.
+CREATE INDEX ledger_by_day ON ledger_rows (day, id, category, amount);
 
 CREATE VIEW ledger AS
 SELECT

@@ -161,8 +161,10 @@ impl Session {
         let week_end = self.next_decision_day();
         self.notices.clear();
         while self.world.day < until && !self.world.is_over(&self.params) {
-            let (figures, trace) =
-                step_day(&mut self.world, &self.params, &self.streams, to_fill(&mut self.facts));
+            let Session { world, params, streams, facts, .. } = self;
+            let facts = to_fill(facts);
+            // On one of the threads that share the work: it is handed over once a day instead of once a sweep.
+            let (figures, trace) = rayon::scope(|_| step_day(world, params, streams, facts));
             self.trace = trace;
             self.judge_own_posts();
             self.word_posts();

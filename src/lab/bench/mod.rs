@@ -17,6 +17,31 @@
 //! the number the figure names (they differ by less than a fifth). The policy's own decisions are not counted.
 //! Where the projection works in the background, it is waited for between the weeks, as a person who reads the
 //! dashboard does.
+//!
+//! # Where the time goes
+//!
+//! Measured with `perf` on one thread of a Xeon, 188,000 subscribers (P1a, days 211 to 240), 21 ms a day:
+//!
+//! | share | what |
+//! |---|---|
+//! | 16 % | hashing: the facts of every day, the state once a week (blake3 reads 3 to 5 GB/s, copying included) |
+//! | 12 % | about 2,900 new leads: traits, decision, records |
+//! | 10 % | satisfaction of everybody |
+//! | 10 % | decisions on the billing day, with the compaction of blocks that somebody left |
+//! | 9 % | who calls for help |
+//! | 8 % | about 6,200 bills |
+//! | 7 % | solving, ageing and numbering issues |
+//! | 4 % | usage of everybody |
+//! | 24 % | the rest: allocation, waking threads, posts, companies, lists of facts |
+//!
+//! **The floor.** A day reads and writes about 116 bytes of each subscriber's columns (usage 21, calls 16, satisfaction
+//! 61, closing 8, billing days 2, the hash of the facts 8), and a seventh of the 171 bytes of a row for the hash of the
+//! state: 140 bytes. At the 7 GB/s that one thread of this machine copies, a day at 165,000 is at least 3.3 ms of one
+//! thread, at a million 20 ms. What is above it is arithmetic and the people who come, pay and leave, not passes over
+//! columns.
+//!
+//! **Streams.** A stream is opened for every lead and every bill. That took 180 ns (BLAKE3, then ChaCha8, both a chain
+//! of waiting steps); eight at a time take 50 ns each for one draw (`world::random`).
 
 mod cases;
 mod company;

@@ -66,7 +66,9 @@ fn facts(book: &Logbook) -> Vec<Fact> {
     let total = &book.total;
     let failed = |number: u32, how: &str| if number == 0 { String::new() } else { format!("{number} {how}") };
     let (consent, text) = match &book.consent {
-        Some(consent) => (minute(&consent.at), format!("text {}", consent.digest.get(..16).unwrap_or_default())),
+        Some(consent) => {
+            (minute(&consent.at), format!("text {}", consent.digest.get(..16).unwrap_or_default()))
+        }
         None => ("none was asked for".to_owned(), String::new()),
     };
     let ended = book.ended.map_or(String::new(), |ended| ended.id().to_owned());

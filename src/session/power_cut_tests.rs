@@ -22,9 +22,9 @@ impl Medium for Volatile {
         Ok(())
     }
 
-    fn sync(&mut self) -> io::Result<()> {
+    fn sync(&self) -> io::Result<()> {
         let mut unsynced = self.unsynced.lock().expect("a lock");
-        self.file.write_all(&unsynced)?;
+        (&self.file).write_all(&unsynced)?;
         unsynced.clear();
         Ok(())
     }

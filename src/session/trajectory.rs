@@ -98,7 +98,7 @@ pub(super) trait Medium: Send {
     /// Appends bytes.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
     /// Makes everything appended survive a power cut.
-    fn sync(&mut self) -> io::Result<()>;
+    fn sync(&self) -> io::Result<()>;
     /// Forgets everything after so many bytes.
     fn cut(&mut self, length: u64) -> io::Result<()>;
 }
@@ -108,7 +108,7 @@ impl Medium for File {
         self.write_all(bytes)
     }
 
-    fn sync(&mut self) -> io::Result<()> {
+    fn sync(&self) -> io::Result<()> {
         self.sync_data()
     }
 
@@ -261,10 +261,7 @@ impl TrajectoryWriter {
     /// # Errors
     /// The disk refuses.
     pub fn sync_written(&self) -> Result<(), RunError> {
-        if self.medium.is_none() {
-            return Ok(());
-        }
-        File::open(&self.path).and_then(|file| file.sync_data()).map_err(RunError::io(&self.path))
+        self.medium.as_ref().map_or(Ok(()), |medium| medium.sync()).map_err(RunError::io(&self.path))
     }
 
     /// Puts another medium in place of the file.

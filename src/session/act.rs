@@ -136,7 +136,7 @@ impl Session {
             let deed = self.world.resolve(effect, &self.params, &self.streams);
             let task = tool.task(&self.view(), &arguments);
             if task.as_ref().is_some_and(Task::leaves_something) {
-                self.refuse_if_closed()?;
+                self.refuse_if_only_read()?;
             }
             let answer = match &task {
                 Some(Task::Run { code, seconds }) => self.run_statements(code, *seconds)?,
@@ -156,7 +156,15 @@ impl Session {
                 let given = Value::Object(given.as_map().clone());
                 fields.arguments = &given;
                 let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
-                self.record_call(fields.accepted(&answer), durability).map_err(not_saved)?;
+                let accepted = fields.accepted(&answer);
+                // Statements can be kept even when the run is over, and then their line comes after its end.
+                let recorded = match &task {
+                    Some(task) if task.leaves_something() => {
+                        self.append("call", self.world.day, accepted, durability).map(|_| ())
+                    }
+                    _ => self.record_call(accepted, durability),
+                };
+                recorded.map_err(not_saved)?;
                 task.iter().for_each(|task| self.apply_task(task));
                 self.apply(tool, given, undoes, deed);
                 Ok(answer)
@@ -282,11 +290,9 @@ impl Session {
 
     /// Refuses what acts once the run is over, and in a run that is only read.
     pub(super) fn refuse_if_over(&self, kind: Kind) -> Result<(), Refusal> {
-        if kind.acts() { self.refuse_if_closed() } else { Ok(()) }
-    }
-
-    /// Refuses whatever would have to be written down where nothing is written any more.
-    fn refuse_if_closed(&self) -> Result<(), Refusal> {
+        if !kind.acts() {
+            return Ok(());
+        }
         if let Some(ended) = self.ended {
             let day = self.world.day;
             let how = match ended {
@@ -299,10 +305,14 @@ impl Session {
                 format!("the run is over: {how}; readings and queries stay open"),
             ));
         }
-        if self.trajectory.is_none() {
-            return Err(Refusal::new("read_only", "this run is open to read only"));
+        self.refuse_if_only_read()
+    }
+
+    fn refuse_if_only_read(&self) -> Result<(), Refusal> {
+        match &self.trajectory {
+            Some(_) => Ok(()),
+            None => Err(Refusal::new("read_only", "this run is open to read only")),
         }
-        Ok(())
     }
 
     fn record_call(&mut self, fields: Map<String, Value>, durability: Durability) -> Result<(), RunError> {

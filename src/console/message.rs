@@ -34,12 +34,14 @@ pub struct Arrival {
 }
 
 /// What can be done with a run that does not open.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Instead {
     /// Somebody else plays it: it can be watched.
     Watch(String),
     /// It is damaged: its good beginning can be opened as a branch.
     Rescue(String),
+    /// A participant has to agree to a text before this run begins; and the first line of it that is shown.
+    Agree(Box<crate::session::NewRun>, usize),
 }
 
 /// What a thread behind the screen reports.
@@ -60,8 +62,6 @@ pub enum News {
     WentOn(Box<Arrival>),
     /// A run could not be opened or created; with what can be done instead.
     NotOpened(String, Option<Instead>),
-    /// A participant has to agree to a text before this run begins.
-    ConsentAsked(Box<crate::session::NewRun>, String),
     /// What a call would do; the number says which question this answers.
     Checked(u64, Result<Preview, Refusal>),
     /// A tool was called.

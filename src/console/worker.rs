@@ -271,7 +271,9 @@ impl SessionThread {
                 self.say_kept(&runs, done.map(|()| format!("run {id} is deleted")));
             }
             Job::Create(new) => match Session::create((*new).clone(), &self.configuration) {
-                Err(RunError::ConsentNeeded(text)) => self.say(News::ConsentAsked(new, text.text)),
+                Err(RunError::ConsentNeeded(text)) => {
+                    self.say(News::NotOpened(text.text, Some(Instead::Agree(new, 0))));
+                }
                 made => self.take(made, "", None),
             },
             Job::Open(runs, id, access) => {

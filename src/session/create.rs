@@ -30,7 +30,7 @@ use crate::world::state::World;
 pub const FEWEST_DAYS: u32 = 7;
 
 /// What a new run is to be. What is left out comes from the scenario, then from the defaults.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct NewRun {
     /// Seed of all chance; 42 if left out.
     pub seed: Option<u64>,

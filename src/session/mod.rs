@@ -281,9 +281,8 @@ impl Session {
         if let Some(trajectory) = &mut self.trajectory {
             trajectory.sync()?;
         }
-        if !self.sync_calls {
-            self.commit_projection();
-        }
+        // Lines without rows move the database on, too: a snapshot ahead of it could not be used.
+        self.commit_projection();
         self.keep_snapshot(true);
         match &self.projector {
             Some(projector) => Ok(projector.wait()?),

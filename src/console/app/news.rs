@@ -7,12 +7,11 @@ use std::time::Instant;
 use super::{App, Layer, Order, Run, Screens, Stage};
 use crate::console::action::Action;
 use crate::console::company::Company;
-use crate::console::dialogs::consent::Consent;
 use crate::console::dialogs::filing::Filing;
 use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::report::Report;
 use crate::console::effect::Effect;
-use crate::console::message::News;
+use crate::console::message::{Instead, News};
 use crate::console::screens::{Look, ScreenId};
 use crate::console::text::number;
 use crate::console::tour::Tour;
@@ -54,14 +53,13 @@ impl App {
             News::NotOpened(problem, instead) => {
                 self.busy = None;
                 self.tour_planned = false;
+                let asked = matches!(instead, Some(Instead::Agree(..)));
                 if let Stage::Menu(menu) = &mut self.stage {
                     menu.refused(problem.clone(), instead);
                 }
-                self.complain(problem);
-            }
-            News::ConsentAsked(new, text) => {
-                self.busy = None;
-                self.layers.push(Layer::Dialog(Box::new(Consent::new(*new, &text))));
+                if !asked {
+                    self.complain(problem);
+                }
             }
             News::Day(day, _) => {
                 if let Some(Some((_, _, last))) = self.busy.as_mut().map(|busy| busy.days.as_mut()) {

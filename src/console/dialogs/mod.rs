@@ -1,7 +1,6 @@
 //! What lies over a screen for a while.
 
 pub mod confirm;
-pub mod consent;
 pub mod explain;
 pub mod filing;
 pub mod final_page;

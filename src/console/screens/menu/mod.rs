@@ -98,8 +98,10 @@ impl Menu {
 
     /// A run could not be started or opened; what can be done instead is asked.
     pub fn refused(&mut self, problem: String, instead: Option<Instead>) {
-        self.asked = instead.map(|instead| Asked::Instead(instead, problem.clone()));
-        self.form.refused = Some(problem);
+        // What somebody has to agree to is no refusal.
+        let refused = (!matches!(instead, Some(Instead::Agree(..)))).then(|| problem.clone());
+        self.asked = instead.map(|instead| Asked::Instead(instead, problem));
+        self.form.refused = refused;
     }
 
     /// Asks how a run went, unless that is known or asked already.

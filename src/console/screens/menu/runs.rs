@@ -14,10 +14,10 @@ use crate::console::widgets::chart::zero_if_near;
 use crate::console::widgets::{Axis, Cell, Column, Line, chart};
 use crate::console::worker::Recorded;
 use crate::notation::{dollars, grouped};
-use crate::session::{Ended, Goal, Mode, RunCourse, RunSummary};
+use crate::session::{Ended, Goal, Mode, NewRun, RunCourse, RunSummary};
 
 /// Something that cannot be taken back and is asked about first.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Asked {
     GiveUp(String),
     Delete(String),
@@ -161,6 +161,18 @@ impl Menu {
                 vec![Effect::Replay { recorded: Recorded::Run(id), goal: Goal::Last, follow: true }]
             }
             (Action::Confirm, Some(Asked::Instead(Instead::Rescue(id), _))) => vec![Effect::Rescue(id)],
+            (Action::Confirm, Some(Asked::Instead(Instead::Agree(new, _), _))) => {
+                vec![Effect::Create(Box::new(NewRun { agreed: true, ..*new }))]
+            }
+            (Action::ScrollUp, Some(Asked::Instead(Instead::Agree(new, from), text))) => {
+                self.asked = Some(Asked::Instead(Instead::Agree(new, from.saturating_sub(1)), text));
+                Vec::new()
+            }
+            (Action::ScrollDown, Some(Asked::Instead(Instead::Agree(new, from), text))) => {
+                let from = (from + 1).min(text.len() / 20);
+                self.asked = Some(Asked::Instead(Instead::Agree(new, from), text));
+                Vec::new()
+            }
             (Action::Cancel, _) => Vec::new(),
             (_, asked) => {
                 self.asked = asked;
@@ -199,6 +211,7 @@ impl Menu {
     pub(super) fn draw_instead(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let Some(Asked::Instead(instead, problem)) = &self.asked else { return };
         let (title, offer) = match instead {
+            Instead::Agree(_, from) => return draw_text_to_agree_to(canvas, area, problem, *from),
             Instead::Watch(_) => {
                 ("To read only", "Watch it from here, read-only? What is played elsewhere appears here.")
             }
@@ -342,4 +355,24 @@ pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, courses: &[(usize
 /// A course that is known.
 pub(super) fn known<'a>(courses: &'a Courses, id: &str) -> Option<&'a RunCourse> {
     courses.get(id)?.as_ref()?.as_ref().ok()
+}
+
+/// A text that a participant agrees to or not.
+fn draw_text_to_agree_to(canvas: &mut Canvas<'_>, area: Rect, text: &str, from: usize) {
+    let width = 84.min(area.width);
+    let lines = wrapped(text.trim_end(), width.saturating_sub(4) as usize);
+    let own = centered(area, width, (lines.len() as u16).saturating_add(5));
+    canvas.clear(own, Role::Text);
+    let inside = canvas.pane(own, "Before the session", "", true);
+    let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+    let room = inside.height.saturating_sub(2) as usize;
+    let from = from.min(lines.len().saturating_sub(room));
+    for (row, line) in rows_of(Rect { height: room as u16, ..inside }).zip(lines.iter().skip(from)) {
+        canvas.text(row, line, Role::Text);
+    }
+    let question = Rect { y: inside.bottom().saturating_sub(1), height: inside.height.min(1), ..inside };
+    canvas.text(question, "y I agree, the session begins   esc I do not, nothing is recorded", Role::Strong);
+    if lines.len() > room {
+        canvas.pane_keys(own, "up down read on");
+    }
 }

@@ -5,7 +5,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use super::*;
 use crate::console::test_kit::painted;
 use crate::console::worker::Recorded;
-use crate::session::{Ended, Goal, Mode};
+use crate::session::{Ended, Goal, Mode, NewRun};
 
 /// An unfinished run.
 pub(in crate::console) fn summary(id: &str) -> RunSummary {
@@ -250,5 +250,28 @@ fn a_run_that_does_not_open_is_offered_another_way_after_a_question() {
             menu.refused(long.clone(), Some(instead.clone()));
             assert!(menu.act(Action::Cancel).is_empty() && menu.asked.is_none());
         }
+    }
+}
+
+#[test]
+fn a_participant_agrees_or_nothing_begins() {
+    let text = "We keep what you do for a year.\n".repeat(40) + "You can stop at any time.";
+    let asked = || {
+        let mut menu = three();
+        menu.refused(text.clone(), Some(Instead::Agree(Box::new(NewRun::default()), 0)));
+        menu
+    };
+    let mut menu = asked();
+    let screen = shown(&menu, 80, 23);
+    for part in ["Before the session", "We keep what you do", "y I agree", "esc I do not", "read on"] {
+        assert!(screen.contains(part), "{part} is missing in\n{screen}");
+    }
+    assert!(!screen.contains("stop at any time"));
+    (0..60).for_each(|_| drop(menu.act(Action::ScrollDown)));
+    assert!(shown(&menu, 80, 23).contains("You can stop at any time."));
+    assert!(menu.act(Action::Cancel).is_empty() && !shown(&menu, 80, 23).contains("Before the session"));
+    match &asked().act(Action::Confirm)[..] {
+        [Effect::Create(new)] => assert!(new.agreed),
+        other => panic!("{other:?}"),
     }
 }

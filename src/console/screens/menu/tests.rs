@@ -5,7 +5,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use super::*;
 use crate::console::test_kit::painted;
 use crate::console::worker::Recorded;
-use crate::session::{Ended, Goal, Mode, NewRun};
+use crate::session::{Ended, Goal, Mode};
 
 /// An unfinished run.
 pub(in crate::console) fn summary(id: &str) -> RunSummary {
@@ -258,7 +258,7 @@ fn a_participant_agrees_or_nothing_begins() {
     let text = "We keep what you do for a year.\n".repeat(40) + "You can stop at any time.";
     let asked = || {
         let mut menu = three();
-        menu.refused(text.clone(), Some(Instead::Agree(Box::new(NewRun::default()), 0)));
+        menu.refused(text.clone(), Some(Instead::Agree(Box::default(), 0)));
         menu
     };
     let mut menu = asked();

@@ -82,14 +82,18 @@ impl Console {
             }
             self.screen.draw(&mut self.app)?;
             let Ok(message) = self.messages.recv() else { return Ok((1, None)) };
-            #[cfg(debug_assertions)]
-            fail_on_purpose(&message);
-            self.app.update(message);
+            self.hear(message);
             // Everything that has arrived meanwhile is drawn once.
             while let Ok(message) = self.messages.try_recv() {
-                self.app.update(message);
+                self.hear(message);
             }
         }
+    }
+
+    fn hear(&mut self, message: Message) {
+        #[cfg(debug_assertions)]
+        fail_on_purpose(&message);
+        self.app.update(message);
     }
 
     fn carry_out(&mut self) -> io::Result<Option<(u8, Option<String>)>> {

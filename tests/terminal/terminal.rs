@@ -103,6 +103,24 @@ impl Terminal {
         }
     }
 
+    /// A program that does not end is a failure with a screen, not a test that never ends.
+    fn exit_code(&mut self) -> u32 {
+        let deadline = Instant::now() + Duration::from_secs(60);
+        loop {
+            if let Some(status) = self.child.try_wait().expect("a process") {
+                return status.exit_code();
+            }
+            while let Ok(bytes) = self.bytes.try_recv() {
+                self.take(&bytes);
+            }
+            if Instant::now() > deadline {
+                let _ = self.child.kill();
+                panic!("it did not end:\n{}", self.contents());
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
     fn take(&mut self, bytes: &[u8]) {
         self.screen.process(bytes);
         self.written.extend_from_slice(bytes);
@@ -138,12 +156,12 @@ impl Terminal {
 
     /// Waits for the end of a process that was killed and could not tidy up.
     pub fn killed(mut self) {
-        self.child.wait().expect("it ends");
+        self.exit_code();
     }
 
     /// Waits for the end; returns the exit code and what is on the screen then.
     pub fn end(mut self) -> (u32, String) {
-        let code = self.child.wait().expect("it ends").exit_code();
+        let code = self.exit_code();
         while let Ok(bytes) = self.bytes.recv_timeout(Duration::from_secs(5)) {
             self.take(&bytes);
         }

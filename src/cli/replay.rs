@@ -9,7 +9,7 @@ use super::play::show_console;
 use super::{Context, Failure, play, print};
 use crate::console::effect::Effect;
 use crate::console::worker::Recorded;
-use crate::session::{Goal, find_run_to_read, verify, verify_record};
+use crate::session::{Goal, find_run_to_read, verify};
 
 /// Options of `replay`.
 #[derive(Debug, Args)]
@@ -50,10 +50,10 @@ fn recorded(name: &str) -> Recorded {
 }
 
 fn check(options: &Options, context: &Context) -> Result<(), Failure> {
-    let found = match recorded(&options.run) {
-        Recorded::File(path) => verify_record(&path)?,
-        Recorded::Run(id) => verify(&find_run_to_read(&context.runs()?, &id)?)?,
-    };
+    let found = verify(&match recorded(&options.run) {
+        Recorded::File(path) => path,
+        Recorded::Run(id) => find_run_to_read(&context.runs()?, &id)?,
+    })?;
     print(&format!(
         "run {}: {} lines, {} states reached again, day {}, state {}\n",
         found.run, found.lines, found.states, found.day, found.state_hash

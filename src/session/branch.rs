@@ -89,19 +89,19 @@ pub(super) fn branch_of(
 /// The lines before a decision day: those of the days before it and the week that ends on it, without what was
 /// decided on that day itself.
 fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
-    let closes = |line: &Line| ["week", "step"].contains(&line.kind.as_str());
     let after = trajectory
         .lines
         .iter()
-        .position(|line| !(line.day < day || (line.day == day && closes(line)) || line.seq == 0));
+        .position(|line| !(line.day < day || (line.day == day && line.closes_days()) || line.seq == 0));
     &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]
 }
 
 /// Those lines that make a company what it is.
 fn shared_lines(lines: &[Line]) -> Vec<&Line> {
-    let kinds = ["call", "advance", "week", "step", "override"];
-    let accepted = |line: &&Line| line.kind != "call" || line.fields.get("ok") == Some(&Value::Bool(true));
-    lines.iter().filter(|line| kinds.contains(&line.kind.as_str())).filter(accepted).collect()
+    let makes = |line: &&Line| {
+        line.is_accepted_call() || line.closes_days() || ["advance", "override"].contains(&line.kind.as_str())
+    };
+    lines.iter().filter(makes).collect()
 }
 
 fn write_branch(folder: &PathBuf, manifest: &Manifest, shared: &[&Line]) -> Result<(), RunError> {

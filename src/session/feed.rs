@@ -18,7 +18,7 @@ use crate::world::market::social::sentiment::Sentiment;
 use crate::world::params::PostJudge;
 
 /// Everything that was written so far, and why the player's posts were taken as they were.
-#[derive(Default, Serialize, Deserialize)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Feed {
     writer: Writer,
     /// Posts of others as the player sees them, in the order of their numbers.

@@ -34,6 +34,7 @@ mod scripts;
 mod snapshot;
 mod terms;
 mod trajectory;
+mod verify;
 mod week;
 mod witness;
 mod xray;
@@ -66,9 +67,9 @@ pub use library::Library;
 pub use manifest::{FORMAT, Manifest, Parent};
 pub use mode::Mode;
 pub use observe::{Observation, WaitingThread};
-pub use open::{Access, Verification, verify};
+pub use open::Access;
 pub use place::{Chapter, Goal, Place, Went};
-pub use playback::{Playback, verify_record};
+pub use playback::Playback;
 pub use rescue::{Rescued, rescue};
 pub use runs::{
     RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,
@@ -77,6 +78,7 @@ pub use runs::{
 pub use scripts::Calculated;
 pub use terms::{RunningStudy, StudyLevel, Terms};
 pub use trajectory::{Line, Trajectory, seconds as moment_of};
+pub use verify::{Verification, verify};
 pub use week::{Forecasts, WeekFigures, week_of};
 pub use xray::Xray;
 

@@ -14,9 +14,7 @@ use super::trajectory::{Line, Trajectory, TrajectoryWriter, damaged_at};
 use super::witness::Witnesses;
 use super::{Ended, Session};
 use crate::database::{Location, Position, Projector};
-use crate::world::events::Facts;
 use crate::world::params::Params;
-use crate::world::state::World;
 
 /// What may be done with an opened run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,40 +25,12 @@ pub enum Access {
     Read,
 }
 
-/// Where opening begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Begin {
-    /// With the snapshot, if there is one that can be used.
-    Snapshot,
-    /// With the first line.
-    FirstLine,
-}
-
-/// What a verification found out.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Verification {
-    /// Run.
-    pub run: String,
-    /// Lines that were checked.
-    pub lines: usize,
-    /// Weeks and steps whose state was reached again.
-    pub states: usize,
-    /// Last day.
-    pub day: u32,
-    /// Hash of the last state.
-    pub state_hash: String,
-}
-
 impl Session {
     /// Opens the run in a folder and simulates it up to its last line.
     ///
     /// # Errors
     /// The run is missing, damaged, of another version, or in use; the error names the place and what is safe.
     pub fn open(folder: &Path, access: Access, projection: bool) -> Result<Session, RunError> {
-        Session::open_from(folder, access, projection, Begin::Snapshot)
-    }
-
-    fn open_from(folder: &Path, access: Access, projection: bool, begin: Begin) -> Result<Session, RunError> {
         let manifest = Manifest::read(folder)?;
         let params = Arc::new(manifest.params()?);
         let lock = match access {
@@ -81,7 +51,7 @@ impl Session {
         };
         // The number of the line up to which rows are there; rows that lack need the facts before them.
         let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
-        let snapshot = usable(&witnesses, &manifest, &trajectory, rows).filter(|_| begin == Begin::Snapshot);
+        let snapshot = usable(&witnesses, &manifest, &trajectory, rows);
         let (mut session, seen) = Session::before_replay(manifest.clone(), folder, lock, params, snapshot);
         session.remarks.append(&mut witnesses.remarks);
         session.replay(&path, &trajectory, seen, database)?;
@@ -120,23 +90,18 @@ impl Session {
         params: Arc<Params>,
         snapshot: Option<&Snapshot>,
     ) -> (Session, usize) {
-        let (in_memory, own) = (TrajectoryWriter::in_memory(), Some(folder.to_owned()));
+        let own = Some(folder.to_owned());
         let recalled = snapshot.and_then(|snapshot| Some((snapshot.recall()?, snapshot.position())));
         let (mut session, seen) = match recalled {
-            None => {
-                let mut facts = Facts::default();
-                let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
-                (Session::assemble(manifest, own, lock, params, world, facts, in_memory, None, true), 0)
-            }
-            Some(((world, facts, recalled), position)) => {
+            None => (Session::unwritten(manifest, own, params, None), 0),
+            Some(((past, recalled), position)) => {
                 let seen = position.seq as usize + 1;
-                let mut session =
-                    Session::assemble(manifest, own, lock, params, world, facts, in_memory, None, true);
+                let mut session = Session::unwritten_from(manifest, own, params, past, None);
                 session.remember(recalled, position);
                 (session, seen)
             }
         };
-        session.trajectory = None;
+        session._lock = lock;
         (session, seen)
     }
 
@@ -173,7 +138,7 @@ impl Session {
     fn replay_line(&mut self, line: &Line) -> Result<(), String> {
         match line.kind.as_str() {
             "start" => self.project_opening(),
-            "call" if line.fields.get("ok") == Some(&Value::Bool(true)) => self.replay_call(&line.fields)?,
+            "call" if line.is_accepted_call() => self.replay_call(&line.fields)?,
             "advance" => self.replay_forecasts(line)?,
             "week" | "step" => {
                 let from = self.world.day;
@@ -307,23 +272,4 @@ fn usable<'a>(
     let line = trajectory.lines.get(position.seq as usize)?;
     let complete = rows_from.is_none_or(|seq| seq >= position.seq);
     (line.hash == position.line_hash && complete).then_some(snapshot)
-}
-
-/// Simulates a run again and compares every recorded state; nothing is changed.
-///
-/// # Errors
-/// The first line that does not fit.
-pub fn verify(folder: &Path) -> Result<Verification, RunError> {
-    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
-    let session = Session::open_from(folder, Access::Read, false, Begin::FirstLine)?;
-    let states =
-        trajectory.lines.iter().filter(|line| ["week", "step"].contains(&line.kind.as_str())).count();
-    let last = trajectory.lines.iter().rev().find_map(|line| line.fields.get("state_hash")?.as_str());
-    Ok(Verification {
-        run: session.manifest().id.clone(),
-        lines: trajectory.lines.len(),
-        states,
-        day: session.day(),
-        state_hash: last.unwrap_or_default().to_owned(),
-    })
 }

@@ -12,7 +12,7 @@ use super::decided::{Decided, cash_of};
 use super::error::RunError;
 use super::manifest::Manifest;
 use super::mode::Mode;
-use super::open::{Verification, check_start};
+use super::open::check_start;
 use super::place::{Chapter, Goal, Place, Went};
 use super::trajectory::{Line, Trajectory, TrajectoryWriter, damaged_at};
 use super::week::week_of;
@@ -32,12 +32,12 @@ struct Stop {
 }
 
 /// Where the lines come from.
-struct Origin {
-    path: PathBuf,
+pub(super) struct Origin {
+    pub path: PathBuf,
     /// Folder of the run; none for a trajectory that stands alone.
-    folder: Option<PathBuf>,
-    manifest: Manifest,
-    params: Arc<Params>,
+    pub folder: Option<PathBuf>,
+    pub manifest: Manifest,
+    pub params: Arc<Params>,
 }
 
 /// A recorded run, played again.
@@ -322,7 +322,7 @@ impl Playback {
     fn shared(&self) -> Vec<Line> {
         let mut lines = self.trajectory.lines[..self.applied].to_vec();
         if let Some(last) = lines.iter().rposition(|line| line.kind == "advance") {
-            let ran = lines[last..].iter().any(|line| ["week", "step"].contains(&line.kind.as_str()));
+            let ran = lines[last..].iter().any(Line::closes_days);
             if !ran {
                 lines.truncate(last);
             }
@@ -349,39 +349,15 @@ fn apply(
         if let Err(error) = session.apply_line(path, line) {
             return (at, Err((at, error)));
         }
-        let closes = ["week", "step"].contains(&line.kind.as_str());
-        if closes && at + 1 < lines.len() && progress(line.day).is_break() {
+        if line.closes_days() && at + 1 < lines.len() && progress(line.day).is_break() {
             return (at + 1, Ok(ControlFlow::Break(())));
         }
     }
     (lines.len().max(applied), Ok(ControlFlow::Continue(())))
 }
 
-/// Simulates a recorded run again, the one of a folder or a trajectory file that stands alone, and compares every
-/// recorded state; nothing is changed.
-///
-/// # Errors
-/// The first line that does not fit.
-pub fn verify_record(path: &Path) -> Result<Verification, RunError> {
-    let (origin, trajectory) = read(path)?;
-    let Origin { path, manifest, params, .. } = origin;
-    let run = manifest.id.clone();
-    let mut session = Session::unwritten(manifest, None, params, None);
-    let (_, end) = apply(&mut session, &path, &trajectory.lines, 0, &mut |_| ControlFlow::Continue(()));
-    if let Err((_, error)) = end {
-        return Err(error);
-    }
-    let states = || trajectory.lines.iter().filter_map(|line| line.fields.get("state_hash")?.as_str());
-    Ok(Verification {
-        run,
-        lines: trajectory.lines.len(),
-        states: states().count(),
-        day: session.day(),
-        state_hash: states().next_back().unwrap_or_default().to_owned(),
-    })
-}
-
-fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {
+/// Reads the lines of a run's folder, or of a trajectory file that stands alone.
+pub(super) fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {
     let (file, folder) = match path.is_dir() {
         true => (path.join("trajectory.jsonl"), Some(path.to_owned())),
         false => {
@@ -430,6 +406,17 @@ impl Session {
     ) -> Session {
         let mut facts = Facts::default();
         let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
+        Session::unwritten_from(manifest, folder, params, (world, facts), projector)
+    }
+
+    /// The same with a world that has a past.
+    pub(super) fn unwritten_from(
+        manifest: Manifest,
+        folder: Option<PathBuf>,
+        params: Arc<Params>,
+        (world, facts): (World, Facts),
+        projector: Option<Projector>,
+    ) -> Session {
         let nowhere = TrajectoryWriter::in_memory();
         let mut session =
             Session::assemble(manifest, folder, None, params, world, facts, nowhere, projector, true);

@@ -84,7 +84,7 @@ fn replayed(
             // makes everything doubtful since the last state that was reached.
             return Ok(if at + 1 == lines.len() { at } else { reached });
         }
-        if ["week", "step"].contains(&line.kind.as_str()) {
+        if line.closes_days() {
             reached = at + 1;
         }
     }

@@ -7,6 +7,7 @@
 //! The file is a title line, the blake3 digest of the rest, and the rest as canonical bytes: header and notes as
 //! JSON texts, then what the world and the session hold as numbers.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -45,36 +46,19 @@ struct Header {
     database: Option<String>,
 }
 
-/// What a session knows in words.
+/// What a session knows in words: borrowed when it is kept, owned when it is read back.
 #[derive(Serialize, Deserialize)]
-struct Notes {
-    weeks: Vec<WeekFigures>,
-    running_week: WeekFigures,
-    decisions: Vec<Decisions>,
-    notices: Vec<(u32, String)>,
-    feed: Feed,
-    done: Vec<String>,
-    journal: Vec<JournalEntry>,
-    asked: Vec<String>,
-    notebook: Notebook,
-    calculated: Vec<Calculated>,
-    facts_chain: (String, bool),
-    ended: Option<Ended>,
-}
-
-/// The notes of a session, not copied.
-#[derive(Serialize)]
-struct NotesOf<'a> {
-    weeks: &'a [WeekFigures],
-    running_week: &'a WeekFigures,
-    decisions: &'a [Decisions],
-    notices: &'a [(u32, String)],
-    feed: &'a Feed,
-    done: &'a [String],
-    journal: &'a [JournalEntry],
-    asked: &'a [String],
-    notebook: &'a Notebook,
-    calculated: &'a [Calculated],
+struct Notes<'a> {
+    weeks: Cow<'a, [WeekFigures]>,
+    running_week: Cow<'a, WeekFigures>,
+    decisions: Cow<'a, [Decisions]>,
+    notices: Cow<'a, [(u32, String)]>,
+    feed: Cow<'a, Feed>,
+    done: Cow<'a, [String]>,
+    journal: Cow<'a, [JournalEntry]>,
+    asked: Cow<'a, [String]>,
+    notebook: Cow<'a, Notebook>,
+    calculated: Cow<'a, [Calculated]>,
     facts_chain: (String, bool),
     ended: Option<Ended>,
 }
@@ -97,7 +81,7 @@ pub(super) struct Recalled {
     /// Settings before the first call of this week.
     settings: Settings,
     undo: Vec<UndoStep>,
-    notes: Notes,
+    notes: Notes<'static>,
 }
 
 impl Snapshot {
@@ -146,9 +130,9 @@ impl Snapshot {
     }
 
     /// The state; none if it is not the one it claims to be.
-    pub(super) fn recall(&self) -> Option<(World, Facts, Recalled)> {
+    pub(super) fn recall(&self) -> Option<((World, Facts), Recalled)> {
         let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
-        let notes: Notes = serde_json::from_str(&reader.read::<String>()?).ok()?;
+        let notes: Notes<'static> = serde_json::from_str(&reader.read::<String>()?).ok()?;
         let chain = blake3::Hash::from_hex(&notes.facts_chain.0).ok()?;
         let (world, facts) = (reader.read()?, reader.read()?);
         let recalled = Recalled {
@@ -161,7 +145,7 @@ impl Snapshot {
             undo: reader.read()?,
         };
         let (hash, _) = state_hash(&world, recalled.facts_chain.hash());
-        (reader.left() == 0 && hash == self.header.state_hash).then_some((world, facts, recalled))
+        (reader.left() == 0 && hash == self.header.state_hash).then_some(((world, facts), recalled))
     }
 }
 
@@ -208,17 +192,17 @@ impl Session {
     }
 
     fn state_bytes(&self) -> Vec<u8> {
-        let notes = NotesOf {
-            weeks: &self.weeks,
-            running_week: &self.running_week,
-            decisions: &self.decisions,
-            notices: &self.notices,
-            feed: &self.feed,
-            done: &self.this_week.done,
-            journal: &self.journal,
-            asked: &self.asked,
-            notebook: &self.office.notebook,
-            calculated: &self.calculated,
+        let notes = Notes {
+            weeks: Cow::Borrowed(&self.weeks),
+            running_week: Cow::Borrowed(&self.running_week),
+            decisions: Cow::Borrowed(&self.decisions),
+            notices: Cow::Borrowed(&self.notices),
+            feed: Cow::Borrowed(&self.feed),
+            done: Cow::Borrowed(&self.this_week.done),
+            journal: Cow::Borrowed(&self.journal),
+            asked: Cow::Borrowed(&self.asked),
+            notebook: Cow::Borrowed(&self.office.notebook),
+            calculated: Cow::Borrowed(&self.calculated),
             facts_chain: (self.facts_chain.hash().to_hex().to_string(), self.facts_chain.is_closed()),
             ended: self.ended,
         };
@@ -238,12 +222,17 @@ impl Session {
     pub(super) fn remember(&mut self, recalled: Recalled, position: Position) {
         let Recalled { facts_chain, trace, cash_by_day, called, settings, undo, notes } = recalled;
         self.facts_chain = facts_chain;
-        self.this_week = ThisWeek { settings, undo, done: notes.done };
+        self.this_week = ThisWeek { settings, undo, done: notes.done.into_owned() };
         (self.trace, self.cash_by_day, self.called) = (trace, cash_by_day, called);
-        (self.weeks, self.running_week) = (notes.weeks, notes.running_week);
-        (self.decisions, self.notices, self.journal) = (notes.decisions, notes.notices, notes.journal);
-        (self.feed, self.asked, self.calculated) = (notes.feed, notes.asked, notes.calculated);
-        self.office.notebook = notes.notebook;
+        self.weeks = notes.weeks.into_owned();
+        self.running_week = notes.running_week.into_owned();
+        self.decisions = notes.decisions.into_owned();
+        self.notices = notes.notices.into_owned();
+        self.feed = notes.feed.into_owned();
+        self.journal = notes.journal.into_owned();
+        self.asked = notes.asked.into_owned();
+        self.office.notebook = notes.notebook.into_owned();
+        self.calculated = notes.calculated.into_owned();
         self.ended = notes.ended;
         self.position = position;
     }

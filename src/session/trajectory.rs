@@ -47,6 +47,16 @@ impl Line {
         Position { seq: self.seq, line_hash: self.hash.clone() }
     }
 
+    /// Whether it closes days that ran: a week, or single steps.
+    pub fn closes_days(&self) -> bool {
+        matches!(self.kind.as_str(), "week" | "step")
+    }
+
+    /// Whether it is a call of a tool that was accepted.
+    pub fn is_accepted_call(&self) -> bool {
+        self.kind == "call" && self.fields.get("ok") == Some(&Value::Bool(true))
+    }
+
     /// When it was written, seconds since 1970; 0 if that cannot be read.
     pub fn moment(&self) -> f64 {
         seconds(&self.at)

@@ -84,7 +84,7 @@ impl Timeline {
 
     /// Counts the time between two lines. The time before a week's closing line is the simulator's.
     fn pass_time(&mut self, before: &Line, line: &Line) {
-        if closes(line) {
+        if line.closes_days() {
             return;
         }
         let passed = line.moment() - before.moment();
@@ -108,13 +108,10 @@ impl Timeline {
     }
 
     fn count(&mut self, line: &Line) {
-        let (text, yes) = (
-            |name: &str| line.fields.get(name).and_then(Value::as_str).unwrap_or_default().to_owned(),
-            |name: &str| line.fields.get(name) == Some(&Value::Bool(true)),
-        );
+        let text = |name: &str| line.fields.get(name).and_then(Value::as_str).unwrap_or_default().to_owned();
         let effort = &mut self.open.effort;
         match line.kind.as_str() {
-            "call" if yes("ok") => {
+            "call" if line.is_accepted_call() => {
                 effort.calls += 1;
                 effort.undone += u32::from(line.fields.contains_key("undoes"));
                 *effort.tools.entry(text("tool")).or_default() += 1;
@@ -138,7 +135,7 @@ impl Timeline {
                 let said = line.fields.get("forecasts").cloned().unwrap_or_default();
                 self.open.forecasts = serde_json::from_value(said).unwrap_or_default();
             }
-            _ if closes(line) => self.close(line),
+            _ if line.closes_days() => self.close(line),
             _ => {}
         }
     }
@@ -170,11 +167,6 @@ impl Timeline {
             line.fields.get("state_hash").and_then(Value::as_str).unwrap_or_default().to_owned();
         self.spans.push(span);
     }
-}
-
-/// Whether a line closes days that ran.
-fn closes(line: &Line) -> bool {
-    ["week", "step"].contains(&line.kind.as_str())
 }
 
 #[cfg(test)]

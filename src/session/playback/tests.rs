@@ -231,7 +231,7 @@ fn a_trajectory_that_stands_alone_is_played_too() {
     let mut playback = Playback::open(&file).expect("it opens");
     go(&mut playback, Goal::Last);
     assert_eq!(playback.session().state_hash().0, hashes(&run.folder)[&21]);
-    let verified = verify_record(&file).expect("it verifies");
+    let verified = verify(&file).expect("it verifies");
     assert_eq!(verified, verify(&run.folder).expect("as the run does"));
     assert_eq!((verified.day, verified.states), (21, 3));
     assert_eq!(playback.take_over(Mode::Sandbox).err().expect("refused").code, "not_possible");

@@ -2,15 +2,21 @@
 
 use super::{RunColumn, maybe, number, pairs, rounded, score};
 use crate::report::logbook::Logbook;
-use crate::session::ForecastScore;
 
-fn coverage(score: &ForecastScore) -> f64 {
-    f64::from(score.covered) / f64::from(score.scored)
+fn scored<const DAYS: u32>(run: &Logbook) -> String {
+    score(run, DAYS).map_or(0, |score| score.scored).to_string()
 }
 
-fn scored(run: &Logbook, horizon_days: u32) -> String {
-    score(run, horizon_days).map_or(0, |score| score.scored).to_string()
+fn error<const DAYS: u32>(run: &Logbook) -> String {
+    maybe(score(run, DAYS).map(|score| score.mean_error))
 }
+
+fn coverage<const DAYS: u32>(run: &Logbook) -> String {
+    maybe(score(run, DAYS).map(|score| f64::from(score.covered) / f64::from(score.scored)))
+}
+
+const ERROR: &str = "their mean of |point - outcome| / |outcome|";
+const COVERAGE: &str = "share of them whose interval held the outcome";
 
 const fn column(
     name: &'static str,
@@ -121,40 +127,18 @@ pub const RUNS: &[RunColumn] = &[
         "targeted share of development spend over the days that ran",
         |run| maybe(run.measures.targeted_development),
     ),
-    column("forecasts_scored_7", "count", "forecasts 7 days ahead whose day has come", |run| scored(run, 7)),
-    column("forecast_error_7", "share", "their mean of |point - outcome| / |outcome|", |run| {
-        maybe(score(run, 7).map(|score| score.mean_error))
-    }),
-    column("forecast_coverage_7", "share", "share of them whose interval held the outcome", |run| {
-        maybe(score(run, 7).map(coverage))
-    }),
-    column("forecasts_scored_28", "count", "forecasts 28 days ahead whose day has come", |run| {
-        scored(run, 28)
-    }),
-    column("forecast_error_28", "share", "their mean of |point - outcome| / |outcome|", |run| {
-        maybe(score(run, 28).map(|score| score.mean_error))
-    }),
-    column("forecast_coverage_28", "share", "share of them whose interval held the outcome", |run| {
-        maybe(score(run, 28).map(coverage))
-    }),
-    column("forecasts_scored_84", "count", "forecasts 84 days ahead whose day has come", |run| {
-        scored(run, 84)
-    }),
-    column("forecast_error_84", "share", "their mean of |point - outcome| / |outcome|", |run| {
-        maybe(score(run, 84).map(|score| score.mean_error))
-    }),
-    column("forecast_coverage_84", "share", "share of them whose interval held the outcome", |run| {
-        maybe(score(run, 84).map(coverage))
-    }),
-    column("forecasts_scored_182", "count", "forecasts 182 days ahead whose day has come", |run| {
-        scored(run, 182)
-    }),
-    column("forecast_error_182", "share", "their mean of |point - outcome| / |outcome|", |run| {
-        maybe(score(run, 182).map(|score| score.mean_error))
-    }),
-    column("forecast_coverage_182", "share", "share of them whose interval held the outcome", |run| {
-        maybe(score(run, 182).map(coverage))
-    }),
+    column("forecasts_scored_7", "count", "forecasts 7 days ahead whose day has come", scored::<7>),
+    column("forecast_error_7", "share", ERROR, error::<7>),
+    column("forecast_coverage_7", "share", COVERAGE, coverage::<7>),
+    column("forecasts_scored_28", "count", "forecasts 28 days ahead whose day has come", scored::<28>),
+    column("forecast_error_28", "share", ERROR, error::<28>),
+    column("forecast_coverage_28", "share", COVERAGE, coverage::<28>),
+    column("forecasts_scored_84", "count", "forecasts 84 days ahead whose day has come", scored::<84>),
+    column("forecast_error_84", "share", ERROR, error::<84>),
+    column("forecast_coverage_84", "share", COVERAGE, coverage::<84>),
+    column("forecasts_scored_182", "count", "forecasts 182 days ahead whose day has come", scored::<182>),
+    column("forecast_error_182", "share", ERROR, error::<182>),
+    column("forecast_coverage_182", "share", COVERAGE, coverage::<182>),
     column(
         "weeks_filled_naively",
         "count",

@@ -3,9 +3,30 @@
 use super::{WeekColumn, maybe, pairs, rounded};
 use crate::report::logbook::{Logbook, WeekForecast, WeekLog};
 
+/// Something of the forecast this many days ahead; empty if there is none.
 fn said(week: &WeekLog, horizon_days: u32, part: impl Fn(&WeekForecast) -> Option<f64>) -> String {
     maybe(week.forecasts.iter().find(|forecast| forecast.horizon_days == horizon_days).and_then(part))
 }
+
+fn point<const DAYS: u32>(_: &Logbook, week: &WeekLog) -> String {
+    said(week, DAYS, |forecast| Some(forecast.point))
+}
+
+fn lower<const DAYS: u32>(_: &Logbook, week: &WeekLog) -> String {
+    said(week, DAYS, |forecast| Some(forecast.lower))
+}
+
+fn upper<const DAYS: u32>(_: &Logbook, week: &WeekLog) -> String {
+    said(week, DAYS, |forecast| Some(forecast.upper))
+}
+
+fn outcome<const DAYS: u32>(_: &Logbook, week: &WeekLog) -> String {
+    said(week, DAYS, |forecast| forecast.outcome)
+}
+
+const LOWER: &str = "lower end of its interval";
+const UPPER: &str = "upper end of its interval";
+const OUTCOME: &str = "what came; empty before its day, or when the run ended before";
 
 fn figure(week: &WeekLog, name: &str) -> String {
     week.figures.get(name).filter(|value| value.is_number()).map(ToString::to_string).unwrap_or_default()
@@ -87,66 +108,22 @@ pub const WEEKS: &[WeekColumn] = &[
     column("filled_naively", "0 or 1", "1: the forecasts were filled by the naive projection", |_, week| {
         week.filled_naively.map(|naive| u8::from(naive).to_string()).unwrap_or_default()
     }),
-    column("forecast_7_point", "dollars", "cash expected 7 days ahead", |_, week| {
-        said(week, 7, |forecast| Some(forecast.point))
-    }),
-    column("forecast_7_lower", "dollars", "lower end of its interval", |_, week| {
-        said(week, 7, |forecast| Some(forecast.lower))
-    }),
-    column("forecast_7_upper", "dollars", "upper end of its interval", |_, week| {
-        said(week, 7, |forecast| Some(forecast.upper))
-    }),
-    column(
-        "forecast_7_outcome",
-        "dollars",
-        "what came; empty before its day, or when the run ended before",
-        |_, week| said(week, 7, |forecast| forecast.outcome),
-    ),
-    column("forecast_28_point", "dollars", "cash expected 28 days ahead", |_, week| {
-        said(week, 28, |forecast| Some(forecast.point))
-    }),
-    column("forecast_28_lower", "dollars", "lower end of its interval", |_, week| {
-        said(week, 28, |forecast| Some(forecast.lower))
-    }),
-    column("forecast_28_upper", "dollars", "upper end of its interval", |_, week| {
-        said(week, 28, |forecast| Some(forecast.upper))
-    }),
-    column(
-        "forecast_28_outcome",
-        "dollars",
-        "what came; empty before its day, or when the run ended before",
-        |_, week| said(week, 28, |forecast| forecast.outcome),
-    ),
-    column("forecast_84_point", "dollars", "cash expected 84 days ahead", |_, week| {
-        said(week, 84, |forecast| Some(forecast.point))
-    }),
-    column("forecast_84_lower", "dollars", "lower end of its interval", |_, week| {
-        said(week, 84, |forecast| Some(forecast.lower))
-    }),
-    column("forecast_84_upper", "dollars", "upper end of its interval", |_, week| {
-        said(week, 84, |forecast| Some(forecast.upper))
-    }),
-    column(
-        "forecast_84_outcome",
-        "dollars",
-        "what came; empty before its day, or when the run ended before",
-        |_, week| said(week, 84, |forecast| forecast.outcome),
-    ),
-    column("forecast_182_point", "dollars", "cash expected 182 days ahead", |_, week| {
-        said(week, 182, |forecast| Some(forecast.point))
-    }),
-    column("forecast_182_lower", "dollars", "lower end of its interval", |_, week| {
-        said(week, 182, |forecast| Some(forecast.lower))
-    }),
-    column("forecast_182_upper", "dollars", "upper end of its interval", |_, week| {
-        said(week, 182, |forecast| Some(forecast.upper))
-    }),
-    column(
-        "forecast_182_outcome",
-        "dollars",
-        "what came; empty before its day, or when the run ended before",
-        |_, week| said(week, 182, |forecast| forecast.outcome),
-    ),
+    column("forecast_7_point", "dollars", "cash expected 7 days ahead", point::<7>),
+    column("forecast_7_lower", "dollars", LOWER, lower::<7>),
+    column("forecast_7_upper", "dollars", UPPER, upper::<7>),
+    column("forecast_7_outcome", "dollars", OUTCOME, outcome::<7>),
+    column("forecast_28_point", "dollars", "cash expected 28 days ahead", point::<28>),
+    column("forecast_28_lower", "dollars", LOWER, lower::<28>),
+    column("forecast_28_upper", "dollars", UPPER, upper::<28>),
+    column("forecast_28_outcome", "dollars", OUTCOME, outcome::<28>),
+    column("forecast_84_point", "dollars", "cash expected 84 days ahead", point::<84>),
+    column("forecast_84_lower", "dollars", LOWER, lower::<84>),
+    column("forecast_84_upper", "dollars", UPPER, upper::<84>),
+    column("forecast_84_outcome", "dollars", OUTCOME, outcome::<84>),
+    column("forecast_182_point", "dollars", "cash expected 182 days ahead", point::<182>),
+    column("forecast_182_lower", "dollars", LOWER, lower::<182>),
+    column("forecast_182_upper", "dollars", UPPER, upper::<182>),
+    column("forecast_182_outcome", "dollars", OUTCOME, outcome::<182>),
     column("cash", "dollars", "cash at the end of the week", |_, week| figure(week, "cash")),
     column("individual_subscribers", "count", "active subscriptions of individuals", |_, week| {
         figure(week, "individual_subscribers")

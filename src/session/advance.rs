@@ -3,7 +3,6 @@
 use serde_json::{Map, Value, json};
 
 use super::act::{Via, not_saved};
-use super::record::to_fill;
 use super::scripts::as_field;
 use super::snapshot::WEEKS_BETWEEN;
 use super::trajectory::{Durability, Line, seconds};
@@ -13,7 +12,6 @@ use super::{Decisions, Ended, JournalEntry, Session};
 use crate::database::{Entry, ForecastRow};
 use crate::notation::json_number;
 use crate::tools::{self, Kind, Refusal};
-use crate::world::day::step_day;
 use crate::world::events::{DayFigures, Notice, Sender, SubscriptionEnded, SubscriptionStatus};
 use crate::world::market::surges::week_end;
 
@@ -160,25 +158,22 @@ impl Session {
     pub(super) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) {
         let week_end = self.next_decision_day();
         self.notices.clear();
+        let mut day_before = None;
         while self.world.day < until && !self.world.is_over(&self.params) {
-            let Session { world, params, streams, facts, .. } = self;
-            let facts = to_fill(facts);
-            // On one of the threads that share the work: it is handed over once a day instead of once a sweep.
-            let (figures, trace) = rayon::scope(|_| step_day(world, params, streams, facts));
-            self.trace = trace;
+            let figures = self.simulate_day(day_before.take());
             self.judge_own_posts();
-            self.word_posts();
             self.cash_by_day.push(figures.cash);
             self.count_day(&figures);
-            let told = self.facts.notices.iter().map(|notice| (figures.day, self.notice_text(notice)));
-            let told: Vec<(u32, String)> = told.collect();
-            self.notices.extend(told);
-            self.chain_facts();
-            self.project_facts();
+            let notices = self.notice_texts();
+            self.notices.extend(notices.iter().map(|text| (figures.day, text.clone())));
             let debug = self.manifest.mode == super::Mode::Debug;
             let xray = debug.then(|| Xray::new(self));
             progress(&DayReport { figures: &figures, week_end, xray });
             self.called.clear();
+            day_before = Some(notices);
+        }
+        if let Some(notices) = day_before {
+            self.follow_up(notices);
         }
     }
 

@@ -164,6 +164,7 @@ impl Session {
             params,
             world,
             facts: facts.into(),
+            facts_before: Arc::default(),
             trace: DayTrace::default(),
             position: trajectory.position(),
             trajectory: Some(trajectory),

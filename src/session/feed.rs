@@ -15,7 +15,8 @@ use crate::world::events::{Facts, Matter, Notice, Post};
 use crate::world::identifiers::Group;
 use crate::world::market::social::reach::{self, Verdict};
 use crate::world::market::social::sentiment::Sentiment;
-use crate::world::params::PostJudge;
+use crate::world::params::{Params, PostJudge};
+use crate::world::random::Streams;
 
 /// Everything that was written so far, and why the player's posts were taken as they were.
 #[derive(Clone, Default, Serialize, Deserialize)]
@@ -72,11 +73,46 @@ impl Feed {
         of_post.iter().find(|judgement| judgement.group == group)
     }
 
+    /// Puts a day's posts into words and keeps them.
+    pub(super) fn word(&mut self, facts: &Facts, params: &Params, streams: &Streams) {
+        for post in &facts.posts {
+            let judgement = match post.matter {
+                Matter::Comment { own_post, group, .. } => self.judgement(own_post, group).cloned(),
+                _ => None,
+            };
+            let content = self.writer.write(post, judgement.as_ref(), params, streams);
+            self.complains.push(post.sentiment == Sentiment::Negative);
+            self.posts.push(public_post(post, facts.day, content, streams));
+        }
+    }
+
+    /// Text of each post of these facts, the last ones that were put into words.
+    pub(super) fn words_of(&self, facts: &Facts) -> Vec<String> {
+        let first = self.posts.len().saturating_sub(facts.posts.len());
+        self.posts[first..].iter().map(|post| post.content.clone()).collect()
+    }
+
     /// The post with this number, as one that is answered.
     fn original(&self, post: u32) -> Option<Original<'_>> {
         let at = (post as usize).checked_sub(1)?;
         let own = self.posts.get(at)?;
         Some(Original { content: &own.content, negative: self.complains[at], group: own.written_by })
+    }
+}
+
+fn public_post(post: &Post, day: u32, content: String, streams: &Streams) -> PublicPost {
+    let (own_post, source_group) = match post.matter {
+        Matter::Comment { own_post, group, .. } => (Some(own_post), Some(group)),
+        _ => (None, None),
+    };
+    PublicPost {
+        post: post.post,
+        day,
+        content,
+        own_post,
+        source_group,
+        written_by: post.author.map(|author| author.group),
+        profile: post.author.and_then(|author| profile_name(&author, streams)),
     }
 }
 
@@ -111,40 +147,9 @@ impl Session {
         reach::receive(&mut self.world, &verdicts, &self.params, &self.streams, facts);
     }
 
-    /// Puts today's posts into words and keeps them.
-    pub(super) fn word_posts(&mut self) {
-        for post in &self.facts.posts {
-            let judgement = match post.matter {
-                Matter::Comment { own_post, group, .. } => self.feed.judgement(own_post, group).cloned(),
-                _ => None,
-            };
-            let content = self.feed.writer.write(post, judgement.as_ref(), &self.params, &self.streams);
-            let public = self.public_post(post, content);
-            self.feed.complains.push(post.sentiment == Sentiment::Negative);
-            self.feed.posts.push(public);
-        }
-    }
-
-    fn public_post(&self, post: &Post, content: String) -> PublicPost {
-        let (own_post, source_group) = match post.matter {
-            Matter::Comment { own_post, group, .. } => (Some(own_post), Some(group)),
-            _ => (None, None),
-        };
-        PublicPost {
-            post: post.post,
-            day: self.facts.day,
-            content,
-            own_post,
-            source_group,
-            written_by: post.author.map(|author| author.group),
-            profile: post.author.and_then(|author| profile_name(&author, &self.streams)),
-        }
-    }
-
-    /// Text of each post of these facts.
-    pub(super) fn words_of_posts(&self, facts: &Facts) -> Vec<String> {
-        let first = self.feed.posts.len().saturating_sub(facts.posts.len());
-        self.feed.posts[first..].iter().map(|post| post.content.clone()).collect()
+    /// Texts of the notices of the last day or call.
+    pub(super) fn notice_texts(&self) -> Vec<String> {
+        self.facts.notices.iter().map(|notice| self.notice_text(notice)).collect()
     }
 
     /// Text of a notice.

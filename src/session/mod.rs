@@ -6,6 +6,7 @@
 
 mod act;
 mod advance;
+mod aftermath;
 pub mod archive;
 mod ask;
 mod branch;
@@ -137,6 +138,8 @@ pub struct Session {
     world: World,
     /// Facts of the last day or call.
     facts: Arc<Facts>,
+    /// Those of the day before it, which are filled again once nobody reads them.
+    facts_before: Arc<Facts>,
     trace: DayTrace,
     /// None when the run is only read.
     trajectory: Option<TrajectoryWriter>,

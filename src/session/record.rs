@@ -7,11 +7,13 @@ use serde_json::{Map, Value};
 
 use super::Session;
 use super::error::RunError;
+use super::feed::Feed;
 use super::trajectory::Durability;
 use crate::database::Entry;
 use crate::voice;
 use crate::world::canonical::hash_of;
 use crate::world::events::{Facts, Sender};
+use crate::world::params::Params;
 use crate::world::state::{PartHash, World, combined_hash};
 
 /// Hash of the state and of the week's facts, with the hash of each part.
@@ -37,7 +39,8 @@ impl Default for FactsChain {
 }
 
 impl FactsChain {
-    fn add(&mut self, facts: &Facts) {
+    /// Adds the facts of a day or call.
+    pub(super) fn add(&mut self, facts: &Facts) {
         if self.closed {
             *self = FactsChain::default();
         }
@@ -77,32 +80,36 @@ pub(super) fn to_fill(facts: &mut Arc<Facts>) -> &mut Facts {
     Arc::make_mut(facts)
 }
 
+/// The facts of a day or call with the words that belong to them.
+pub(super) fn entry_of(facts: &Arc<Facts>, notices: Vec<String>, feed: &Feed, params: &Params) -> Entry {
+    let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
+    let writers = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+    let named = companies.map(|arrival| arrival.customer).chain(writers.map(|turn| turn.customer));
+    let personas = &params.personas;
+    Entry {
+        notices,
+        readings: facts.readings.iter().map(voice::reading).collect(),
+        turns: facts.turns.iter().map(|turn| voice::message(turn, personas)).collect(),
+        posts: feed.words_of(facts),
+        addresses: named.map(|customer| (customer, voice::address(customer, &personas.email))).collect(),
+        facts: facts.clone(),
+        ..Entry::default()
+    }
+}
+
 impl Session {
-    /// The facts of the last day or call with the words that belong to them.
+    /// The facts of the last call, or of day 0, with the words that belong to them.
     pub(super) fn entry(&self) -> Entry {
-        let facts = &self.facts;
-        let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
-        let writers = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
-        let named = companies.map(|arrival| arrival.customer).chain(writers.map(|turn| turn.customer));
-        let personas = &self.params.personas;
-        Entry {
-            notices: facts.notices.iter().map(|notice| self.notice_text(notice)).collect(),
-            readings: facts.readings.iter().map(voice::reading).collect(),
-            turns: facts.turns.iter().map(|turn| voice::message(turn, personas)).collect(),
-            posts: self.words_of_posts(facts),
-            addresses: named.map(|customer| (customer, voice::address(customer, &personas.email))).collect(),
-            facts: facts.clone(),
-            ..Entry::default()
-        }
+        entry_of(&self.facts, self.notice_texts(), &self.feed, &self.params)
     }
 
-    /// Adds the facts of a day or call to this week's chain.
+    /// Adds the facts of a call to this week's chain.
     pub(super) fn chain_facts(&mut self) {
         self.facts_chain.add(&self.facts);
     }
 
-    /// Hands the facts of a day or call to the database, if there is one. Nothing is copied: the writer reads what
-    /// the session still shows, and the session fills new facts while the writer needs these.
+    /// Hands the facts of a call to the database, if there is one. Nothing is copied: the writer reads what the session
+    /// still shows, and the session fills new facts while the writer needs these.
     pub(super) fn project_facts(&mut self) {
         if let Some(projector) = &self.projector {
             projector.write(self.entry());

@@ -65,16 +65,15 @@ impl CanonicalHasher {
         if values.len() <= share || self.piece == usize::MAX {
             return values.iter().for_each(|value| value.feed(self));
         }
-        let mut shares: Vec<CanonicalHasher> = (0..SHARES).map(|_| CanonicalHasher::collector()).collect();
         self.hash_pending();
-        for some in values.chunks(SHARES * share) {
-            shares.par_iter_mut().zip(some.par_chunks(share)).for_each(|(collector, own)| {
-                collector.pending.clear();
-                own.iter().for_each(|value| value.feed(collector));
-            });
-            for (collector, _) in shares.iter().zip(some.chunks(share)) {
-                self.hasher.update_rayon(&collector.pending);
-            }
+        let mut pieces = values.chunks(SHARES * share);
+        let (mut full, mut free) = (Shares::default(), Shares::default());
+        full.collect(pieces.next().unwrap_or_default(), share);
+        // What was collected is hashed while the next piece is collected.
+        while full.used > 0 {
+            let next = pieces.next().unwrap_or_default();
+            rayon::join(|| full.hash(&mut self.hasher), || free.collect(next, share));
+            std::mem::swap(&mut full, &mut free);
         }
     }
 
@@ -102,6 +101,34 @@ impl CanonicalHasher {
     pub fn finish(mut self) -> blake3::Hash {
         self.hasher.update(&self.pending);
         self.hasher.finalize()
+    }
+}
+
+/// Bytes of some large values, in a few shares that are collected side by side.
+struct Shares {
+    shares: Vec<CanonicalHasher>,
+    used: usize,
+}
+
+impl Default for Shares {
+    fn default() -> Self {
+        Shares { shares: (0..SHARES).map(|_| CanonicalHasher::collector()).collect(), used: 0 }
+    }
+}
+
+impl Shares {
+    fn collect<T: Canonical + Sync>(&mut self, values: &[T], share: usize) {
+        self.used = values.len().div_ceil(share);
+        self.shares.par_iter_mut().zip(values.par_chunks(share)).for_each(|(collector, own)| {
+            collector.pending.clear();
+            own.iter().for_each(|value| value.feed(collector));
+        });
+    }
+
+    fn hash(&self, hasher: &mut blake3::Hasher) {
+        for collector in &self.shares[..self.used] {
+            hasher.update_rayon(&collector.pending);
+        }
     }
 }
 

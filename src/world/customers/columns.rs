@@ -28,6 +28,11 @@ macro_rules! columns {
         pub struct $Block { $($(#[$doc])* pub $column: Vec<$kind>,)* }
 
         impl $Block {
+            /// An empty one with room for so many rows.
+            pub fn with_room(rows: usize) -> $Block {
+                $Block { $($column: Vec::with_capacity(rows),)* }
+            }
+
             /// Appends a row.
             pub fn push(&mut self, row: $Row) {
                 $(self.$column.push(row.$column);)*
@@ -79,7 +84,7 @@ macro_rules! columns {
             }
 
             fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
-                hasher.large_values(values, 2);
+                hasher.large_values(values, 1);
             }
         }
     };

@@ -85,6 +85,10 @@ impl GroupCustomers {
             self.blocks.resize_with(block + 1, Block::default);
         }
         let block = &mut self.blocks[block];
+        if block.n.capacity() == 0 {
+            // Most blocks fill up within days: 27 columns that grow by and by cost more than room nobody takes.
+            *block = Block::with_room(BLOCK as usize);
+        }
         match block.n.binary_search(&row.n) {
             Err(at) if at == block.len() => block.push(row),
             Err(at) => block.insert(at, row),

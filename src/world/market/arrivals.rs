@@ -17,8 +17,8 @@ use crate::world::market::economy::Dimension;
 use crate::world::params::{DriftCounted, Params, ServicePenalty};
 use crate::world::product::quality::quota_demand;
 use crate::world::random::{Part, Stream, Streams, Word};
-use crate::world::retention::refresh_required;
 use crate::world::retention::renewal::ongoing_discount;
+use crate::world::retention::required_of;
 use crate::world::settings::Settings;
 
 /// What came of the leads of a day.
@@ -58,8 +58,16 @@ struct Lead {
     outcome: Outcome,
 }
 
+/// Terms of a new subscription, dollars a month.
+#[derive(Clone, Copy)]
+struct FirstTerms {
+    listed_price: f64,
+    promotion: f64,
+    effective_price: f64,
+}
+
 enum Outcome {
-    Subscribes { choice: Choice, discount: f64 },
+    Subscribes { choice: Choice, terms: FirstTerms, required: f64 },
     Lost { choice: Choice, discount: f64 },
     Prospect,
     GatedOut,
@@ -115,7 +123,7 @@ fn evaluate(arrivals: &Arrivals<'_>, factors: &LeadFactors, run: &ArrivalRun) ->
     let offers = offers(arrivals, run.group);
     let group = run.group.index() as u64;
     let keys: Vec<[u64; 2]> = (run.first_n..run.first_n + run.count).map(|n| [group, n.into()]).collect();
-    let some = |keys: &[[u64; 2]]| evaluate_some(arrivals, factors, &offers, run.group, keys);
+    let some = |keys: &[[u64; 2]]| evaluate_some(arrivals, factors, &offers, run, keys);
     if keys.len() <= LEADS_TOGETHER {
         some(&keys)
     } else {
@@ -128,20 +136,22 @@ fn evaluate_some(
     arrivals: &Arrivals<'_>,
     factors: &LeadFactors,
     offers: &ByPlan<Offer>,
-    group: Group,
+    run: &ArrivalRun,
     keys: &[[u64; 2]],
 ) -> Vec<Lead> {
     let &Arrivals { market, params, streams, .. } = arrivals;
+    let group = run.group;
     let velocity = market.economy.multiplier(group, Dimension::DealVelocity, params);
     let traits = streams.keys(Part::Traits, keys);
     let sources = streams.first_words(Part::LeadSource, keys);
     let noises = streams.first_words(Part::LeadNoise, keys);
-    let draws = traits.into_iter().zip(sources).zip(noises);
+    let draws = keys.iter().zip(traits).zip(sources.into_iter().zip(noises));
     draws
-        .map(|((key, source), noise)| {
+        .map(|((&[_, n], key), (source, noise))| {
             let traits = traits_from(Stream::of(key), group, velocity, params);
             let source = factors.source(source.uniform());
-            evaluate_lead(arrivals, offers, group, traits, source, noise)
+            let customer = run.first_customer + (n as u32 - run.first_n);
+            evaluate_lead(arrivals, offers, (group, customer), traits, source, noise)
         })
         .collect()
 }
@@ -162,7 +172,7 @@ fn offers(arrivals: &Arrivals<'_>, group: Group) -> ByPlan<Offer> {
 fn evaluate_lead(
     arrivals: &Arrivals<'_>,
     offers: &ByPlan<Offer>,
-    group: Group,
+    (group, customer): (Group, u32),
     traits: Traits,
     source: Source,
     noise: Word,
@@ -182,7 +192,10 @@ fn evaluate_lead(
         let quality = &params.quality;
         let noise = noise.between(quality.initial_decision_noise_min, quality.initial_decision_noise_max);
         if accepts(&choice, noise, &curve, params) {
-            Outcome::Subscribes { choice, discount }
+            let terms = first_terms(arrivals, group, customer, choice, discount);
+            let own = stored_curve(&traits, &curve, params);
+            let required = required_of(&own, own.c_max, terms.effective_price, expectation.c_max, params);
+            Outcome::Subscribes { choice, terms, required }
         } else {
             Outcome::Lost { choice, discount }
         }
@@ -240,16 +253,20 @@ fn open_subscriptions(
     };
     for (group, n, customer, lead) in individuals() {
         counts.individuals += 1;
-        if let Outcome::Subscribes { choice, discount } = lead.outcome {
+        if let Outcome::Subscribes { choice, terms, required } = lead.outcome {
             counts.subscribed += 1;
             let subscription = customers.next_subscription;
             customers.next_subscription += 1;
-            let row = subscriber(arrivals, group, n, customer, subscription, lead, choice, discount);
+            let FirstTerms { listed_price, promotion, effective_price } = terms;
+            let row = Subscriber {
+                plan: choice.plan,
+                listed_price,
+                promotion,
+                effective_price,
+                required,
+                ..newcomer(arrivals, n, customer, subscription, lead)
+            };
             customers.groups[group].activate(row);
-            let blocks = &mut customers.groups[group].blocks;
-            let block = blocks.last_mut().expect("the subscriber was just added");
-            let last = block.len() - 1;
-            refresh_required(block, last, arrivals.morning.expectations[group].c_max, arrivals.params);
             facts.openings.push(SubscriptionOpened {
                 subscription,
                 customer,
@@ -280,37 +297,32 @@ fn open_subscriptions(
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "one value per source of a row")]
-fn subscriber(
+fn first_terms(
     arrivals: &Arrivals<'_>,
     group: Group,
-    n: u32,
     customer: u32,
-    subscription: u32,
-    lead: &Lead,
     choice: Choice,
     discount: f64,
-) -> Subscriber {
+) -> FirstTerms {
     let &Arrivals { morning, settings, params, .. } = arrivals;
     let listed_price = morning.core.prices[choice.plan];
     let promotion = discount + ongoing_discount(customer, group, choice.plan, settings, params);
-    Subscriber {
-        plan: choice.plan,
-        listed_price,
-        promotion,
-        effective_price: (listed_price - promotion).max(params.billing.effective_price_min),
-        ..newcomer(arrivals, n, customer, subscription, lead)
+    let effective_price = (listed_price - promotion).max(params.billing.effective_price_min);
+    FirstTerms { listed_price, promotion, effective_price }
+}
+
+/// The curve that is kept: drift that counts once is used for the decision but not stored.
+fn stored_curve(traits: &Traits, drifted: &Curve, params: &Params) -> Curve {
+    match params.fidelity.drift_counted {
+        DriftCounted::EveryRead => *drifted,
+        DriftCounted::Once => traits.curve,
     }
 }
 
 /// The row of a lead before it has agreed on anything.
 fn newcomer(arrivals: &Arrivals<'_>, n: u32, customer: u32, subscription: u32, lead: &Lead) -> Subscriber {
     let &Arrivals { morning, params, .. } = arrivals;
-    // Drift that counts once is used for the decision but not stored.
-    let stored = match params.fidelity.drift_counted {
-        DriftCounted::EveryRead => lead.curve,
-        DriftCounted::Once => lead.traits.curve,
-    };
+    let stored = stored_curve(&lead.traits, &lead.curve, params);
     Subscriber {
         n,
         customer,

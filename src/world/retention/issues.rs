@@ -3,11 +3,15 @@
 //! Everything is decided from the values of the start of the day, so the calls are read before satisfaction
 //! moves and settled after it.
 
+use multiversion::multiversion;
+
+use super::pools::Resolution;
+use crate::world::bounded::bounded;
 use crate::world::canonical::canonical;
 use crate::world::customers::Customers;
 use crate::world::customers::columns::{BLOCK, Block};
 use crate::world::events::{Facts, IssueOpened};
-use crate::world::identifiers::{ByGroup, Group, Plan};
+use crate::world::identifiers::Group;
 use crate::world::params::{Issues, Params, Quality};
 use crate::world::product::quality::relationship_as_read;
 use crate::world::random::{Part, Streams, word_below};
@@ -19,7 +23,7 @@ pub fn issue_probability(satisfaction: f64, outage: bool, seats: f64, issues: &I
     let rate = issues.base_issue_rate
         + issues.issue_quality_factor * (issues.issue_satisfaction_reference - satisfaction)
         + if outage { issues.issue_outage_factor } else { 0.0 };
-    (rate * seats).clamp(issues.issue_probability_min, issues.issue_probability_max)
+    bounded(rate * seats, issues.issue_probability_min, issues.issue_probability_max)
 }
 
 /// Mean number of a group's issues that a pool solves today: (b + lambda x) k_g / k.
@@ -73,14 +77,14 @@ impl Default for IssueDesk {
 
 /// Calls of one block, read at the start of the day: positions of rows.
 pub struct Calls {
-    group: Group,
-    block: u32,
+    pub(super) group: Group,
+    pub(super) block: u32,
     /// Rows with an open issue.
-    open: Vec<u16>,
+    pub(super) open: Vec<u16>,
     /// Rows whose customer opens an issue today.
     new: Vec<u16>,
     /// Which of the open ones are solved.
-    solved: Vec<bool>,
+    pub(super) solved: Vec<bool>,
 }
 
 /// Reads who has an issue and who opens one today; changes nothing.
@@ -96,22 +100,62 @@ pub fn read_calls(
         let keys = [u64::from(day), group.index() as u64, u64::from(block_number)];
         let mut words = [0u32; BLOCK as usize];
         streams.open(Part::IssueOpening, keys).fill(&mut words);
-        let (mut open, mut new) = (Vec::new(), Vec::new());
-        for (at, (&open_days, &satisfaction)) in
-            block.open_issue_days.iter().zip(&block.satisfaction).enumerate()
-        {
-            if open_days > 0 {
-                open.push(at as u16);
-                continue;
-            }
-            let seats = if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 };
-            if word_below(words[block.place(at)], issue_probability(satisfaction, outage, seats, law)) {
-                new.push(at as u16);
-            }
-        }
+        let calling = calling(group, block, &words, outage, law);
+        let has_issue = block.open_issue_days.iter().map(|days| *days > 0);
+        let open = positions(has_issue.clone());
+        let new = positions(calling.iter().zip(has_issue).map(|(calls, waits)| *calls && !waits));
         let solved = vec![false; open.len()];
         Calls { group, block: block_number, open, new, solved }
     })
+}
+
+/// Who would open an issue, had nobody one already.
+fn calling(
+    group: Group,
+    block: &Block,
+    words: &[u32; BLOCK as usize],
+    outage: bool,
+    law: &Issues,
+) -> Vec<bool> {
+    let mut own = [0u32; BLOCK as usize];
+    let mut seats = [1.0; BLOCK as usize];
+    for (at, word) in own[..block.len()].iter_mut().enumerate() {
+        *word = words[block.place(at)];
+    }
+    if group.is_enterprise() {
+        seats.iter_mut().zip(&block.seats).for_each(|(whole, seats)| *whole = seats.trunc());
+    }
+    let mut calling = vec![false; block.len()];
+    roll(&own, &block.satisfaction, &seats, outage, law, &mut calling);
+    calling
+}
+
+/// Compares each row's word with its chance. Compiled for the widest registers the processor may have too; the bits are
+/// the same.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+fn roll(
+    words: &[u32],
+    satisfaction: &[f64],
+    seats: &[f64],
+    outage: bool,
+    law: &Issues,
+    calling: &mut [bool],
+) {
+    let rows = words.iter().zip(satisfaction).zip(seats);
+    for (calls, ((&word, &satisfaction), &seats)) in calling.iter_mut().zip(rows) {
+        *calls = word_below(word, issue_probability(satisfaction, outage, seats, law));
+    }
+}
+
+/// Positions at which something holds. Half of a crowd may wait for help, in no order: nothing is guessed here, every
+/// position is noted, and the next one is noted over it where it does not hold.
+fn positions(holds: impl Iterator<Item = bool>) -> Vec<u16> {
+    let (mut noted, mut count) = ([0u16; BLOCK as usize], 0);
+    for (at, holds) in holds.enumerate() {
+        noted[count] = at as u16;
+        count += usize::from(holds);
+    }
+    noted[..count].to_vec()
 }
 
 /// Solves, ages and opens issues; nobody may have left since the calls were read.
@@ -179,114 +223,6 @@ fn open_new(block: &mut Block, own: &Calls, first: u32, params: &Params) -> Vec<
         IssueOpened { issue, customer: block.customer[at], group: own.group }
     };
     (first..).zip(&own.new).map(open).collect()
-}
-
-/// A pool of open issues that shares one amount of money.
-#[derive(Debug, Clone, Copy)]
-enum Pool {
-    Everybody,
-    Group(Group),
-    Plan(Plan),
-    GroupPlan(Group, Plan),
-    Customer(u32),
-}
-
-impl Pool {
-    /// Keys of the pool's stream: kind and which one.
-    fn keys(self) -> [u64; 2] {
-        match self {
-            Pool::Everybody => [0, 0],
-            Pool::Group(group) => [1, group.index() as u64],
-            Pool::Plan(plan) => [2, plan.index() as u64],
-            Pool::GroupPlan(group, plan) => [3, (group.index() * 3 + plan.index()) as u64],
-            Pool::Customer(customer) => [4, u64::from(customer)],
-        }
-    }
-
-    fn holds(self, group: Group, block: &Block, at: usize) -> bool {
-        match self {
-            Pool::Everybody => true,
-            Pool::Group(own) => group == own,
-            Pool::Plan(plan) => block.plan[at] == plan,
-            Pool::GroupPlan(own, plan) => group == own && block.plan[at] == plan,
-            Pool::Customer(customer) => block.customer[at] == customer,
-        }
-    }
-
-    /// The only group a pool can hold, where it names one.
-    fn only_group(self) -> Option<Group> {
-        match self {
-            Pool::Group(group) | Pool::GroupPlan(group, _) => Some(group),
-            _ => None,
-        }
-    }
-}
-
-struct Resolution<'a> {
-    day: u32,
-    calls: &'a mut [Calls],
-    customers: &'a Customers,
-    params: &'a Params,
-    streams: &'a Streams,
-}
-
-impl Resolution<'_> {
-    /// Pools in the order of chapter 20 §16; each works on what the earlier ones left.
-    fn run(&mut self, settings: &Settings) {
-        let base = self.params.issues.issue_resolution_base_rate;
-        self.work(Pool::Everybody, base, settings.core.operations);
-        let targeted = &settings.targeted_operations;
-        for (&group, &spend) in &targeted.by_group {
-            self.work(Pool::Group(group), 0.0, spend);
-        }
-        for (&plan, &spend) in &targeted.by_plan {
-            self.work(Pool::Plan(plan), 0.0, spend);
-        }
-        for (&group, plans) in &targeted.by_group_plan {
-            for (&plan, &spend) in plans {
-                self.work(Pool::GroupPlan(group, plan), 0.0, spend);
-            }
-        }
-        for (&customer, &spend) in &targeted.by_customer {
-            if let Ok(customer) = u32::try_from(customer) {
-                self.work(Pool::Customer(customer), 0.0, spend);
-            }
-        }
-    }
-
-    fn work(&mut self, pool: Pool, base: f64, spend: f64) {
-        if base <= 0.0 && spend <= 0.0 {
-            return;
-        }
-        // Members by group as (block of calls, entry in it).
-        let mut members: ByGroup<Vec<(u32, u16)>> = ByGroup::default();
-        for (number, own) in self.calls.iter().enumerate() {
-            if pool.only_group().is_some_and(|group| group != own.group) {
-                continue;
-            }
-            let block = &self.customers.groups[own.group].blocks[own.block as usize];
-            for (entry, (&at, &solved)) in own.open.iter().zip(&own.solved).enumerate() {
-                if !solved && pool.holds(own.group, block, usize::from(at)) {
-                    members[own.group].push((number as u32, entry as u16));
-                }
-            }
-        }
-        let of_pool: u32 = members.iter().map(|own| own.len() as u32).sum();
-        for (group, own) in Group::all().zip(&mut members.0).filter(|(_, own)| !own.is_empty()) {
-            let [kind, which] = pool.keys();
-            let keys = [u64::from(self.day), kind, which, group.index() as u64];
-            let mut stream = self.streams.open(Part::IssueResolution, keys);
-            let mean = mean_resolved(base, spend, group, own.len() as u32, of_pool, &self.params.issues);
-            let solved = stream.poisson(mean).min(own.len() as u64) as usize;
-            // A partial shuffle: the first `solved` members are a uniform sample without replacement.
-            for first in 0..solved {
-                let other = first + stream.index(own.len() - first);
-                own.swap(first, other);
-                let (number, entry) = own[first];
-                self.calls[number as usize].solved[usize::from(entry)] = true;
-            }
-        }
-    }
 }
 
 #[cfg(test)]

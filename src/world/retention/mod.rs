@@ -2,11 +2,12 @@
 
 pub mod billing;
 pub mod issues;
+mod pools;
 pub mod renewal;
 pub mod satisfaction;
 
 use super::customers::columns::Block;
-use super::customers::curve::required_quality;
+use super::customers::curve::{Curve, required_quality};
 use super::day::Morning;
 use super::identifiers::Group;
 use super::params::{DriftCounted, Params};
@@ -17,12 +18,17 @@ use super::params::{DriftCounted, Params};
 /// The budget floor applies only where the drift is not 0 (chapter 20 §15).
 #[inline]
 pub fn refresh_required(block: &mut Block, at: usize, c_drift: f64, params: &Params) {
-    let remembered = block.effective_c_max[at];
-    let budget = if remembered != 0.0 { remembered } else { block.c_max[at] };
+    let (curve, remembered) = (block.curve(at), block.effective_c_max[at]);
+    block.required[at] = required_of(&curve, remembered, block.effective_price[at], c_drift, params);
+}
+
+/// Required quality at a price, with the budget of the last bill (0: none yet) and the group's budget drift.
+#[inline]
+pub fn required_of(curve: &Curve, remembered: f64, price: f64, c_drift: f64, params: &Params) -> f64 {
+    let budget = if remembered != 0.0 { remembered } else { curve.c_max };
     let budget =
         if c_drift != 0.0 { (budget + c_drift).max(params.quality.read_time_c_max_min) } else { budget };
-    let curve = block.curve(at).with_budget(budget);
-    block.required[at] = required_quality(block.effective_price[at], &curve, params);
+    required_quality(price, &curve.with_budget(budget), params)
 }
 
 /// Refreshes the required quality of everybody in a block.

@@ -13,7 +13,7 @@ use crate::world::product::ads::AdLoad;
 use crate::world::product::quality::{
     Experience, TenureTable, perceived_quality, quota_demand, quota_factor, relationship_bonus,
 };
-use crate::world::random::{Part, Streams, word_below};
+use crate::world::random::{Part, Streams, Word, word_below};
 use crate::world::settings::Settings;
 
 /// Monthly rate of involuntary churn from a standard normal draw; 0 where a group has none.
@@ -128,6 +128,7 @@ pub fn decide(
         decide_block(group, number, block, rates[group], judgement)
     });
     let mut renewals = Renewals::default();
+    let mut rolls = disappointments(&by_block, judgement).into_iter();
     for outcome in by_block {
         for (upgrade, terms) in outcome.switches {
             if upgrade {
@@ -140,7 +141,9 @@ pub fn decide(
         for departure in outcome.departures {
             renewals.cancellations += 1;
             if departure.ending.cause != EndCause::Involuntary {
-                harm(reputation, &departure.person, judgement);
+                if let Some(roll) = rolls.next() {
+                    harm(reputation, &departure.person, roll.uniform(), judgement);
+                }
                 renewals.gave_up.push(departure.person);
             }
             facts.endings.push(departure.ending);
@@ -149,10 +152,20 @@ pub fn decide(
     renewals
 }
 
-fn harm(reputation: &mut ReputationBook, person: &GaveUp, judgement: &Judgement<'_>) {
-    let (day, group) = (judgement.morning.day, person.group);
-    let keys = [u64::from(day), group.index() as u64, u64::from(person.n), 0];
-    let u = judgement.streams.open(Part::ReputationEvent, keys).uniform();
+/// A draw for everybody who found nothing acceptable, in order.
+fn disappointments(by_block: &[BlockOutcome], judgement: &Judgement<'_>) -> Vec<Word> {
+    let departures = by_block.iter().flat_map(|outcome| &outcome.departures);
+    let keys: Vec<[u64; 4]> = departures
+        .filter(|departure| departure.ending.cause != EndCause::Involuntary)
+        .map(|Departure { person, .. }| {
+            [u64::from(judgement.morning.day), person.group.index() as u64, u64::from(person.n), 0]
+        })
+        .collect();
+    judgement.streams.first_words(Part::ReputationEvent, &keys)
+}
+
+fn harm(reputation: &mut ReputationBook, person: &GaveUp, u: f64, judgement: &Judgement<'_>) {
+    let group = person.group;
     let subscribers = judgement.morning.subscribers[group];
     let damage = cancel_damage(person.satisfaction, subscribers, u, &judgement.params.reputation);
     reputation.move_by(group, -damage, &judgement.params.reputation);

@@ -1,0 +1,60 @@
+//! What follows from a day that was simulated: words of its posts, the hash of its facts, rows for the database.
+//!
+//! Nothing of it changes the company, so the day after is simulated meanwhile.
+
+use std::sync::Arc;
+
+use super::Session;
+use super::feed::Feed;
+use super::record::{FactsChain, entry_of, to_fill};
+use crate::database::Projector;
+use crate::world::day::step_day;
+use crate::world::events::{DayFigures, Facts};
+use crate::world::params::Params;
+use crate::world::random::Streams;
+
+/// The parts of a session that a day leaves its traces in.
+struct Aftermath<'a> {
+    feed: &'a mut Feed,
+    facts_chain: &'a mut FactsChain,
+    projector: Option<&'a Projector>,
+    params: &'a Params,
+    streams: &'a Streams,
+}
+
+impl Aftermath<'_> {
+    fn follow(self, facts: &Arc<Facts>, notices: Vec<String>) {
+        self.feed.word(facts, self.params, self.streams);
+        self.facts_chain.add(facts);
+        if let Some(projector) = self.projector {
+            projector.write(entry_of(facts, notices, self.feed, self.params));
+        }
+    }
+}
+
+impl Session {
+    /// Simulates a day, and meanwhile what follows from the day before, if that is left, with its notices.
+    pub(super) fn simulate_day(&mut self, day_before: Option<Vec<String>>) -> DayFigures {
+        std::mem::swap(&mut self.facts, &mut self.facts_before);
+        let Session { world, params, streams, facts, facts_before, feed, facts_chain, projector, .. } = self;
+        let today = to_fill(facts);
+        let aftermath = Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams };
+        let ((figures, trace), ()) = rayon::join(
+            || step_day(world, params, streams, today),
+            || {
+                if let Some(notices) = day_before {
+                    aftermath.follow(facts_before, notices);
+                }
+            },
+        );
+        self.trace = trace;
+        figures
+    }
+
+    /// What follows from the last day.
+    pub(super) fn follow_up(&mut self, notices: Vec<String>) {
+        let Session { params, streams, facts, feed, facts_chain, projector, .. } = self;
+        Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams }
+            .follow(facts, notices);
+    }
+}

@@ -1,0 +1,187 @@
+//! Which open issues are solved today: pools of money share them out, one after the other (chapter 20 §16).
+
+use super::issues::{Calls, mean_resolved};
+use crate::world::customers::Customers;
+use crate::world::customers::columns::Block;
+use crate::world::identifiers::{ByGroup, Group, Plan};
+use crate::world::params::Params;
+use crate::world::random::{Part, Streams};
+use crate::world::settings::Settings;
+
+/// A pool of open issues that shares one amount of money.
+#[derive(Debug, Clone, Copy)]
+enum Pool {
+    Everybody,
+    Group(Group),
+    Plan(Plan),
+    GroupPlan(Group, Plan),
+    Customer(u32),
+}
+
+impl Pool {
+    /// Keys of the pool's stream: kind and which one.
+    fn keys(self) -> [u64; 2] {
+        match self {
+            Pool::Everybody => [0, 0],
+            Pool::Group(group) => [1, group.index() as u64],
+            Pool::Plan(plan) => [2, plan.index() as u64],
+            Pool::GroupPlan(group, plan) => [3, (group.index() * 3 + plan.index()) as u64],
+            Pool::Customer(customer) => [4, u64::from(customer)],
+        }
+    }
+
+    fn holds(self, group: Group, block: &Block, at: usize) -> bool {
+        match self {
+            Pool::Everybody => true,
+            Pool::Group(own) => group == own,
+            Pool::Plan(plan) => block.plan[at] == plan,
+            Pool::GroupPlan(own, plan) => group == own && block.plan[at] == plan,
+            Pool::Customer(customer) => block.customer[at] == customer,
+        }
+    }
+
+    /// The only group a pool can hold, where it names one.
+    fn only_group(self) -> Option<Group> {
+        match self {
+            Pool::Group(group) | Pool::GroupPlan(group, _) => Some(group),
+            _ => None,
+        }
+    }
+}
+
+/// The solving of a day.
+pub(super) struct Resolution<'a> {
+    pub day: u32,
+    pub calls: &'a mut [Calls],
+    pub customers: &'a Customers,
+    pub params: &'a Params,
+    pub streams: &'a Streams,
+}
+
+impl Resolution<'_> {
+    /// Pools in the order of chapter 20 §16; each works on what the earlier ones left.
+    pub fn run(&mut self, settings: &Settings) {
+        let base = self.params.issues.issue_resolution_base_rate;
+        self.work(Pool::Everybody, base, settings.core.operations);
+        let targeted = &settings.targeted_operations;
+        for (&group, &spend) in &targeted.by_group {
+            self.work(Pool::Group(group), 0.0, spend);
+        }
+        for (&plan, &spend) in &targeted.by_plan {
+            self.work(Pool::Plan(plan), 0.0, spend);
+        }
+        for (&group, plans) in &targeted.by_group_plan {
+            for (&plan, &spend) in plans {
+                self.work(Pool::GroupPlan(group, plan), 0.0, spend);
+            }
+        }
+        for (&customer, &spend) in &targeted.by_customer {
+            if let Ok(customer) = u32::try_from(customer) {
+                self.work(Pool::Customer(customer), 0.0, spend);
+            }
+        }
+    }
+
+    fn work(&mut self, pool: Pool, base: f64, spend: f64) {
+        if base <= 0.0 && spend <= 0.0 {
+            return;
+        }
+        let members = self.members(pool);
+        let of_pool: u32 = members.iter().map(Members::count).sum();
+        for (group, own) in Group::all().zip(&members.0).filter(|(_, own)| own.count() > 0) {
+            let [kind, which] = pool.keys();
+            let keys = [u64::from(self.day), kind, which, group.index() as u64];
+            let mut stream = self.streams.open(Part::IssueResolution, keys);
+            let mean = mean_resolved(base, spend, group, own.count(), of_pool, &self.params.issues);
+            let solved = stream.poisson(mean).min(u64::from(own.count())) as usize;
+            let mut order: Vec<u32> = (0..own.count()).collect();
+            // A partial shuffle: the first `solved` members are a uniform sample without replacement.
+            for first in 0..solved {
+                let other = first + stream.index(order.len() - first);
+                order.swap(first, other);
+                let (number, entry) = own.place(order[first]);
+                self.calls[number].solved[entry] = true;
+            }
+        }
+    }
+
+    /// Open issues that a pool holds and nobody has solved yet, by group.
+    fn members(&self, pool: Pool) -> ByGroup<Members> {
+        let mut members: ByGroup<Members> = ByGroup::default();
+        let calls = (0..).zip(&*self.calls);
+        for (number, own) in calls.filter(|(_, own)| pool.only_group().is_none_or(|group| group == own.group))
+        {
+            let of_group = &mut members[own.group];
+            if matches!(pool, Pool::Everybody) {
+                of_group.add_all(number, own.open.len() as u32);
+                continue;
+            }
+            let block = &self.customers.groups[own.group].blocks[own.block as usize];
+            for (entry, (&at, &solved)) in (0..).zip(own.open.iter().zip(&own.solved)) {
+                if !solved && pool.holds(own.group, block, usize::from(at)) {
+                    of_group.add(number, entry);
+                }
+            }
+        }
+        members
+    }
+}
+
+/// Open issues of a group that share a pool, in the order of their blocks, as runs of entries that follow each other:
+/// the first pool of a day holds everybody's, and there a block is one run.
+#[derive(Default)]
+struct Members {
+    runs: Vec<Run>,
+    count: u32,
+}
+
+struct Run {
+    /// Number of its first member.
+    first: u32,
+    /// Block of calls.
+    calls: u32,
+    /// Entry of its first member there.
+    entry: u32,
+}
+
+impl Members {
+    fn count(&self) -> u32 {
+        self.count
+    }
+
+    fn add(&mut self, calls: u32, entry: u32) {
+        self.runs.push(Run { first: self.count, calls, entry });
+        self.count += 1;
+    }
+
+    fn add_all(&mut self, calls: u32, entries: u32) {
+        if entries > 0 {
+            self.runs.push(Run { first: self.count, calls, entry: 0 });
+            self.count += entries;
+        }
+    }
+
+    /// Block of calls and entry of a member.
+    fn place(&self, member: u32) -> (usize, usize) {
+        let after = self.runs.partition_point(|run| run.first <= member);
+        let run = &self.runs[after - 1];
+        (run.calls as usize, (run.entry + member - run.first) as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_are_found_by_their_number_whether_they_came_alone_or_by_the_block() {
+        let mut members = Members::default();
+        members.add_all(0, 3);
+        members.add_all(1, 0);
+        members.add(2, 7);
+        members.add(2, 9);
+        members.add_all(4, 2);
+        let places: Vec<(usize, usize)> = (0..members.count()).map(|member| members.place(member)).collect();
+        assert_eq!(places, [(0, 0), (0, 1), (0, 2), (2, 7), (2, 9), (4, 0), (4, 1)]);
+    }
+}

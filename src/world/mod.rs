@@ -3,7 +3,6 @@
 //! Read [`day::step_day`] first: it is the story of a day. Every mechanism it calls is a function over the parts
 //! it touches, and every formula a small pure function with the specification's check values as its test.
 
-pub mod bounded;
 pub mod canonical;
 pub mod customers;
 pub mod day;

@@ -1,6 +1,5 @@
 //! Delivered and perceived quality, one function per term (chapter 20 §13).
 
-use crate::world::bounded::bounded;
 use crate::world::params::{Ads, Params, PerceivedQuality, Quality};
 
 /// Quality delivered to a group on a plan: (base + shared + group bonus) times the model's multiplier.
@@ -15,7 +14,7 @@ pub fn quota_factor(quota: f64, demand: f64, quality: &Quality) -> f64 {
     if demand <= 0.0 {
         return 1.0;
     }
-    bounded(quota.max(0.0) / demand, quality.quota_factor_min, quality.quota_factor_max)
+    (quota.max(0.0) / demand).clamp(quality.quota_factor_min, quality.quota_factor_max)
 }
 
 /// Quality lost to overload and outages today: 0.08 o + 0.20 outage (0 or 1).

@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 
-use multiversion::multiversion;
-
 use crate::world::customers::Customers;
-use crate::world::customers::columns::{BLOCK, Block};
+use crate::world::customers::columns::Block;
 use crate::world::day::Morning;
 use crate::world::events::{Facts, UsageRows};
 use crate::world::identifiers::{ByPlan, Plan};
@@ -54,30 +52,20 @@ pub fn meter(customers: &mut Customers, morning: &Morning, params: &Params, fact
 fn meter_block(block: &mut Block, morning: &Morning, params: &Params) -> (ByPlan<u64>, UsageRows) {
     let mut by_plan = ByPlan([0u64; 3]);
     let per_period = params.fidelity.usage_quota == UsageQuota::Period;
-    let mut quotas = [0.0; BLOCK as usize];
-    quotas.iter_mut().zip(&block.plan).for_each(|(quota, plan)| *quota = morning.quotas[*plan]);
-    if per_period {
-        let used = quotas.iter_mut().zip(&block.period_usage);
-        used.for_each(|(quota, so_far)| *quota = (*quota - *so_far as f64).max(0.0));
-    }
-    let mut units = vec![0; block.len()];
-    read_meters(&block.usage_rate, morning.weekday, &quotas, &mut units);
-    for plan in Plan::ALL {
-        let own = block.plan.iter().zip(&units).map(|(of, used)| if *of == plan { *used } else { 0 });
-        by_plan[plan] = own.map(u64::from).sum();
-    }
+    let (weekday, quotas) = (morning.weekday, morning.quotas);
+    let rows = block.plan.iter().zip(&block.usage_rate).zip(&block.period_usage);
+    let units: Vec<u32> = rows
+        .map(|((&plan, &rate), &so_far)| {
+            let quota = if per_period { (quotas[plan] - so_far as f64).max(0.0) } else { quotas[plan] };
+            let used = usage_today(rate, weekday, quota);
+            by_plan[plan] += u64::from(used);
+            used
+        })
+        .collect();
     if per_period {
         block.period_usage.iter_mut().zip(&units).for_each(|(sum, used)| *sum += u64::from(*used));
     }
     (by_plan, UsageRows { customers: block.customer.clone(), units })
-}
-
-/// Usage of all rows. Compiled for the widest registers the processor may have too; the bits are the same.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
-fn read_meters(rates: &[f64], weekday: f64, quotas: &[f64], units: &mut [u32]) {
-    for (used, (&rate, &quota)) in units.iter_mut().zip(rates.iter().zip(quotas)) {
-        *used = usage_today(rate, weekday, quota);
-    }
 }
 
 #[cfg(test)]

@@ -3,10 +3,7 @@
 //! Everything is decided from the values of the start of the day, so the calls are read before satisfaction
 //! moves and settled after it.
 
-use multiversion::multiversion;
-
 use super::pools::Resolution;
-use crate::world::bounded::bounded;
 use crate::world::canonical::canonical;
 use crate::world::customers::Customers;
 use crate::world::customers::columns::{BLOCK, Block};
@@ -23,7 +20,7 @@ pub fn issue_probability(satisfaction: f64, outage: bool, seats: f64, issues: &I
     let rate = issues.base_issue_rate
         + issues.issue_quality_factor * (issues.issue_satisfaction_reference - satisfaction)
         + if outage { issues.issue_outage_factor } else { 0.0 };
-    bounded(rate * seats, issues.issue_probability_min, issues.issue_probability_max)
+    (rate * seats).clamp(issues.issue_probability_min, issues.issue_probability_max)
 }
 
 /// Mean number of a group's issues that a pool solves today: (b + lambda x) k_g / k.
@@ -100,62 +97,22 @@ pub fn read_calls(
         let keys = [u64::from(day), group.index() as u64, u64::from(block_number)];
         let mut words = [0u32; BLOCK as usize];
         streams.open(Part::IssueOpening, keys).fill(&mut words);
-        let calling = calling(group, block, &words, outage, law);
-        let has_issue = block.open_issue_days.iter().map(|days| *days > 0);
-        let open = positions(has_issue.clone());
-        let new = positions(calling.iter().zip(has_issue).map(|(calls, waits)| *calls && !waits));
+        let (mut open, mut new) = (Vec::new(), Vec::new());
+        for (at, (&open_days, &satisfaction)) in
+            block.open_issue_days.iter().zip(&block.satisfaction).enumerate()
+        {
+            if open_days > 0 {
+                open.push(at as u16);
+                continue;
+            }
+            let seats = if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 };
+            if word_below(words[block.place(at)], issue_probability(satisfaction, outage, seats, law)) {
+                new.push(at as u16);
+            }
+        }
         let solved = vec![false; open.len()];
         Calls { group, block: block_number, open, new, solved }
     })
-}
-
-/// Who would open an issue, had nobody one already.
-fn calling(
-    group: Group,
-    block: &Block,
-    words: &[u32; BLOCK as usize],
-    outage: bool,
-    law: &Issues,
-) -> Vec<bool> {
-    let mut own = [0u32; BLOCK as usize];
-    let mut seats = [1.0; BLOCK as usize];
-    for (at, word) in own[..block.len()].iter_mut().enumerate() {
-        *word = words[block.place(at)];
-    }
-    if group.is_enterprise() {
-        seats.iter_mut().zip(&block.seats).for_each(|(whole, seats)| *whole = seats.trunc());
-    }
-    let mut calling = vec![false; block.len()];
-    roll(&own, &block.satisfaction, &seats, outage, law, &mut calling);
-    calling
-}
-
-/// Compares each row's word with its chance. Compiled for the widest registers the processor may have too; the bits are
-/// the same.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
-fn roll(
-    words: &[u32],
-    satisfaction: &[f64],
-    seats: &[f64],
-    outage: bool,
-    law: &Issues,
-    calling: &mut [bool],
-) {
-    let rows = words.iter().zip(satisfaction).zip(seats);
-    for (calls, ((&word, &satisfaction), &seats)) in calling.iter_mut().zip(rows) {
-        *calls = word_below(word, issue_probability(satisfaction, outage, seats, law));
-    }
-}
-
-/// Positions at which something holds. Half of a crowd may wait for help, in no order: nothing is guessed here, every
-/// position is noted, and the next one is noted over it where it does not hold.
-fn positions(holds: impl Iterator<Item = bool>) -> Vec<u16> {
-    let (mut noted, mut count) = ([0u16; BLOCK as usize], 0);
-    for (at, holds) in holds.enumerate() {
-        noted[count] = at as u16;
-        count += usize::from(holds);
-    }
-    noted[..count].to_vec()
 }
 
 /// Solves, ages and opens issues; nobody may have left since the calls were read.

@@ -1,16 +1,12 @@
 //! Daily satisfaction of every active subscriber (chapter 20 §15, step 13).
 
-use std::ops::Range;
-
-use multiversion::multiversion;
-
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::day::Morning;
 use crate::world::events::ServiceDay;
 use crate::world::identifiers::{ByGroup, ByPlan, Group};
 use crate::world::market::reputation::contribution;
-use crate::world::params::{Params, PerceivedQuality, Quality, Reputation};
+use crate::world::params::Params;
 use crate::world::product::ads::AdLoad;
 use crate::world::product::quality::{
     Experience, TenureTable, perceived_quality, quota_demand, quota_factor, relationship_as_read,
@@ -57,131 +53,41 @@ pub fn update(customers: &mut Customers, conditions: &Conditions<'_>) -> ByGroup
     moods
 }
 
-/// Rows whose satisfaction is worked out together.
-const STRIP: usize = 128;
-
-/// What has to be looked up for them, an array for each value: the same steps for every row, side by side.
-struct Strip {
-    delivered: [f64; STRIP],
-    quota: [f64; STRIP],
-    tenure: [f64; STRIP],
-    ads: [f64; STRIP],
-    demand: [f64; STRIP],
-    open_issue_days: [f64; STRIP],
-    contribution: [f64; STRIP],
-}
-
-/// What all rows of a strip share, copied out of the parameters: the compiler cannot know that no column overlaps
-/// them, and would read them again for every row.
-struct Shared {
-    quality: Quality,
-    reputation: Reputation,
-    form: PerceivedQuality,
-    expectation: f64,
-    alpha: f64,
-}
-
-impl Shared {
-    fn of(group: Group, conditions: &Conditions<'_>) -> Shared {
-        let &Conditions { morning, params, .. } = conditions;
-        Shared {
-            quality: params.quality.clone(),
-            reputation: params.reputation.clone(),
-            form: params.fidelity.perceived_quality,
-            expectation: morning.expectations[group].quality,
-            alpha: params.satisfaction.satisfaction_ema_alpha,
-        }
-    }
-}
-
+/// One linear pass over the columns it needs. What all rows share is copied out first: the compiler cannot know that
+/// no column overlaps the parameters, and would read them again for every row.
 fn update_block(group: Group, block: &mut Block, conditions: &Conditions<'_>) -> Mood {
-    let shared = Shared::of(group, conditions);
-    let mut strip = Strip::empty();
+    let &Conditions { morning, service, ads, tenure, params } = conditions;
+    let (quality, reputation) = (params.quality.clone(), params.reputation.clone());
+    let penalty = service_penalty(service.overload, service.outage, &quality);
+    let delivered = ByPlan::from_fn(|plan| morning.delivered(group, plan) - penalty);
+    let (day, weekday, quotas) = (morning.day, morning.weekday, morning.quotas);
+    let expectation = morning.expectations[group].quality;
+    let form = params.fidelity.perceived_quality;
+    let alpha = params.satisfaction.satisfaction_ema_alpha;
+    let rows = block.len();
+    let (plan, rate, start_day) = (&block.plan[..rows], &block.usage_rate[..rows], &block.start_day[..rows]);
+    let (relationship, open_days) = (&block.relationship[..rows], &block.open_issue_days[..rows]);
+    let (customer, sensitivity) = (&block.customer[..rows], &block.ads_quality_sensitivity[..rows]);
+    let (required, satisfaction) = (&block.required[..rows], &mut block.satisfaction[..rows]);
     let mut sum = 0.0;
-    for from in (0..block.len()).step_by(STRIP) {
-        let rows = from..(from + STRIP).min(block.len());
-        strip.look_up(group, block, rows.clone(), conditions);
-        let count = rows.len();
-        let (relationship, required) = (&block.relationship[rows.clone()], &block.required[rows.clone()]);
-        feel(&mut strip, relationship, required, &mut block.satisfaction[rows], &shared);
-        // One after the other, so that the sum does not depend on how many go side by side.
-        sum = strip.contribution[..count].iter().fold(sum, |sum, own| sum + own);
-    }
-    Mood { sum, count: block.len() as u32 }
-}
-
-impl Strip {
-    fn empty() -> Strip {
-        let nothing = [0.0; STRIP];
-        Strip {
-            delivered: nothing,
-            quota: nothing,
-            tenure: nothing,
-            ads: nothing,
-            demand: nothing,
-            open_issue_days: nothing,
-            contribution: nothing,
-        }
-    }
-
-    /// Takes over what the columns hold of these rows, and looks up what belongs to their plans, days and ads.
-    fn look_up(&mut self, group: Group, block: &Block, rows: Range<usize>, conditions: &Conditions<'_>) {
-        let &Conditions { morning, service, ads, tenure, params } = conditions;
-        let penalty = service_penalty(service.overload, service.outage, &params.quality);
-        let offers = ByPlan::from_fn(|plan| (morning.delivered(group, plan) - penalty, morning.quotas[plan]));
-        for (at, &plan) in block.plan[rows.clone()].iter().enumerate() {
-            (self.delivered[at], self.quota[at]) = offers[plan];
-        }
-        for (bonus, &start_day) in self.tenure.iter_mut().zip(&block.start_day[rows.clone()]) {
-            *bonus = tenure.bonus(morning.day - start_day);
-        }
-        if ads.is_used() {
-            let people =
-                block.customer[rows.clone()].iter().zip(&block.ads_quality_sensitivity[rows.clone()]);
-            for (lost, (&customer, sensitivity)) in self.ads.iter_mut().zip(people) {
-                *lost = sensitivity * ads.for_customer(group, customer);
-            }
-        }
-        for (demand, &rate) in self.demand.iter_mut().zip(&block.usage_rate[rows.clone()]) {
-            *demand = quota_demand(rate * morning.weekday, rate, params);
-        }
-        for (days, &open) in self.open_issue_days.iter_mut().zip(&block.open_issue_days[rows.clone()]) {
-            *days = f64::from(open);
-        }
-    }
-}
-
-/// Moves the satisfaction of a strip. Compiled for the widest registers the processor may have too: no step is fused
-/// with another there, so the bits are the same.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
-fn feel(
-    strip: &mut Strip,
-    relationship: &[f64],
-    required: &[f64],
-    satisfaction: &mut [f64],
-    shared: &Shared,
-) {
-    let Shared { quality, reputation, .. } = shared;
-    let rows = satisfaction.len().min(STRIP);
-    let (relationship, required) = (&relationship[..rows], &required[..rows]);
-    let satisfaction = &mut satisfaction[..rows];
     for at in 0..rows {
+        let demand = quota_demand(rate[at] * weekday, rate[at], params);
         let perceived = perceived_quality(
             Experience {
-                delivered: strip.delivered[at],
-                relationship: relationship_bonus(relationship_as_read(relationship[at], quality), quality),
-                tenure: strip.tenure[at],
-                quota: quota_factor(strip.quota[at], strip.demand[at], quality),
-                issues: quality.issue_penalty_per_open_day * strip.open_issue_days[at],
-                ads: strip.ads[at],
+                delivered: delivered[plan[at]],
+                relationship: relationship_bonus(relationship_as_read(relationship[at], &quality), &quality),
+                tenure: tenure.bonus(day - start_day[at]),
+                quota: quota_factor(quotas[plan[at]], demand, &quality),
+                issues: quality.issue_penalty_per_open_day * f64::from(open_days[at]),
+                ads: sensitivity[at] * ads.for_customer(group, customer[at]),
             },
-            shared.form,
+            form,
         );
-        let instant = perceived - (required[at] + shared.expectation);
-        let moved = moved_satisfaction(satisfaction[at], instant, shared.alpha);
-        satisfaction[at] = moved;
-        strip.contribution[at] = contribution(moved, reputation);
+        let instant = perceived - (required[at] + expectation);
+        satisfaction[at] = moved_satisfaction(satisfaction[at], instant, alpha);
+        sum += contribution(satisfaction[at], &reputation);
     }
+    Mood { sum, count: rows as u32 }
 }
 
 #[cfg(test)]

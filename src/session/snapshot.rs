@@ -8,6 +8,8 @@
 //! JSON texts, then what the world and the session hold as numbers.
 
 use std::borrow::Cow;
+use std::fs::File;
+use std::io::Write;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -27,6 +29,8 @@ const TITLE: &[u8] = b"novamind snapshot 1\n";
 const DIGEST: usize = blake3::OUT_LEN;
 /// Name of the file in a run's folder.
 pub(super) const FILE: &str = "snapshot.bin";
+/// Room for a subscriber: the columns, and the facts of a day.
+const BYTES_OF_A_SUBSCRIBER: usize = 184;
 /// Weeks between two snapshots of a run that is played.
 pub(super) const WEEKS_BETWEEN: usize = 4;
 
@@ -206,7 +210,8 @@ impl Session {
             facts_chain: (self.facts_chain.hash().to_hex().to_string(), self.facts_chain.is_closed()),
             ended: self.ended,
         };
-        let mut bytes = CanonicalHasher::collector();
+        let rows: u32 = self.world.customers.active().iter().sum();
+        let mut bytes = CanonicalHasher::collector(rows as usize * BYTES_OF_A_SUBSCRIBER);
         serde_json::to_string(&notes).unwrap_or_default().feed(&mut bytes);
         self.world.feed(&mut bytes);
         self.facts.feed(&mut bytes);
@@ -240,10 +245,13 @@ impl Session {
 
 /// Writes a snapshot in place of the old one. Not synced: after a power cut its digest tells whether it is whole.
 fn write(path: &Path, header: &Header, state: &[u8]) {
-    let mut body = bytes_of(&serde_json::to_string(header).unwrap_or_default());
-    body.extend_from_slice(state);
+    let header = bytes_of(&serde_json::to_string(header).unwrap_or_default());
+    let digest = blake3::Hasher::new().update(&header).update(state).finalize();
     let draft = path.with_extension("draft");
-    let written = std::fs::write(&draft, [TITLE, blake3::hash(&body).as_bytes(), &body].concat())
+    // Piece by piece: a large state is a good part of the memory already.
+    let pieces = [TITLE, digest.as_bytes(), &header, state];
+    let written = File::create(&draft)
+        .and_then(|mut file| pieces.iter().try_for_each(|piece| file.write_all(piece)))
         .and_then(|()| std::fs::rename(&draft, path));
     if written.is_err() {
         // Half a file helps nobody, least of all on a disk that is full.

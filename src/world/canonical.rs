@@ -49,9 +49,10 @@ impl CanonicalHasher {
         }
     }
 
-    /// One that hashes nothing and keeps the bytes.
-    pub fn collector() -> CanonicalHasher {
-        CanonicalHasher { piece: usize::MAX, ..CanonicalHasher::default() }
+    /// One that hashes nothing and keeps the bytes; it begins with room for so many.
+    pub fn collector(room: usize) -> CanonicalHasher {
+        let hasher = blake3::Hasher::new();
+        CanonicalHasher { hasher, pending: Vec::with_capacity(room), piece: usize::MAX }
     }
 
     /// The bytes of a collector.
@@ -112,7 +113,7 @@ struct Shares {
 
 impl Default for Shares {
     fn default() -> Self {
-        Shares { shares: (0..SHARES).map(|_| CanonicalHasher::collector()).collect(), used: 0 }
+        Shares { shares: (0..SHARES).map(|_| CanonicalHasher::collector(2 * PIECE)).collect(), used: 0 }
     }
 }
 
@@ -155,7 +156,7 @@ pub fn hash_of(value: &impl Canonical) -> blake3::Hash {
 
 /// Canonical bytes of one value.
 pub fn bytes_of(value: &impl Canonical) -> Vec<u8> {
-    let mut collector = CanonicalHasher::collector();
+    let mut collector = CanonicalHasher::collector(0);
     value.feed(&mut collector);
     collector.into_bytes()
 }

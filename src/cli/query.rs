@@ -3,7 +3,9 @@
 use clap::{Args, ValueEnum};
 
 use super::{Context, Failure, print};
-use crate::session::{Access, Cell, Rows, Session, Trajectory, desk_of_file, find_run_to_read, rows_as_json};
+use crate::session::{
+    Access, Cell, Line, Rows, Session, Trajectory, desk_of_file, find_run_to_read, rows_as_json,
+};
 
 /// Options of `query`.
 #[derive(Debug, Args)]
@@ -45,12 +47,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn ask(folder: &std::path::Path, sql: &str) -> Result<Rows, Failure> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
     // Queries and views do not move the database on; only lines that change the company do.
-    let moves = |kind: &str| ["start", "call", "week", "step", "end"].contains(&kind);
-    let last = trajectory
-        .lines
-        .iter()
-        .rev()
-        .find(|line| moves(&line.kind) && (line.kind != "call" || changes_rows(&line.fields)));
+    let last = trajectory.lines.iter().rev().find(|line| moves_database(line));
     if let (Ok((desk, position)), Some(last)) = (desk_of_file(folder), last)
         && position.seq >= last.seq
         && trajectory.lines.get(position.seq as usize).is_some_and(|line| line.hash == position.line_hash)
@@ -63,10 +60,12 @@ fn ask(folder: &std::path::Path, sql: &str) -> Result<Rows, Failure> {
     Ok(session.query(sql)?)
 }
 
-fn changes_rows(fields: &serde_json::Map<String, serde_json::Value>) -> bool {
+fn moves_database(line: &Line) -> bool {
     let reads = |name: &str| crate::tools::find(name).is_some_and(|tool| !tool.spec().kind.acts());
-    let tool = fields.get("tool").and_then(serde_json::Value::as_str).unwrap_or_default();
-    fields.get("ok") == Some(&serde_json::Value::Bool(true)) && !reads(tool)
+    let tool = line.fields.get("tool").and_then(serde_json::Value::as_str).unwrap_or_default();
+    (line.is_accepted_call() && !reads(tool))
+        || line.closes_days()
+        || ["start", "end"].contains(&line.kind.as_str())
 }
 
 /// A result as comma-separated values with a header.

@@ -228,8 +228,7 @@ impl Session {
         if let Some(last) = self.cash_by_day.last_mut() {
             *last = self.world.finance.cash;
         }
-        self.chain_facts();
-        self.project_facts();
+        self.follow_up();
         // The database must not be ahead of what is on the disk.
         if self.sync_calls {
             self.commit_projection();

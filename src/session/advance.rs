@@ -172,8 +172,8 @@ impl Session {
             self.called.clear();
             day_before = Some(notices);
         }
-        if let Some(notices) = day_before {
-            self.follow_up(notices);
+        if day_before.is_some() {
+            self.follow_up();
         }
     }
 

@@ -1,4 +1,4 @@
-//! What follows from a day that was simulated: words of its posts, the hash of its facts, rows for the database.
+//! What follows from a day that was simulated or a call: words of posts, the hash of the facts, rows for the database.
 //!
 //! Nothing of it changes the company, so the day after is simulated meanwhile.
 
@@ -23,6 +23,8 @@ struct Aftermath<'a> {
 }
 
 impl Aftermath<'_> {
+    /// Facts are not copied for the database: the writer reads what the session still shows, and the session fills new
+    /// ones while the writer needs these.
     fn follow(self, facts: &Arc<Facts>, notices: Vec<String>) {
         self.feed.word(facts, self.params, self.streams);
         self.facts_chain.add(facts);
@@ -51,8 +53,9 @@ impl Session {
         figures
     }
 
-    /// What follows from the last day.
-    pub(super) fn follow_up(&mut self, notices: Vec<String>) {
+    /// What follows from the last day or call.
+    pub(super) fn follow_up(&mut self) {
+        let notices = self.notice_texts();
         let Session { params, streams, facts, feed, facts_chain, projector, .. } = self;
         Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams }
             .follow(facts, notices);

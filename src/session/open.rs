@@ -190,10 +190,10 @@ impl Session {
 
     /// A week that was confirmed but not finished is simulated now.
     fn finish_week(&mut self, trajectory: &Trajectory) {
-        let closing = ["week", "step", "end"];
         let open = trajectory.lines.iter().rev().find_map(|line| match line.kind.as_str() {
             "advance" => Some(true),
-            kind if closing.contains(&kind) => Some(false),
+            "end" => Some(false),
+            _ if line.closes_days() => Some(false),
             _ => None,
         });
         if open == Some(true) {

@@ -98,22 +98,9 @@ pub(super) fn entry_of(facts: &Arc<Facts>, notices: Vec<String>, feed: &Feed, pa
 }
 
 impl Session {
-    /// The facts of the last call, or of day 0, with the words that belong to them.
+    /// The facts of day 0 with the words that belong to them.
     pub(super) fn entry(&self) -> Entry {
         entry_of(&self.facts, self.notice_texts(), &self.feed, &self.params)
-    }
-
-    /// Adds the facts of a call to this week's chain.
-    pub(super) fn chain_facts(&mut self) {
-        self.facts_chain.add(&self.facts);
-    }
-
-    /// Hands the facts of a call to the database, if there is one. Nothing is copied: the writer reads what the session
-    /// still shows, and the session fills new facts while the writer needs these.
-    pub(super) fn project_facts(&mut self) {
-        if let Some(projector) = &self.projector {
-            projector.write(self.entry());
-        }
     }
 
     /// Makes everything handed over visible, as of the last line.

@@ -5,7 +5,6 @@ use std::path::Path;
 use super::Session;
 use super::error::RunError;
 use super::playback::{Origin, read};
-use super::trajectory::Line;
 use super::witness::Witnesses;
 
 /// What a verification found out.
@@ -40,7 +39,7 @@ pub fn verify(path: &Path) -> Result<Verification, RunError> {
         session.apply_line(&path, line)?;
     }
     let states = trajectory.lines.iter().filter(|line| line.closes_days());
-    let last = trajectory.lines.iter().rev().find_map(|line: &Line| line.fields.get("state_hash")?.as_str());
+    let last = trajectory.lines.iter().rev().find_map(|line| line.fields.get("state_hash")?.as_str());
     Ok(Verification {
         run,
         lines: trajectory.lines.len(),

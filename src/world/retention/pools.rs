@@ -40,6 +40,11 @@ impl Pool {
         }
     }
 
+    /// Whether it holds everybody of a group.
+    fn holds_all_of(self, group: Group) -> bool {
+        matches!(self, Pool::Everybody) || matches!(self, Pool::Group(own) if own == group)
+    }
+
     /// The only group a pool can hold, where it names one.
     fn only_group(self) -> Option<Group> {
         match self {
@@ -112,7 +117,7 @@ impl Resolution<'_> {
         for (number, own) in calls.filter(|(_, own)| pool.only_group().is_none_or(|group| group == own.group))
         {
             let of_group = &mut members[own.group];
-            if matches!(pool, Pool::Everybody) {
+            if pool.holds_all_of(own.group) && !own.solved.contains(&true) {
                 of_group.add_all(number, own.open.len() as u32);
                 continue;
             }
@@ -128,7 +133,7 @@ impl Resolution<'_> {
 }
 
 /// Open issues of a group that share a pool, in the order of their blocks, as runs of entries that follow each other:
-/// the first pool of a day holds everybody's, and there a block is one run.
+/// where a pool holds everybody and nothing is solved yet, as in the first one of a day, a block is one run.
 #[derive(Default)]
 struct Members {
     runs: Vec<Run>,

@@ -13,7 +13,7 @@ use crate::world::product::ads::AdLoad;
 use crate::world::product::quality::{
     Experience, TenureTable, perceived_quality, quota_demand, quota_factor, relationship_bonus,
 };
-use crate::world::random::{Part, Streams, Word, word_below};
+use crate::world::random::{Part, Streams, word_below};
 use crate::world::settings::Settings;
 
 /// Monthly rate of involuntary churn from a standard normal draw; 0 where a group has none.
@@ -128,7 +128,6 @@ pub fn decide(
         decide_block(group, number, block, rates[group], judgement)
     });
     let mut renewals = Renewals::default();
-    let mut rolls = disappointments(&by_block, judgement).into_iter();
     for outcome in by_block {
         for (upgrade, terms) in outcome.switches {
             if upgrade {
@@ -141,34 +140,25 @@ pub fn decide(
         for departure in outcome.departures {
             renewals.cancellations += 1;
             if departure.ending.cause != EndCause::Involuntary {
-                if let Some(roll) = rolls.next() {
-                    harm(reputation, &departure.person, roll.uniform(), judgement);
-                }
                 renewals.gave_up.push(departure.person);
             }
             facts.endings.push(departure.ending);
         }
     }
+    harm(reputation, &renewals.gave_up, judgement);
     renewals
 }
 
-/// A draw for everybody who found nothing acceptable, in order.
-fn disappointments(by_block: &[BlockOutcome], judgement: &Judgement<'_>) -> Vec<Word> {
-    let departures = by_block.iter().flat_map(|outcome| &outcome.departures);
-    let keys: Vec<[u64; 4]> = departures
-        .filter(|departure| departure.ending.cause != EndCause::Involuntary)
-        .map(|Departure { person, .. }| {
-            [u64::from(judgement.morning.day), person.group.index() as u64, u64::from(person.n), 0]
-        })
-        .collect();
-    judgement.streams.first_words(Part::ReputationEvent, &keys)
-}
-
-fn harm(reputation: &mut ReputationBook, person: &GaveUp, u: f64, judgement: &Judgement<'_>) {
-    let group = person.group;
-    let subscribers = judgement.morning.subscribers[group];
-    let damage = cancel_damage(person.satisfaction, subscribers, u, &judgement.params.reputation);
-    reputation.move_by(group, -damage, &judgement.params.reputation);
+/// Moves the reputation of the groups by those who found nothing acceptable, one after the other.
+fn harm(reputation: &mut ReputationBook, gave_up: &[GaveUp], judgement: &Judgement<'_>) {
+    let &Judgement { morning, params, streams, .. } = judgement;
+    let keys_of = |person: &GaveUp| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
+    let keys: Vec<[u64; 4]> = gave_up.iter().map(keys_of).collect();
+    for (person, roll) in gave_up.iter().zip(streams.first_words(Part::ReputationEvent, &keys)) {
+        let subscribers = morning.subscribers[person.group];
+        let damage = cancel_damage(person.satisfaction, subscribers, roll.uniform(), &params.reputation);
+        reputation.move_by(person.group, -damage, &params.reputation);
+    }
 }
 
 fn decide_block(

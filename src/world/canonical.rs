@@ -5,13 +5,13 @@
 //! back from them ([`Restore`]).
 
 mod restore;
+mod stretches;
 
 use std::sync::Arc;
 
 use indexmap::IndexMap;
-use rayon::prelude::*;
-
 pub use restore::{CanonicalReader, Restore, restored};
+pub use stretches::{Stretch, hash_of_stretches};
 
 use super::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 
@@ -36,9 +36,6 @@ impl Default for CanonicalHasher {
     }
 }
 
-/// Shares of large values whose bytes are collected side by side before they are hashed.
-const SHARES: usize = 4;
-
 impl CanonicalHasher {
     /// Appends bytes.
     #[inline]
@@ -58,24 +55,6 @@ impl CanonicalHasher {
     /// The bytes of a collector.
     pub fn into_bytes(self) -> Vec<u8> {
         self.pending
-    }
-
-    /// Appends the bytes of large values, collected and hashed on several threads; the hash is the same. A share of
-    /// them should have some hundred thousand bytes: enough to be worth a thread, and all shares still in its cache.
-    pub fn large_values<T: Canonical + Sync>(&mut self, values: &[T], share: usize) {
-        if values.len() <= share || self.piece == usize::MAX {
-            return values.iter().for_each(|value| value.feed(self));
-        }
-        self.hash_pending();
-        let mut pieces = values.chunks(SHARES * share);
-        let (mut full, mut free) = (Shares::default(), Shares::default());
-        full.collect(pieces.next().unwrap_or_default(), share);
-        // What was collected is hashed while the next piece is collected.
-        while full.used > 0 {
-            let next = pieces.next().unwrap_or_default();
-            rayon::join(|| full.hash(&mut self.hasher), || free.collect(next, share));
-            std::mem::swap(&mut full, &mut free);
-        }
     }
 
     /// Appends the bytes of many equal values: columns are most of the state, so they go by the thousand.
@@ -102,34 +81,6 @@ impl CanonicalHasher {
     pub fn finish(mut self) -> blake3::Hash {
         self.hasher.update(&self.pending);
         self.hasher.finalize()
-    }
-}
-
-/// Bytes of some large values, in a few shares that are collected side by side.
-struct Shares {
-    shares: Vec<CanonicalHasher>,
-    used: usize,
-}
-
-impl Default for Shares {
-    fn default() -> Self {
-        Shares { shares: (0..SHARES).map(|_| CanonicalHasher::collector(2 * PIECE)).collect(), used: 0 }
-    }
-}
-
-impl Shares {
-    fn collect<T: Canonical + Sync>(&mut self, values: &[T], share: usize) {
-        self.used = values.len().div_ceil(share);
-        self.shares.par_iter_mut().zip(values.par_chunks(share)).for_each(|(collector, own)| {
-            collector.pending.clear();
-            own.iter().for_each(|value| value.feed(collector));
-        });
-    }
-
-    fn hash(&self, hasher: &mut blake3::Hasher) {
-        for collector in &self.shares[..self.used] {
-            hasher.update_rayon(&collector.pending);
-        }
     }
 }
 
@@ -402,22 +353,5 @@ mod tests {
         signs.iter().for_each(|value| value.feed(&mut singly));
         plans.iter().for_each(|value| value.feed(&mut singly));
         assert_eq!(columns.finish(), singly.finish());
-    }
-
-    #[test]
-    fn large_values_are_hashed_like_small_ones() {
-        for count in [0, 1, 8, 33, 100] {
-            let values: Vec<Pair> = (0..count)
-                .map(|first| Pair { first, second: vec![f64::from(first); 300 * first as usize] })
-                .collect();
-            let (mut together, mut singly) = (CanonicalHasher::default(), CanonicalHasher::default());
-            5u32.feed(&mut together);
-            5u32.feed(&mut singly);
-            together.large_values(&values, 8);
-            values.iter().for_each(|value| value.feed(&mut singly));
-            9u32.feed(&mut together);
-            9u32.feed(&mut singly);
-            assert_eq!(together.finish(), singly.finish(), "{count} values");
-        }
     }
 }

@@ -121,11 +121,9 @@ pub fn step_day(
     let ads = AdLoad::of(&settings.ads_strength, params);
     let tenure = TenureTable::up_to(day, &params.quality);
     let penalty = service_penalty(service.overload, service.outage, &params.quality);
-    let calls = issues::read_calls(day, service.outage, customers, params, streams);
+    let hotline = issues::Hotline { day, outage: service.outage, params, streams };
     let felt =
         satisfaction::Conditions { morning: &morning, service: &service, ads: &ads, tenure: &tenure, params };
-    let before = crowd::remember(day, customers, params);
-    let moods = satisfaction::update(customers, &felt);
     let scene = Scene {
         morning: &morning,
         service: &service,
@@ -134,12 +132,25 @@ pub fn step_day(
         chronicle: &market.social.chronicle,
         params,
     };
-    let mut crowd = crowd::listen(before, customers, &scene, streams);
-    issues::settle(day, service.outage, calls, settings, customers, issue_desk, params, streams, facts);
+    let listening = crowd::is_posting_day(day, params);
+    let first_round = customers.sweep(|group, number, block| {
+        let calls = issues::read_calls(group, number, block, &hotline);
+        let before = listening.then(|| block.satisfaction.clone());
+        let mood = satisfaction::update(group, block, &felt);
+        let voices = before.map(|before| crowd::hear(group, block, before, &scene));
+        (calls, (group, mood), voices)
+    });
+    let (mut calls, moods, voices): (Vec<_>, Vec<_>, Vec<_>) = first_round.into_iter().collect();
+    let crowd =
+        listening.then(|| crowd::listen(voices.into_iter().flatten().collect(), customers, &scene, streams));
+    issues::allot(&mut calls, settings, customers, issue_desk, &hotline);
+
+    // Issues are settled; those whose day it is decide, and pay if they stay.
     let judgement = renewal::Judgement {
         morning: &morning,
         settings,
         service_penalty: penalty,
+        involuntary: renewal::involuntary_rates(day, params, streams),
         willingness_to_pay: ByGroup::from_fn(|group| {
             market.economy.multiplier(group, Dimension::WillingnessToPay, params)
         }),
@@ -148,7 +159,15 @@ pub fn step_day(
         params,
         streams,
     };
-    let renewals = renewal::decide(customers, &mut market.reputation, &judgement, facts);
+    let bill = billing::Terms { morning: &morning, settings, params, streams };
+    let second_round = customers.sweep_with(calls, |group, number, block, calls| {
+        let settled = issues::settle(block, &calls, &hotline);
+        let decisions = renewal::decide(group, number, block, &judgement);
+        (settled, decisions, billing::bill_regulars(group, number, block, &bill))
+    });
+    let (settled, decisions, billed): (Vec<_>, Vec<_>, Vec<_>) = second_round.into_iter().collect();
+    issues::record(settled, facts);
+    let renewals = renewal::conclude(decisions, &mut market.reputation, &judgement, facts);
     let talks = Negotiation {
         morning: &morning,
         settings,
@@ -162,10 +181,11 @@ pub fn step_day(
     };
     let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts);
     let knowledge = market.knowledge;
+    let moods = satisfaction::by_group(moods);
     reputation::contribute(&mut market.reputation, &moods, |group| knowledge[group].level >= 1, params);
 
     // People and the press write.
-    if let Some(mut crowd) = crowd.take() {
+    if let Some(mut crowd) = crowd {
         crowd.join(&renewals.gave_up, &negotiated.lost, params);
         crowd.publish(&mut market.social, params, streams, facts);
     }
@@ -179,9 +199,7 @@ pub fn step_day(
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;
 
     // Money changes hands.
-    let suspended = &negotiated.suspended;
-    let bill = billing::Terms { morning: &morning, settings, suspended, params, streams };
-    let received = billing::collect(customers, &bill, facts);
+    let received = billing::collect(customers, billed, &bill, &negotiated.suspended, facts);
     finance.cash += received;
     let costs = pay_running_costs(finance, &metered, &morning, settings, params, facts);
     earn_from_ads(customers, &ads, finance, facts);

@@ -86,7 +86,7 @@ impl World {
             part("settings", hash_of(settings)),
             part("money", hash_of(finance)),
             part("product", hash_of(product)),
-            part("customers", hash_of(customers)),
+            part("customers", customers.hash()),
             part("issues", hash_of(issue_desk)),
             part("market", hash_of(market)),
             part("threads", hash_of(enterprise)),

@@ -20,7 +20,8 @@ use novamind::world::product::quality::TenureTable;
 use novamind::world::product::usage;
 use novamind::world::random::Streams;
 use novamind::world::retention::billing::{self, Terms};
-use novamind::world::retention::{issues, satisfaction};
+use novamind::world::retention::issues::{self, Hotline};
+use novamind::world::retention::satisfaction;
 use novamind::world::state::World;
 
 /// Days the company has grown: about 30,000 subscribers.
@@ -81,7 +82,9 @@ fn quality_and_satisfaction_sweep(bencher: Bencher<'_, '_>) {
     let tenure = TenureTable::up_to(DAYS, &company.params.quality);
     let (morning, service, ads, tenure, params) = (&morning, &service, &ads, &tenure, &*company.params);
     let conditions = satisfaction::Conditions { morning, service, ads, tenure, params };
-    on_customers(bencher, company.subscribers(), |customers| satisfaction::update(customers, &conditions));
+    on_customers(bencher, company.subscribers(), |customers| {
+        customers.sweep(|group, _, block| satisfaction::update(group, block, &conditions)).len()
+    });
 }
 
 #[divan::bench]
@@ -97,10 +100,14 @@ fn usage_metering(bencher: Bencher<'_, '_>) {
 fn issue_pass(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     let (params, streams, settings) = (&*company.params, &company.streams, &company.world.settings);
+    let hotline = Hotline { day: DAYS + 1, outage: false, params, streams };
     on_customers(bencher, company.subscribers(), |customers| {
         let (mut desk, mut facts) = (company.world.issue_desk.clone(), Facts::default());
-        let calls = issues::read_calls(DAYS + 1, false, customers, params, streams);
-        issues::settle(DAYS + 1, false, calls, settings, customers, &mut desk, params, streams, &mut facts);
+        let mut calls =
+            customers.sweep(|group, number, block| issues::read_calls(group, number, block, &hotline));
+        issues::allot(&mut calls, settings, customers, &mut desk, &hotline);
+        let settled = customers.sweep_with(calls, |_, _, block, own| issues::settle(block, &own, &hotline));
+        issues::record(settled, &mut facts);
         facts.issues_opened.len()
     });
 }
@@ -122,12 +129,15 @@ fn billing_of_a_day(bencher: Bencher<'_, '_>) {
     let bill = Terms {
         morning: &morning,
         settings: &company.world.settings,
-        suspended: &suspended,
         params: &company.params,
         streams: &company.streams,
     };
     let bills = ItemsCount::new(company.facts.payments.len());
-    on_customers(bencher, bills, |customers| billing::collect(customers, &bill, &mut Facts::default()));
+    on_customers(bencher, bills, |customers| {
+        let regulars =
+            customers.sweep(|group, number, block| billing::bill_regulars(group, number, block, &bill));
+        billing::collect(customers, regulars, &bill, &suspended, &mut Facts::default())
+    });
 }
 
 #[divan::bench]

@@ -48,6 +48,12 @@ macro_rules! columns {
                 $Row { $($column: self.$column[at],)* }
             }
 
+            /// Number of its canonical bytes.
+            pub fn canonical_length(&self) -> usize {
+                // A value of a column has as many canonical bytes as it takes in memory.
+                0 $(+ size_of::<u64>() + self.$column.len() * size_of::<$kind>())*
+            }
+
             /// Drops the rows at these ascending positions; the others keep their order.
             pub fn remove(&mut self, gone: &[usize]) {
                 if !gone.is_empty() {
@@ -81,12 +87,7 @@ macro_rules! columns {
         impl Canonical for $Block {
             fn feed(&self, hasher: &mut CanonicalHasher) {
                 $(self.$column.feed(hasher);)*
-            }
-
-            fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
-                hasher.large_values(values, 1);
-            }
-        }
+            }        }
     };
 }
 

@@ -8,7 +8,7 @@ pub mod traits;
 
 use rayon::prelude::*;
 
-use super::canonical::canonical;
+use super::canonical::{Canonical, CanonicalHasher, Stretch, canonical, hash_of_stretches};
 use super::identifiers::{ByGroup, Group};
 use columns::{BLOCK, Block, Subscriber};
 
@@ -17,6 +17,10 @@ pub const FIRST_CUSTOMER: u32 = 2;
 
 /// Fewer blocks than this are not worth waking a second thread.
 const PARALLEL_FROM: usize = 8;
+
+/// Blocks that go to a thread together at most: those who came on one day decide and pay on one day, so the work of a
+/// day is in a few neighbouring blocks.
+const SHARE: usize = 2;
 
 /// All customers of a run: the active ones as columns, of the others only where their numbers are.
 #[derive(Debug, Clone)]
@@ -53,6 +57,23 @@ pub struct ArrivalRun {
     pub first_n: u32,
     /// How many.
     pub count: u32,
+}
+
+impl ArrivalRun {
+    /// Running numbers within the group, with customer numbers.
+    pub fn numbers(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        (self.first_n..self.first_n + self.count).zip(self.first_customer..)
+    }
+
+    /// The same run in pieces of so many.
+    pub fn pieces(self, most: u32) -> impl Iterator<Item = ArrivalRun> {
+        (0..self.count).step_by(most as usize).map(move |from| ArrivalRun {
+            first_customer: self.first_customer + from,
+            first_n: self.first_n + from,
+            count: most.min(self.count - from),
+            ..self
+        })
+    }
 }
 
 canonical! {
@@ -151,7 +172,8 @@ impl Customers {
         if jobs.len() < PARALLEL_FROM {
             jobs.into_iter().map(|(group, at, block)| work(group, at, block)).collect()
         } else {
-            jobs.into_par_iter().map(|(group, at, block)| work(group, at, block)).collect()
+            let each = jobs.into_par_iter().with_max_len(SHARE);
+            each.map(|(group, at, block)| work(group, at, block)).collect()
         }
     }
 
@@ -168,7 +190,7 @@ impl Customers {
             let each = jobs.into_iter().zip(found);
             each.map(|((group, at, block), own)| work(group, at, block, own)).collect()
         } else {
-            let each = jobs.into_par_iter().zip(found);
+            let each = jobs.into_par_iter().zip(found).with_max_len(SHARE);
             each.map(|((group, at, block), own)| work(group, at, block, own)).collect()
         }
     }
@@ -192,8 +214,29 @@ impl Customers {
         if blocks.len() < PARALLEL_FROM {
             blocks.into_iter().map(|(group, block)| look(group, block)).collect()
         } else {
-            blocks.into_par_iter().map(|(group, block)| look(group, block)).collect()
+            let each = blocks.into_par_iter().with_max_len(SHARE);
+            each.map(|(group, block)| look(group, block)).collect()
         }
+    }
+
+    /// Hash of their canonical bytes, made on several threads: they are nearly all of the state.
+    pub fn hash(&self) -> blake3::Hash {
+        let Customers { groups, next_customer, next_subscription, arrivals } = self;
+        let mut stretches = Vec::new();
+        for GroupCustomers { created, blocks } in &groups.0 {
+            stretches.push(Stretch::new(size_of::<u32>() + size_of::<u64>(), |hasher| {
+                created.feed(hasher);
+                (blocks.len() as u64).feed(hasher);
+            }));
+            let block = |block| Stretch::new(Block::canonical_length(block), |hasher| block.feed(hasher));
+            stretches.extend(blocks.iter().map(block));
+        }
+        let mut rest = CanonicalHasher::collector(0);
+        (*next_customer, *next_subscription).feed(&mut rest);
+        arrivals.feed(&mut rest);
+        let rest = rest.into_bytes();
+        stretches.push(Stretch::new(rest.len(), move |hasher| hasher.bytes(&rest)));
+        hash_of_stretches(&stretches)
     }
 
     /// All blocks that hold anybody, in group and block order.
@@ -209,6 +252,7 @@ impl Customers {
 mod tests {
     use super::columns::tests::subscriber;
     use super::*;
+    use crate::world::canonical::hash_of;
 
     #[test]
     fn numbers_are_consecutive_over_groups_and_found_again() {
@@ -222,6 +266,19 @@ mod tests {
         assert_eq!(customers.find(5), Some((e1, 1)));
         assert_eq!(customers.find(7), Some((s1, 5)));
         assert_eq!(customers.find(8), None);
+    }
+
+    #[test]
+    fn the_hash_of_threads_is_the_hash_of_all_bytes() {
+        let mut customers = Customers::default();
+        assert_eq!(customers.hash(), hash_of(&customers));
+        for (group, count) in Group::all().zip([20_000, 3, 0, 1_024]) {
+            let run = customers.arrive(1, group, count);
+            for (n, _) in run.numbers().filter(|(n, _)| n % 5 > 0) {
+                customers.groups[group].activate(subscriber(n));
+            }
+        }
+        assert_eq!(customers.hash(), hash_of(&customers));
     }
 
     #[test]

@@ -98,60 +98,52 @@ pub fn arrive(
     enterprise: &mut Enterprise,
     facts: &mut Facts,
 ) -> LeadCounts {
-    let mut counts = LeadCounts::default();
-    let mut came: Vec<(ArrivalRun, Vec<Lead>)> = Vec::new();
+    let mut party: Vec<ArrivalRun> = Vec::new();
     for group in Group::all() {
         let keys = [u64::from(arrivals.morning.day), group.index() as u64];
         let expected = factors[group].expected();
         let number = arrivals.streams.open(Part::LeadCount, keys).poisson(expected) as u32;
-        if number > 0 {
-            let run = customers.arrive(arrivals.morning.day, group, number);
-            came.push((run, evaluate(arrivals, &factors[group], &run)));
-        }
+        party.extend(customers.arrive(arrivals.morning.day, group, number).pieces(LEADS_TOGETHER));
     }
-    record_arrivals(&came, &mut counts, facts);
-    record_channels(arrivals, &came, facts);
-    open_subscriptions(arrivals, &came, customers, facts, &mut counts);
+    let came: Vec<(ArrivalRun, Vec<Lead>)> = party
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|some| (some, evaluate(arrivals, factors, &some)))
+        .collect();
+    let mut counts = LeadCounts::default();
+    let first = customers.next_subscription;
+    rayon::join(
+        || enrol(arrivals, &came, first, customers),
+        || {
+            record_arrivals(&came, &mut counts, facts);
+            record_channels(arrivals, &came, facts);
+            record_openings(arrivals, &came, first, &mut counts, facts);
+        },
+    );
+    customers.next_subscription += counts.individuals;
     open_prospects(arrivals, came, customers, enterprise, facts, &mut counts);
     counts
 }
 
 /// Leads whose streams are opened together: a round number of lanes, and little enough work to share out.
-const LEADS_TOGETHER: usize = 64;
+const LEADS_TOGETHER: u32 = 64;
 
-fn evaluate(arrivals: &Arrivals<'_>, factors: &LeadFactors, run: &ArrivalRun) -> Vec<Lead> {
-    let offers = offers(arrivals, run.group);
-    let group = run.group.index() as u64;
-    let keys: Vec<[u64; 2]> = (run.first_n..run.first_n + run.count).map(|n| [group, n.into()]).collect();
-    let some = |keys: &[[u64; 2]]| evaluate_some(arrivals, factors, &offers, run, keys);
-    if keys.len() <= LEADS_TOGETHER {
-        some(&keys)
-    } else {
-        keys.par_chunks(LEADS_TOGETHER).flat_map_iter(some).collect()
-    }
-}
-
-/// Draws and evaluates the leads with these keys (group and running number) of one group.
-fn evaluate_some(
-    arrivals: &Arrivals<'_>,
-    factors: &LeadFactors,
-    offers: &ByPlan<Offer>,
-    run: &ArrivalRun,
-    keys: &[[u64; 2]],
-) -> Vec<Lead> {
+/// Draws and evaluates some leads of one group.
+fn evaluate(arrivals: &Arrivals<'_>, factors: &ByGroup<LeadFactors>, some: &ArrivalRun) -> Vec<Lead> {
     let &Arrivals { market, params, streams, .. } = arrivals;
-    let group = run.group;
+    let group = some.group;
+    let offers = offers(arrivals, group);
     let velocity = market.economy.multiplier(group, Dimension::DealVelocity, params);
-    let traits = streams.keys(Part::Traits, keys);
-    let sources = streams.first_words(Part::LeadSource, keys);
-    let noises = streams.first_words(Part::LeadNoise, keys);
-    let draws = keys.iter().zip(traits).zip(sources.into_iter().zip(noises));
+    let keys: Vec<[u64; 2]> = some.numbers().map(|(n, _)| [group.index() as u64, n.into()]).collect();
+    let traits = streams.keys(Part::Traits, &keys);
+    let sources = streams.first_words(Part::LeadSource, &keys);
+    let noises = streams.first_words(Part::LeadNoise, &keys);
+    let draws = some.numbers().zip(traits).zip(sources.into_iter().zip(noises));
     draws
-        .map(|((&[_, n], key), (source, noise))| {
+        .map(|(((_, customer), key), (source, noise))| {
             let traits = traits_from(Stream::of(key), group, velocity, params);
-            let source = factors.source(source.uniform());
-            let customer = run.first_customer + (n as u32 - run.first_n);
-            evaluate_lead(arrivals, offers, (group, customer), traits, source, noise)
+            let source = factors[group].source(source.uniform());
+            evaluate_lead(arrivals, &offers, (group, customer), traits, source, noise)
         })
         .collect()
 }
@@ -206,11 +198,11 @@ fn evaluate_lead(
 fn record_arrivals(came: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCounts, facts: &mut Facts) {
     for (run, leads) in came {
         counts.all += run.count;
-        for (offset, lead) in (0..).zip(leads) {
+        for ((n, customer), lead) in run.numbers().zip(leads) {
             facts.arrivals.push(Arrival {
-                customer: run.first_customer + offset,
+                customer,
                 group: run.group,
-                n: run.first_n + offset,
+                n,
                 source: lead.source,
                 persona: lead.traits.persona,
                 usage_demand: lead.traits.usage_demand,
@@ -237,62 +229,64 @@ fn record_channels(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], fa
     }
 }
 
-fn open_subscriptions(
-    arrivals: &Arrivals<'_>,
-    came: &[(ArrivalRun, Vec<Lead>)],
-    customers: &mut Customers,
-    facts: &mut Facts,
-    counts: &mut LeadCounts,
-) {
-    let individuals = || {
-        came.iter().filter(|(run, _)| !run.group.is_enterprise()).flat_map(|(run, leads)| {
-            (0..).zip(leads).map(move |(offset, lead)| {
-                (run.group, run.first_n + offset, run.first_customer + offset, lead)
-            })
-        })
-    };
-    for (group, n, customer, lead) in individuals() {
-        counts.individuals += 1;
+/// Individuals among those who came: group, running number, customer number and lead.
+fn individuals(came: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (Group, u32, u32, &Lead)> {
+    came.iter().filter(|(run, _)| !run.group.is_enterprise()).flat_map(|(run, leads)| {
+        run.numbers().zip(leads).map(|((n, customer), lead)| (run.group, n, customer, lead))
+    })
+}
+
+/// Makes those who sign up active, with subscriptions numbered from `first`.
+fn enrol(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], first: u32, customers: &mut Customers) {
+    let mut subscription = first;
+    for (group, n, customer, lead) in individuals(came) {
         if let Outcome::Subscribes { choice, terms, required } = lead.outcome {
-            counts.subscribed += 1;
-            let subscription = customers.next_subscription;
-            customers.next_subscription += 1;
             let FirstTerms { listed_price, promotion, effective_price } = terms;
-            let row = Subscriber {
+            customers.groups[group].activate(Subscriber {
                 plan: choice.plan,
                 listed_price,
                 promotion,
                 effective_price,
                 required,
                 ..newcomer(arrivals, n, customer, subscription, lead)
-            };
-            customers.groups[group].activate(row);
-            facts.openings.push(SubscriptionOpened {
-                subscription,
-                customer,
-                plan: Some(row.plan),
-                status: SubscriptionStatus::Subscribed,
-                listed_price: row.listed_price,
-                promotion: row.promotion,
-                effective_price: row.effective_price,
-                seats: 1,
             });
+            subscription += 1;
         }
     }
-    for (_, _, customer, lead) in individuals() {
+}
+
+/// Puts the subscriptions of individuals on record, numbered from `first`: those who sign up, then those who are lost.
+fn record_openings(
+    arrivals: &Arrivals<'_>,
+    came: &[(ArrivalRun, Vec<Lead>)],
+    first: u32,
+    counts: &mut LeadCounts,
+    facts: &mut Facts,
+) {
+    let mut open = |customer, plan, status, FirstTerms { listed_price, promotion, effective_price }| {
+        facts.openings.push(SubscriptionOpened {
+            subscription: first + counts.individuals,
+            customer,
+            plan: Some(plan),
+            status,
+            listed_price,
+            promotion,
+            effective_price,
+            seats: 1,
+        });
+        counts.individuals += 1;
+    };
+    for (_, _, customer, lead) in individuals(came) {
+        if let Outcome::Subscribes { choice, terms, .. } = lead.outcome {
+            open(customer, choice.plan, SubscriptionStatus::Subscribed, terms);
+            counts.subscribed += 1;
+        }
+    }
+    for (_, _, customer, lead) in individuals(came) {
         if let Outcome::Lost { choice, discount } = lead.outcome {
-            let subscription = customers.next_subscription;
-            customers.next_subscription += 1;
-            facts.openings.push(SubscriptionOpened {
-                subscription,
-                customer,
-                plan: Some(choice.plan),
-                status: SubscriptionStatus::Lost,
-                listed_price: arrivals.morning.core.prices[choice.plan],
-                promotion: discount,
-                effective_price: choice.price,
-                seats: 1,
-            });
+            let listed_price = arrivals.morning.core.prices[choice.plan];
+            let terms = FirstTerms { listed_price, promotion: discount, effective_price: choice.price };
+            open(customer, choice.plan, SubscriptionStatus::Lost, terms);
         }
     }
 }
@@ -364,14 +358,13 @@ fn open_prospects(
     counts: &mut LeadCounts,
 ) {
     for (run, leads) in came {
-        for (offset, lead) in (0..).zip(leads) {
+        for ((n, customer), lead) in run.numbers().zip(leads) {
             if !matches!(lead.outcome, Outcome::Prospect) {
                 continue;
             }
             counts.companies += 1;
             let subscription = customers.next_subscription;
             customers.next_subscription += 1;
-            let customer = run.first_customer + offset;
             facts.openings.push(SubscriptionOpened {
                 subscription,
                 customer,
@@ -382,7 +375,6 @@ fn open_prospects(
                 effective_price: 0.0,
                 seats: lead.traits.seats as u32,
             });
-            let n = run.first_n + offset;
             let row = newcomer(arrivals, n, customer, subscription, &lead);
             if let Some(negotiator) = lead.traits.negotiator {
                 let company = Company {

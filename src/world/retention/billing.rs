@@ -1,4 +1,7 @@
 //! Bills (chapter 20 §18, step 20).
+//!
+//! Nothing between the decision of an individual and its bill touches either, so those who stay are billed at once,
+//! while their block is at hand; newcomers and companies are billed when the day's deals are done.
 
 use std::collections::BTreeSet;
 
@@ -20,8 +23,6 @@ pub struct Terms<'a> {
     pub morning: &'a Morning,
     /// Settings of today.
     pub settings: &'a Settings,
-    /// Companies that pay nothing while their threat to leave is open (chapter 40 §15.2).
-    pub suspended: &'a BTreeSet<u32>,
     /// Parameters.
     pub params: &'a Params,
     /// Random streams.
@@ -34,21 +35,67 @@ pub fn billed_list_price(stored: f64, list: f64, negotiated: bool) -> f64 {
     if negotiated { stored } else { stored.min(list) }
 }
 
-/// Bills everybody whose day it is. Returns the payments of the day, in dollars.
-pub fn collect(customers: &mut Customers, bill: &Terms<'_>, facts: &mut Facts) -> f64 {
-    let by_block = customers.sweep(|group, _, block| bill_block(group, block, bill));
+/// Bills of some rows of a block.
+pub struct Bills {
+    group: Group,
+    number: u32,
+    payments: Vec<Payment>,
+    changes: Vec<TermsChanged>,
+}
+
+/// Bills the individuals of a block whose day it is and who were there this morning.
+pub fn bill_regulars(group: Group, number: u32, block: &mut Block, bill: &Terms<'_>) -> Bills {
+    let due = if group.is_enterprise() { Vec::new() } else { due_today(block, bill) };
+    bill_rows(group, number, block, due, bill, &BTreeSet::new())
+}
+
+/// Bills newcomers and companies and puts the bills of the day on record. Companies that are `suspended` pay nothing
+/// while their threat to leave is open (chapter 40 §15.2). Returns the payments of the day, in dollars.
+pub fn collect(
+    customers: &mut Customers,
+    billed: Vec<Bills>,
+    bill: &Terms<'_>,
+    suspended: &BTreeSet<u32>,
+    facts: &mut Facts,
+) -> f64 {
+    let today = bill.morning.day;
+    let late = customers.sweep(|group, number, block| {
+        let mut due = Vec::new();
+        // Newcomers have the largest numbers of their group.
+        if group.is_enterprise() || block.start_day.last() == Some(&today) {
+            due = due_today(block, bill);
+            due.retain(|at| group.is_enterprise() || block.start_day[*at] == today);
+        }
+        bill_rows(group, number, block, due, bill, suspended)
+    });
     let mut received = 0.0;
-    for (payments, changes) in by_block {
-        received += payments.iter().map(|payment| payment.amount).sum::<f64>();
-        facts.payments.extend(payments);
-        facts.changes.extend(changes);
+    let mut billed = billed.into_iter().filter(|early| !early.payments.is_empty()).peekable();
+    for own in late {
+        let early = billed.next_if(|early| (early.group, early.number) == (own.group, own.number));
+        let of_block = || early.iter().chain([&own]);
+        received += of_block().flat_map(|bills| &bills.payments).map(|payment| payment.amount).sum::<f64>();
+        for bills in of_block() {
+            facts.payments.extend_from_slice(&bills.payments);
+            facts.changes.extend_from_slice(&bills.changes);
+        }
     }
+    debug_assert!(billed.next().is_none(), "who was billed is still there");
     received
 }
 
-fn bill_block(group: Group, block: &mut Block, bill: &Terms<'_>) -> (Vec<Payment>, Vec<TermsChanged>) {
-    let today = (bill.morning.day % bill.params.billing.billing_period_days) as u8;
-    let due = block.due(today);
+/// Positions of those whose billing day it is.
+fn due_today(block: &Block, bill: &Terms<'_>) -> Vec<usize> {
+    block.due((bill.morning.day % bill.params.billing.billing_period_days) as u8)
+}
+
+fn bill_rows(
+    group: Group,
+    number: u32,
+    block: &mut Block,
+    due: Vec<usize>,
+    bill: &Terms<'_>,
+    suspended: &BTreeSet<u32>,
+) -> Bills {
     let (mut payments, mut changes) = (Vec::with_capacity(due.len()), Vec::new());
     let keys: Vec<[u64; 3]> = due
         .iter()
@@ -56,7 +103,7 @@ fn bill_block(group: Group, block: &mut Block, bill: &Terms<'_>) -> (Vec<Payment
         .collect();
     let rates = bill.streams.first_words(Part::UsageRate, &keys);
     for (at, rate) in due.into_iter().zip(rates) {
-        if !bill.suspended.contains(&block.customer[at]) {
+        if !suspended.contains(&block.customer[at]) {
             let before = terms(block, at);
             payments.push(pay(group, block, at, bill));
             let after = terms(block, at);
@@ -67,7 +114,7 @@ fn bill_block(group: Group, block: &mut Block, bill: &Terms<'_>) -> (Vec<Payment
         }
         start_period(block, at, rate, bill.params);
     }
-    (payments, changes)
+    Bills { group, number, payments, changes }
 }
 
 /// Takes the payment and sets the terms of the next period.
@@ -114,14 +161,7 @@ mod tests {
         day.core.prices = ByPlan([list; 3]);
         let mut settings = Settings::opening(&params);
         settings.promotion.global = ongoing;
-        let suspended = BTreeSet::new();
-        let bill = Terms {
-            morning: &day,
-            settings: &settings,
-            suspended: &suspended,
-            params: &params,
-            streams: &streams,
-        };
+        let bill = Terms { morning: &day, settings: &settings, params: &params, streams: &streams };
         let mut block = Block::default();
         block.push(row);
         let payment = pay(group, &mut block, 0, &bill);
@@ -179,15 +219,10 @@ mod tests {
         let row = Subscriber { period_usage: 77, seats: 10.0, ..subscriber(1) };
         customers.groups[group].activate(row);
         let suspended = BTreeSet::from([row.customer]);
-        let bill = Terms {
-            morning: &day,
-            settings: &settings,
-            suspended: &suspended,
-            params: &params,
-            streams: &streams,
-        };
+        let bill = Terms { morning: &day, settings: &settings, params: &params, streams: &streams };
         let mut facts = Facts::default();
-        assert_eq!(collect(&mut customers, &bill, &mut facts), 0.0);
+        let billed = customers.sweep(|group, number, block| bill_regulars(group, number, block, &bill));
+        assert_eq!(collect(&mut customers, billed, &bill, &suspended, &mut facts), 0.0);
         let after = customers.groups[group].blocks[0].row(0);
         assert!(facts.payments.is_empty() && facts.changes.is_empty());
         assert_eq!((after.period_usage, after.listed_price), (0, row.listed_price));

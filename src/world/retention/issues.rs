@@ -1,7 +1,8 @@
 //! Support issues: who calls, who is helped, and what waiting does to a relationship (chapter 20 §16, step 14).
 //!
 //! Everything is decided from the values of the start of the day, so the calls are read before satisfaction
-//! moves and settled after it.
+//! moves and settled after it: block by block in the rounds of [`crate::world::day`]; in between the money of the day
+//! is shared out.
 
 use super::pools::Resolution;
 use crate::world::canonical::canonical;
@@ -82,74 +83,89 @@ pub struct Calls {
     new: Vec<u16>,
     /// Which of the open ones are solved.
     pub(super) solved: Vec<bool>,
+    /// Number of the first new issue.
+    first_issue: u32,
 }
 
-/// Reads who has an issue and who opens one today; changes nothing.
-pub fn read_calls(
-    day: u32,
-    outage: bool,
-    customers: &mut Customers,
-    params: &Params,
-    streams: &Streams,
-) -> Vec<Calls> {
-    let law = &params.issues;
-    customers.sweep(|group, block_number, block| {
-        let keys = [u64::from(day), group.index() as u64, u64::from(block_number)];
-        let mut words = [0u32; BLOCK as usize];
-        streams.open(Part::IssueOpening, keys).fill(&mut words);
-        let (mut open, mut new) = (Vec::new(), Vec::new());
-        for (at, (&open_days, &satisfaction)) in
-            block.open_issue_days.iter().zip(&block.satisfaction).enumerate()
-        {
-            if open_days > 0 {
-                open.push(at as u16);
-                continue;
-            }
-            let seats = if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 };
-            if word_below(words[block.place(at)], issue_probability(satisfaction, outage, seats, law)) {
-                new.push(at as u16);
-            }
+/// What issues depend on, the same for everybody.
+#[derive(Clone, Copy)]
+pub struct Hotline<'a> {
+    /// Day.
+    pub day: u32,
+    /// Whether the service failed today.
+    pub outage: bool,
+    /// Parameters.
+    pub params: &'a Params,
+    /// Random streams.
+    pub streams: &'a Streams,
+}
+
+/// Reads who of a block has an issue and who opens one today.
+pub fn read_calls(group: Group, number: u32, block: &Block, hotline: &Hotline<'_>) -> Calls {
+    let &Hotline { day, outage, params, streams } = hotline;
+    let keys = [u64::from(day), group.index() as u64, u64::from(number)];
+    let mut words = [0u32; BLOCK as usize];
+    streams.open(Part::IssueOpening, keys).fill(&mut words);
+    let (mut open, mut new) = (Vec::new(), Vec::new());
+    for (at, (&open_days, &satisfaction)) in block.open_issue_days.iter().zip(&block.satisfaction).enumerate()
+    {
+        if open_days > 0 {
+            open.push(at as u16);
+            continue;
         }
-        let solved = vec![false; open.len()];
-        Calls { group, block: block_number, open, new, solved }
-    })
+        let seats = if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 };
+        if word_below(words[block.place(at)], issue_probability(satisfaction, outage, seats, &params.issues))
+        {
+            new.push(at as u16);
+        }
+    }
+    let solved = vec![false; open.len()];
+    Calls { group, block: number, open, new, solved, first_issue: 0 }
 }
 
-/// Solves, ages and opens issues; nobody may have left since the calls were read.
-#[expect(clippy::too_many_arguments, reason = "a mechanism names every part it touches")]
-pub fn settle(
-    day: u32,
-    outage: bool,
-    mut calls: Vec<Calls>,
+/// Shares out the money of the day among the open issues and numbers the new ones, in the order of their blocks.
+pub fn allot(
+    calls: &mut [Calls],
     settings: &Settings,
-    customers: &mut Customers,
+    customers: &Customers,
     desk: &mut IssueDesk,
-    params: &Params,
-    streams: &Streams,
-    facts: &mut Facts,
+    hotline: &Hotline<'_>,
 ) {
-    if calls.iter().any(|block| !block.open.is_empty()) {
-        Resolution { day, calls: &mut calls, customers, params, streams }.run(settings);
-        facts.issues_aged = true;
+    let &Hotline { day, params, streams, .. } = hotline;
+    Resolution { day, calls, customers, params, streams }.run(settings);
+    for own in calls {
+        own.first_issue = desk.next_issue;
+        desk.next_issue += own.new.len() as u32;
     }
-    // New issues are numbered in the order of their blocks.
-    let mut next_issue = desk.next_issue;
-    let numbered: Vec<(Calls, u32)> = calls
-        .into_iter()
-        .map(|own| {
-            let first = next_issue;
-            next_issue += own.new.len() as u32;
-            (own, first)
-        })
-        .collect();
-    desk.next_issue = next_issue;
-    let by_block = customers.sweep_with(numbered, |_, _, block, (own, first)| {
-        let resolved = settle_open(block, &own, outage, params);
-        (resolved, open_new(block, &own, first, params))
-    });
-    for (resolved, opened) in by_block {
-        facts.issues_resolved.extend(resolved);
-        facts.issues_opened.extend(opened);
+}
+
+/// What became of the issues of a block.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Settled {
+    /// Whether any was open.
+    pub any_open: bool,
+    /// Numbers of those that were solved.
+    pub resolved: Vec<u32>,
+    /// Those that were opened.
+    pub opened: Vec<IssueOpened>,
+}
+
+/// Solves, ages and opens issues of a block; nobody may have left since the calls were read.
+pub fn settle(block: &mut Block, own: &Calls, hotline: &Hotline<'_>) -> Settled {
+    let &Hotline { outage, params, .. } = hotline;
+    Settled {
+        any_open: !own.open.is_empty(),
+        resolved: settle_open(block, own, outage, params),
+        opened: open_new(block, own, params),
+    }
+}
+
+/// Puts what became of the issues on record.
+pub fn record(by_block: Vec<Settled>, facts: &mut Facts) {
+    for own in by_block {
+        facts.issues_aged |= own.any_open;
+        facts.issues_resolved.extend(own.resolved);
+        facts.issues_opened.extend(own.opened);
     }
 }
 
@@ -171,15 +187,15 @@ fn settle_open(block: &mut Block, own: &Calls, outage: bool, params: &Params) ->
     resolved
 }
 
-/// Opens the new issues of a block, numbered from `first`.
-fn open_new(block: &mut Block, own: &Calls, first: u32, params: &Params) -> Vec<IssueOpened> {
+/// Opens the new issues of a block.
+fn open_new(block: &mut Block, own: &Calls, params: &Params) -> Vec<IssueOpened> {
     let open = |(issue, &at): (u32, &u16)| {
         let at = usize::from(at);
         block.open_issue_days[at] = params.issues.new_issue_open_days;
         block.issue[at] = issue;
         IssueOpened { issue, customer: block.customer[at], group: own.group }
     };
-    (first..).zip(&own.new).map(open).collect()
+    (own.first_issue..).zip(&own.new).map(open).collect()
 }
 
 #[cfg(test)]
@@ -258,8 +274,11 @@ mod tests {
         let mut settings = Settings::opening(&params);
         settings.core.operations = operations;
         let (mut facts, mut desk) = (Facts::default(), IssueDesk { next_issue: 10_000 });
-        let calls = read_calls(3, false, customers, &params, &streams);
-        settle(3, false, calls, &settings, customers, &mut desk, &params, &streams, &mut facts);
+        let hotline = Hotline { day: 3, outage: false, params: &params, streams: &streams };
+        let mut calls = customers.sweep(|group, number, block| read_calls(group, number, block, &hotline));
+        allot(&mut calls, &settings, customers, &mut desk, &hotline);
+        let settled = customers.sweep_with(calls, |_, _, block, own| settle(block, &own, &hotline));
+        record(settled, &mut facts);
         (facts, desk)
     }
 

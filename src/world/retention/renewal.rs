@@ -1,6 +1,5 @@
 //! What individuals decide on their billing day: stay, switch, or leave (chapter 20 §17, step 15).
 
-use crate::world::customers::Customers;
 use crate::world::customers::columns::{BLOCK, Block};
 use crate::world::customers::curve::{Curve, required_quality};
 use crate::world::day::Morning;
@@ -22,6 +21,13 @@ pub fn involuntary_rate(mean: f64, std: f64, z: f64, law: &InvoluntaryChurn) -> 
         return 0.0;
     }
     (mean + std * z).clamp(law.mu_min, law.mu_max)
+}
+
+/// The rates of all groups in the month that holds a day; companies have none.
+pub fn involuntary_rates(day: u32, params: &Params, streams: &Streams) -> ByGroup<f64> {
+    ByGroup::from_fn(|group| {
+        if group.is_enterprise() { 0.0 } else { involuntary_rate_of(group, day, params, streams) }
+    })
 }
 
 /// The rate of a group in the month that holds a day.
@@ -82,6 +88,8 @@ pub struct Judgement<'a> {
     pub settings: &'a Settings,
     /// Quality lost to today's service, where fidelity makes it count here.
     pub service_penalty: f64,
+    /// Monthly rate of involuntary churn by group.
+    pub involuntary: ByGroup<f64>,
     /// Macro multiplier of the budget by group.
     pub willingness_to_pay: ByGroup<f64>,
     /// In-app ads.
@@ -99,34 +107,21 @@ struct Departure {
     person: GaveUp,
 }
 
+/// What the individuals of a block decided.
 #[derive(Default)]
-struct BlockOutcome {
+pub struct Decisions {
     departures: Vec<Departure>,
     switches: Vec<(bool, TermsChanged)>,
 }
 
-/// Lets every individual whose billing day it is decide. Those who find nothing acceptable harm the group's
-/// reputation; those whose payment failed do not.
-pub fn decide(
-    customers: &mut Customers,
+/// Adds up what was decided, block by block, and puts it on record. Those who found nothing acceptable harm the
+/// group's reputation; those whose payment failed do not.
+pub fn conclude(
+    by_block: Vec<Decisions>,
     reputation: &mut ReputationBook,
     judgement: &Judgement<'_>,
     facts: &mut Facts,
 ) -> Renewals {
-    let day = judgement.morning.day;
-    let rates = ByGroup::from_fn(|group| {
-        if group.is_enterprise() {
-            0.0
-        } else {
-            involuntary_rate_of(group, day, judgement.params, judgement.streams)
-        }
-    });
-    let by_block = customers.sweep(|group, number, block| {
-        if group.is_enterprise() {
-            return BlockOutcome::default();
-        }
-        decide_block(group, number, block, rates[group], judgement)
-    });
     let mut renewals = Renewals::default();
     for outcome in by_block {
         for (upgrade, terms) in outcome.switches {
@@ -161,17 +156,14 @@ fn harm(reputation: &mut ReputationBook, gave_up: &[GaveUp], judgement: &Judgeme
     }
 }
 
-fn decide_block(
-    group: Group,
-    number: u32,
-    block: &mut Block,
-    rate: f64,
-    judgement: &Judgement<'_>,
-) -> BlockOutcome {
-    let morning = judgement.morning;
-    let today = (morning.day % 30) as u8;
-    let mut outcome = BlockOutcome::default();
-    let due = block.due(today);
+/// Lets the individuals of a block whose billing day it is decide; takes out those who leave.
+pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &Judgement<'_>) -> Decisions {
+    let mut outcome = Decisions::default();
+    if group.is_enterprise() {
+        return outcome;
+    }
+    let (morning, rate) = (judgement.morning, judgement.involuntary[group]);
+    let due = block.due((morning.day % 30) as u8);
     if due.is_empty() {
         return outcome;
     }
@@ -319,6 +311,7 @@ pub fn terms(block: &Block, at: usize) -> TermsChanged {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::customers::Customers;
     use crate::world::customers::columns::Subscriber;
     use crate::world::customers::columns::tests::subscriber;
     use crate::world::day::tests::morning;
@@ -342,6 +335,7 @@ mod tests {
             morning: day,
             settings,
             service_penalty: 0.0,
+            involuntary: ByGroup::default(),
             willingness_to_pay: ByGroup::from_fn(|_| willingness),
             ads: &ads,
             tenure: &tenure,
@@ -428,11 +422,8 @@ mod tests {
         }
         let (mut reputation, mut facts) = (ReputationBook::opening(&Params::shipped()), Facts::default());
         let renewals = with_judgement(&day, &settings, 1.0, |judgement| {
-            let mut judgement = Judgement { ..*judgement };
-            let mut params = judgement.params.clone();
-            params.involuntary_churn.enable_involuntary_churn = false;
-            judgement.params = &params;
-            decide(&mut customers, &mut reputation, &judgement, &mut facts)
+            let decided = customers.sweep(|group, number, block| decide(group, number, block, judgement));
+            conclude(decided, &mut reputation, judgement, &mut facts)
         });
         assert_eq!((renewals.cancellations, renewals.upgrades, renewals.downgrades), (1, 1, 0));
         assert_eq!((renewals.gave_up.len(), renewals.gave_up[0].n), (1, 1));

@@ -1,6 +1,7 @@
 //! Daily satisfaction of every active subscriber (chapter 20 §15, step 13).
 
-use crate::world::customers::Customers;
+use std::ops::AddAssign;
+
 use crate::world::customers::columns::Block;
 use crate::world::day::Morning;
 use crate::world::events::ServiceDay;
@@ -19,13 +20,29 @@ pub fn moved_satisfaction(old: f64, instant: f64, alpha: f64) -> f64 {
     (1.0 - alpha) * old + alpha * instant
 }
 
-/// What a group's subscribers contribute to its reputation today.
+/// What some subscribers contribute to the reputation of their group today.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Mood {
     /// Sum of the contributions of chapter 30 §2.2.
     pub sum: f64,
     /// How many contributed.
     pub count: u32,
+}
+
+impl AddAssign for Mood {
+    fn add_assign(&mut self, other: Mood) {
+        self.sum += other.sum;
+        self.count += other.count;
+    }
+}
+
+/// Adds up what the blocks of each group contribute, in their order.
+pub fn by_group(by_block: Vec<(Group, Mood)>) -> ByGroup<Mood> {
+    let mut moods = ByGroup::<Mood>::default();
+    for (group, mood) in by_block {
+        moods[group] += mood;
+    }
+    moods
 }
 
 /// What the whole sweep shares.
@@ -42,20 +59,11 @@ pub struct Conditions<'a> {
     pub params: &'a Params,
 }
 
-/// Moves everybody's satisfaction and returns what each group contributes to its reputation.
-pub fn update(customers: &mut Customers, conditions: &Conditions<'_>) -> ByGroup<Mood> {
-    let by_block = customers.sweep(|group, _, block| (group, update_block(group, block, conditions)));
-    let mut moods = ByGroup::<Mood>::default();
-    for (group, mood) in by_block {
-        moods[group].sum += mood.sum;
-        moods[group].count += mood.count;
-    }
-    moods
-}
-
+/// Moves the satisfaction of everybody in a block and returns what they contribute to their group's reputation.
+///
 /// One linear pass over the columns it needs. What all rows share is copied out first: the compiler cannot know that
 /// no column overlaps the parameters, and would read them again for every row.
-fn update_block(group: Group, block: &mut Block, conditions: &Conditions<'_>) -> Mood {
+pub fn update(group: Group, block: &mut Block, conditions: &Conditions<'_>) -> Mood {
     let &Conditions { morning, service, ads, tenure, params } = conditions;
     let (quality, reputation) = (params.quality.clone(), params.reputation.clone());
     let penalty = service_penalty(service.overload, service.outage, &quality);
@@ -113,7 +121,7 @@ mod tests {
         let tenure = TenureTable::up_to(200, &params.quality);
         let conditions =
             Conditions { morning: day, service: &service, ads: &ads, tenure: &tenure, params: &params };
-        update_block(group(), &mut block, &conditions);
+        update(group(), &mut block, &conditions);
         block.satisfaction[0]
     }
 

@@ -4,8 +4,6 @@
 //! in a race of exponential clocks with these weights as their rates. So the first of the subscribers are drawn
 //! while all of them are still there, and those who leave later in the day join the race with clocks of their own.
 
-use rayon::prelude::*;
-
 use super::Social;
 use super::engagement::draw_engagement;
 use super::opinions::Scene;
@@ -39,9 +37,6 @@ pub struct GaveUp {
     pub price: f64,
 }
 
-/// Satisfaction before today's update, block by block; none on a day without customers' posts.
-pub struct Before(Vec<Vec<f64>>);
-
 /// Whether customers are heard on a day.
 pub fn is_posting_day(day: u32, params: &Params) -> bool {
     match params.fidelity.customer_posts {
@@ -50,10 +45,18 @@ pub fn is_posting_day(day: u32, params: &Params) -> bool {
     }
 }
 
-/// Remembers moods before they move, if customers are heard today.
-pub fn remember(day: u32, customers: &Customers, params: &Params) -> Option<Before> {
-    let moods = || customers.blocks().map(|(_, block)| block.satisfaction.clone()).collect();
-    is_posting_day(day, params).then(|| Before(moods()))
+/// The voices of a block.
+pub struct Voices {
+    /// Satisfaction of its rows before today's update.
+    before: Vec<f64>,
+    /// Sum of their weights.
+    weight: f64,
+}
+
+/// Weighs the voices of a block whose satisfaction was `before` until today.
+pub fn hear(group: Group, block: &Block, before: Vec<f64>, scene: &Scene<'_>) -> Voices {
+    let weight = before.iter().enumerate().map(|(at, before)| weight(scene, group, block, at, *before)).sum();
+    Voices { before, weight }
 }
 
 /// Somebody who wants to post.
@@ -76,37 +79,28 @@ pub struct Crowd {
     places: usize,
 }
 
-/// Starts the race among all subscribers, right after their moods have moved.
-pub fn listen(
-    before: Option<Before>,
-    customers: &Customers,
-    scene: &Scene<'_>,
-    streams: &Streams,
-) -> Option<Crowd> {
-    let Before(before) = before?;
+/// Starts the race among all subscribers, right after their moods have moved; `voices` are those of the blocks that
+/// hold anybody, in their order.
+pub fn listen(mut voices: Vec<Voices>, customers: &Customers, scene: &Scene<'_>, streams: &Streams) -> Crowd {
     let mut stream = streams.open(Part::CustomerPosts, [u64::from(scene.morning.day)]);
     let places = scene.params.social.max_posts_per_day as usize;
     let blocks: Vec<(Group, &Block)> = customers.blocks().collect();
-    let weigh = |(group, block): &(Group, &Block), moods: &Vec<f64>| -> f64 {
-        (0..block.len()).map(|at| weight(scene, *group, block, at, moods[at])).sum()
-    };
-    let jobs = blocks.par_iter().zip(&before).with_min_len(4);
-    let mut sums: Vec<f64> = jobs.map(|(block, moods)| weigh(block, moods)).collect();
     let mut picked: Vec<(usize, usize)> = Vec::new();
     let (mut candidates, mut time) = (Vec::new(), 0.0);
     while candidates.len() < places {
-        let total: f64 = sums.iter().sum();
+        let total: f64 = voices.iter().map(|own| own.weight).sum();
         if total <= 0.0 {
             break;
         }
         time += stream.exponential(1.0 / total);
         let target = stream.uniform() * total;
         let taken = |number: usize, at: usize| picked.contains(&(number, at));
-        let Some((number, at)) = find(&blocks, &before, &sums, target, scene, taken) else { break };
+        let Some((number, at)) = find(&blocks, &voices, target, scene, taken) else { break };
         picked.push((number, at));
         let (group, block) = blocks[number];
-        let mood = before[number][at];
-        sums[number] = (sums[number] - weight(scene, group, block, at, mood)).max(0.0);
+        let own = &mut voices[number];
+        let mood = own.before[at];
+        own.weight = (own.weight - weight(scene, group, block, at, mood)).max(0.0);
         candidates.push(Candidate {
             time,
             customer: block.customer[at],
@@ -116,7 +110,7 @@ pub fn listen(
             opinion: scene.opinion(group, block, at, mood, stream.uniform()),
         });
     }
-    Some(Crowd { stream, candidates, places })
+    Crowd { stream, candidates, places }
 }
 
 fn weight(scene: &Scene<'_>, group: Group, block: &Block, at: usize, before: f64) -> f64 {
@@ -127,26 +121,25 @@ fn weight(scene: &Scene<'_>, group: Group, block: &Block, at: usize, before: f64
 /// rounding lets the target pass them all.
 fn find(
     blocks: &[(Group, &Block)],
-    before: &[Vec<f64>],
-    sums: &[f64],
+    voices: &[Voices],
     mut target: f64,
     scene: &Scene<'_>,
     taken: impl Fn(usize, usize) -> bool,
 ) -> Option<(usize, usize)> {
     let mut last = None;
-    for (number, (group, block)) in blocks.iter().enumerate() {
-        if sums[number] <= 0.0 {
+    for (number, ((group, block), own)) in blocks.iter().zip(voices).enumerate() {
+        if own.weight <= 0.0 {
             continue;
         }
         let mut rows = (0..block.len()).filter(|at| !taken(number, *at));
-        if target >= sums[number] {
-            target -= sums[number];
+        if target >= own.weight {
+            target -= own.weight;
             last = rows.next_back().map(|at| (number, at)).or(last);
             continue;
         }
         for at in rows {
             last = Some((number, at));
-            target -= weight(scene, *group, block, at, before[number][at]);
+            target -= weight(scene, *group, block, at, own.before[at]);
             if target < 0.0 {
                 return last;
             }
@@ -250,7 +243,6 @@ mod tests {
         let mut customers = Customers::default();
         rows.iter().for_each(|row| customers.groups[group()].activate(*row));
         let day = morning(70);
-        let before = remember(70, &customers, &params);
         let ads = AdLoad::of(&settings.ads_strength, &params);
         let chronicle = social.chronicle.clone();
         let scene = Scene {
@@ -261,7 +253,9 @@ mod tests {
             chronicle: &chronicle,
             params: &params,
         };
-        let mut crowd = listen(before, &customers, &scene, &streams).expect("a posting day");
+        let moods = |block: &Block| block.satisfaction.clone();
+        let voices = customers.survey(|group, block| hear(group, block, moods(block), &scene));
+        let mut crowd = listen(voices, &customers, &scene, &streams);
         crowd.join(gave_up, lost, &params);
         let mut facts = Facts::default();
         facts.begin(70);

@@ -1,0 +1,117 @@
+//! The hash of a large value on several threads.
+//!
+//! BLAKE3 is a tree over pieces of its input, so each thread collects bytes and hashes them while they are in its
+//! cache; nobody waits for bytes that another thread has collected. The hash is the one of all bytes in a row.
+
+use blake3::hazmat::{ChainingValue, HasherExt, Mode, merge_subtrees_non_root, merge_subtrees_root};
+use rayon::prelude::*;
+
+use super::CanonicalHasher;
+
+/// Bytes that are hashed together, a power of two: a subtree of the hash. They stay in the cache of a core.
+const SUBTREE: usize = 1 << 20;
+
+/// Some canonical bytes whose number is known before they are collected.
+pub struct Stretch<'a> {
+    length: usize,
+    feed: Box<dyn Fn(&mut CanonicalHasher) + Sync + 'a>,
+}
+
+impl<'a> Stretch<'a> {
+    /// So many bytes, fed by a function.
+    pub fn new(length: usize, feed: impl Fn(&mut CanonicalHasher) + Sync + 'a) -> Stretch<'a> {
+        Stretch { length, feed: Box::new(feed) }
+    }
+}
+
+/// Hash of the bytes of these stretches, one after the other.
+///
+/// # Panics
+/// A stretch feeds another number of bytes than it promised.
+pub fn hash_of_stretches(stretches: &[Stretch<'_>]) -> blake3::Hash {
+    let mut total = 0;
+    let begins: Vec<usize> = stretches
+        .iter()
+        .map(|stretch| {
+            total += stretch.length;
+            total - stretch.length
+        })
+        .collect();
+    let collected = |from: usize, to: usize| {
+        let first = begins.partition_point(|begin| *begin <= from).max(1) - 1;
+        let last = begins.partition_point(|begin| *begin < to);
+        let mut collector = CanonicalHasher::collector(2 * SUBTREE);
+        for (stretch, begin) in stretches[first..last].iter().zip(&begins[first..last]) {
+            (stretch.feed)(&mut collector);
+            let until = begin + stretch.length - begins[first];
+            assert_eq!(collector.pending.len(), until, "a stretch is as long as it promised");
+        }
+        let skipped = from - begins.get(first).unwrap_or(&0);
+        (collector.pending, skipped)
+    };
+    if total <= SUBTREE {
+        return blake3::hash(&collected(0, total).0);
+    }
+    let subtrees: Vec<ChainingValue> = (0..total.div_ceil(SUBTREE))
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|number| {
+            let (from, to) = (number * SUBTREE, ((number + 1) * SUBTREE).min(total));
+            let (bytes, skipped) = collected(from, to);
+            let mut hasher = blake3::Hasher::new();
+            hasher.set_input_offset(from as u64);
+            hasher.update(&bytes[skipped..skipped + to - from]);
+            hasher.finalize_non_root()
+        })
+        .collect();
+    let (left, right) = halves(&subtrees);
+    merge_subtrees_root(&merged(left), &merged(right), Mode::Hash)
+}
+
+/// Value of a tree over subtrees that are not all there are.
+fn merged(subtrees: &[ChainingValue]) -> ChainingValue {
+    match subtrees {
+        [single] => *single,
+        several => {
+            let (left, right) = halves(several);
+            merge_subtrees_non_root(&merged(left), &merged(right), Mode::Hash)
+        }
+    }
+}
+
+/// The left side of a tree is the largest power of two that leaves something for the right side.
+fn halves(subtrees: &[ChainingValue]) -> (&[ChainingValue], &[ChainingValue]) {
+    subtrees.split_at(subtrees.len().next_power_of_two() / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_are_hashed_like_their_bytes_in_a_row() {
+        let lengths =
+            [0, 5, SUBTREE / 3, 1, SUBTREE / 2 + 77, SUBTREE, 2 * SUBTREE + 1, 0, 300_000, 3 * SUBTREE];
+        for count in 0..=lengths.len() {
+            let texts: Vec<Vec<u8>> = lengths[..count]
+                .iter()
+                .zip(1..)
+                .map(|(length, seed)| {
+                    (0..*length as u32).map(|at| (at.wrapping_mul(seed) >> 7) as u8).collect()
+                })
+                .collect();
+            let stretch = |text| Stretch::new(Vec::len(text), move |hasher| hasher.bytes(text));
+            let stretches: Vec<Stretch<'_>> = texts.iter().map(stretch).collect();
+            assert_eq!(hash_of_stretches(&stretches), blake3::hash(&texts.concat()), "{count} stretches");
+        }
+    }
+
+    #[test]
+    fn whole_subtrees_leave_nothing_over() {
+        for subtrees in 1..=9 {
+            let text = vec![7u8; subtrees * SUBTREE];
+            let stretches = [Stretch::new(text.len(), |hasher| hasher.bytes(&text))];
+            assert_eq!(hash_of_stretches(&stretches), blake3::hash(&text), "{subtrees} subtrees");
+        }
+    }
+}

@@ -8,6 +8,7 @@
 use std::borrow::Cow;
 use std::ffi::{CStr, c_int};
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 use rusqlite::Connection;
 use rusqlite::ffi;
@@ -16,7 +17,8 @@ use rusqlite::vtab::{
     Context, Filters, IndexConstraintOp, IndexInfo, Module, VTab, VTabConfig, VTabConnection, VTabCursor,
 };
 
-use super::blocks::{SharedShelf, Shelf};
+use super::blocks::{AdsRun, PackedDay, Run, SharedShelf, Shelf};
+use crate::world::events::UsageRows;
 
 /// Registers both tables on a connection.
 pub(super) fn register(connection: &Connection, shelf: &SharedShelf) -> rusqlite::Result<()> {
@@ -28,13 +30,11 @@ pub(super) fn register(connection: &Connection, shelf: &SharedShelf) -> rusqlite
 
 /// What the two tables differ in. Columns 0 and 1 are always day and customer_id.
 trait Kind: Send + Sync + 'static {
+    type Run: Run;
     const DECLARATION: &'static CStr;
 
-    fn days(shelf: &Shelf) -> usize;
-    fn day(shelf: &Shelf, at: usize) -> u32;
-    fn runs(shelf: &Shelf, day: usize) -> usize;
-    fn customers(shelf: &Shelf, day: usize, run: usize) -> &[u32];
-    fn column(shelf: &Shelf, place: Place, column: c_int, context: &mut Context) -> rusqlite::Result<()>;
+    fn days(shelf: &Shelf) -> &[Arc<PackedDay>];
+    fn column(run: &Self::Run, at: usize, column: c_int, context: &mut Context) -> rusqlite::Result<()>;
 }
 
 /// A row: day on the shelf, run of the day, position in the run.
@@ -48,58 +48,35 @@ struct Place {
 struct Usage;
 
 impl Kind for Usage {
+    type Run = UsageRows;
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(day INTEGER, customer_id INTEGER, usage_units INTEGER)";
 
-    fn days(shelf: &Shelf) -> usize {
-        shelf.usage.len()
+    fn days(shelf: &Shelf) -> &[Arc<PackedDay>] {
+        &shelf.usage
     }
 
-    fn day(shelf: &Shelf, at: usize) -> u32 {
-        shelf.usage[at].day
-    }
-
-    fn runs(shelf: &Shelf, day: usize) -> usize {
-        shelf.usage[day].runs.len()
-    }
-
-    fn customers(shelf: &Shelf, day: usize, run: usize) -> &[u32] {
-        &shelf.usage[day].runs[run].customers
-    }
-
-    fn column(shelf: &Shelf, place: Place, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
-        context.set_result(shelf.usage[place.day].runs[place.run].units[place.at])
+    fn column(run: &UsageRows, at: usize, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
+        context.set_result(run.units[at])
     }
 }
 
 struct Ads;
 
 impl Kind for Ads {
+    type Run = AdsRun;
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(day INTEGER, customer_id INTEGER, group_id TEXT, ads_strength REAL, revenue REAL)";
 
-    fn days(shelf: &Shelf) -> usize {
-        shelf.ads.len()
+    fn days(shelf: &Shelf) -> &[Arc<PackedDay>] {
+        &shelf.ads
     }
 
-    fn day(shelf: &Shelf, at: usize) -> u32 {
-        shelf.ads[at].day
-    }
-
-    fn runs(shelf: &Shelf, day: usize) -> usize {
-        shelf.ads[day].runs.len()
-    }
-
-    fn customers(shelf: &Shelf, day: usize, run: usize) -> &[u32] {
-        &shelf.ads[day].runs[run].customers
-    }
-
-    fn column(shelf: &Shelf, place: Place, column: c_int, context: &mut Context) -> rusqlite::Result<()> {
-        let run = &shelf.ads[place.day].runs[place.run];
+    fn column(run: &AdsRun, at: usize, column: c_int, context: &mut Context) -> rusqlite::Result<()> {
         match column {
             2 => context.set_result(run.group.id()),
-            3 => context.set_result(run.strengths[place.at]),
-            _ => context.set_result(run.revenues[place.at]),
+            3 => context.set_result(run.strengths[at]),
+            _ => context.set_result(run.revenues[at]),
         }
     }
 }
@@ -174,6 +151,7 @@ unsafe impl<'vtab, K: Kind> VTab<'vtab> for BlockTable<K> {
             base: ffi::sqlite3_vtab_cursor::default(),
             shelf,
             place: Place::default(),
+            run: None,
             last_day: f64::INFINITY,
             customer: None,
             kind: PhantomData,
@@ -187,6 +165,8 @@ struct BlockCursor<'vtab, K: Kind> {
     base: ffi::sqlite3_vtab_cursor,
     shelf: Shelf,
     place: Place,
+    /// The run of the place, once a row of it was asked for.
+    run: Option<K::Run>,
     /// Days after this one are not asked for.
     last_day: f64,
     /// Only rows of this customer are asked for.
@@ -197,13 +177,19 @@ struct BlockCursor<'vtab, K: Kind> {
 impl<K: Kind> BlockCursor<'_, K> {
     /// Moves on to the first row at or after the place that may be asked for.
     fn settle(&mut self) {
-        while self.place.day < K::days(&self.shelf) {
-            if f64::from(K::day(&self.shelf, self.place.day)) > self.last_day {
-                self.place.day = K::days(&self.shelf);
+        let days = K::days(&self.shelf);
+        while let Some(day) = days.get(self.place.day) {
+            if f64::from(day.day) > self.last_day {
+                self.place.day = days.len();
                 return;
             }
-            while self.place.run < K::runs(&self.shelf, self.place.day) {
-                let customers = K::customers(&self.shelf, self.place.day, self.place.run);
+            while self.place.run < day.len() {
+                if self.run.is_none()
+                    && self.customer.is_none_or(|wanted| day.may_hold(self.place.run, wanted))
+                {
+                    self.run = day.open(self.place.run);
+                }
+                let customers = self.run.as_ref().map_or(&[][..], Run::customers);
                 if let Some(wanted) = self.customer {
                     let at = customers.partition_point(|customer| f64::from(*customer) < wanted);
                     self.place.at = self.place.at.max(at);
@@ -215,11 +201,16 @@ impl<K: Kind> BlockCursor<'_, K> {
                 } else if self.place.at < customers.len() {
                     return;
                 }
-                self.place.run += 1;
-                self.place.at = 0;
+                (self.place.run, self.place.at, self.run) = (self.place.run + 1, 0, None);
             }
             self.place = Place { day: self.place.day + 1, run: 0, at: 0 };
         }
+    }
+
+    /// Day and customer number of the place; nothing once all rows were seen.
+    fn keys(&self) -> Option<(u32, u32)> {
+        let day = K::days(&self.shelf).get(self.place.day)?;
+        Some((day.day, *self.run.as_ref()?.customers().get(self.place.at)?))
     }
 }
 
@@ -245,11 +236,8 @@ unsafe impl<K: Kind> VTabCursor for BlockCursor<'_, K> {
                 _ => self.customer = Some(number),
             }
         }
-        let mut day = 0;
-        while day < K::days(&self.shelf) && f64::from(K::day(&self.shelf, day)) < first_day {
-            day += 1;
-        }
-        self.place = Place { day, run: 0, at: 0 };
+        let day = K::days(&self.shelf).partition_point(|day| f64::from(day.day) < first_day);
+        (self.place, self.run) = (Place { day, run: 0, at: 0 }, None);
         self.settle();
         Ok(())
     }
@@ -261,45 +249,42 @@ unsafe impl<K: Kind> VTabCursor for BlockCursor<'_, K> {
     }
 
     fn eof(&self) -> bool {
-        self.place.day >= K::days(&self.shelf)
+        self.place.day >= K::days(&self.shelf).len()
     }
 
     fn column(&self, context: &mut Context, column: c_int) -> rusqlite::Result<()> {
-        match column {
-            DAY => context.set_result(K::day(&self.shelf, self.place.day)),
-            CUSTOMER => {
-                context.set_result(K::customers(&self.shelf, self.place.day, self.place.run)[self.place.at])
-            }
-            other => K::column(&self.shelf, self.place, other, context),
+        match (column, &self.run) {
+            (DAY | CUSTOMER, _) => context
+                .set_result(self.keys().map(|(day, customer)| if column == DAY { day } else { customer })),
+            (other, Some(run)) => K::column(run, self.place.at, other, context),
+            (_, None) => Ok(()),
         }
     }
 
     fn rowid(&self) -> rusqlite::Result<i64> {
-        let day = i64::from(K::day(&self.shelf, self.place.day));
-        let customer = K::customers(&self.shelf, self.place.day, self.place.run)[self.place.at];
-        Ok(day << 32 | i64::from(customer))
+        let (day, customer) = self.keys().unwrap_or_default();
+        Ok(i64::from(day) << 32 | i64::from(customer))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::sync::{Arc, RwLock};
+    use std::sync::RwLock;
 
-    use super::super::blocks::{AdsDay, UsageDay};
     use super::*;
-    use crate::world::events::{AdsRevenueRow, UsageRows};
+    use crate::world::events::AdsRevenueRow;
     use crate::world::identifiers::Group;
 
     fn connection() -> Connection {
         let rows = |first: u32| {
             let customers = vec![first, first + 2, first + 4];
-            Arc::new(UsageRows { customers, units: vec![first, 10, 20] })
+            UsageRows { customers, units: vec![first, 10, 20] }
         };
-        let usage =
-            (1..=5).map(|day| Arc::new(UsageDay { day, runs: vec![rows(2), rows(100)] })).collect::<Vec<_>>();
+        let usage: Vec<_> =
+            (1..=5).map(|day| Arc::new(PackedDay::pack(day, &[rows(2), rows(100)]))).collect();
         let group = Group::parse("S2").expect("a group");
         let ads_row = AdsRevenueRow { customer: 2, group, strength: 0.5, revenue: 0.25 };
-        let ads = vec![Arc::new(AdsDay::from_rows(3, &[ads_row]))];
+        let ads = vec![Arc::new(PackedDay::pack(3, &AdsRun::runs_of(&[ads_row])))];
         let shelf = Shelf { usage: Arc::new(usage), ads: Arc::new(ads) };
         let connection = Connection::open_in_memory().expect("memory");
         register(&connection, &Arc::new(RwLock::new(shelf))).expect("modules");

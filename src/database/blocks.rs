@@ -5,19 +5,86 @@ use std::sync::{Arc, RwLock};
 use crate::world::events::{AdsRevenueRow, UsageRows};
 use crate::world::identifiers::Group;
 
-/// Usage of one day.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct UsageDay {
-    pub day: u32,
-    /// Runs of ascending customer numbers.
-    pub runs: Vec<Arc<UsageRows>>,
+/// What the runs of one of the tables are: rows of ascending customer numbers.
+pub(super) trait Run: Sized {
+    fn customers(&self) -> &[u32];
+    fn pack(&self, packer: &mut Packer);
+    /// None when the bytes are not those of a run.
+    fn unpack(unpacker: &mut Unpacker<'_>) -> Option<Self>;
 }
 
-/// Ad revenue of one day.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct AdsDay {
+/// A day of one of the tables, packed as it is in the file: rows would take a multiple of the memory.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PackedDay {
     pub day: u32,
-    pub runs: Vec<AdsRun>,
+    bytes: Vec<u8>,
+    runs: Vec<RunPlace>,
+}
+
+/// Where a run is among the bytes of its day, and whom it may hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct RunPlace {
+    begin: usize,
+    first_customer: u32,
+    last_customer: u32,
+}
+
+impl RunPlace {
+    fn of(run: &impl Run, begin: usize) -> RunPlace {
+        let customers = run.customers();
+        RunPlace {
+            begin,
+            first_customer: customers.first().copied().unwrap_or(u32::MAX),
+            last_customer: customers.last().copied().unwrap_or(0),
+        }
+    }
+}
+
+impl PackedDay {
+    pub fn pack<R: Run>(day: u32, rows: &[R]) -> PackedDay {
+        let mut packer = Packer::default();
+        packer.number(rows.len() as u64);
+        let mut runs = Vec::with_capacity(rows.len());
+        for run in rows {
+            runs.push(RunPlace::of(run, packer.0.len()));
+            run.pack(&mut packer);
+        }
+        packer.0.shrink_to_fit();
+        PackedDay { day, bytes: packer.0, runs }
+    }
+
+    /// A day as it was packed; none when the bytes are not those of a day.
+    pub fn read<R: Run>(day: u32, bytes: Vec<u8>) -> Option<PackedDay> {
+        let mut unpacker = Unpacker(&bytes);
+        let mut runs = Vec::new();
+        for _ in 0..unpacker.number()? {
+            let begin = bytes.len() - unpacker.0.len();
+            runs.push(RunPlace::of(&R::unpack(&mut unpacker)?, begin));
+        }
+        unpacker.0.is_empty().then_some(PackedDay { day, bytes, runs })
+    }
+
+    /// As it stands in the file.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Number of runs.
+    pub fn len(&self) -> usize {
+        self.runs.len()
+    }
+
+    /// Whether a run may hold a customer with this number.
+    pub fn may_hold(&self, run: usize, customer: f64) -> bool {
+        let place = &self.runs[run];
+        (f64::from(place.first_customer)..=f64::from(place.last_customer)).contains(&customer)
+    }
+
+    /// The rows of a run.
+    pub fn open<R: Run>(&self, run: usize) -> Option<R> {
+        let place = self.runs.get(run)?;
+        R::unpack(&mut Unpacker(&self.bytes[place.begin..]))
+    }
 }
 
 /// Ad revenue of customers of one group, in ascending order of their numbers.
@@ -32,15 +99,15 @@ pub(super) struct AdsRun {
 /// The days a query can see. A query takes the whole shelf at its start and is not disturbed by later days.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shelf {
-    pub usage: Arc<Vec<Arc<UsageDay>>>,
-    pub ads: Arc<Vec<Arc<AdsDay>>>,
+    pub usage: Arc<Vec<Arc<PackedDay>>>,
+    pub ads: Arc<Vec<Arc<PackedDay>>>,
 }
 
 /// The shelf that the writer fills and queries read.
 pub(super) type SharedShelf = Arc<RwLock<Shelf>>;
 
-impl AdsDay {
-    pub fn from_rows(day: u32, rows: &[AdsRevenueRow]) -> AdsDay {
+impl AdsRun {
+    pub fn runs_of(rows: &[AdsRevenueRow]) -> Vec<AdsRun> {
         let mut runs: Vec<AdsRun> = Vec::new();
         for row in rows {
             let continues =
@@ -54,13 +121,13 @@ impl AdsDay {
             run.strengths.push(row.strength);
             run.revenues.push(row.revenue);
         }
-        AdsDay { day, runs }
+        runs
     }
 }
 
 /// Writes numbers of any size in as few bytes as they need.
 #[derive(Default)]
-struct Packer(Vec<u8>);
+pub(super) struct Packer(Vec<u8>);
 
 impl Packer {
     fn number(&mut self, mut value: u64) {
@@ -86,7 +153,8 @@ impl Packer {
     }
 }
 
-struct Unpacker<'a>(&'a [u8]);
+/// Reads what a [`Packer`] wrote.
+pub(super) struct Unpacker<'a>(&'a [u8]);
 
 impl Unpacker<'_> {
     fn number(&mut self) -> Option<u64> {
@@ -123,67 +191,51 @@ impl Unpacker<'_> {
     }
 }
 
-impl UsageDay {
-    pub fn pack(&self) -> Vec<u8> {
-        let mut packer = Packer::default();
-        packer.number(self.runs.len() as u64);
-        for run in &self.runs {
-            packer.ascending(&run.customers);
-            run.units.iter().for_each(|units| packer.number(u64::from(*units)));
-        }
-        packer.0
+impl Run for UsageRows {
+    fn customers(&self) -> &[u32] {
+        &self.customers
     }
 
-    /// None when the bytes are not those of a day.
-    pub fn unpack(day: u32, bytes: &[u8]) -> Option<UsageDay> {
-        let mut unpacker = Unpacker(bytes);
-        let runs = (0..unpacker.number()?)
-            .map(|_| {
-                let customers = unpacker.ascending()?;
-                let units = customers.iter().map(|_| unpacker.small()).collect::<Option<_>>()?;
-                Some(Arc::new(UsageRows { customers, units }))
-            })
-            .collect::<Option<_>>()?;
-        unpacker.0.is_empty().then_some(UsageDay { day, runs })
+    fn pack(&self, packer: &mut Packer) {
+        packer.ascending(&self.customers);
+        self.units.iter().for_each(|units| packer.number(u64::from(*units)));
+    }
+
+    fn unpack(unpacker: &mut Unpacker<'_>) -> Option<UsageRows> {
+        let customers = unpacker.ascending()?;
+        let units = customers.iter().map(|_| unpacker.small()).collect::<Option<_>>()?;
+        Some(UsageRows { customers, units })
     }
 }
 
-impl AdsDay {
-    pub fn pack(&self) -> Vec<u8> {
-        let mut packer = Packer::default();
-        packer.number(self.runs.len() as u64);
-        for run in &self.runs {
-            packer.number(run.group.index() as u64);
-            packer.ascending(&run.customers);
-            for (length, strength) in lengths(&run.strengths) {
-                packer.number(length);
-                packer.float(strength);
-            }
-            run.revenues.iter().for_each(|revenue| packer.float(*revenue));
-        }
-        packer.0
+impl Run for AdsRun {
+    fn customers(&self) -> &[u32] {
+        &self.customers
     }
 
-    /// None when the bytes are not those of a day.
-    pub fn unpack(day: u32, bytes: &[u8]) -> Option<AdsDay> {
-        let mut unpacker = Unpacker(bytes);
-        let runs = (0..unpacker.number()?)
-            .map(|_| {
-                let group = Group::at(unpacker.number()? as usize)?;
-                let customers = unpacker.ascending()?;
-                let mut strengths = Vec::with_capacity(customers.len());
-                while strengths.len() < customers.len() {
-                    let (length, strength) = (unpacker.number()? as usize, unpacker.float()?);
-                    if length == 0 || length > customers.len() - strengths.len() {
-                        return None;
-                    }
-                    strengths.extend(std::iter::repeat_n(strength, length));
-                }
-                let revenues = customers.iter().map(|_| unpacker.float()).collect::<Option<_>>()?;
-                Some(AdsRun { group, customers, strengths, revenues })
-            })
-            .collect::<Option<_>>()?;
-        unpacker.0.is_empty().then_some(AdsDay { day, runs })
+    fn pack(&self, packer: &mut Packer) {
+        packer.number(self.group.index() as u64);
+        packer.ascending(&self.customers);
+        for (length, strength) in lengths(&self.strengths) {
+            packer.number(length);
+            packer.float(strength);
+        }
+        self.revenues.iter().for_each(|revenue| packer.float(*revenue));
+    }
+
+    fn unpack(unpacker: &mut Unpacker<'_>) -> Option<AdsRun> {
+        let group = Group::at(unpacker.number()? as usize)?;
+        let customers = unpacker.ascending()?;
+        let mut strengths = Vec::with_capacity(customers.len());
+        while strengths.len() < customers.len() {
+            let (length, strength) = (unpacker.number()? as usize, unpacker.float()?);
+            if length == 0 || length > customers.len() - strengths.len() {
+                return None;
+            }
+            strengths.extend(std::iter::repeat_n(strength, length));
+        }
+        let revenues = customers.iter().map(|_| unpacker.float()).collect::<Option<_>>()?;
+        Some(AdsRun { group, customers, strengths, revenues })
     }
 }
 
@@ -206,16 +258,21 @@ mod tests {
         fn usage_comes_back_as_it_went(runs in proptest::collection::vec(ascending(), 0..5), seed in any::<u32>()) {
             let runs = runs.into_iter().map(|customers| {
                 let units = customers.iter().map(|customer| customer.wrapping_mul(seed)).collect();
-                Arc::new(UsageRows { customers, units })
+                UsageRows { customers, units }
             });
-            let day = UsageDay { day: 9, runs: runs.collect() };
-            prop_assert_eq!(UsageDay::unpack(9, &day.pack()), Some(day));
+            let runs: Vec<UsageRows> = runs.collect();
+            let day = PackedDay::pack(9, &runs);
+            prop_assert_eq!(PackedDay::read::<UsageRows>(9, day.bytes().to_vec()), Some(day.clone()));
+            for (at, run) in runs.into_iter().enumerate() {
+                prop_assert!(run.customers.iter().all(|customer| day.may_hold(at, f64::from(*customer))));
+                prop_assert_eq!(day.open(at), Some(run));
+            }
         }
 
         #[test]
         fn damaged_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..60)) {
-            let _ = UsageDay::unpack(1, &bytes);
-            let _ = AdsDay::unpack(1, &bytes);
+            let _ = PackedDay::read::<UsageRows>(1, bytes.clone());
+            let _ = PackedDay::read::<AdsRun>(1, bytes);
         }
     }
 
@@ -228,10 +285,12 @@ mod tests {
             revenue: f64::from(customer) / 7.0,
         };
         let rows = [row(2, 0, 0.5), row(9, 0, 0.5), row(11, 0, 0.7), row(3, 1, 0.5), row(4, 1, 0.5)];
-        let day = AdsDay::from_rows(12, &rows);
-        assert_eq!(day.runs.len(), 2);
-        let packed = day.pack();
-        assert_eq!(AdsDay::unpack(12, &packed), Some(day));
-        assert_eq!(AdsDay::unpack(12, &packed[..packed.len() - 1]), None);
+        let runs = AdsRun::runs_of(&rows);
+        assert_eq!(runs.len(), 2);
+        let day = PackedDay::pack(12, &runs);
+        assert_eq!(PackedDay::read::<AdsRun>(12, day.bytes().to_vec()), Some(day.clone()));
+        assert_eq!((day.open(0).as_ref(), day.open(1).as_ref()), (Some(&runs[0]), Some(&runs[1])));
+        assert_eq!(PackedDay::read::<AdsRun>(12, day.bytes()[1..].to_vec()), None);
+        assert_eq!(PackedDay::read::<AdsRun>(12, day.bytes()[..day.bytes().len() - 1].to_vec()), None);
     }
 }

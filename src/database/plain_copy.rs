@@ -7,8 +7,9 @@ use std::time::Duration;
 use rusqlite::backup::Backup;
 use rusqlite::{Connection, Transaction, params};
 
-use super::blocks::Shelf;
+use super::blocks::{AdsRun, Shelf};
 use super::projector::{ProjectionError, Projector};
+use crate::world::events::UsageRows;
 
 /// The two tables that the program serves itself, as ordinary ones. A row per day and customer.
 const TABLES: &str = "CREATE TABLE daily_usage (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, usage_units INTEGER NOT NULL);
@@ -56,7 +57,7 @@ fn copy(source: &Connection, shelf: &Shelf, file: &Path) -> rusqlite::Result<()>
 fn copy_usage(transaction: &Transaction<'_>, shelf: &Shelf) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare("INSERT INTO daily_usage VALUES (?1, ?2, ?3)")?;
     for day in shelf.usage.iter() {
-        for run in &day.runs {
+        for run in (0..day.len()).filter_map(|run| day.open::<UsageRows>(run)) {
             for (customer, units) in run.customers.iter().zip(&run.units) {
                 insert.execute(params![day.day, customer, units])?;
             }
@@ -68,7 +69,7 @@ fn copy_usage(transaction: &Transaction<'_>, shelf: &Shelf) -> rusqlite::Result<
 fn copy_ads(transaction: &Transaction<'_>, shelf: &Shelf) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare("INSERT INTO ads_revenue VALUES (?1, ?2, ?3, ?4, ?5)")?;
     for day in shelf.ads.iter() {
-        for run in &day.runs {
+        for run in (0..day.len()).filter_map(|run| day.open::<AdsRun>(run)) {
             for (at, customer) in run.customers.iter().enumerate() {
                 insert.execute(params![
                     day.day,

@@ -8,10 +8,11 @@ use std::thread::JoinHandle;
 
 use rusqlite::{Connection, OptionalExtension};
 
-use super::blocks::{AdsDay, SharedShelf, Shelf, UsageDay};
+use super::blocks::{AdsRun, PackedDay, Run, SharedShelf, Shelf};
 use super::location::Location;
 use super::query::Desk;
 use super::rows::{Entry, RowWriter, create};
+use crate::world::events::UsageRows;
 use crate::world::params::Params;
 
 /// Entries that may wait before the simulation has to; a bound on memory.
@@ -278,8 +279,8 @@ pub fn position_of(location: &Location) -> Option<Position> {
 
 fn load_shelf(connection: &Connection) -> Option<Shelf> {
     Some(Shelf {
-        usage: Arc::new(load(connection, "usage_blocks", UsageDay::unpack)?),
-        ads: Arc::new(load(connection, "ads_blocks", AdsDay::unpack)?),
+        usage: Arc::new(load::<UsageRows>(connection, "usage_blocks")?),
+        ads: Arc::new(load::<AdsRun>(connection, "ads_blocks")?),
     })
 }
 
@@ -295,14 +296,11 @@ fn stored_position(connection: &Connection) -> rusqlite::Result<Option<Position>
         .map(Option::flatten)
 }
 
-fn load<T>(
-    connection: &Connection,
-    table: &str,
-    unpack: impl Fn(u32, &[u8]) -> Option<T>,
-) -> Option<Vec<Arc<T>>> {
+fn load<R: Run>(connection: &Connection, table: &str) -> Option<Vec<Arc<PackedDay>>> {
     let mut statement = connection.prepare(&format!("SELECT day, packed FROM {table} ORDER BY day")).ok()?;
     let rows = statement.query_map([], |row| Ok((row.get::<_, u32>(0)?, row.get::<_, Vec<u8>>(1)?))).ok()?;
-    rows.map(|row| row.ok().and_then(|(day, packed)| unpack(day, &packed)).map(Arc::new)).collect()
+    rows.map(|row| row.ok().and_then(|(day, packed)| PackedDay::read::<R>(day, packed)).map(Arc::new))
+        .collect()
 }
 
 fn make_anew(location: &Location, params: &Params) -> rusqlite::Result<Connection> {

@@ -167,7 +167,7 @@ pub fn step_day(
     });
     let (settled, decisions, billed): (Vec<_>, Vec<_>, Vec<_>) = second_round.into_iter().collect();
     issues::record(settled, facts);
-    let renewals = renewal::conclude(decisions, &mut market.reputation, &judgement, facts);
+    let renewals = renewal::conclude(decisions, &mut market.reputation, params, facts);
     let talks = Negotiation {
         morning: &morning,
         settings,

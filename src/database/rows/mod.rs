@@ -13,7 +13,7 @@ use rusqlite::{Transaction, params};
 
 pub(super) use create::create;
 
-use super::blocks::{AdsDay, SharedShelf, UsageDay};
+use super::blocks::{AdsRun, PackedDay, SharedShelf};
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::events::{
     Arrival, Category, Facts, LedgerNote, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus,
@@ -103,8 +103,8 @@ pub(super) struct RowWriter {
     endings: BTreeMap<u32, SubscriptionEnded>,
     new_issues: BTreeMap<u32, IssueRow>,
     resolved_issues: BTreeMap<u32, (u32, u32)>,
-    new_usage: Vec<Arc<UsageDay>>,
-    new_ads: Vec<Arc<AdsDay>>,
+    new_usage: Vec<Arc<PackedDay>>,
+    new_ads: Vec<Arc<PackedDay>>,
     keep_usage_from: Option<u32>,
 }
 
@@ -167,10 +167,10 @@ impl RowWriter {
         if facts.service.is_none() {
             return Ok(());
         }
-        let day = UsageDay { day: facts.day, runs: facts.usage.clone() };
+        let day = PackedDay::pack(facts.day, &facts.usage);
         transaction
             .prepare_cached("INSERT OR REPLACE INTO usage_blocks VALUES (?1, ?2)")?
-            .execute(params![day.day, day.pack()])?;
+            .execute(params![day.day, day.bytes()])?;
         self.new_usage.push(Arc::new(day));
         let operations = &self.params.operations;
         if facts.day.is_multiple_of(operations.daily_usage_prune_every_days) {
@@ -185,10 +185,10 @@ impl RowWriter {
         if facts.ads_revenue.is_empty() {
             return Ok(());
         }
-        let day = AdsDay::from_rows(facts.day, &facts.ads_revenue);
+        let day = PackedDay::pack(facts.day, &AdsRun::runs_of(&facts.ads_revenue));
         transaction
             .prepare_cached("INSERT OR REPLACE INTO ads_blocks VALUES (?1, ?2)")?
-            .execute(params![day.day, day.pack()])?;
+            .execute(params![day.day, day.bytes()])?;
         self.new_ads.push(Arc::new(day));
         Ok(())
     }

@@ -3,6 +3,8 @@
 //! BLAKE3 is a tree over pieces of its input, so each thread collects bytes and hashes them while they are in its
 //! cache; nobody waits for bytes that another thread has collected. The hash is the one of all bytes in a row.
 
+use std::ops::Range;
+
 use blake3::hazmat::{ChainingValue, HasherExt, Mode, merge_subtrees_non_root, merge_subtrees_root};
 use rayon::prelude::*;
 
@@ -10,6 +12,9 @@ use super::CanonicalHasher;
 
 /// Bytes that are hashed together, a power of two: a subtree of the hash. They stay in the cache of a core.
 const SUBTREE: usize = 1 << 20;
+
+/// Subtrees that one thread hashes after each other, with the memory of the first.
+const SUBTREES_TOGETHER: usize = 4;
 
 /// Some canonical bytes whose number is known before they are collected.
 pub struct Stretch<'a> {
@@ -37,32 +42,37 @@ pub fn hash_of_stretches(stretches: &[Stretch<'_>]) -> blake3::Hash {
             total - stretch.length
         })
         .collect();
-    let collected = |from: usize, to: usize| {
+    let collect = |collector: &mut CanonicalHasher, from: usize, to: usize| -> Range<usize> {
         let first = begins.partition_point(|begin| *begin <= from).max(1) - 1;
         let last = begins.partition_point(|begin| *begin < to);
-        let mut collector = CanonicalHasher::collector(2 * SUBTREE);
+        collector.pending.clear();
         for (stretch, begin) in stretches[first..last].iter().zip(&begins[first..last]) {
-            (stretch.feed)(&mut collector);
+            (stretch.feed)(collector);
             let until = begin + stretch.length - begins[first];
             assert_eq!(collector.pending.len(), until, "a stretch is as long as it promised");
         }
         let skipped = from - begins.get(first).unwrap_or(&0);
-        (collector.pending, skipped)
+        skipped..skipped + to - from
     };
     if total <= SUBTREE {
-        return blake3::hash(&collected(0, total).0);
+        let mut collector = CanonicalHasher::collector(total);
+        collect(&mut collector, 0, total);
+        return blake3::hash(&collector.pending);
     }
     let subtrees: Vec<ChainingValue> = (0..total.div_ceil(SUBTREE))
         .into_par_iter()
-        .with_max_len(1)
-        .map(|number| {
-            let (from, to) = (number * SUBTREE, ((number + 1) * SUBTREE).min(total));
-            let (bytes, skipped) = collected(from, to);
-            let mut hasher = blake3::Hasher::new();
-            hasher.set_input_offset(from as u64);
-            hasher.update(&bytes[skipped..skipped + to - from]);
-            hasher.finalize_non_root()
-        })
+        .with_min_len(SUBTREES_TOGETHER)
+        .map_init(
+            || CanonicalHasher::collector(SUBTREE + SUBTREE / 2),
+            |collector, number| {
+                let (from, to) = (number * SUBTREE, ((number + 1) * SUBTREE).min(total));
+                let own = collect(collector, from, to);
+                let mut hasher = blake3::Hasher::new();
+                hasher.set_input_offset(from as u64);
+                hasher.update(&collector.pending[own]);
+                hasher.finalize_non_root()
+            },
+        )
         .collect();
     let (left, right) = halves(&subtrees);
     merge_subtrees_root(&merged(left), &merged(right), Mode::Hash)

@@ -38,6 +38,11 @@ macro_rules! columns {
                 $(self.$column.push(row.$column);)*
             }
 
+            /// Appends rows.
+            pub fn extend(&mut self, rows: &[$Row]) {
+                $(self.$column.extend(rows.iter().map(|row| row.$column));)*
+            }
+
             /// Inserts a row at a position.
             pub fn insert(&mut self, at: usize, row: $Row) {
                 $(self.$column.insert(at, row.$column);)*
@@ -165,6 +170,7 @@ fn drop_positions<T: Copy>(column: &mut Vec<T>, gone: &[usize]) {
 
 impl Block {
     /// Number of active subscribers.
+    #[inline]
     pub fn len(&self) -> usize {
         self.n.len()
     }
@@ -180,6 +186,7 @@ impl Block {
     }
 
     /// Current willingness curve of a row, without the market's expectations.
+    #[inline]
     pub fn curve(&self, at: usize) -> Curve {
         Curve {
             steepness_left: self.steepness_left[at],

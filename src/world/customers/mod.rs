@@ -99,9 +99,9 @@ impl GroupCustomers {
         self.blocks.iter().map(|block| block.len() as u32).sum()
     }
 
-    /// Adds an active subscriber at the place of its running number.
-    pub fn activate(&mut self, row: Subscriber) {
-        let block = ((row.n - 1) / BLOCK) as usize;
+    /// The block of a running number, made if it is not there yet.
+    fn block_of(&mut self, n: u32) -> &mut Block {
+        let block = ((n - 1) / BLOCK) as usize;
         if self.blocks.len() <= block {
             self.blocks.resize_with(block + 1, Block::default);
         }
@@ -110,6 +110,21 @@ impl GroupCustomers {
             // Most blocks fill up within days: 27 columns that grow by and by cost more than room nobody takes.
             *block = Block::with_room(BLOCK as usize);
         }
+        block
+    }
+
+    /// Adds active subscribers with ascending running numbers, larger than all there are.
+    pub fn enrol(&mut self, rows: &[Subscriber]) {
+        for rows in rows.chunk_by(|one, next| (one.n - 1) / BLOCK == (next.n - 1) / BLOCK) {
+            let block = self.block_of(rows[0].n);
+            debug_assert!(block.n.last().is_none_or(|last| *last < rows[0].n), "numbers ascend");
+            block.extend(rows);
+        }
+    }
+
+    /// Adds an active subscriber at the place of its running number.
+    pub fn activate(&mut self, row: Subscriber) {
+        let block = self.block_of(row.n);
         match block.n.binary_search(&row.n) {
             Err(at) if at == block.len() => block.push(row),
             Err(at) => block.insert(at, row),
@@ -292,11 +307,13 @@ mod tests {
         assert_eq!(group.deactivate(5).map(|row| row.n), Some(5));
         assert_eq!((group.deactivate(5), group.active()), (None, 4));
         group.activate(subscriber(5));
+        group.enrol(&[subscriber(2001), subscriber(2048), subscriber(2049)]);
+        assert_eq!(group.blocks[2].n, [2049]);
         assert_eq!(group.blocks[0].n, [3, 5, 1024]);
-        assert_eq!(group.blocks[1].n, [1025, 2000]);
+        assert_eq!(group.blocks[1].n, [1025, 2000, 2001, 2048]);
         let mut customers = Customers::default();
         customers.groups[Group::at(1).expect("S2")] = group;
         let seen = customers.sweep(|group, at, block| (group.id(), at, block.len()));
-        assert_eq!(seen, [("S2", 0, 3), ("S2", 1, 2)]);
+        assert_eq!(seen, [("S2", 0, 3), ("S2", 1, 4), ("S2", 2, 1)]);
     }
 }

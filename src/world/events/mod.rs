@@ -21,8 +21,6 @@ pub use money::{Category, LedgerEntry, LedgerNote, Payment};
 pub use posts::{Cause, Matter, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, Theme, Troubles};
 pub use threads::{DealClosed, Offering, Sender, ThreadKind, ThreadTurn, TurnContent};
 
-use std::sync::Arc;
-
 use super::canonical::canonical;
 use super::identifiers::Group;
 use super::market::Knowledge;
@@ -37,7 +35,7 @@ pub struct Facts {
     /// Settings that were changed, complete after the change.
     pub settings: Vec<SettingsChange>,
     /// Usage of every active subscription, in pieces.
-    pub usage: Vec<Arc<UsageRows>>,
+    pub usage: Vec<UsageRows>,
     /// Service health.
     pub service: Option<ServiceDay>,
     /// R&D projects that started or finished.

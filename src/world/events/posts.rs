@@ -234,6 +234,7 @@ pub struct Troubles {
 
 impl Troubles {
     /// How many there are.
+    #[inline]
     pub fn count(&self) -> u32 {
         [self.overload, self.outage, self.issue, self.quota].into_iter().map(u32::from).sum()
     }

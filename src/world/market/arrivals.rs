@@ -229,29 +229,33 @@ fn record_channels(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], fa
     }
 }
 
-/// Individuals among those who came: group, running number, customer number and lead.
-fn individuals(came: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (Group, u32, u32, &Lead)> {
-    came.iter().filter(|(run, _)| !run.group.is_enterprise()).flat_map(|(run, leads)| {
-        run.numbers().zip(leads).map(|((n, customer), lead)| (run.group, n, customer, lead))
-    })
+/// Individuals among those who came, with their customer numbers.
+fn individuals(came: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u32, &Lead)> {
+    came.iter()
+        .filter(|(run, _)| !run.group.is_enterprise())
+        .flat_map(|(run, leads)| run.numbers().map(|(_, customer)| customer).zip(leads))
 }
 
 /// Makes those who sign up active, with subscriptions numbered from `first`.
 fn enrol(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], first: u32, customers: &mut Customers) {
     let mut subscription = first;
-    for (group, n, customer, lead) in individuals(came) {
-        if let Outcome::Subscribes { choice, terms, required } = lead.outcome {
-            let FirstTerms { listed_price, promotion, effective_price } = terms;
-            customers.groups[group].activate(Subscriber {
-                plan: choice.plan,
-                listed_price,
-                promotion,
-                effective_price,
-                required,
-                ..newcomer(arrivals, n, customer, subscription, lead)
-            });
-            subscription += 1;
+    for (run, leads) in came.iter().filter(|(run, _)| !run.group.is_enterprise()) {
+        let mut rows = Vec::with_capacity(leads.len());
+        for ((n, customer), lead) in run.numbers().zip(leads) {
+            if let Outcome::Subscribes { choice, terms, required } = lead.outcome {
+                let FirstTerms { listed_price, promotion, effective_price } = terms;
+                rows.push(Subscriber {
+                    plan: choice.plan,
+                    listed_price,
+                    promotion,
+                    effective_price,
+                    required,
+                    ..newcomer(arrivals, n, customer, subscription, lead)
+                });
+                subscription += 1;
+            }
         }
+        customers.groups[run.group].enrol(&rows);
     }
 }
 
@@ -276,13 +280,13 @@ fn record_openings(
         });
         counts.individuals += 1;
     };
-    for (_, _, customer, lead) in individuals(came) {
+    for (customer, lead) in individuals(came) {
         if let Outcome::Subscribes { choice, terms, .. } = lead.outcome {
             open(customer, choice.plan, SubscriptionStatus::Subscribed, terms);
             counts.subscribed += 1;
         }
     }
-    for (_, _, customer, lead) in individuals(came) {
+    for (customer, lead) in individuals(came) {
         if let Outcome::Lost { choice, discount } = lead.outcome {
             let listed_price = arrivals.morning.core.prices[choice.plan];
             let terms = FirstTerms { listed_price, promotion: discount, effective_price: choice.price };

@@ -1,7 +1,5 @@
 //! Usage of the day (chapter 20 §12, step 4).
 
-use std::sync::Arc;
-
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::day::Morning;
@@ -44,7 +42,7 @@ pub fn meter(customers: &mut Customers, morning: &Morning, params: &Params, fact
             metered.by_plan[plan] += by_plan[plan];
             metered.total += by_plan[plan];
         }
-        facts.usage.push(Arc::new(rows));
+        facts.usage.push(rows);
     }
     metered
 }

@@ -80,11 +80,11 @@ pub struct Calls {
     /// Rows with an open issue.
     pub(super) open: Vec<u16>,
     /// Rows whose customer opens an issue today.
-    new: Vec<u16>,
+    pub(super) new: Vec<u16>,
     /// Which of the open ones are solved.
     pub(super) solved: Vec<bool>,
     /// Number of the first new issue.
-    first_issue: u32,
+    pub(super) first_issue: u32,
 }
 
 /// What issues depend on, the same for everybody.

@@ -100,13 +100,14 @@ impl Resolution<'_> {
             let mean = mean_resolved(base, spend, group, own.count(), of_pool, &self.params.issues);
             let solved = stream.poisson(mean).min(u64::from(own.count())) as usize;
             let mut order: Vec<u32> = (0..own.count()).collect();
+            let mut chosen = vec![false; order.len()];
             // A partial shuffle: the first `solved` members are a uniform sample without replacement.
             for first in 0..solved {
                 let other = first + stream.index(order.len() - first);
                 order.swap(first, other);
-                let (number, entry) = own.place(order[first]);
-                self.calls[number].solved[entry] = true;
+                chosen[order[first] as usize] = true;
             }
+            own.solve(&chosen, self.calls);
         }
     }
 
@@ -166,11 +167,14 @@ impl Members {
         }
     }
 
-    /// Block of calls and entry of a member.
-    fn place(&self, member: u32) -> (usize, usize) {
-        let after = self.runs.partition_point(|run| run.first <= member);
-        let run = &self.runs[after - 1];
-        (run.calls as usize, (run.entry + member - run.first) as usize)
+    /// Solves the issues of the chosen ones; `chosen` says it of every member.
+    fn solve(&self, chosen: &[bool], calls: &mut [Calls]) {
+        let ends = self.runs.iter().skip(1).map(|next| next.first).chain([self.count]);
+        for (run, end) in self.runs.iter().zip(ends) {
+            let chosen = &chosen[run.first as usize..end as usize];
+            let entry = run.entry as usize;
+            calls[run.calls as usize].solved[entry..entry + chosen.len()].copy_from_slice(chosen);
+        }
     }
 }
 
@@ -179,14 +183,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn members_are_found_by_their_number_whether_they_came_alone_or_by_the_block() {
+    fn members_are_solved_whether_they_came_alone_or_by_the_block() {
+        let block = |open: u16| Calls {
+            group: Group::at(0).expect("S1"),
+            block: 0,
+            open: (0..open).collect(),
+            new: Vec::new(),
+            solved: vec![false; usize::from(open)],
+            first_issue: 0,
+        };
+        let mut calls = vec![block(3), block(0), block(10), block(1), block(2)];
         let mut members = Members::default();
         members.add_all(0, 3);
         members.add_all(1, 0);
         members.add(2, 7);
         members.add(2, 9);
         members.add_all(4, 2);
-        let places: Vec<(usize, usize)> = (0..members.count()).map(|member| members.place(member)).collect();
-        assert_eq!(places, [(0, 0), (0, 1), (0, 2), (2, 7), (2, 9), (4, 0), (4, 1)]);
+        assert_eq!(members.count(), 7);
+        members.solve(&[false, true, true, true, false, false, true], &mut calls);
+        let solved =
+            |own: &Calls| -> Vec<usize> { (0..own.solved.len()).filter(|at| own.solved[*at]).collect() };
+        let solved: Vec<Vec<usize>> = calls.iter().map(solved).collect();
+        assert_eq!(solved, [vec![1, 2], vec![], vec![7], vec![], vec![1]]);
     }
 }

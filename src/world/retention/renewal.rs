@@ -12,7 +12,7 @@ use crate::world::product::ads::AdLoad;
 use crate::world::product::quality::{
     Experience, TenureTable, perceived_quality, quota_demand, quota_factor, relationship_bonus,
 };
-use crate::world::random::{Part, Streams, word_below};
+use crate::world::random::{Part, Streams, Word, word_below};
 use crate::world::settings::Settings;
 
 /// Monthly rate of involuntary churn from a standard normal draw; 0 where a group has none.
@@ -102,29 +102,26 @@ pub struct Judgement<'a> {
     pub streams: &'a Streams,
 }
 
-struct Departure {
-    ending: SubscriptionEnded,
-    person: GaveUp,
-}
-
 /// What the individuals of a block decided.
 #[derive(Default)]
 pub struct Decisions {
-    departures: Vec<Departure>,
+    endings: Vec<SubscriptionEnded>,
+    /// Those who found nothing acceptable, with the damage to their group's reputation.
+    gave_up: Vec<(GaveUp, f64)>,
     switches: Vec<(bool, TermsChanged)>,
 }
 
 /// Adds up what was decided, block by block, and puts it on record. Those who found nothing acceptable harm the
-/// group's reputation; those whose payment failed do not.
+/// group's reputation, one after the other; those whose payment failed do not.
 pub fn conclude(
     by_block: Vec<Decisions>,
     reputation: &mut ReputationBook,
-    judgement: &Judgement<'_>,
+    params: &Params,
     facts: &mut Facts,
 ) -> Renewals {
     let mut renewals = Renewals::default();
-    for outcome in by_block {
-        for (upgrade, terms) in outcome.switches {
+    for decided in by_block {
+        for (upgrade, terms) in decided.switches {
             if upgrade {
                 renewals.upgrades += 1
             } else {
@@ -132,28 +129,27 @@ pub fn conclude(
             }
             facts.changes.push(terms);
         }
-        for departure in outcome.departures {
-            renewals.cancellations += 1;
-            if departure.ending.cause != EndCause::Involuntary {
-                renewals.gave_up.push(departure.person);
-            }
-            facts.endings.push(departure.ending);
+        renewals.cancellations += decided.endings.len() as u32;
+        facts.endings.extend(decided.endings);
+        for (person, damage) in decided.gave_up {
+            reputation.move_by(person.group, -damage, &params.reputation);
+            renewals.gave_up.push(person);
         }
     }
-    harm(reputation, &renewals.gave_up, judgement);
     renewals
 }
 
-/// Moves the reputation of the groups by those who found nothing acceptable, one after the other.
-fn harm(reputation: &mut ReputationBook, gave_up: &[GaveUp], judgement: &Judgement<'_>) {
+/// What each of them does to the reputation of their group.
+fn damages(gave_up: &[GaveUp], judgement: &Judgement<'_>) -> Vec<f64> {
     let &Judgement { morning, params, streams, .. } = judgement;
     let keys_of = |person: &GaveUp| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
     let keys: Vec<[u64; 4]> = gave_up.iter().map(keys_of).collect();
-    for (person, roll) in gave_up.iter().zip(streams.first_words(Part::ReputationEvent, &keys)) {
+    let rolls = streams.first_words(Part::ReputationEvent, &keys);
+    let damage = |(person, roll): (&GaveUp, Word)| {
         let subscribers = morning.subscribers[person.group];
-        let damage = cancel_damage(person.satisfaction, subscribers, roll.uniform(), &params.reputation);
-        reputation.move_by(person.group, -damage, &params.reputation);
-    }
+        cancel_damage(person.satisfaction, subscribers, roll.uniform(), &params.reputation)
+    };
+    gave_up.iter().zip(rolls).map(damage).collect()
 }
 
 /// Lets the individuals of a block whose billing day it is decide; takes out those who leave.
@@ -172,7 +168,7 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &Judgemen
         let keys = [u64::from(morning.day), group.index() as u64, u64::from(number)];
         judgement.streams.open(Part::InvoluntaryRoll, keys).fill(&mut words);
     }
-    let mut gone = Vec::new();
+    let (mut gone, mut gave_up) = (Vec::new(), Vec::new());
     for at in due {
         let cause = if rate > 0.0 && word_below(words[block.place(at)], rate) {
             Some(EndCause::Involuntary)
@@ -189,15 +185,20 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &Judgemen
         };
         if let Some(cause) = cause {
             gone.push(at);
-            outcome.departures.push(departure(group, block, at, cause, morning.day));
+            outcome.endings.push(ending(group, block, at, cause, morning.day));
+            if cause != EndCause::Involuntary {
+                gave_up.push(person(group, block, at, morning.day));
+            }
         }
     }
     block.remove(&gone);
+    let damages = damages(&gave_up, judgement);
+    outcome.gave_up = gave_up.into_iter().zip(damages).collect();
     outcome
 }
 
-fn departure(group: Group, block: &Block, at: usize, cause: EndCause, day: u32) -> Departure {
-    let ending = SubscriptionEnded {
+fn ending(group: Group, block: &Block, at: usize, cause: EndCause, day: u32) -> SubscriptionEnded {
+    SubscriptionEnded {
         subscription: block.subscription[at],
         customer: block.customer[at],
         group,
@@ -205,8 +206,11 @@ fn departure(group: Group, block: &Block, at: usize, cause: EndCause, day: u32) 
         day,
         status: SubscriptionStatus::Cancelled,
         cause,
-    };
-    let person = GaveUp {
+    }
+}
+
+fn person(group: Group, block: &Block, at: usize, day: u32) -> GaveUp {
+    GaveUp {
         customer: block.customer[at],
         group,
         n: block.n[at],
@@ -214,8 +218,7 @@ fn departure(group: Group, block: &Block, at: usize, cause: EndCause, day: u32) 
         days_subscribed: day - block.start_day[at],
         plan: block.plan[at],
         price: block.effective_price[at],
-    };
-    Departure { ending, person }
+    }
 }
 
 fn chosen_plan(group: Group, block: &Block, at: usize, judgement: &Judgement<'_>) -> Option<Plan> {
@@ -423,7 +426,7 @@ mod tests {
         let (mut reputation, mut facts) = (ReputationBook::opening(&Params::shipped()), Facts::default());
         let renewals = with_judgement(&day, &settings, 1.0, |judgement| {
             let decided = customers.sweep(|group, number, block| decide(group, number, block, judgement));
-            conclude(decided, &mut reputation, judgement, &mut facts)
+            conclude(decided, &mut reputation, judgement.params, &mut facts)
         });
         assert_eq!((renewals.cancellations, renewals.upgrades, renewals.downgrades), (1, 1, 0));
         assert_eq!((renewals.gave_up.len(), renewals.gave_up[0].n), (1, 1));

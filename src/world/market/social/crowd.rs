@@ -113,6 +113,7 @@ pub fn listen(mut voices: Vec<Voices>, customers: &Customers, scene: &Scene<'_>,
     Crowd { stream, candidates, places }
 }
 
+#[inline]
 fn weight(scene: &Scene<'_>, group: Group, block: &Block, at: usize, before: f64) -> f64 {
     post_weight(&scene.loudness(group, block, at, before), &scene.params.social)
 }

@@ -31,6 +31,7 @@ pub struct Scene<'a> {
 
 impl Scene<'_> {
     /// Share of a row's demand that its quota covers today.
+    #[inline]
     fn quota_factor(&self, block: &Block, at: usize) -> f64 {
         let rate = block.usage_rate[at];
         let demand = quota_demand(rate * self.morning.weekday, rate, self.params);
@@ -38,6 +39,7 @@ impl Scene<'_> {
     }
 
     /// What went wrong for a row today.
+    #[inline]
     pub fn troubles(&self, block: &Block, at: usize) -> Troubles {
         Troubles {
             overload: self.service.overload > 0.0,
@@ -48,6 +50,7 @@ impl Scene<'_> {
     }
 
     /// What makes a row loud; `before` is its satisfaction before today's update.
+    #[inline]
     pub fn loudness(&self, group: Group, block: &Block, at: usize, before: f64) -> Loudness {
         let satisfaction = block.satisfaction[at];
         Loudness {

@@ -58,6 +58,7 @@ pub fn lost_company_weight(seats: f64, law: &Social) -> f64 {
     finite(law.enterprise_churn_weight_base * seats.max(1.0), law)
 }
 
+#[inline]
 fn finite(weight: f64, law: &Social) -> f64 {
     if weight.is_finite() { weight } else { law.weight_nonfinite_replacement }
 }

@@ -223,6 +223,13 @@ fn dangerous_and_foreign_files_are_refused() {
         builder.finish().expect("an archive");
         import(&home, &bad).fails(3, &["no ordinary file"]);
     }
+    // What a damaged archive holds is told in one line that does not steer the terminal.
+    forged(&bad, &[("0123abcd/\u{1b}[2J\nrun.toml".to_owned(), b"x".to_vec())]);
+    import(&home, &bad).fails(3, &["0123abcd/\\u{1b}[2J\\nrun.toml does not belong to a run"]);
+    let mut torn = header("0123abcd/run.toml", 0, tar::EntryType::Regular);
+    torn.as_old_mut().cksum = *b"FRO\nM\x1b[m";
+    fs::write(&bad, torn.as_bytes()).expect("a header");
+    import(&home, &bad).fails(3, &["no archive of a run", "FRO\\nM\\u{1b}[m"]);
     // A size that is only claimed: nothing is read and nothing is reserved.
     fs::write(&bad, header("0123abcd/run.toml", 7 << 30, tar::EntryType::Regular).as_bytes())
         .expect("a header");

@@ -50,12 +50,27 @@ fn is_run_name(name: &str) -> bool {
 }
 
 /// An archive that cannot be used; nothing was changed by looking at it.
-fn refused(archive: &Path, problem: impl Into<String>) -> RunError {
+fn refused(archive: &Path, problem: impl AsRef<str>) -> RunError {
     RunError::Archive {
         path: archive.to_owned(),
-        problem: problem.into(),
+        problem: printable(problem.as_ref()),
         safe:
             "Nothing was imported and no run was changed; ask for the archive again, or export the run again"
                 .to_owned(),
     }
+}
+
+/// A text that may quote bytes of a foreign file, as one line that cannot steer a terminal: control characters are
+/// written out, and what is long is cut.
+fn printable(text: &str) -> String {
+    const MOST: usize = 400;
+    let mut line = String::new();
+    for (place, letter) in text.chars().enumerate() {
+        if place == MOST {
+            line.push('…');
+            break;
+        }
+        if letter.is_control() { line.extend(letter.escape_default()) } else { line.push(letter) }
+    }
+    line
 }

@@ -254,8 +254,8 @@ unsafe impl<K: Kind> VTabCursor for BlockCursor<'_, K> {
 
     fn column(&self, context: &mut Context, column: c_int) -> rusqlite::Result<()> {
         match (column, &self.run) {
-            (DAY | CUSTOMER, _) => context
-                .set_result(self.keys().map(|(day, customer)| if column == DAY { day } else { customer })),
+            (DAY, _) => context.set_result(self.keys().map(|(day, _)| day)),
+            (CUSTOMER, _) => context.set_result(self.keys().map(|(_, customer)| customer)),
             (other, Some(run)) => K::column(run, self.place.at, other, context),
             (_, None) => Ok(()),
         }

@@ -7,9 +7,8 @@
 mod restore;
 mod stretches;
 
-use std::sync::Arc;
-
 use indexmap::IndexMap;
+
 pub use restore::{CanonicalReader, Restore, restored};
 pub use stretches::{Stretch, hash_of_stretches};
 
@@ -173,12 +172,6 @@ impl<T: Canonical> Canonical for [T] {
 impl<T: Canonical> Canonical for Vec<T> {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         self.as_slice().feed(hasher);
-    }
-}
-
-impl<T: Canonical> Canonical for Arc<T> {
-    fn feed(&self, hasher: &mut CanonicalHasher) {
-        self.as_ref().feed(hasher);
     }
 }
 

@@ -1,7 +1,5 @@
 //! Reading canonical bytes back. Whatever the bytes are, reading ends with a value or with none.
 
-use std::sync::Arc;
-
 use indexmap::IndexMap;
 
 use crate::world::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
@@ -93,12 +91,6 @@ impl<T: Restore> Restore for Vec<T> {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
         let length = length(reader)?;
         (0..length).map(|_| reader.read()).collect()
-    }
-}
-
-impl<T: Restore> Restore for Arc<T> {
-    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
-        reader.read().map(Arc::new)
     }
 }
 

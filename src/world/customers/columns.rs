@@ -92,7 +92,8 @@ macro_rules! columns {
         impl Canonical for $Block {
             fn feed(&self, hasher: &mut CanonicalHasher) {
                 $(self.$column.feed(hasher);)*
-            }        }
+            }
+        }
     };
 }
 

@@ -101,7 +101,7 @@ impl GroupCustomers {
 
     /// The block of a running number, made if it is not there yet.
     fn block_of(&mut self, n: u32) -> &mut Block {
-        let block = ((n - 1) / BLOCK) as usize;
+        let block = block_number(n);
         if self.blocks.len() <= block {
             self.blocks.resize_with(block + 1, Block::default);
         }
@@ -115,7 +115,7 @@ impl GroupCustomers {
 
     /// Adds active subscribers with ascending running numbers, larger than all there are.
     pub fn enrol(&mut self, rows: &[Subscriber]) {
-        for rows in rows.chunk_by(|one, next| (one.n - 1) / BLOCK == (next.n - 1) / BLOCK) {
+        for rows in rows.chunk_by(|one, next| block_number(one.n) == block_number(next.n)) {
             let block = self.block_of(rows[0].n);
             debug_assert!(block.n.last().is_none_or(|last| *last < rows[0].n), "numbers ascend");
             block.extend(rows);
@@ -134,7 +134,7 @@ impl GroupCustomers {
 
     /// Block and position of the active subscriber with this running number.
     pub fn place(&self, n: u32) -> Option<(usize, usize)> {
-        let block = ((n - 1) / BLOCK) as usize;
+        let block = block_number(n);
         let at = self.blocks.get(block)?.position(n)?;
         Some((block, at))
     }
@@ -183,13 +183,7 @@ impl Customers {
     /// Works through all blocks that hold anybody, on several threads when there are many; the results stand
     /// in group and block order whatever the number of threads.
     pub fn sweep<R: Send>(&mut self, work: impl Fn(Group, u32, &mut Block) -> R + Sync) -> Vec<R> {
-        let jobs = self.jobs();
-        if jobs.len() < PARALLEL_FROM {
-            jobs.into_iter().map(|(group, at, block)| work(group, at, block)).collect()
-        } else {
-            let each = jobs.into_par_iter().with_max_len(SHARE);
-            each.map(|(group, at, block)| work(group, at, block)).collect()
-        }
+        shared_out(self.jobs(), |(group, at, block)| work(group, at, block))
     }
 
     /// Works through all blocks that hold anybody like [`Customers::sweep`], with what an earlier sweep found out
@@ -201,13 +195,8 @@ impl Customers {
     ) -> Vec<R> {
         let jobs = self.jobs();
         debug_assert_eq!(jobs.len(), found.len(), "nobody may have come or left in between");
-        if jobs.len() < PARALLEL_FROM {
-            let each = jobs.into_iter().zip(found);
-            each.map(|((group, at, block), own)| work(group, at, block, own)).collect()
-        } else {
-            let each = jobs.into_par_iter().zip(found).with_max_len(SHARE);
-            each.map(|((group, at, block), own)| work(group, at, block, own)).collect()
-        }
+        let jobs = jobs.into_iter().zip(found).collect();
+        shared_out(jobs, |((group, at, block), own)| work(group, at, block, own))
     }
 
     /// Blocks that hold anybody, with their group and number.
@@ -225,13 +214,7 @@ impl Customers {
     /// Looks at all blocks that hold anybody, on several threads when there are many; the results stand in group
     /// and block order.
     pub fn survey<R: Send>(&self, look: impl Fn(Group, &Block) -> R + Sync) -> Vec<R> {
-        let blocks: Vec<(Group, &Block)> = self.blocks().collect();
-        if blocks.len() < PARALLEL_FROM {
-            blocks.into_iter().map(|(group, block)| look(group, block)).collect()
-        } else {
-            let each = blocks.into_par_iter().with_max_len(SHARE);
-            each.map(|(group, block)| look(group, block)).collect()
-        }
+        shared_out(self.blocks().collect(), |(group, block)| look(group, block))
     }
 
     /// Hash of their canonical bytes, made on several threads: they are nearly all of the state.
@@ -261,6 +244,20 @@ impl Customers {
             .flat_map(|(group, own)| own.blocks.iter().map(move |block| (group, block)))
             .filter(|(_, block)| !block.is_empty())
     }
+}
+
+/// Does jobs that take a block each, on several threads when there are many; the results stand in their order.
+fn shared_out<J: Send, R: Send>(jobs: Vec<J>, work: impl Fn(J) -> R + Sync) -> Vec<R> {
+    if jobs.len() < PARALLEL_FROM {
+        jobs.into_iter().map(work).collect()
+    } else {
+        jobs.into_par_iter().with_max_len(SHARE).map(&work).collect()
+    }
+}
+
+/// Number of the block that holds a running number.
+fn block_number(n: u32) -> usize {
+    ((n - 1) / BLOCK) as usize
 }
 
 #[cfg(test)]

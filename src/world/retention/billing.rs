@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use super::renewal::{ongoing_discount, terms};
-use super::{refresh_required, remembered_budget};
+use super::{due_today, refresh_required, remembered_budget};
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::day::Morning;
@@ -45,7 +45,8 @@ pub struct Bills {
 
 /// Bills the individuals of a block whose day it is and who were there this morning.
 pub fn bill_regulars(group: Group, number: u32, block: &mut Block, bill: &Terms<'_>) -> Bills {
-    let due = if group.is_enterprise() { Vec::new() } else { due_today(block, bill) };
+    let due =
+        if group.is_enterprise() { Vec::new() } else { due_today(block, bill.morning.day, bill.params) };
     bill_rows(group, number, block, due, bill, &BTreeSet::new())
 }
 
@@ -60,12 +61,8 @@ pub fn collect(
 ) -> f64 {
     let today = bill.morning.day;
     let late = customers.sweep(|group, number, block| {
-        let mut due = Vec::new();
-        // Newcomers have the largest numbers of their group.
-        if group.is_enterprise() || block.start_day.last() == Some(&today) {
-            due = due_today(block, bill);
-            due.retain(|at| group.is_enterprise() || block.start_day[*at] == today);
-        }
+        let mut due = due_today(block, today, bill.params);
+        due.retain(|at| group.is_enterprise() || block.start_day[*at] == today);
         bill_rows(group, number, block, due, bill, suspended)
     });
     let mut received = 0.0;
@@ -81,11 +78,6 @@ pub fn collect(
     }
     debug_assert!(billed.next().is_none(), "who was billed is still there");
     received
-}
-
-/// Positions of those whose billing day it is.
-fn due_today(block: &Block, bill: &Terms<'_>) -> Vec<usize> {
-    block.due((bill.morning.day % bill.params.billing.billing_period_days) as u8)
 }
 
 fn bill_rows(

@@ -31,6 +31,11 @@ pub fn required_of(curve: &Curve, remembered: f64, price: f64, c_drift: f64, par
     required_quality(price, &curve.with_budget(budget), params)
 }
 
+/// Positions of those in a block whose billing day it is.
+fn due_today(block: &Block, day: u32, params: &Params) -> Vec<usize> {
+    block.due((day % params.billing.billing_period_days) as u8)
+}
+
 /// Refreshes the required quality of everybody in a block.
 pub fn refresh_block(group: Group, block: &mut Block, morning: &Morning, params: &Params) {
     for at in 0..block.len() {

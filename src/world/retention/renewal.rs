@@ -13,6 +13,7 @@ use crate::world::product::quality::{
     Experience, TenureTable, perceived_quality, quota_demand, quota_factor, relationship_bonus,
 };
 use crate::world::random::{Part, Streams, Word, word_below};
+use crate::world::retention::due_today;
 use crate::world::settings::Settings;
 
 /// Monthly rate of involuntary churn from a standard normal draw; 0 where a group has none.
@@ -159,7 +160,7 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &Judgemen
         return outcome;
     }
     let (morning, rate) = (judgement.morning, judgement.involuntary[group]);
-    let due = block.due((morning.day % 30) as u8);
+    let due = due_today(block, morning.day, judgement.params);
     if due.is_empty() {
         return outcome;
     }

@@ -1,11 +1,17 @@
 -- title: Prices that are paid
 -- what: How many customers pay which price on which plan: old prices stay with those who joined under them.
 -- chart: bar plan_and_price subscribers
-SELECT plan || ' at $' || round(effective_price, 2) AS plan_and_price, plan, round(effective_price, 2) AS price,
-    count(*) AS subscribers, sum(seat_count) AS seats, min(start_day) AS first_joined_day,
-    max(start_day) AS last_joined_day
-FROM subscriptions
-WHERE status = 'subscribed'
-GROUP BY 2, 3
+WITH paid AS (
+    SELECT plan, effective_price AS price, count(*) AS subscribers, sum(seat_count) AS seats,
+        min(start_day) AS first_joined_day, max(start_day) AS last_joined_day
+    FROM subscriptions
+    WHERE status = 'subscribed'
+    GROUP BY 1, 2
+)
+SELECT plan || ' at $' || round(price, 2) AS plan_and_price, plan, round(price, 2) AS price,
+    sum(subscribers) AS subscribers, sum(seats) AS seats, min(first_joined_day) AS first_joined_day,
+    max(last_joined_day) AS last_joined_day
+FROM paid
+GROUP BY 2, round(price, 2)
 ORDER BY 4 DESC
 LIMIT 200

@@ -9,7 +9,9 @@ stays AS (
     FROM subscriptions s
     CROSS JOIN today t
     WHERE s.status IN ('subscribed', 'cancelled')
-    GROUP BY 1, 2, 3
+    -- One number is sorted faster than three values.
+    GROUP BY (t.day - s.start_day) / 30 * 1000 + (coalesce(s.end_day, t.day) - s.start_day) / 30 * 10
+        + instr('ABC', s.plan)
 )
 SELECT m.months, sum(customers) AS could_have_stayed,
     round(100.0 * sum((stayed >= months AND plan = 'A') * customers) / sum((plan = 'A') * customers), 1)

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
-use std::sync::{Arc, RwLock};
+use std::sync::{Arc, Mutex, RwLock};
 use std::thread::JoinHandle;
 
 use rusqlite::{Connection, OptionalExtension};
@@ -12,11 +12,13 @@ use super::blocks::{AdsRun, PackedDay, Run, SharedShelf, Shelf};
 use super::location::Location;
 use super::query::Desk;
 use super::rows::{Entry, RowWriter, create};
-use crate::world::events::UsageRows;
+use crate::world::events::{Facts, UsageRows};
 use crate::world::params::Params;
 
 /// Entries that may wait before the simulation has to; a bound on memory.
 const QUEUE: usize = 16;
+/// Facts that are kept for their memory after they were written: the days of a week.
+const SPARE_FACTS: usize = 7;
 
 /// How far a database has come: the trajectory line it holds everything up to.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -67,6 +69,7 @@ pub struct Projector {
     pub(super) location: Location,
     pub(super) shelf: SharedShelf,
     gate: Arc<RwLock<()>>,
+    spare: Spare,
 }
 
 impl Projector {
@@ -88,20 +91,30 @@ impl Projector {
         };
         let gate = Arc::new(RwLock::new(()));
         let (jobs, queue) = sync_channel(QUEUE);
+        let spare = Spare::default();
+        let writer_spare = spare.clone();
         let (writer_gate, writer_shelf) = (gate.clone(), shelf.clone());
         let thread = std::thread::Builder::new()
             .name("projection".to_owned())
             .spawn(move || {
                 let rows = RowWriter::new(params, writer_shelf, issue_clock);
-                Worker { connection: &mut connection, rows, gate: writer_gate, failed: None }.run(&queue);
+                let connection = &mut connection;
+                let (gate, spare) = (writer_gate, writer_spare);
+                Worker { connection, rows, gate, spare, failed: None }.run(&queue);
             })
             .map_err(|error| ProjectionError(error.to_string()))?;
-        Ok((Projector { jobs: Some(jobs), thread: Some(thread), location, shelf, gate }, position))
+        let projector = Projector { jobs: Some(jobs), thread: Some(thread), location, shelf, gate, spare };
+        Ok((projector, position))
     }
 
     /// Hands over an entry. Waits only when too many are waiting already.
     pub fn write(&self, entry: Entry) {
         self.send(Job::Write(Box::new(entry)));
+    }
+
+    /// Empty facts with the memory of some that were written: a day that is filled into them needs no new memory.
+    pub fn spare_facts(&self) -> Option<Arc<Facts>> {
+        self.spare.take()
     }
 
     /// Makes everything handed over so far visible, as of a trajectory position.
@@ -161,7 +174,27 @@ struct Worker<'a> {
     connection: &'a mut Connection,
     rows: RowWriter,
     gate: Arc<RwLock<()>>,
+    spare: Spare,
     failed: Option<ProjectionError>,
+}
+
+/// Emptied facts that are written and that nobody reads any more.
+#[derive(Clone, Default)]
+struct Spare(Arc<Mutex<Vec<Arc<Facts>>>>);
+
+impl Spare {
+    fn give(&self, mut facts: Arc<Facts>) {
+        let Some(unread) = Arc::get_mut(&mut facts) else { return };
+        unread.begin(0);
+        let mut kept = self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if kept.len() < SPARE_FACTS {
+            kept.push(facts);
+        }
+    }
+
+    fn take(&self) -> Option<Arc<Facts>> {
+        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop()
+    }
 }
 
 impl Worker<'_> {
@@ -198,6 +231,7 @@ impl Worker<'_> {
         let transaction = self.connection.transaction()?;
         for entry in pending.drain(..) {
             self.rows.write(&transaction, &entry)?;
+            self.spare.give(entry.facts);
         }
         self.rows.flush(&transaction)?;
         transaction.execute(

@@ -193,7 +193,7 @@ impl Session {
             | Deed::RejectDeals(_)
             | Deed::Post(_) => {}
         }
-        self.world.apply(deed, &self.params, to_fill(&mut self.facts));
+        self.world.apply(deed, &self.params, to_fill(&mut self.facts, self.projector.as_ref()));
         self.called.extend_from_slice(&self.facts.ledger);
         self.after_call();
     }

@@ -39,8 +39,9 @@ impl Session {
     pub(super) fn simulate_day(&mut self, day_before: Option<Vec<String>>) -> DayFigures {
         std::mem::swap(&mut self.facts, &mut self.facts_before);
         let Session { world, params, streams, facts, facts_before, feed, facts_chain, projector, .. } = self;
-        let today = to_fill(facts);
-        let aftermath = Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams };
+        let projector = projector.as_ref();
+        let today = to_fill(facts, projector);
+        let aftermath = Aftermath { feed, facts_chain, projector, params, streams };
         let ((figures, trace), ()) = rayon::join(
             || step_day(world, params, streams, today),
             || {

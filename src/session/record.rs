@@ -9,7 +9,7 @@ use super::Session;
 use super::error::RunError;
 use super::feed::Feed;
 use super::trajectory::Durability;
-use crate::database::Entry;
+use crate::database::{Entry, Projector};
 use crate::voice;
 use crate::world::canonical::hash_of;
 use crate::world::events::{Facts, Sender};
@@ -71,11 +71,11 @@ impl FactsChain {
     }
 }
 
-/// Facts to be filled: these if nobody reads them any more, new ones otherwise. The facts of a day that is not handed
-/// over yet stay.
-pub(super) fn to_fill(facts: &mut Arc<Facts>) -> &mut Facts {
+/// Facts to be filled: these if nobody reads them any more, else some that the writer of the database has done with, or
+/// new ones. The facts of a day that is not handed over yet stay.
+pub(super) fn to_fill<'a>(facts: &'a mut Arc<Facts>, projector: Option<&Projector>) -> &'a mut Facts {
     if Arc::strong_count(facts) > 1 {
-        *facts = Arc::default();
+        *facts = projector.and_then(Projector::spare_facts).unwrap_or_default();
     }
     Arc::make_mut(facts)
 }

@@ -22,8 +22,10 @@ pub struct CanonicalHasher {
     piece: usize,
 }
 
-/// Bytes that are hashed together; also the most that one list hands over at a time.
+/// Bytes that are hashed together.
 const PIECE: usize = 1 << 16;
+/// Values of a column that are put together before they are appended.
+const TOGETHER: usize = 128;
 
 impl Default for CanonicalHasher {
     fn default() -> Self {
@@ -56,17 +58,13 @@ impl CanonicalHasher {
         self.pending
     }
 
-    /// Appends the bytes of many equal values: columns are most of the state, so they go by the thousand.
+    /// Appends the bytes of many equal values: columns are most of the state, so they go by the hundred.
     fn column<T: Copy, const WIDTH: usize>(&mut self, values: &[T], bytes_of: impl Fn(T) -> [u8; WIDTH]) {
-        for values in values.chunks(PIECE / WIDTH) {
-            let from = self.pending.len();
-            self.pending.resize(from + values.len() * WIDTH, 0);
-            for (place, value) in self.pending[from..].chunks_exact_mut(WIDTH).zip(values) {
-                place.copy_from_slice(&bytes_of(*value));
-            }
-            if self.pending.len() >= self.piece {
-                self.hash_pending();
-            }
+        let mut together = [[0; WIDTH]; TOGETHER];
+        for values in values.chunks(TOGETHER) {
+            let places = &mut together[..values.len()];
+            places.iter_mut().zip(values).for_each(|(place, value)| *place = bytes_of(*value));
+            self.bytes(places.as_flattened());
         }
     }
 

@@ -16,7 +16,8 @@
 //! state hash and the lines of the trajectory, divided by seven, and scaled from the subscribers there are to
 //! the number the figure names (they differ by less than a fifth). The policy's own decisions are not counted.
 //! Where the projection works in the background, it is waited for between the weeks, as a person who reads the
-//! dashboard does.
+//! dashboard does. The cost per subscriber is compared on one thread: what a second one is worth depends on how soon
+//! the system wakes it, and that takes as long for a small company as for a large one.
 //!
 //! # Where the time goes
 //!

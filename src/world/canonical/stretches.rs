@@ -13,7 +13,7 @@ use super::CanonicalHasher;
 /// Bytes that are hashed together, a power of two: a subtree of the hash. They stay in the cache of a core.
 const SUBTREE: usize = 1 << 20;
 
-/// Subtrees that one thread hashes after each other, with the memory of the first.
+/// Subtrees that one thread hashes after each other, with the memory of the first, if there are more than two of these.
 const SUBTREES_TOGETHER: usize = 4;
 
 /// Some canonical bytes whose number is known before they are collected.
@@ -59,9 +59,10 @@ pub fn hash_of_stretches(stretches: &[Stretch<'_>]) -> blake3::Hash {
         collect(&mut collector, 0, total);
         return blake3::hash(&collector.pending);
     }
-    let subtrees: Vec<ChainingValue> = (0..total.div_ceil(SUBTREE))
+    let count = total.div_ceil(SUBTREE);
+    let subtrees: Vec<ChainingValue> = (0..count)
         .into_par_iter()
-        .with_min_len(SUBTREES_TOGETHER)
+        .with_min_len((count / 2).clamp(1, SUBTREES_TOGETHER))
         .map_init(
             || CanonicalHasher::collector(SUBTREE + SUBTREE / 2),
             |collector, number| {

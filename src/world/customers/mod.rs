@@ -15,12 +15,22 @@ use columns::{BLOCK, Block, Subscriber};
 /// The first real customer; number 1 is the market observer, who only owns posts that no customer wrote.
 pub const FIRST_CUSTOMER: u32 = 2;
 
+/// How the work on blocks is shared out to threads. Waking one takes as long as some thousand customers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shares {
+    /// A few blocks at a time: those who came on one day decide and pay on one day, so the work of a day is in a few
+    /// neighbouring blocks.
+    Small,
+    /// Many blocks at a time, for what takes next to nothing for everybody.
+    Large,
+}
+
 /// Fewer blocks than this are not worth waking a second thread.
 const PARALLEL_FROM: usize = 8;
-
-/// Blocks that go to a thread together at most: those who came on one day decide and pay on one day, so the work of a
-/// day is in a few neighbouring blocks.
-const SHARE: usize = 2;
+/// Blocks of a small share at most.
+const SMALL: usize = 2;
+/// Blocks of a large share at least.
+const LARGE: usize = 24;
 
 /// All customers of a run: the active ones as columns, of the others only where their numbers are.
 #[derive(Debug, Clone)]
@@ -183,7 +193,7 @@ impl Customers {
     /// Works through all blocks that hold anybody, on several threads when there are many; the results stand
     /// in group and block order whatever the number of threads.
     pub fn sweep<R: Send>(&mut self, work: impl Fn(Group, u32, &mut Block) -> R + Sync) -> Vec<R> {
-        shared_out(self.jobs(), |(group, at, block)| work(group, at, block))
+        shared_out(self.jobs(), Shares::Small, |(group, at, block)| work(group, at, block))
     }
 
     /// Works through all blocks that hold anybody like [`Customers::sweep`], with what an earlier sweep found out
@@ -196,7 +206,12 @@ impl Customers {
         let jobs = self.jobs();
         debug_assert_eq!(jobs.len(), found.len(), "nobody may have come or left in between");
         let jobs = jobs.into_iter().zip(found).collect();
-        shared_out(jobs, |((group, at, block), own)| work(group, at, block, own))
+        shared_out(jobs, Shares::Small, |((group, at, block), own)| work(group, at, block, own))
+    }
+
+    /// Works through all blocks that hold anybody like [`Customers::sweep`], where the work takes next to nothing.
+    pub fn skim<R: Send>(&mut self, work: impl Fn(Group, &mut Block) -> R + Sync) -> Vec<R> {
+        shared_out(self.jobs(), Shares::Large, |(group, _, block)| work(group, block))
     }
 
     /// Blocks that hold anybody, with their group and number.
@@ -211,10 +226,10 @@ impl Customers {
         jobs
     }
 
-    /// Looks at all blocks that hold anybody, on several threads when there are many; the results stand in group
-    /// and block order.
+    /// Looks at all blocks that hold anybody, on several threads when there are very many; the results stand in
+    /// group and block order.
     pub fn survey<R: Send>(&self, look: impl Fn(Group, &Block) -> R + Sync) -> Vec<R> {
-        shared_out(self.blocks().collect(), |(group, block)| look(group, block))
+        shared_out(self.blocks().collect(), Shares::Large, |(group, block)| look(group, block))
     }
 
     /// Hash of their canonical bytes, made on several threads: they are nearly all of the state.
@@ -247,11 +262,11 @@ impl Customers {
 }
 
 /// Does jobs that take a block each, on several threads when there are many; the results stand in their order.
-fn shared_out<J: Send, R: Send>(jobs: Vec<J>, work: impl Fn(J) -> R + Sync) -> Vec<R> {
-    if jobs.len() < PARALLEL_FROM {
-        jobs.into_iter().map(work).collect()
-    } else {
-        jobs.into_par_iter().with_max_len(SHARE).map(&work).collect()
+fn shared_out<J: Send, R: Send>(jobs: Vec<J>, shares: Shares, work: impl Fn(J) -> R + Sync) -> Vec<R> {
+    match shares {
+        _ if jobs.len() < PARALLEL_FROM => jobs.into_iter().map(work).collect(),
+        Shares::Small => jobs.into_par_iter().with_max_len(SMALL).map(&work).collect(),
+        Shares::Large => jobs.into_par_iter().with_min_len(LARGE).map(&work).collect(),
     }
 }
 

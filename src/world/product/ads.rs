@@ -60,7 +60,7 @@ pub fn earn(customers: &mut Customers, load: &AdLoad<'_>, facts: &mut Facts) -> 
     if !load.is_used() {
         return 0.0;
     }
-    let by_block = customers.sweep(|group, _, block| earn_block(group, block, load));
+    let by_block = customers.skim(|group, block| earn_block(group, block, load));
     let mut revenue = 0.0;
     for (sum, rows) in by_block {
         revenue += sum;

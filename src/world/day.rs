@@ -234,7 +234,7 @@ fn refresh_requirements(customers: &mut Customers, morning: &Morning, params: &P
 }
 
 /// Books the ad revenue of the day, if there is any.
-fn earn_from_ads(customers: &mut Customers, ads: &AdLoad<'_>, finance: &mut Finance, facts: &mut Facts) {
+fn earn_from_ads(customers: &Customers, ads: &AdLoad<'_>, finance: &mut Finance, facts: &mut Facts) {
     let revenue = ads::earn(customers, ads, facts);
     if revenue > 0.0 {
         let note = LedgerNote::Subscribers(customers.active().iter().sum());

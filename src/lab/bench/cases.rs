@@ -4,16 +4,16 @@ use std::time::Instant;
 
 use super::company::{Company, Keep, Lap, Market, POLICY, SEED};
 use super::machine::{folder_size, peak_memory};
-use super::{Bench, BenchError, Case, Figure, Samples, Unit};
+use super::{Bench, BenchError, Case, Figure, Samples, Unit, queries};
 use crate::lab::statistics::median;
 use crate::lab::{Collector, Policy, RunSpec, play};
 use crate::session::{Access, Session, find_run};
 
-const fn figure(name: &'static str, unit: Unit, target: f64, stretch: Option<f64>) -> Figure {
+pub(super) const fn figure(name: &'static str, unit: Unit, target: f64, stretch: Option<f64>) -> Figure {
     Figure { name, unit, target: Some(target), stretch }
 }
 
-const fn without_target(name: &'static str, unit: Unit) -> Figure {
+pub(super) const fn without_target(name: &'static str, unit: Unit) -> Figure {
     Figure { name, unit, target: None, stretch: None }
 }
 
@@ -75,6 +75,7 @@ pub const CASES: &[Case] = &[
         long: false,
         measure: week,
     },
+    Case { name: "queries", figures: queries::FIGURES, fresh: false, long: true, measure: queries::queries },
     Case {
         name: "scaling",
         figures: &[
@@ -105,11 +106,16 @@ fn laps(company: &mut Company, count: usize) -> Result<Vec<Lap>, BenchError> {
     (0..count).map(|_| company.week()).collect()
 }
 
-/// A company of its own market when it has about 165,000 subscribers.
-fn at_165_000(keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
+/// A company of its own market as soon as it has this many subscribers.
+pub(super) fn large_company(subscribers: u32, keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
     let mut company = Company::found(Market::Own, keep, bench)?;
-    company.grow_to(150_000)?;
+    company.grow_to(subscribers)?;
     Ok(company)
+}
+
+/// A company with about 165,000 subscribers: it grows while it is measured.
+fn at_165_000(keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
+    large_company(150_000, keep, bench)
 }
 
 /// Leaves a run with about 165,000 subscribers in the scratch folder; returns its id.

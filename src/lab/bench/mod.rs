@@ -39,7 +39,8 @@
 //! On two threads all of it but about a twentieth is shared out. What helped, bit for bit as before: rounds in which a
 //! block goes through several mechanisms while it is in the cache, instead of a pass each; pieces of work as small as
 //! two blocks, because those who came on one day are due on one day, side by side; the hash of the state as a tree, each
-//! thread hashing the bytes it has collected; what follows from a day beside the next day. What did not: satisfaction,
+//! thread hashing the bytes it has collected; what follows from a day beside the next day; days filled into facts that
+//! the writer of the database has done with, instead of fresh memory. What did not: satisfaction,
 //! calls and usage compiled for registers four times as wide (they wait for memory); asking for the columns of a block
 //! before they are needed; other purge delays and page sizes of the allocator.
 //!
@@ -55,6 +56,7 @@
 mod cases;
 mod company;
 mod machine;
+mod queries;
 
 use std::fmt;
 use std::path::PathBuf;

@@ -56,11 +56,11 @@ impl<'a> AdLoad<'a> {
 
 /// Revenue of the day: sensitivity times effective strength times whole seats, over everybody who sees ads,
 /// in dollars. Records one row per subscriber who earns.
-pub fn earn(customers: &mut Customers, load: &AdLoad<'_>, facts: &mut Facts) -> f64 {
+pub fn earn(customers: &Customers, load: &AdLoad<'_>, facts: &mut Facts) -> f64 {
     if !load.is_used() {
         return 0.0;
     }
-    let by_block = customers.skim(|group, block| earn_block(group, block, load));
+    let by_block = customers.survey(|group, block| earn_block(group, block, load));
     let mut revenue = 0.0;
     for (sum, rows) in by_block {
         revenue += sum;

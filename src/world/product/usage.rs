@@ -35,7 +35,7 @@ pub fn usage_today(usage_rate: f64, weekday: f64, quota: f64) -> u32 {
 
 /// Meters every active subscription: one row each, also when nothing was used.
 pub fn meter(customers: &mut Customers, morning: &Morning, params: &Params, facts: &mut Facts) -> Metered {
-    let by_block = customers.skim(|_, block| meter_block(block, morning, params));
+    let by_block = customers.skim(|block| meter_block(block, morning, params));
     let mut metered = Metered::default();
     for (by_plan, rows) in by_block {
         for plan in Plan::ALL {

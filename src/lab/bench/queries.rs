@@ -1,0 +1,82 @@
+//! Questions to the database of a large company, asked as a person asks them.
+
+use std::time::Instant;
+
+use super::cases::{figure, large_company, without_target};
+use super::company::Keep;
+use super::{Bench, BenchError, Figure, Samples, Unit};
+use crate::lab::statistics::median;
+use crate::session::Session;
+use crate::session::library::Library;
+
+/// About the most subscribers that P1a ever has.
+const SUBSCRIBERS: u32 = 190_000;
+
+/// Before the name of a query of the library.
+const QUERY: &str = "query ";
+
+const USAGE_OF_30_DAYS: &str = "SELECT COUNT(*) AS days, SUM(usage_units) AS units FROM daily_usage
+    WHERE day > (SELECT MAX(day) FROM service_day) - 30";
+
+/// The slowest of all, a count of millions of rows, and ten that people often ask.
+pub const FIGURES: &[Figure] = &[
+    figure("slowest query of the library at 190,000", Unit::Milliseconds, 300.0, None),
+    figure("usage of 30 days at 190,000, counted and summed", Unit::Milliseconds, 1_000.0, None),
+    without_target("query cash-by-week", Unit::Milliseconds),
+    without_target("query costs-by-week", Unit::Milliseconds),
+    without_target("query growth-by-week", Unit::Milliseconds),
+    without_target("query revenue-by-plan", Unit::Milliseconds),
+    without_target("query leavers-by-group", Unit::Milliseconds),
+    without_target("query retention-by-plan", Unit::Milliseconds),
+    without_target("query acquisition-by-source", Unit::Milliseconds),
+    without_target("query usage-by-group", Unit::Milliseconds),
+    without_target("query support-wait", Unit::Milliseconds),
+    without_target("query prices-paid", Unit::Milliseconds),
+];
+
+/// Asks every query of the library several times; the slowest is the one whose median is largest.
+pub fn queries(bench: &Bench) -> Result<Samples, BenchError> {
+    let mut session = large_company(SUBSCRIBERS, Keep::Disk, bench)?.session;
+    session.wait_for_database()?;
+    let mut ask = |sql: &str| times(&mut session, sql, bench.repetitions);
+    let usage = ask(USAGE_OF_30_DAYS)?;
+    let library = Library::shipped();
+    let mut asked: Vec<(&str, Vec<f64>)> = Vec::new();
+    for query in library.queries() {
+        asked.push((&query.name, ask(query.body())?));
+    }
+    let typical = FIGURES.iter().filter_map(|figure| figure.name.strip_prefix(QUERY));
+    let typical = typical.map(|name| {
+        let own = asked.iter().find(|(known, _)| *known == name);
+        own.map(|(_, times)| times.clone()).ok_or_else(|| BenchError(format!("there is no query {name}")))
+    });
+    let typical: Vec<Vec<f64>> = typical.collect::<Result<_, _>>()?;
+    let slowest = asked.into_iter().map(|(_, times)| times).max_by(|one, other| {
+        let middle = |times: &[f64]| median(times).unwrap_or(0.0);
+        middle(one).total_cmp(&middle(other))
+    });
+    Ok([slowest.unwrap_or_default(), usage].into_iter().chain(typical).collect())
+}
+
+/// Milliseconds until the answer is there.
+fn times(session: &mut Session, sql: &str, repetitions: usize) -> Result<Vec<f64>, BenchError> {
+    let once = |_| {
+        let started = Instant::now();
+        session.query(sql)?;
+        Ok(started.elapsed().as_secs_f64() * 1e3)
+    };
+    (0..repetitions).map(once).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_queries_of_the_table_are_in_the_library() {
+        let library = Library::shipped();
+        let names: Vec<&str> = FIGURES.iter().filter_map(|figure| figure.name.strip_prefix(QUERY)).collect();
+        assert_eq!(names.len(), 10);
+        assert!(names.iter().all(|name| library.find(name).is_some()), "{names:?}");
+    }
+}

@@ -211,6 +211,8 @@ fn week(bench: &Bench) -> Result<Samples, BenchError> {
 
 /// Numbers of subscribers at which the cost is compared, in the company's own market.
 const SIZES: [u32; 3] = [10_000, 40_000, 165_000];
+/// Weeks of each company that are measured at most: after as many it has left its size behind.
+const WEEKS_OF_A_SIZE: usize = 5;
 
 /// On one thread: what a second one is worth depends on how soon the system wakes it, and that is the same for a company
 /// of any size.
@@ -219,17 +221,18 @@ fn scaling(bench: &Bench) -> Result<Samples, BenchError> {
     pool.map_err(|error| BenchError(error.to_string()))?.install(|| costs_by_size(bench))
 }
 
+/// The companies take turns, so that a slow minute of the machine strikes all alike.
 fn costs_by_size(bench: &Bench) -> Result<Samples, BenchError> {
-    let cost = |laps: &[Lap]| -> Vec<f64> { laps.iter().map(|lap| lap.per_subscriber_day() * 1e9).collect() };
-    let mut own = Company::found(Market::Own, Keep::Memory, bench)?;
-    let mut costs = Vec::new();
-    for size in SIZES {
-        // It grows while it is measured, so it begins a little below.
-        own.grow_to(size / 10 * 9)?;
-        costs.push(cost(&laps(&mut own, bench.repetitions.min(5))?));
+    // They grow while they are measured, so they begin a little below.
+    let own = SIZES.iter().map(|size| large_company(size / 10 * 9, Keep::Memory, bench));
+    let mut companies = own.collect::<Result<Vec<Company>, BenchError>>()?;
+    companies.push(at_a_million(Keep::Memory, bench)?);
+    let mut costs = vec![Vec::new(); companies.len()];
+    for _ in 0..bench.repetitions.min(WEEKS_OF_A_SIZE) {
+        for (company, own) in companies.iter_mut().zip(&mut costs) {
+            own.push(company.week()?.per_subscriber_day() * 1e9);
+        }
     }
-    drop(own);
-    costs.push(cost(&laps(&mut at_a_million(Keep::Memory, bench)?, bench.repetitions)?));
     let medians: Vec<f64> = costs.iter().filter_map(|samples| median(samples)).collect();
     let least = medians.iter().copied().fold(f64::INFINITY, f64::min);
     let most = medians.iter().copied().fold(0.0, f64::max);

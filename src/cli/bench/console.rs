@@ -14,12 +14,7 @@ const WEEKS: usize = 6;
 pub const CASES: &[Case] = &[
     Case {
         name: "frame",
-        figures: &[Figure {
-            name: "first frame of the console",
-            unit: Unit::Milliseconds,
-            target: Some(100.0),
-            stretch: None,
-        }],
+        figures: &[Figure::aimed("first frame of the console", Unit::Milliseconds, 100.0, None)],
         fresh: true,
         long: false,
         measure: first_frame,
@@ -27,18 +22,13 @@ pub const CASES: &[Case] = &[
     Case {
         name: "keys",
         figures: &[
-            Figure {
-                name: "key to frame while a week runs, 200×60: 99 of 100",
-                unit: Unit::Milliseconds,
-                target: Some(16.0),
-                stretch: None,
-            },
-            Figure {
-                name: "key to frame while a week runs, 200×60: median",
-                unit: Unit::Milliseconds,
-                target: None,
-                stretch: None,
-            },
+            Figure::aimed(
+                "key to frame while a week runs, 200×60: 99 of 100",
+                Unit::Milliseconds,
+                16.0,
+                None,
+            ),
+            Figure::shown("key to frame while a week runs, 200×60: median", Unit::Milliseconds),
         ],
         fresh: false,
         long: false,

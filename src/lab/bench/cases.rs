@@ -9,21 +9,18 @@ use crate::lab::statistics::median;
 use crate::lab::{Collector, Policy, RunSpec, play};
 use crate::session::{Access, Session, find_run};
 
-pub(super) const fn figure(name: &'static str, unit: Unit, target: f64, stretch: Option<f64>) -> Figure {
-    Figure { name, unit, target: Some(target), stretch }
-}
-
-pub(super) const fn without_target(name: &'static str, unit: Unit) -> Figure {
-    Figure { name, unit, target: None, stretch: None }
-}
-
 /// What is measured of the simulator.
 pub const CASES: &[Case] = &[
     Case {
         name: "day",
         figures: &[
-            figure("a day at 165,000, database in the background", Unit::Milliseconds, 10.0, Some(4.0)),
-            without_target("a day at 165,000, in memory", Unit::Milliseconds),
+            Figure::aimed(
+                "a day at 165,000, database in the background",
+                Unit::Milliseconds,
+                10.0,
+                Some(4.0),
+            ),
+            Figure::shown("a day at 165,000, in memory", Unit::Milliseconds),
         ],
         fresh: false,
         long: false,
@@ -32,9 +29,14 @@ pub const CASES: &[Case] = &[
     Case {
         name: "million",
         figures: &[
-            figure("a day at 1,000,000, database in the background", Unit::Milliseconds, 60.0, Some(25.0)),
-            without_target("a day at 1,000,000, in memory", Unit::Milliseconds),
-            figure("peak memory at 1,000,000", Unit::Megabytes, 1.2 * 1_073.741_824, None),
+            Figure::aimed(
+                "a day at 1,000,000, database in the background",
+                Unit::Milliseconds,
+                60.0,
+                Some(25.0),
+            ),
+            Figure::shown("a day at 1,000,000, in memory", Unit::Milliseconds),
+            Figure::aimed("peak memory at 1,000,000", Unit::Megabytes, 1.2 * 1_073.741_824, None),
         ],
         fresh: false,
         long: true,
@@ -42,7 +44,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "run",
-        figures: &[figure("500 days, trajectory recorded", Unit::Seconds, 3.0, Some(1.7))],
+        figures: &[Figure::aimed("500 days, trajectory recorded", Unit::Seconds, 3.0, Some(1.7))],
         fresh: false,
         long: false,
         measure: run,
@@ -50,9 +52,9 @@ pub const CASES: &[Case] = &[
     Case {
         name: "save",
         figures: &[
-            figure("500 days with --save, world.db complete", Unit::Seconds, 9.0, Some(5.0)),
-            figure("its run directory", Unit::Megabytes, 300.0, Some(150.0)),
-            figure("its peak memory", Unit::Megabytes, 400.0, None),
+            Figure::aimed("500 days with --save, world.db complete", Unit::Seconds, 9.0, Some(5.0)),
+            Figure::aimed("its run directory", Unit::Megabytes, 300.0, Some(150.0)),
+            Figure::aimed("its peak memory", Unit::Megabytes, 400.0, None),
         ],
         fresh: true,
         long: false,
@@ -60,7 +62,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "resume",
-        figures: &[figure("resume of a 500-day run", Unit::Seconds, 1.0, None)],
+        figures: &[Figure::aimed("resume of a 500-day run", Unit::Seconds, 1.0, None)],
         fresh: false,
         long: false,
         measure: resume,
@@ -68,8 +70,8 @@ pub const CASES: &[Case] = &[
     Case {
         name: "week",
         figures: &[
-            figure("a week at 165,000: key to dashboard", Unit::Milliseconds, 150.0, None),
-            figure("a week at 165,000: key to first query answered", Unit::Milliseconds, 800.0, None),
+            Figure::aimed("a week at 165,000: key to dashboard", Unit::Milliseconds, 150.0, None),
+            Figure::aimed("a week at 165,000: key to first query answered", Unit::Milliseconds, 800.0, None),
         ],
         fresh: false,
         long: false,
@@ -79,14 +81,11 @@ pub const CASES: &[Case] = &[
     Case {
         name: "scaling",
         figures: &[
-            figure("cost per subscriber, 10,000 to 1,000,000: spread", Unit::Percent, 30.0, None),
-            without_target("one thread, per subscriber and day at 10,000", Unit::NanosecondsPerSubscriberDay),
-            without_target("one thread, per subscriber and day at 40,000", Unit::NanosecondsPerSubscriberDay),
-            without_target(
-                "one thread, per subscriber and day at 165,000",
-                Unit::NanosecondsPerSubscriberDay,
-            ),
-            without_target(
+            Figure::aimed("cost per subscriber, 10,000 to 1,000,000: spread", Unit::Percent, 30.0, None),
+            Figure::shown("one thread, per subscriber and day at 10,000", Unit::NanosecondsPerSubscriberDay),
+            Figure::shown("one thread, per subscriber and day at 40,000", Unit::NanosecondsPerSubscriberDay),
+            Figure::shown("one thread, per subscriber and day at 165,000", Unit::NanosecondsPerSubscriberDay),
+            Figure::shown(
                 "one thread, per subscriber and day at 1,000,000",
                 Unit::NanosecondsPerSubscriberDay,
             ),
@@ -106,16 +105,9 @@ fn laps(company: &mut Company, count: usize) -> Result<Vec<Lap>, BenchError> {
     (0..count).map(|_| company.week()).collect()
 }
 
-/// A company of its own market as soon as it has this many subscribers.
-pub(super) fn large_company(subscribers: u32, keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
-    let mut company = Company::found(Market::Own, keep, bench)?;
-    company.grow_to(subscribers)?;
-    Ok(company)
-}
-
 /// A company with about 165,000 subscribers: it grows while it is measured.
 fn at_165_000(keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
-    large_company(150_000, keep, bench)
+    Company::grown(150_000, keep, bench)
 }
 
 /// Leaves a run with about 165,000 subscribers in the scratch folder; returns its id.
@@ -224,7 +216,7 @@ fn scaling(bench: &Bench) -> Result<Samples, BenchError> {
 /// The companies take turns, so that a slow minute of the machine strikes all alike.
 fn costs_by_size(bench: &Bench) -> Result<Samples, BenchError> {
     // They grow while they are measured, so they begin a little below.
-    let own = SIZES.iter().map(|size| large_company(size / 10 * 9, Keep::Memory, bench));
+    let own = SIZES.iter().map(|size| Company::grown(size / 10 * 9, Keep::Memory, bench));
     let mut companies = own.collect::<Result<Vec<Company>, BenchError>>()?;
     companies.push(at_a_million(Keep::Memory, bench)?);
     let mut costs = vec![Vec::new(); companies.len()];

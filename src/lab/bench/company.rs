@@ -74,6 +74,13 @@ impl Company {
         Ok(Company { session: Session::create(new, &bench.configuration)?, policy })
     }
 
+    /// A company of its own market as soon as it has this many subscribers.
+    pub fn grown(subscribers: u32, keep: Keep, bench: &Bench) -> Result<Company, BenchError> {
+        let mut company = Company::found(Market::Own, keep, bench)?;
+        company.grow_to(subscribers)?;
+        Ok(company)
+    }
+
     /// Active subscribers now.
     pub fn subscribers(&self) -> u32 {
         self.session.weeks().last().map_or(0, |week| week.individual_subscribers)

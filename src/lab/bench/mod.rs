@@ -150,6 +150,16 @@ impl fmt::Display for Verdict {
 }
 
 impl Figure {
+    /// One with a target.
+    pub const fn aimed(name: &'static str, unit: Unit, target: f64, stretch: Option<f64>) -> Figure {
+        Figure { name, unit, target: Some(target), stretch }
+    }
+
+    /// One that is only shown.
+    pub const fn shown(name: &'static str, unit: Unit) -> Figure {
+        Figure { name, unit, target: None, stretch: None }
+    }
+
     /// How a value stands to the target.
     pub fn verdict(&self, value: Option<f64>) -> Verdict {
         match (value, self.target, self.stretch) {

@@ -120,7 +120,7 @@ mod tests {
         let mut customers = Customers::default();
         let mut facts = Facts::default();
         (1..=5).for_each(|n| customers.groups[Group::at(0).expect("S1")].activate(subscriber(n)));
-        near(earn(&mut customers, &AdLoad::of(&setting, &params), &mut facts), 0.111501440);
+        near(earn(&customers, &AdLoad::of(&setting, &params), &mut facts), 0.111501440);
         assert_eq!(facts.ads_revenue.len(), 5);
     }
 }

@@ -2,6 +2,7 @@
 -- what: How many customers pay which price on which plan: old prices stay with those who joined under them.
 -- chart: bar plan_and_price subscribers
 WITH paid AS (
+    -- Only the few different prices are rounded.
     SELECT plan, effective_price AS price, count(*) AS subscribers, sum(seat_count) AS seats,
         min(start_day) AS first_joined_day, max(start_day) AS last_joined_day
     FROM subscriptions
@@ -12,6 +13,6 @@ SELECT plan || ' at $' || round(price, 2) AS plan_and_price, plan, round(price, 
     sum(subscribers) AS subscribers, sum(seats) AS seats, min(first_joined_day) AS first_joined_day,
     max(last_joined_day) AS last_joined_day
 FROM paid
-GROUP BY 2, round(price, 2)
+GROUP BY 2, 3
 ORDER BY 4 DESC
 LIMIT 200

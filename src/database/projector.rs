@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
-use std::sync::{Arc, Mutex, RwLock};
+use std::sync::{Arc, Mutex, MutexGuard, RwLock};
 use std::thread::JoinHandle;
 
 use rusqlite::{Connection, OptionalExtension};
@@ -185,15 +185,20 @@ struct Spare(Arc<Mutex<Vec<Arc<Facts>>>>);
 impl Spare {
     fn give(&self, mut facts: Arc<Facts>) {
         let Some(unread) = Arc::get_mut(&mut facts) else { return };
+        // Not everybody who takes them begins a day: what is taken has to be as good as new.
         unread.begin(0);
-        let mut kept = self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let mut kept = self.kept();
         if kept.len() < SPARE_FACTS {
             kept.push(facts);
         }
     }
 
     fn take(&self) -> Option<Arc<Facts>> {
-        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop()
+        self.kept().pop()
+    }
+
+    fn kept(&self) -> MutexGuard<'_, Vec<Arc<Facts>>> {
+        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }
 

@@ -209,8 +209,7 @@ const WEEKS_OF_A_SIZE: usize = 5;
 /// On one thread: what a second one is worth depends on how soon the system wakes it, and that is the same for a company
 /// of any size.
 fn scaling(bench: &Bench) -> Result<Samples, BenchError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    pool.map_err(|error| BenchError(error.to_string()))?.install(|| costs_by_size(bench))
+    rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| costs_by_size(bench))
 }
 
 /// The companies take turns, so that a slow minute of the machine strikes all alike.

@@ -36,15 +36,18 @@
 //! | 10 % | the hash of the state, once a week |
 //! | 6 % | the rest |
 //!
-//! On two threads all of it but about a twentieth is shared out. What helped, bit for bit as before: rounds in which a
-//! block goes through several mechanisms while it is in the cache, instead of a pass each; pieces of work as small as
-//! two blocks, because those who came on one day are due on one day, side by side; the hash of the state as a tree, each
-//! thread hashing the bytes it has collected; what follows from a day beside the next day; days filled into facts that
-//! the writer of the database has done with, instead of fresh memory. What did not: satisfaction,
-//! calls and usage compiled for registers four times as wide (they wait for memory); asking for the columns of a block
-//! before they are needed; other purge delays and page sizes of the allocator; a second thread kept awake between the
-//! steps of a day, where two processors share a core. The first days of a week with a database are slower than those in
-//! memory because both threads have slept: a company in memory that sleeps a second before each week is as slow.
+//! On two threads all of it but about a twentieth is shared out. What helped, bit for bit as before: rounds in which
+//! a block goes through several mechanisms while it is in the cache, instead of a pass each; pieces of work as small
+//! as two blocks, because those who came on one day are due on one day, side by side; the hash of the state as a
+//! tree, each thread hashing the bytes it has collected; what follows from a day beside the next day; days filled
+//! into facts that the writer of the database has done with, instead of fresh memory.
+//!
+//! What did not: satisfaction, calls and usage compiled for registers four times as wide (they wait for memory);
+//! asking for the columns of a block before they are needed; other purge delays and page sizes of the allocator; a
+//! second thread kept awake between the steps of a day, where two processors share a core.
+//!
+//! The first days of a week with a database are slower than those in memory because both threads have slept: a
+//! company in memory that sleeps a second before each week is as slow.
 //!
 //! **The floor.** A day reads and writes about 104 bytes of each subscriber's columns (usage 21, calls and satisfaction
 //! 65, closing 8, billing days 2, the hash of the facts 8), and a seventh of the 171 bytes of a row for the hash of the
@@ -229,7 +232,14 @@ macro_rules! from_errors {
         }
     )*};
 }
-from_errors!(RunError, SessionError, Refusal, super::policy::PolicyError, std::io::Error);
+from_errors!(
+    RunError,
+    SessionError,
+    Refusal,
+    super::policy::PolicyError,
+    std::io::Error,
+    rayon::ThreadPoolBuildError
+);
 
 #[cfg(test)]
 mod tests {

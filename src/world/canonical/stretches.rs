@@ -13,7 +13,8 @@ use super::CanonicalHasher;
 /// Bytes that are hashed together, a power of two: a subtree of the hash. They stay in the cache of a core.
 const SUBTREE: usize = 1 << 20;
 
-/// Subtrees that one thread hashes after each other, with the memory of the first, if there are more than two of these.
+/// Subtrees that one thread hashes after each other, with the memory of the first; fewer where that would leave a second
+/// thread without any.
 const SUBTREES_TOGETHER: usize = 4;
 
 /// Some canonical bytes whose number is known before they are collected.

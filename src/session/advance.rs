@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::act::{Via, not_saved};
+use super::record::{StateHash, state_hash};
 use super::scripts::as_field;
 use super::snapshot::WEEKS_BETWEEN;
 use super::trajectory::{Durability, Line, seconds};
@@ -14,6 +15,7 @@ use crate::notation::json_number;
 use crate::tools::{self, Kind, Refusal};
 use crate::world::events::{DayFigures, Notice, Sender, SubscriptionEnded, SubscriptionStatus};
 use crate::world::market::surges::week_end;
+use crate::world::state::PartHash;
 
 /// A day that was just simulated.
 pub struct DayReport<'a> {
@@ -127,9 +129,8 @@ impl Session {
         self.refuse_if_over(Kind::Time)?;
         let until = self.next_decision_day().min(self.world.day + days.max(1));
         let from = self.world.day;
-        self.run_days(until, progress);
-        let remark = self.close_days("step", from);
-        Ok(self.report(remark))
+        let parts = self.run_days(until, progress);
+        Ok(self.close_days("step", from, parts))
     }
 
     /// Gives up an unfinished run for good.
@@ -149,13 +150,12 @@ impl Session {
     /// Runs the week of an `advance` line and closes it.
     pub(super) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
         let from = self.world.day;
-        self.run_days(self.next_decision_day(), progress);
-        let remark = self.close_days("week", from);
-        self.report(remark)
+        let parts = self.run_days(self.next_decision_day(), progress);
+        self.close_days("week", from, parts)
     }
 
-    /// Simulates days until one of them is reached, or cash is below zero.
-    pub(super) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) {
+    /// Simulates days until one of them is reached, or cash is below zero. Returns hashes of the state's parts.
+    pub(super) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> Vec<PartHash> {
         let week_end = self.next_decision_day();
         self.notices.clear();
         let mut day_before = None;
@@ -172,9 +172,7 @@ impl Session {
             self.called.clear();
             day_before = Some(notices);
         }
-        if day_before.is_some() {
-            self.follow_up();
-        }
+        self.end_days(day_before)
     }
 
     fn count_day(&mut self, figures: &DayFigures) {
@@ -222,22 +220,27 @@ impl Session {
         figures
     }
 
-    /// Writes the line that closes days that ran. Returns a remark if the disk did not take it.
-    fn close_days(&mut self, kind: &'static str, from: u32) -> Option<String> {
+    /// Writes the line that closes days that ran, and tells what came of them and what keeps the line from the disk.
+    fn close_days(&mut self, kind: &'static str, from: u32, parts: Vec<PartHash>) -> Week {
         let figures = self.settle_figures();
-        let fields = self.closing_fields(from, &figures);
+        let state = state_hash(parts, self.facts_chain.hash());
+        let fields = self.closing_fields(from, &figures, &state);
         let day = self.world.day;
-        let mut remark = self.append_done(kind, day, fields);
-        self.commit_projection();
+        let mut problem = self.append_done(kind, day, fields);
         self.facts_chain.close();
-        remark = remark.or_else(|| self.close_if_over());
+        problem = problem.or_else(|| self.close_if_over());
         let due = self.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.running_week.days_run == 0;
-        if due && remark.is_none() && self.sync_calls {
-            self.keep_snapshot(false);
-        }
-        remark.map(|problem| {
+        let snapshot = due && problem.is_none() && self.sync_calls;
+        let week = self.report(problem.map(|problem| {
             format!("{problem}; the days are simulated again when the run is opened, with the same result")
-        })
+        }));
+        // The database is written once everything is told: until then the processors are needed here.
+        if snapshot {
+            self.keep_snapshot(state.0, false);
+        } else {
+            self.commit_projection();
+        }
+        week
     }
 
     /// Closes a run whose last day has passed or whose cash is gone.
@@ -265,14 +268,18 @@ impl Session {
     }
 
     /// Fields of a `week` or `step` line: what a replay has to arrive at.
-    pub(super) fn closing_fields(&self, from: u32, figures: &WeekFigures) -> Map<String, Value> {
-        let (state_hash, parts) = self.state_hash();
+    pub(super) fn closing_fields(
+        &self,
+        from: u32,
+        figures: &WeekFigures,
+        state: &StateHash,
+    ) -> Map<String, Value> {
         Map::from_iter([
             ("days_run".to_owned(), (self.world.day - from).into()),
             ("figures".to_owned(), Value::Object(figures.as_json())),
             ("cash".to_owned(), json_number(self.world.finance.cash)),
-            ("state_hash".to_owned(), state_hash.into()),
-            ("parts".to_owned(), json!(parts)),
+            ("state_hash".to_owned(), state.0.clone().into()),
+            ("parts".to_owned(), json!(state.1)),
         ])
     }
 

@@ -12,6 +12,7 @@ use crate::world::day::step_day;
 use crate::world::events::{DayFigures, Facts};
 use crate::world::params::Params;
 use crate::world::random::Streams;
+use crate::world::state::PartHash;
 
 /// The parts of a session that a day leaves its traces in.
 struct Aftermath<'a> {
@@ -54,11 +55,24 @@ impl Session {
         figures
     }
 
-    /// What follows from the last day or call.
+    /// What follows from a call.
     pub(super) fn follow_up(&mut self) {
         let notices = self.notice_texts();
         let Session { params, streams, facts, feed, facts_chain, projector, .. } = self;
         Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams }
             .follow(facts, notices);
+    }
+
+    /// What follows from the last day of some, if there was any, with its notices; meanwhile the state is hashed.
+    /// Returns the hashes of its parts.
+    pub(super) fn end_days(&mut self, last_day: Option<Vec<String>>) -> Vec<PartHash> {
+        let Session { world, params, streams, facts, feed, facts_chain, projector, .. } = self;
+        let aftermath = Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams };
+        let follow = || {
+            if let Some(notices) = last_day {
+                aftermath.follow(facts, notices);
+            }
+        };
+        rayon::join(|| world.part_hashes(), follow).0
     }
 }

@@ -264,7 +264,7 @@ impl Session {
     /// Hash of the whole state with one hash per part, by name. Right after a week it is the one that the
     /// trajectory recorded.
     pub fn state_hash(&self) -> (String, BTreeMap<&'static str, String>) {
-        record::state_hash(&self.world, self.facts_chain.hash())
+        record::state_hash(self.world.part_hashes(), self.facts_chain.hash())
     }
 
     /// The hidden state; only in debug runs.
@@ -286,9 +286,7 @@ impl Session {
         if let Some(trajectory) = &mut self.trajectory {
             trajectory.sync()?;
         }
-        // Lines without rows move the database on, too: a snapshot ahead of it could not be used.
-        self.commit_projection();
-        self.keep_snapshot(true);
+        self.keep_snapshot(self.state_hash().0, true);
         match &self.projector {
             Some(projector) => Ok(projector.wait()?),
             None => Ok(()),

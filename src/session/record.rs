@@ -14,11 +14,13 @@ use crate::voice;
 use crate::world::canonical::hash_of;
 use crate::world::events::{Facts, Sender};
 use crate::world::params::Params;
-use crate::world::state::{PartHash, World, combined_hash};
+use crate::world::state::{PartHash, combined_hash};
 
-/// Hash of the state and of the week's facts, with the hash of each part.
-pub(super) fn state_hash(world: &World, facts: blake3::Hash) -> (String, BTreeMap<&'static str, String>) {
-    let mut parts = world.part_hashes();
+/// Hash of the state and of the week's facts, with the hash of each part by its name.
+pub(super) type StateHash = (String, BTreeMap<&'static str, String>);
+
+/// Hash of a state with these parts and of the week's facts.
+pub(super) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> StateHash {
     parts.push(PartHash { part: "facts", hash: facts });
     let short = |hash: &blake3::Hash| hash.to_hex()[..16].to_owned();
     let by_name = parts.iter().map(|part| (part.part, short(&part.hash))).collect();

@@ -139,7 +139,7 @@ impl Snapshot {
         let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
         let notes: Notes<'static> = serde_json::from_str(&reader.read::<String>()?).ok()?;
         let chain = blake3::Hash::from_hex(&notes.facts_chain.0).ok()?;
-        let (world, facts) = (reader.read()?, reader.read()?);
+        let (world, facts): (World, Facts) = (reader.read()?, reader.read()?);
         let recalled = Recalled {
             facts_chain: FactsChain::resume(chain, notes.facts_chain.1),
             notes,
@@ -149,7 +149,7 @@ impl Snapshot {
             settings: reader.read()?,
             undo: reader.read()?,
         };
-        let (hash, _) = state_hash(&world, recalled.facts_chain.hash());
+        let (hash, _) = state_hash(world.part_hashes(), recalled.facts_chain.hash());
         (reader.left() == 0 && hash == self.header.state_hash).then_some(((world, facts), recalled))
     }
 }
@@ -170,12 +170,16 @@ impl Restore for UndoStep {
 }
 
 impl Session {
-    /// Keeps the present state as a snapshot, behind everything the database still has to take in. A closing one
-    /// vouches for the database's file too. A disk that refuses it takes away nothing but time.
-    pub(super) fn keep_snapshot(&self, closing: bool) {
-        let Some(folder) = self.folder.as_ref().filter(|_| self.trajectory.is_some()) else { return };
+    /// Keeps the present state, which has this hash, as a snapshot, behind everything the database has to take in up to
+    /// now. A closing one vouches for the database's file too. A disk that refuses it takes away nothing but time.
+    pub(super) fn keep_snapshot(&self, state_hash: String, closing: bool) {
+        let Some(folder) = self.folder.as_ref().filter(|_| self.trajectory.is_some()) else {
+            return self.commit_projection();
+        };
         let path = folder.join(FILE);
-        let (header, state) = (self.snapshot_header(), self.state_bytes());
+        let (header, state) = (self.snapshot_header(state_hash), self.state_bytes());
+        // Lines without rows move the database on, too: a snapshot ahead of it could not be used.
+        self.commit_projection();
         match &self.projector {
             None => write(&path, &header, &state),
             Some(projector) => projector.then(closing, move |database| {
@@ -184,14 +188,14 @@ impl Session {
         }
     }
 
-    fn snapshot_header(&self) -> Header {
+    fn snapshot_header(&self, state_hash: String) -> Header {
         Header {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             run: self.manifest.id.clone(),
             parameters_digest: self.manifest.parameters_digest.clone(),
             seq: self.position.seq,
             line_hash: self.position.line_hash.clone(),
-            state_hash: self.state_hash().0,
+            state_hash,
             database: None,
         }
     }

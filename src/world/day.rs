@@ -2,6 +2,7 @@
 
 use super::canonical::canonical;
 use super::customers::Customers;
+use super::customers::columns::sums;
 use super::enterprise::Negotiation;
 use super::events::{Category, DayFigures, Facts, LedgerEntry, LedgerNote};
 use super::finance::{Finance, pay_running_costs};
@@ -244,22 +245,22 @@ fn earn_from_ads(customers: &Customers, ads: &AdLoad<'_>, finance: &mut Finance,
 
 /// Cash, recurring revenue and stocks as they stand.
 pub fn closing_figures(world: &World) -> DayFigures {
-    // Sums of blocks, in block order: adding up money is as long a chain as there are subscribers.
-    let by_block = world.customers.survey(|group, block| {
-        if group.is_enterprise() {
-            let seats = || block.seats.iter().map(|seats| seats.trunc());
-            let paid =
-                block.effective_price.iter().zip(seats()).map(|(price, seats)| price * seats).sum::<f64>();
-            (paid, 0, seats().sum::<f64>() as u32)
-        } else {
-            (block.effective_price.iter().sum::<f64>(), block.len() as u32, 0)
-        }
-    });
     let (mut mrr, mut individual_subscribers, mut enterprise_seats) = (0.0, 0, 0);
-    for (paid, individuals, seats) in by_block {
-        mrr += paid;
-        individual_subscribers += individuals;
-        enterprise_seats += seats;
+    let blocks: Vec<_> = world.customers.blocks().collect();
+    for several in blocks.chunks(4) {
+        let prices: [&[f64]; 4] =
+            std::array::from_fn(|at| several.get(at).map_or(&[][..], |(_, block)| &block.effective_price));
+        for ((group, block), paid) in several.iter().zip(sums(prices)) {
+            if group.is_enterprise() {
+                let seats = || block.seats.iter().map(|seats| seats.trunc());
+                let deals = block.effective_price.iter().zip(seats());
+                mrr += deals.map(|(price, seats)| price * seats).sum::<f64>();
+                enterprise_seats += seats().sum::<f64>() as u32;
+            } else {
+                mrr += paid;
+                individual_subscribers += block.len() as u32;
+            }
+        }
     }
     DayFigures {
         day: world.day,

@@ -211,13 +211,48 @@ impl Block {
     /// Place of a row in its block's stream of random words.
     #[inline]
     pub fn place(&self, at: usize) -> usize {
-        ((self.n[at] - 1) % BLOCK) as usize
+        place_in_block(self.n[at])
     }
+}
+
+/// Place of a running number in its block's stream of random words.
+#[inline]
+pub fn place_in_block(n: u32) -> usize {
+    ((n - 1) % BLOCK) as usize
+}
+
+/// Sums of columns, each added up in its order. Every addition waits for the one before, so several columns are added
+/// up in the time of one.
+pub fn sums<const COLUMNS: usize>(columns: [&[f64]; COLUMNS]) -> [f64; COLUMNS] {
+    let common = columns.iter().map(|column| column.len()).min().unwrap_or(0);
+    let heads = columns.map(|column| &column[..common]);
+    let mut sums = [0.0; COLUMNS];
+    for at in 0..common {
+        for (sum, head) in sums.iter_mut().zip(heads) {
+            *sum += head[at];
+        }
+    }
+    for (sum, column) in sums.iter_mut().zip(columns) {
+        column[common..].iter().for_each(|value| *sum += value);
+    }
+    sums
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+
+    #[test]
+    fn columns_are_added_up_in_their_order_whatever_their_lengths() {
+        let column = |length: usize, seed: f64| -> Vec<f64> {
+            (0..length).map(|at| (at as f64 * seed).sin() * 1e3 + 0.1).collect()
+        };
+        let columns = [column(700, 0.3), column(3, 1.7), column(0, 1.0), column(41, 12.9)];
+        let one_by_one = columns.each_ref().map(|column| column.iter().fold(0.0, |sum, value| sum + value));
+        assert_eq!(sums(columns.each_ref().map(Vec::as_slice)), one_by_one);
+        let alike = [&columns[0][..], &columns[0][..]];
+        assert_eq!(sums(alike), [one_by_one[0]; 2]);
+    }
     use proptest::prelude::*;
 
     /// A subscriber with plain values; tests change what matters to them.

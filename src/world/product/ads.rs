@@ -37,9 +37,12 @@ impl<'a> AdLoad<'a> {
     /// What satisfaction feels and revenue counts: global + group + customer.
     #[inline]
     pub fn for_customer(&self, group: Group, customer: u32) -> f64 {
-        if !self.personal {
-            return self.by_group[group];
-        }
+        if self.personal { self.for_single_customer(group, customer) } else { self.by_group[group] }
+    }
+
+    /// The same where some customers have a level of their own. Apart, so that the usual case costs nothing.
+    #[cold]
+    fn for_single_customer(&self, group: Group, customer: u32) -> f64 {
         let own = self.setting.for_customer(customer);
         if own == 0.0 {
             self.by_group[group]

@@ -1,6 +1,6 @@
 //! Delivered and perceived quality, one function per term (chapter 20 §13).
 
-use crate::world::params::{Ads, Params, PerceivedQuality, Quality};
+use crate::world::params::{Ads, Params, PerceivedQuality, Quality, UsageQuota};
 
 /// Quality delivered to a group on a plan: (base + shared + group bonus) times the model's multiplier.
 #[inline]
@@ -11,10 +11,9 @@ pub fn delivered_quality(base: f64, shared_bonus: f64, group_bonus: f64, multipl
 /// Share of a demand that a quota covers, 0..=1; no demand is always covered.
 #[inline]
 pub fn quota_factor(quota: f64, demand: f64, quality: &Quality) -> f64 {
-    if demand <= 0.0 {
-        return 1.0;
-    }
-    (quota.max(0.0) / demand).clamp(quality.quota_factor_min, quality.quota_factor_max)
+    // Divided in any case: several rows are calculated at once where nothing branches.
+    let covered = (quota.max(0.0) / demand).clamp(quality.quota_factor_min, quality.quota_factor_max);
+    if demand <= 0.0 { 1.0 } else { covered }
 }
 
 /// Quality lost to overload and outages today: 0.08 o + 0.20 outage (0 or 1).
@@ -96,11 +95,10 @@ pub fn perceived_quality(experience: Experience, form: PerceivedQuality) -> f64 
 /// What a quota is compared with: units a day, or of a whole billing period.
 #[inline]
 pub fn quota_demand(daily_demand_today: f64, daily_rate: f64, params: &Params) -> f64 {
+    let of_period = daily_rate * f64::from(params.billing.billing_period_days);
     match params.fidelity.usage_quota {
-        crate::world::params::UsageQuota::Daily => daily_demand_today,
-        crate::world::params::UsageQuota::Period => {
-            daily_rate * f64::from(params.billing.billing_period_days)
-        }
+        UsageQuota::Daily => daily_demand_today,
+        UsageQuota::Period => of_period,
     }
 }
 

@@ -7,7 +7,7 @@
 use super::pools::Resolution;
 use crate::world::canonical::canonical;
 use crate::world::customers::Customers;
-use crate::world::customers::columns::{BLOCK, Block};
+use crate::world::customers::columns::{BLOCK, Block, place_in_block};
 use crate::world::events::{Facts, IssueOpened};
 use crate::world::identifiers::Group;
 use crate::world::params::{Issues, Params, Quality};
@@ -100,27 +100,55 @@ pub struct Hotline<'a> {
     pub streams: &'a Streams,
 }
 
+/// Rows whose answers are one word of bits.
+const ROWS: usize = u64::BITS as usize;
+
 /// Reads who of a block has an issue and who opens one today.
+///
+/// Hardly anybody's answer can be foreseen, so nothing branches on it: answers are bits first and lists afterwards.
 pub fn read_calls(group: Group, number: u32, block: &Block, hotline: &Hotline<'_>) -> Calls {
     let &Hotline { day, outage, params, streams } = hotline;
     let keys = [u64::from(day), group.index() as u64, u64::from(number)];
     let mut words = [0u32; BLOCK as usize];
     streams.open(Part::IssueOpening, keys).fill(&mut words);
-    let (mut open, mut new) = (Vec::new(), Vec::new());
-    for (at, (&open_days, &satisfaction)) in block.open_issue_days.iter().zip(&block.satisfaction).enumerate()
-    {
-        if open_days > 0 {
-            open.push(at as u16);
-            continue;
+    let issues = &params.issues.clone();
+    let mut waiting = [0u64; BLOCK as usize / ROWS];
+    let mut calling = waiting;
+    let (mut seats, mut probabilities) = ([1.0; ROWS], [0.0; ROWS]);
+    for (part, first) in (0..block.len()).step_by(ROWS).enumerate() {
+        let rows = (block.len() - first).min(ROWS);
+        let range = first..first + rows;
+        if group.is_enterprise() {
+            seats.iter_mut().zip(&block.seats[range.clone()]).for_each(|(whole, own)| *whole = own.trunc());
         }
-        let seats = if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 };
-        if word_below(words[block.place(at)], issue_probability(satisfaction, outage, seats, &params.issues))
-        {
-            new.push(at as u16);
+        let satisfaction = &block.satisfaction[range.clone()];
+        for at in 0..rows {
+            probabilities[at] = issue_probability(satisfaction[at], outage, seats[at], issues);
+        }
+        let (open_days, n) = (&block.open_issue_days[range.clone()], &block.n[range]);
+        for at in 0..rows {
+            let waits = open_days[at] > 0;
+            let calls = !waits & word_below(words[place_in_block(n[at])], probabilities[at]);
+            waiting[part] |= u64::from(waits) << at;
+            calling[part] |= u64::from(calls) << at;
         }
     }
+    let (open, new) = (positions(&waiting), positions(&calling));
     let solved = vec![false; open.len()];
     Calls { group, block: number, open, new, solved, first_issue: 0 }
+}
+
+/// Positions of the bits that are set, ascending.
+fn positions(bits: &[u64]) -> Vec<u16> {
+    let mut positions = Vec::with_capacity(bits.iter().map(|word| word.count_ones() as usize).sum());
+    for (word, first) in bits.iter().zip((0u16..).step_by(ROWS)) {
+        let mut left = *word;
+        while left != 0 {
+            positions.push(first + left.trailing_zeros() as u16);
+            left &= left - 1;
+        }
+    }
+    positions
 }
 
 /// Shares out the money of the day among the open issues and numbers the new ones, in the order of their blocks.
@@ -171,7 +199,7 @@ pub fn record(by_block: Vec<Settled>, facts: &mut Facts) {
 
 /// Solves or ages the open issues of a block; returns the numbers of the solved ones.
 fn settle_open(block: &mut Block, own: &Calls, outage: bool, params: &Params) -> Vec<u32> {
-    let mut resolved = Vec::new();
+    let mut resolved = Vec::with_capacity(own.solved.iter().filter(|solved| **solved).count());
     for (&at, &solved) in own.open.iter().zip(&own.solved) {
         let at = usize::from(at);
         let (relationship, days) = (&mut block.relationship[at], &mut block.open_issue_days[at]);
@@ -221,6 +249,13 @@ mod tests {
             near(issue_probability(satisfaction, false, seats, &issues), quiet);
             near(issue_probability(satisfaction, true, seats, &issues), outage);
         }
+    }
+
+    #[test]
+    fn bits_are_listed_in_their_order() {
+        assert_eq!(positions(&[0, 0]), []);
+        assert_eq!(positions(&[1 | 1 << 63, 0, 1 << 5 | 1 << 6]), [0, 63, 133, 134]);
+        assert_eq!(positions(&[u64::MAX; 16]), (0..1024).collect::<Vec<u16>>());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Daily satisfaction of every active subscriber (chapter 20 §15, step 13).
 
-use std::ops::AddAssign;
+use std::ops::{AddAssign, Range};
 
 use crate::world::customers::columns::Block;
 use crate::world::day::Morning;
@@ -59,43 +59,92 @@ pub struct Conditions<'a> {
     pub params: &'a Params,
 }
 
+/// Rows that are worked on together: few enough for what is looked up for them to stay close at hand.
+const ROWS: usize = 64;
+
+/// What has to be looked up row by row.
+struct Found {
+    delivered: [f64; ROWS],
+    quota: [f64; ROWS],
+    tenure: [f64; ROWS],
+    ads: [f64; ROWS],
+}
+
+impl Found {
+    fn nothing() -> Found {
+        Found { delivered: [0.0; ROWS], quota: [0.0; ROWS], tenure: [0.0; ROWS], ads: [0.0; ROWS] }
+    }
+
+    #[inline]
+    fn look_up(
+        &mut self,
+        group: Group,
+        block: &Block,
+        rows: Range<usize>,
+        delivered: &ByPlan<f64>,
+        conditions: &Conditions<'_>,
+    ) {
+        let &Conditions { morning, ads, tenure, .. } = conditions;
+        let (plan, start_day) = (&block.plan[rows.clone()], &block.start_day[rows.clone()]);
+        let customer = &block.customer[rows];
+        for at in 0..plan.len().min(ROWS) {
+            self.delivered[at] = delivered[plan[at]];
+            self.quota[at] = morning.quotas[plan[at]];
+            self.tenure[at] = tenure.bonus(morning.day - start_day[at]);
+            self.ads[at] = ads.for_customer(group, customer[at]);
+        }
+    }
+}
+
 /// Moves the satisfaction of everybody in a block and returns what they contribute to their group's reputation.
 ///
-/// One linear pass over the columns it needs. What all rows share is copied out first: the compiler cannot know that
-/// no column overlaps the parameters, and would read them again for every row.
+/// One pass over the columns it needs, some rows at a time. Looking up, calculating and adding up are loops of their
+/// own; what all rows share is copied out first, and what is calculated goes to the column afterwards. So the compiler
+/// sees that rows do not depend on each other, and calculates several at once.
 pub fn update(group: Group, block: &mut Block, conditions: &Conditions<'_>) -> Mood {
-    let &Conditions { morning, service, ads, tenure, params } = conditions;
-    let (quality, reputation) = (params.quality.clone(), params.reputation.clone());
-    let penalty = service_penalty(service.overload, service.outage, &quality);
+    let &Conditions { morning, service, params, .. } = conditions;
+    let (quality, reputation) = (&params.quality.clone(), &params.reputation.clone());
+    let penalty = service_penalty(service.overload, service.outage, quality);
     let delivered = ByPlan::from_fn(|plan| morning.delivered(group, plan) - penalty);
-    let (day, weekday, quotas) = (morning.day, morning.weekday, morning.quotas);
-    let expectation = morning.expectations[group].quality;
+    let (weekday, expectation) = (morning.weekday, morning.expectations[group].quality);
     let form = params.fidelity.perceived_quality;
     let alpha = params.satisfaction.satisfaction_ema_alpha;
-    let rows = block.len();
-    let (plan, rate, start_day) = (&block.plan[..rows], &block.usage_rate[..rows], &block.start_day[..rows]);
-    let (relationship, open_days) = (&block.relationship[..rows], &block.open_issue_days[..rows]);
-    let (customer, sensitivity) = (&block.customer[..rows], &block.ads_quality_sensitivity[..rows]);
-    let (required, satisfaction) = (&block.required[..rows], &mut block.satisfaction[..rows]);
-    let mut sum = 0.0;
-    for at in 0..rows {
-        let demand = quota_demand(rate[at] * weekday, rate[at], params);
-        let perceived = perceived_quality(
-            Experience {
-                delivered: delivered[plan[at]],
-                relationship: relationship_bonus(relationship_as_read(relationship[at], &quality), &quality),
-                tenure: tenure.bonus(day - start_day[at]),
-                quota: quota_factor(quotas[plan[at]], demand, &quality),
-                issues: quality.issue_penalty_per_open_day * f64::from(open_days[at]),
-                ads: sensitivity[at] * ads.for_customer(group, customer[at]),
-            },
-            form,
-        );
-        let instant = perceived - (required[at] + expectation);
-        satisfaction[at] = moved_satisfaction(satisfaction[at], instant, alpha);
-        sum += contribution(satisfaction[at], &reputation);
+    let (mut found, mut moved) = (Found::nothing(), [0.0; ROWS]);
+    let (mut sum, count) = (0.0, block.len());
+    for first in (0..count).step_by(ROWS) {
+        let rows = (count - first).min(ROWS);
+        let range = first..first + rows;
+        found.look_up(group, block, range.clone(), &delivered, conditions);
+        let rate = &block.usage_rate[range.clone()];
+        let (relationship, required) = (&block.relationship[range.clone()], &block.required[range.clone()]);
+        let open_days = &block.open_issue_days[range.clone()];
+        let sensitivity = &block.ads_quality_sensitivity[range.clone()];
+        let satisfaction = &mut block.satisfaction[range];
+        for at in 0..rows {
+            let demand = quota_demand(rate[at] * weekday, rate[at], params);
+            let perceived = perceived_quality(
+                Experience {
+                    delivered: found.delivered[at],
+                    relationship: relationship_bonus(
+                        relationship_as_read(relationship[at], quality),
+                        quality,
+                    ),
+                    tenure: found.tenure[at],
+                    quota: quota_factor(found.quota[at], demand, quality),
+                    issues: quality.issue_penalty_per_open_day * f64::from(open_days[at]),
+                    ads: sensitivity[at] * found.ads[at],
+                },
+                form,
+            );
+            let instant = perceived - (required[at] + expectation);
+            moved[at] = moved_satisfaction(satisfaction[at], instant, alpha);
+        }
+        satisfaction.copy_from_slice(&moved[..rows]);
+        for satisfaction in &moved[..rows] {
+            sum += contribution(*satisfaction, reputation);
+        }
     }
-    Mood { sum, count: rows as u32 }
+    Mood { sum, count: count as u32 }
 }
 
 #[cfg(test)]
@@ -149,6 +198,39 @@ mod tests {
         };
         let moved = next_satisfaction(row, &day, service, &setting);
         assert!((moved - 0.158865172).abs() < 1e-9, "{moved}");
+    }
+
+    #[test]
+    fn nobody_feels_what_others_feel() {
+        let (params, day, service) = (Params::shipped(), morning(190), ServiceDay::quiet());
+        let setting = AdsStrength { by_customer: PerCustomer::from([(70, 0.4)]), ..AdsStrength::default() };
+        let ads = AdLoad::of(&setting, &params);
+        let tenure = TenureTable::up_to(200, &params.quality);
+        let conditions =
+            Conditions { morning: &day, service: &service, ads: &ads, tenure: &tenure, params: &params };
+        let row = |n: u32| Subscriber {
+            plan: Plan::ALL[n as usize % 3],
+            usage_rate: f64::from(n % 5) * 30.0,
+            start_day: n,
+            relationship: f64::from(n % 4) / 3.0,
+            open_issue_days: n % 7,
+            satisfaction: f64::from(n % 9) / 4.0 - 1.0,
+            required: 0.001 * f64::from(n),
+            ..subscriber(n)
+        };
+        for count in [1, 63, 64, 65, 150] {
+            let mut together = Block::default();
+            (1..=count).for_each(|n| together.push(row(n)));
+            let mood = update(group(), &mut together, &conditions);
+            let mut moods = Mood::default();
+            for n in 1..=count {
+                let mut alone = Block::default();
+                alone.push(row(n));
+                moods += update(group(), &mut alone, &conditions);
+                assert_eq!(together.row(n as usize - 1), alone.row(0), "row {n} of {count}");
+            }
+            assert_eq!(mood, moods, "{count} rows");
+        }
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub struct CanonicalHasher {
     piece: usize,
 }
 
-/// Bytes that are hashed together.
+/// Bytes that are hashed together: a power of two, so that the tree of the hash is made of whole branches.
 const PIECE: usize = 1 << 16;
 /// Values of a column that are put together before they are appended.
 const TOGETHER: usize = 128;
@@ -68,10 +68,13 @@ impl CanonicalHasher {
         }
     }
 
+    /// Hashes whole pieces and keeps what is left over: a hash that stopped within a chunk goes on chunk by chunk until
+    /// it stands at a round number again, and many at once are several times as fast.
     #[cold]
     fn hash_pending(&mut self) {
-        self.hasher.update(&self.pending);
-        self.pending.clear();
+        let whole = self.pending.len() / self.piece * self.piece;
+        self.hasher.update(&self.pending[..whole]);
+        self.pending.drain(..whole);
     }
 
     /// The hash of everything fed so far.

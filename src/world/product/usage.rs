@@ -48,24 +48,21 @@ pub fn meter(customers: &mut Customers, morning: &Morning, params: &Params, fact
 }
 
 fn meter_block(block: &mut Block, morning: &Morning, params: &Params) -> (ByPlan<u64>, UsageRows) {
+    let mut by_plan = ByPlan([0u64; 3]);
+    let per_period = params.fidelity.usage_quota == UsageQuota::Period;
     let (weekday, quotas) = (morning.weekday, morning.quotas);
-    let rates = block.plan.iter().zip(&block.usage_rate);
-    let units: Vec<u32> = if params.fidelity.usage_quota == UsageQuota::Period {
-        let rows = rates.zip(&mut block.period_usage);
-        rows.map(|((&plan, &rate), so_far)| {
-            let used = usage_today(rate, weekday, (quotas[plan] - *so_far as f64).max(0.0));
-            *so_far += u64::from(used);
+    let rows = block.plan.iter().zip(&block.usage_rate).zip(&block.period_usage);
+    let units: Vec<u32> = rows
+        .map(|((&plan, &rate), &so_far)| {
+            let quota = if per_period { (quotas[plan] - so_far as f64).max(0.0) } else { quotas[plan] };
+            let used = usage_today(rate, weekday, quota);
+            by_plan[plan] += u64::from(used);
             used
         })
-        .collect()
-    } else {
-        rates.map(|(&plan, &rate)| usage_today(rate, weekday, quotas[plan])).collect()
-    };
-    // A sum for each plan on its own: a shared loop would wait for memory that it has just written.
-    let by_plan = ByPlan::from_fn(|plan| {
-        let rows = block.plan.iter().zip(&units);
-        rows.map(|(own, used)| if *own == plan { u64::from(*used) } else { 0 }).sum()
-    });
+        .collect();
+    if per_period {
+        block.period_usage.iter_mut().zip(&units).for_each(|(sum, used)| *sum += u64::from(*used));
+    }
     (by_plan, UsageRows { customers: block.customer.clone(), units })
 }
 

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::sync::Mutex;
 
 use serde::{Deserialize, Deserializer};
-use serde_json::{Number, Value};
+use serde_json::{Number, Value, json};
 
 /// A number with thousands separators and fixed decimals, for instance `1,234,567.5`.
 pub fn grouped(value: f64, decimals: usize) -> String {
@@ -79,6 +79,32 @@ pub fn json_number(value: f64) -> Value {
         Value::from(value as i64)
     } else {
         Number::from_f64(value).map_or(Value::Null, Value::Number)
+    }
+}
+
+/// A number with a decimal point or an exponent, as the cells of JSON tables show it: `4.0`, `0.25`, `1e+16`.
+pub fn point_number(value: f64) -> String {
+    let text = format!("{value:?}");
+    match text.split_once('e') {
+        None => text,
+        Some((digits, exponent)) => {
+            let (sign, exponent) = exponent.strip_prefix('-').map_or(('+', exponent), |rest| ('-', rest));
+            format!("{digits}e{sign}{exponent:0>2}")
+        }
+    }
+}
+
+/// JSON in one line with a blank after every colon and comma, and numbers as [`point_number`] writes them.
+pub fn spaced_json(value: &Value) -> String {
+    let list = |parts: Vec<String>| parts.join(", ");
+    match value {
+        Value::Array(values) => format!("[{}]", list(values.iter().map(spaced_json).collect())),
+        Value::Object(map) => {
+            let entry = |(key, value): (&String, &Value)| format!("{}: {}", json!(key), spaced_json(value));
+            format!("{{{}}}", list(map.iter().map(entry).collect()))
+        }
+        Value::Number(number) if number.is_f64() => number.as_f64().map_or_else(String::new, point_number),
+        other => other.to_string(),
     }
 }
 
@@ -177,6 +203,23 @@ mod tests {
     fn whole_numbers_lose_their_point_in_json() {
         let value = serde_json::json!({"a": 12.0, "b": [0.5, 3.0], "c": "4.0"});
         assert_eq!(plain_numbers(value).to_string(), r#"{"a":12,"b":[0.5,3],"c":"4.0"}"#);
+    }
+
+    #[test]
+    fn json_of_cells_is_spaced_and_keeps_decimal_points() {
+        let value = serde_json::json!({"global": 0.0, "by_group": {"S2": 4.0, "E\"1": 0.25}, "list": [1, 2.5, "a"], "no": {}});
+        let text =
+            r#"{"global": 0.0, "by_group": {"S2": 4.0, "E\"1": 0.25}, "list": [1, 2.5, "a"], "no": {}}"#;
+        assert_eq!(spaced_json(&value), text);
+        for (number, text) in [
+            (1e15, "1000000000000000.0"),
+            (1e16, "1e+16"),
+            (1e-5, "1e-05"),
+            (1e-4, "0.0001"),
+            (1.5e300, "1.5e+300"),
+        ] {
+            assert_eq!(point_number(number), text);
+        }
     }
 
     #[test]

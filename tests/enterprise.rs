@@ -317,6 +317,9 @@ fn the_week_counts_threads_replies_and_what_waits() {
     // What was written since the week is told, and cannot be taken back.
     answer(run);
     let done = run.observe().purchases;
-    assert!(done.iter().any(|line| line.contains(" offered C $")), "{done:?}");
+    assert!(
+        done.iter().any(|line| line.starts_with("offered to customer ") && line.contains(": C $")),
+        "{done:?}"
+    );
     assert_eq!(run.undo(Via::Script).expect_err("nothing was set").code, "nothing_to_undo");
 }

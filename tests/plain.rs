@@ -313,8 +313,9 @@ fn weeks_and_runs_are_told() {
     for part in [
         "> report\nrefused no_week_yet: no week has passed yet; next lets one pass\n",
         "> report\nweek to day 7: cash -$",
-        "running costs -$",
-        "forecast of 1 week ago: below the interval, missed by ",
+        "capacity -$",
+        "decided before it: price A: 0 → 12 $/month",
+        "forecast of 1 week ago: inside the interval, missed by ",
         "new: ",
         "> report run\n# NovaMind · run ",
         "price A: 0 → 12 $/month",

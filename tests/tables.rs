@@ -221,21 +221,31 @@ fn overrides_keep_the_whole_family_after_every_call() {
     call(&mut session, "set_targeted_ops_spend", json!({"by_plan": {"A": 10}, "by_customer": {"42": 7}}));
     call(&mut session, "set_promotion", json!({}));
     days(&mut session, 3);
-    call(&mut session, "set_targeted_dev_spend", json!({"S1": 4000}));
+    call(&mut session, "set_targeted_dev_spend", json!({"S1": 4000, "E1": 80.0, "S2": 0.5}));
+    call(&mut session, "set_targeted_ad_spend", json!({"linkedin": {"E1": 80, "S1": 40.0}}));
+    call(&mut session, "set_targeted_ad_spend", json!({"E1": {"linkedin": 80}, "S1": {"linkedin": 40.0}}));
+    call(&mut session, "set_ads_strength", json!({"by_group": {"S1": 1}}));
     let kept =
         rows(&mut session, "SELECT id, day, tool_name, setting_type, settings_json FROM config_overrides");
     let row = |id, day, tool: &str, kind: &str, json: &str| {
         let text = |text: &str| Cell::Text(text.to_owned());
         vec![Cell::Integer(id), Cell::Integer(day), text(tool), text(kind), text(json)]
     };
-    let ops = r#"{"by_group":{"E1":30},"by_plan":{"A":10},"by_group_plan":{},"by_customer":{"42":7}}"#;
-    let none = r#"{"by_group":{"E1":30},"by_plan":{},"by_group_plan":{},"by_customer":{}}"#;
-    let promotion = r#"{"global":0,"by_group":{},"by_customer":{},"by_group_plan":{}}"#;
+    let ops = r#"{"by_group": {"E1": 30.0}, "by_plan": {"A": 10.0}, "by_group_plan": {}, "by_customer": {"42": 7.0}}"#;
+    let none = r#"{"by_group": {"E1": 30.0}, "by_plan": {}, "by_group_plan": {}, "by_customer": {}}"#;
+    let promotion = r#"{"global": 0.0, "by_group": {}, "by_customer": {}, "by_group_plan": {}}"#;
+    // Budgets of ads and development are kept as they were sent, all other amounts as numbers with a point.
+    let development = r#"{"targeted_spend": {"S1": 4000, "E1": 80.0, "S2": 0.5}}"#;
+    let ads = r#"{"targeted_spend": {"linkedin": {"E1": 80, "S1": 40.0}}}"#;
+    let strength = r#"{"global": 0.0, "by_group": {"S1": 1.0}, "by_customer": {}}"#;
     let expected = [
         row(1, 0, "set_targeted_ops_spend", "targeted_ops_spend", none),
         row(2, 0, "set_targeted_ops_spend", "targeted_ops_spend", ops),
         row(3, 0, "set_promotion", "promotion", promotion),
-        row(4, 3, "set_targeted_dev_spend", "targeted_dev_spend", r#"{"targeted_spend":{"S1":4000}}"#),
+        row(4, 3, "set_targeted_dev_spend", "targeted_dev_spend", development),
+        row(5, 3, "set_targeted_ad_spend", "targeted_ad_spend", ads),
+        row(6, 3, "set_targeted_ad_spend", "targeted_ad_spend", ads),
+        row(7, 3, "set_ads_strength", "ads_strength", strength),
     ];
     assert_eq!(kept, expected);
 }
@@ -329,7 +339,8 @@ fn research_discovery_and_the_economy_are_announced() {
     };
     let levels = |values: [i64; 4]| values.map(Cell::Integer).to_vec();
     assert_eq!(level(&mut session, &group), levels([1, 1, 7, 7]));
-    assert_eq!(level(&mut session, "S1"), levels([1, 0, 0, 0]));
+    let initial = [Cell::Integer(1), Cell::Integer(0), Cell::Integer(0), Cell::Null];
+    assert_eq!(level(&mut session, "S1"), initial);
     let unknown = "SELECT count(*) FROM group_info_levels WHERE info_level = 0 AND discovered_day IS NULL AND last_research_day IS NULL";
     assert_eq!(number(&mut session, unknown), 19.0);
     let notice = |session: &mut Session, kind: &str| {

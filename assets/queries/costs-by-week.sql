@@ -1,7 +1,8 @@
 -- title: Running costs by week
--- what: What capacity, computing, operations, development and advertising cost, week by week.
+-- what: What each kind of cost took week by week; a purchase counts in the week that follows its decision day.
 -- chart: line week capacity compute operations development advertising
-SELECT (day + 6) / 7 AS week, round(-sum((category = 'capacity') * amount)) AS capacity,
+SELECT CASE WHEN category IN ('research_project', 'market_research', 'group_research')
+        THEN day / 7 + 1 ELSE (day + 6) / 7 END AS week, round(-sum((category = 'capacity') * amount)) AS capacity,
     round(-sum((category = 'compute') * amount)) AS compute,
     round(-sum((category = 'operations') * amount)) AS operations,
     round(-sum((category = 'development') * amount)) AS development,

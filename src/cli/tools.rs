@@ -4,7 +4,7 @@ use clap::Args;
 use serde_json::Value;
 
 use super::{Failure, print};
-use crate::tools::{CATALOGUE, catalogue, describe, find};
+use crate::tools::{CATALOGUE, Numbers, catalogue, describe, find};
 
 /// Options of `tools`.
 #[derive(Debug, Args)]
@@ -18,10 +18,11 @@ pub struct Options {
 
 /// Runs the command.
 pub fn run(options: &Options) -> Result<(), Failure> {
+    let numbers = Numbers::shipped();
     let text = match (&options.name, options.json) {
         (None, false) => describe::overview(),
         (None, true) => {
-            let all: Value = CATALOGUE.iter().map(|tool| describe::as_json(*tool)).collect();
+            let all: Value = CATALOGUE.iter().map(|tool| describe::as_json(*tool, &numbers)).collect();
             format!("{all:#}\n")
         }
         (Some(name), json) => {
@@ -31,7 +32,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                     catalogue::nearest(name).join(", ")
                 ))
             })?;
-            if json { format!("{:#}\n", describe::as_json(tool)) } else { describe::manual(tool.spec()) }
+            if json {
+                format!("{:#}\n", describe::as_json(tool, &numbers))
+            } else {
+                describe::manual(tool.spec(), &numbers)
+            }
         }
     };
     print(&text)

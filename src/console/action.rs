@@ -167,6 +167,7 @@ actions! {
         Help "help" "help" "Show every key that works here."
         Changes "changes" "changes" "Show the settings changed since the last week."
         Undo "undo" "undo" "Take back the last setting of this week, and say what it was and is again; c lists the changes."
+        Redo "redo" "redo" "Set again what undo took back."
         FocusNext "focus-next" "next pane" "Move to the next pane."
         FocusPrevious "focus-previous" "previous pane" "Move to the previous pane."
         Report "report" "last week" "Show the report of the last week again."

@@ -2,14 +2,17 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
 
 use super::posts::{self, Posts};
 use crate::report::WeekReport;
+use crate::report::funnel::{Funnel, funnels};
+use crate::report::needs::{Need, needs};
 use crate::session::{
-    DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Observation, RunningStudy, Session,
-    Terms, WeekFigures,
+    DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Numbers, Observation, RunningStudy,
+    Session, Terms, WeekFigures,
 };
 use crate::tools::CATALOGUE;
 use crate::world::identifiers::Group;
@@ -29,6 +32,10 @@ pub struct Company {
     pub weeks: Vec<WeekFigures>,
     /// The last week told.
     pub week: Option<WeekReport>,
+    /// The way of companies to a deal, by known group.
+    pub funnels: Vec<Funnel>,
+    /// What needs the person, the most urgent first.
+    pub needs: Vec<Need>,
     /// What the last week put into the inbox: day and text.
     pub notices: Vec<(u32, String)>,
     /// Delivered quality of every known group.
@@ -59,6 +66,8 @@ pub struct Company {
     pub insights: BTreeMap<Group, Value>,
     /// Terms of the tools.
     pub terms: Terms,
+    /// The numbers that documentation names.
+    pub numbers: Arc<Numbers>,
     /// Studies of groups that run.
     pub studies: Vec<RunningStudy>,
     /// What the person should know about the opening of the run.
@@ -85,6 +94,8 @@ impl Company {
             cash_by_day: session.cash_by_day().to_vec(),
             weeks: session.weeks().to_vec(),
             week: WeekReport::of_session(session),
+            funnels: funnels(session),
+            needs: needs(session),
             notices: session.notices().to_vec(),
             quality: session.delivered_quality(),
             quality_base: session.quality_base(),
@@ -100,6 +111,7 @@ impl Company {
             market: read("get_market_overview"),
             insights: insights(session),
             terms: session.terms(),
+            numbers: session.numbers(),
             studies: session.running_studies(),
             remarks: session.remarks().to_vec(),
             replayed: false,

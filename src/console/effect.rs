@@ -18,6 +18,7 @@ impl Effect {
             Effect::Call { .. }
                 | Effect::ConfirmCall { .. }
                 | Effect::Undo
+                | Effect::Redo
                 | Effect::Advance { .. }
                 | Effect::SetMemo(_)
         )
@@ -64,6 +65,8 @@ pub enum Effect {
     },
     /// Take back the last setting.
     Undo,
+    /// Set again what the last undo took back.
+    Redo,
     /// Let the week pass.
     Advance {
         /// Why.
@@ -99,6 +102,17 @@ pub enum Effect {
     Show(ScreenId),
     /// Show the form of a tool.
     ShowTool(&'static str),
+    /// Show the form of a tool at the first cell that is for a group, a plan or the like.
+    ShowCell(&'static str, String),
+    /// Show the form of a tool with these arguments typed into it; none are with `Null`.
+    Prefill {
+        /// Tool.
+        tool: &'static str,
+        /// Arguments.
+        arguments: Value,
+    },
+    /// Show a thread in the inbox, by its number.
+    ShowThread(u32),
     /// Show a group on a screen that opens groups.
     ShowGroup(ScreenId, Group),
     /// Put a statement into the SQL editor.

@@ -129,9 +129,9 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
 fn draw_top(canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
     let seen = &company.seen;
     let change = seen.cash_change;
-    let runway = match seen.runway_weeks {
+    let runway = match seen.weeks_of_cash() {
         None => "∞".to_owned(),
-        Some(weeks) => format!("{weeks:.0} wk"),
+        Some(weeks) => format!("{weeks} wk"),
     };
     let poor = seen.runway_weeks.is_some_and(|weeks| weeks < 8.0);
     let wide = row.width >= 110;

@@ -123,11 +123,6 @@ impl Chord {
             && !self.alt
     }
 
-    /// Whether it is a letter, digit or sign without a modifier.
-    pub fn is_letter(&self) -> bool {
-        matches!(self.code, KeyCode::Char(_)) && !self.ctrl && !self.alt
-    }
-
     /// Whether a text field wants it for itself.
     pub fn is_text(&self) -> bool {
         match self.code {

@@ -68,6 +68,8 @@ pub enum News {
     Called(&'static str, Result<Value, Refusal>, Arc<Company>),
     /// A setting was taken back.
     Undone(Result<Vec<Change>, Refusal>, Arc<Company>),
+    /// A setting that was taken back was set again.
+    Redone(Result<Vec<Change>, Refusal>, Arc<Company>),
     /// A day was simulated: the day, the day on which the week ends.
     Day(u32, u32),
     /// A week has passed, or was refused.

@@ -20,7 +20,6 @@ macro_rules! readings {
 }
 
 readings! {
-    LedgerByWeek "ledger_by_week" "Dollars by week and category, without payments and lead costs: week, category, amount."
     Subscribers "subscribers" "Who is there: group, plan, customers, seats, dollars a month, there for 30 days."
     Usage "usage" "Usage of the last day: group, plan, users, seats, units."
     Arrivals "arrivals" "Leads of the last weeks: week, group, source, leads, those who signed."

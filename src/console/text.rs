@@ -59,6 +59,22 @@ pub fn number(value: f64) -> String {
     grouped(value, decimals)
 }
 
+/// Pieces side by side with dots between them, in lines that are not wider than some columns; no piece is broken unless
+/// it is wider than a line.
+pub fn flowed(pieces: &[String], width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for piece in pieces {
+        match lines.last_mut() {
+            Some(line) if line.width() + 3 + piece.width() <= width => {
+                line.push_str(" · ");
+                line.push_str(piece);
+            }
+            _ => lines.extend(wrapped(piece, width)),
+        }
+    }
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -58,6 +58,8 @@ pub enum Job {
     Call(&'static str, Value),
     /// Take back the last setting.
     Undo,
+    /// Set again what the last undo took back.
+    Redo,
     /// Let the week pass.
     Advance(String, Forecasts),
     /// Pass a question on once everything confirmed is in the database.
@@ -374,6 +376,10 @@ impl SessionThread {
             Job::Undo => {
                 let back = session.undo(Via::Palette);
                 Some(News::Undone(back, company(session)))
+            }
+            Job::Redo => {
+                let again = session.redo(Via::Palette);
+                Some(News::Redone(again, company(session)))
             }
             Job::Advance(rationale, forecasts) => {
                 let mut told = Instant::now();

@@ -8,34 +8,42 @@
 use std::borrow::Cow;
 use std::ffi::{CStr, c_int};
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::sync::Arc;
 
 use rusqlite::Connection;
 use rusqlite::ffi;
 use rusqlite::types::Type;
 use rusqlite::vtab::{
-    Context, Filters, IndexConstraintOp, IndexInfo, Module, VTab, VTabConfig, VTabConnection, VTabCursor,
+    Context, Filters, IndexConstraintOp, IndexInfo, Module, OrderBy, VTab, VTabConfig, VTabConnection,
+    VTabCursor,
 };
 
-use super::blocks::{AdsRun, PackedDay, Run, SharedShelf, Shelf};
+use super::blocks::{AdsRow, AdsRun, PackedDay, Run, Seen, Shelf};
+use super::by_customer::{ByCustomer, Indexes};
 use crate::world::events::UsageRows;
+use crate::world::identifiers::Group;
 
 /// Registers both tables on a connection.
-pub(super) fn register(connection: &Connection, shelf: &SharedShelf) -> rusqlite::Result<()> {
+pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::Result<()> {
     const USAGE: Module<'static, BlockTable<Usage>> = Module::eponymous_only_module();
     const ADS: Module<'static, BlockTable<Ads>> = Module::eponymous_only_module();
-    connection.create_module(c"daily_usage", &USAGE, Some(shelf.clone()))?;
-    connection.create_module(c"ads_revenue", &ADS, Some(shelf.clone()))
+    connection.create_module(c"daily_usage", &USAGE, Some(seen.clone()))?;
+    connection.create_module(c"ads_revenue", &ADS, Some(seen.clone()))
 }
 
 /// What the two tables differ in. Columns 0 and 1 are always day and customer_id.
-trait Kind: Send + Sync + 'static {
+trait Kind: Send + Sync + Sized + 'static {
     type Run: Run;
     const DECLARATION: &'static CStr;
 
     fn days(shelf: &Shelf) -> &[Arc<PackedDay>];
-    fn column(run: &Self::Run, at: usize, column: c_int, context: &mut Context) -> rusqlite::Result<()>;
+    fn indexes(seen: &Seen) -> &Indexes<Self::Run>;
+    fn column(row: RowOf<Self>, column: c_int, context: &mut Context) -> rusqlite::Result<()>;
 }
+
+/// What a row of a table holds besides day and customer.
+type RowOf<K> = <<K as Kind>::Run as Run>::Row;
 
 /// A row: day on the shelf, run of the day, position in the run.
 #[derive(Clone, Copy, Default)]
@@ -56,8 +64,12 @@ impl Kind for Usage {
         &shelf.usage
     }
 
-    fn column(run: &UsageRows, at: usize, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
-        context.set_result(run.units[at])
+    fn indexes(seen: &Seen) -> &Indexes<UsageRows> {
+        &seen.usage
+    }
+
+    fn column(units: u32, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
+        context.set_result(units)
     }
 }
 
@@ -72,11 +84,15 @@ impl Kind for Ads {
         &shelf.ads
     }
 
-    fn column(run: &AdsRun, at: usize, column: c_int, context: &mut Context) -> rusqlite::Result<()> {
+    fn indexes(seen: &Seen) -> &Indexes<AdsRun> {
+        &seen.ads
+    }
+
+    fn column(row: AdsRow, column: c_int, context: &mut Context) -> rusqlite::Result<()> {
         match column {
-            2 => context.set_result(run.group.id()),
-            3 => context.set_result(run.strengths[at]),
-            _ => context.set_result(run.revenues[at]),
+            2 => context.set_result(row.group.map(Group::id)),
+            3 => context.set_result(row.strength),
+            _ => context.set_result(row.revenue),
         }
     }
 }
@@ -102,26 +118,26 @@ fn letter(column: c_int, operator: IndexConstraintOp) -> Option<char> {
 struct BlockTable<K: Kind> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab,
-    shelf: SharedShelf,
+    seen: Arc<Seen>,
     kind: PhantomData<K>,
 }
 
 // SAFETY: the struct is `repr(C)` and starts with `sqlite3_vtab`, as the trait requires.
 unsafe impl<'vtab, K: Kind> VTab<'vtab> for BlockTable<K> {
-    type Aux = SharedShelf;
+    type Aux = Arc<Seen>;
     type Cursor = BlockCursor<'vtab, K>;
 
     fn connect(
         db: &mut VTabConnection,
-        shelf: Option<&SharedShelf>,
+        seen: Option<&Arc<Seen>>,
         _: &[u8],
         _: &[u8],
         _: &[u8],
         _: &[&[u8]],
     ) -> rusqlite::Result<(Cow<'static, CStr>, Self)> {
         db.config(VTabConfig::Innocuous)?;
-        let shelf = shelf.cloned().unwrap_or_default();
-        let table = BlockTable { base: ffi::sqlite3_vtab::default(), shelf, kind: PhantomData };
+        let seen = seen.cloned().unwrap_or_default();
+        let table = BlockTable { base: ffi::sqlite3_vtab::default(), seen, kind: PhantomData };
         Ok((Cow::Borrowed(K::DECLARATION), table))
     }
 
@@ -142,35 +158,46 @@ unsafe impl<'vtab, K: Kind> VTab<'vtab> for BlockTable<K> {
         info.set_estimated_cost(rows);
         info.set_estimated_rows(rows as i64);
         info.set_idx_str(&plan);
+        // Rows stand day by day.
+        let by_day = |order: OrderBy<'_>| order.column() == DAY && !order.is_order_by_desc();
+        let in_order = info.num_of_order_by() == 1 && info.order_bys().all(by_day);
+        info.set_order_by_consumed(in_order);
         Ok(true)
     }
 
     fn open(&mut self) -> rusqlite::Result<BlockCursor<'_, K>> {
-        let shelf = self.shelf.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
         Ok(BlockCursor {
             base: ffi::sqlite3_vtab_cursor::default(),
-            shelf,
+            shelf: self.seen.shelf(),
+            seen: self.seen.clone(),
             place: Place::default(),
             run: None,
-            last_day: f64::INFINITY,
+            days: 0..0,
             customer: None,
+            found: None,
             kind: PhantomData,
         })
     }
 }
+
+/// Rows of one customer in an index, those that are still to come.
+type Found<K> = (Arc<ByCustomer<<K as Kind>::Run>>, Range<usize>);
 
 #[repr(C)]
 struct BlockCursor<'vtab, K: Kind> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab_cursor,
     shelf: Shelf,
+    seen: Arc<Seen>,
     place: Place,
     /// The run of the place, once a row of it was asked for.
     run: Option<K::Run>,
-    /// Days after this one are not asked for.
-    last_day: f64,
+    /// Days on the shelf that are asked for.
+    days: Range<usize>,
     /// Only rows of this customer are asked for.
     customer: Option<f64>,
+    /// Where they stand, if there is an index; then there is no place.
+    found: Option<Found<K>>,
     kind: PhantomData<&'vtab K>,
 }
 
@@ -178,11 +205,7 @@ impl<K: Kind> BlockCursor<'_, K> {
     /// Moves on to the first row at or after the place that may be asked for.
     fn settle(&mut self) {
         let days = K::days(&self.shelf);
-        while let Some(day) = days.get(self.place.day) {
-            if f64::from(day.day) > self.last_day {
-                self.place.day = days.len();
-                return;
-            }
+        while let Some(day) = days.get(self.place.day).filter(|_| self.days.contains(&self.place.day)) {
             while self.place.run < day.len() {
                 if self.run.is_none()
                     && self.customer.is_none_or(|wanted| day.may_hold(self.place.run, wanted))
@@ -191,6 +214,7 @@ impl<K: Kind> BlockCursor<'_, K> {
                 }
                 let customers = self.run.as_ref().map_or(&[][..], Run::customers);
                 if let Some(wanted) = self.customer {
+                    K::indexes(&self.seen).looked_through(&self.days, customers.len());
                     let at = customers.partition_point(|customer| f64::from(*customer) < wanted);
                     self.place.at = self.place.at.max(at);
                     let found =
@@ -207,18 +231,47 @@ impl<K: Kind> BlockCursor<'_, K> {
         }
     }
 
-    /// Day and customer number of the place; nothing once all rows were seen.
-    fn keys(&self) -> Option<(u32, u32)> {
-        let day = K::days(&self.shelf).get(self.place.day)?;
-        Some((day.day, *self.run.as_ref()?.customers().get(self.place.at)?))
+    /// Number of the row; nothing once all rows were seen.
+    fn number(&self) -> Option<i64> {
+        match &self.found {
+            Some((index, rest)) => index.numbers.get(rest.start).copied(),
+            None => {
+                let day = K::days(&self.shelf).get(self.place.day)?;
+                Some(day.row_number(self.place.run, self.place.at))
+            }
+        }
+    }
+
+    /// Day of the row.
+    fn day(&self) -> Option<u32> {
+        match &self.found {
+            Some((index, rest)) => u32::try_from(index.numbers.get(rest.start)? >> 32).ok(),
+            None => K::days(&self.shelf).get(self.place.day).map(|day| day.day),
+        }
+    }
+
+    /// Customer of the row.
+    fn customer(&self) -> Option<u32> {
+        match &self.found {
+            Some(_) => self.customer.map(|customer| customer as u32),
+            None => self.run.as_ref()?.customers().get(self.place.at).copied(),
+        }
+    }
+
+    /// What else is in the row.
+    fn row(&self) -> Option<RowOf<K>> {
+        match &self.found {
+            Some((index, rest)) => index.rows.get(rest.start).copied(),
+            None => self.run.as_ref().map(|run| run.row(self.place.at)),
+        }
     }
 }
 
 // SAFETY: the struct is `repr(C)` and starts with `sqlite3_vtab_cursor`, as the trait requires.
 unsafe impl<K: Kind> VTabCursor for BlockCursor<'_, K> {
     fn filter(&mut self, _: c_int, plan: Option<&str>, values: &Filters<'_>) -> rusqlite::Result<()> {
-        let mut first_day = f64::NEG_INFINITY;
-        (self.last_day, self.customer) = (f64::INFINITY, None);
+        let (mut first_day, mut last_day) = (f64::NEG_INFINITY, f64::INFINITY);
+        (self.customer, self.found, self.run) = (None, None, None);
         for ((at, value), letter) in values.iter().enumerate().zip(plan.unwrap_or_default().chars()) {
             let number = match value.data_type() {
                 Type::Integer | Type::Real => values.get::<f64>(at)?,
@@ -227,50 +280,63 @@ unsafe impl<K: Kind> VTabCursor for BlockCursor<'_, K> {
                 _ => continue,
             };
             if number.is_nan() {
-                self.last_day = f64::NEG_INFINITY;
+                last_day = f64::NEG_INFINITY;
             }
             match letter {
-                '=' => (first_day, self.last_day) = (first_day.max(number), self.last_day.min(number)),
+                '=' => (first_day, last_day) = (first_day.max(number), last_day.min(number)),
                 '>' | 'g' => first_day = first_day.max(number),
-                '<' | 'l' => self.last_day = self.last_day.min(number),
+                '<' | 'l' => last_day = last_day.min(number),
                 _ => self.customer = Some(number),
             }
         }
-        let day = K::days(&self.shelf).partition_point(|day| f64::from(day.day) < first_day);
-        (self.place, self.run) = (Place { day, run: 0, at: 0 }, None);
+        let days = K::days(&self.shelf);
+        let end = days.partition_point(|day| f64::from(day.day) <= last_day);
+        self.days = days.partition_point(|day| f64::from(day.day) < first_day).min(end)..end;
+        if let Some(customer) = self.customer
+            && let Some(index) = K::indexes(&self.seen).get(days, &self.days)
+        {
+            let rows = index.rows_of(customer);
+            self.found = Some((index, rows));
+            return Ok(());
+        }
+        self.place = Place { day: self.days.start, run: 0, at: 0 };
         self.settle();
         Ok(())
     }
 
     fn next(&mut self) -> rusqlite::Result<()> {
-        self.place.at += 1;
-        self.settle();
+        match &mut self.found {
+            Some((_, rest)) => rest.start += 1,
+            None => {
+                self.place.at += 1;
+                self.settle();
+            }
+        }
         Ok(())
     }
 
     fn eof(&self) -> bool {
-        self.place.day >= K::days(&self.shelf).len()
+        match &self.found {
+            Some((_, rest)) => rest.is_empty(),
+            None => !self.days.contains(&self.place.day),
+        }
     }
 
     fn column(&self, context: &mut Context, column: c_int) -> rusqlite::Result<()> {
-        match (column, &self.run) {
-            (DAY, _) => context.set_result(self.keys().map(|(day, _)| day)),
-            (CUSTOMER, _) => context.set_result(self.keys().map(|(_, customer)| customer)),
-            (other, Some(run)) => K::column(run, self.place.at, other, context),
-            (_, None) => Ok(()),
+        match column {
+            DAY => context.set_result(self.day()),
+            CUSTOMER => context.set_result(self.customer()),
+            other => self.row().map_or(Ok(()), |row| K::column(row, other, context)),
         }
     }
 
     fn rowid(&self) -> rusqlite::Result<i64> {
-        let (day, customer) = self.keys().unwrap_or_default();
-        Ok(i64::from(day) << 32 | i64::from(customer))
+        Ok(self.number().unwrap_or_default())
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::sync::RwLock;
-
     use super::*;
     use crate::world::events::AdsRevenueRow;
     use crate::world::identifiers::Group;
@@ -287,7 +353,9 @@ mod tests {
         let ads = vec![Arc::new(PackedDay::pack(3, &AdsRun::runs_of(&[ads_row])))];
         let shelf = Shelf { usage: Arc::new(usage), ads: Arc::new(ads) };
         let connection = Connection::open_in_memory().expect("memory");
-        register(&connection, &Arc::new(RwLock::new(shelf))).expect("modules");
+        let seen = Arc::new(Seen::default());
+        seen.see(shelf);
+        register(&connection, &seen).expect("modules");
         connection
     }
 
@@ -322,6 +390,45 @@ mod tests {
             };
             assert_eq!(count("daily_usage"), count("plain"), "{condition}");
         }
+    }
+
+    #[test]
+    fn looking_up_many_customers_finds_what_looking_up_one_does() {
+        let connection = connection();
+        let sql = "WITH RECURSIVE n(x) AS (SELECT 0 UNION ALL SELECT x + 1 FROM n WHERE x < 300)
+                   SELECT count(u.rowid), sum(u.rowid), sum(u.usage_units), sum(u.day), sum(u.customer_id)
+                   FROM n LEFT JOIN daily_usage u ON u.customer_id = n.x % 110 AND u.day";
+        for (days, condition) in
+            [(" > 0", "1"), (" = 3", "day = 3"), (" BETWEEN 2 AND 4", "day BETWEEN 2 AND 4")]
+        {
+            let all: (i64, i64, i64, i64, i64) =
+                connection.query_row(&format!("{sql}{days}"), [], |row| row.try_into()).expect("an answer");
+            let scan = format!(
+                "SELECT count(*), sum(u.rowid), sum(usage_units), sum(day), sum(customer_id) FROM
+                 (WITH RECURSIVE n(x) AS (SELECT 0 UNION ALL SELECT x + 1 FROM n WHERE x < 300) SELECT x % 110 AS c FROM n)
+                 CROSS JOIN daily_usage u WHERE customer_id + 0 = c AND {condition}"
+            );
+            assert_eq!(connection.query_row(&scan, [], |row| row.try_into()), Ok(all), "{days}");
+        }
+    }
+
+    #[test]
+    fn rows_are_numbered_as_they_stand_whatever_is_asked_for() {
+        let connection = connection();
+        let numbers = |condition: &str| -> Vec<i64> {
+            let sql = format!("SELECT rowid FROM daily_usage WHERE {condition}");
+            let mut statement = connection.prepare(&sql).expect("a statement");
+            statement
+                .query_map([], |row| row.get(0))
+                .expect("rows")
+                .map(|row| row.expect("a number"))
+                .collect()
+        };
+        let all = numbers("1");
+        assert_eq!(all[..7], [1, 2, 3, 4, 5, 6, (1 << 32) + 1].map(|number| (1 << 32) + number));
+        assert!(all.is_sorted_by(|one, next| one < next));
+        assert_eq!(numbers("day = 2 AND customer_id = 102"), [(2 << 32) + 5]);
+        assert_eq!(numbers("rowid = 4294967298"), [(1 << 32) + 2]);
     }
 
     #[test]

@@ -2,12 +2,17 @@
 
 use std::sync::{Arc, RwLock};
 
+use super::by_customer::Indexes;
 use crate::world::events::{AdsRevenueRow, UsageRows};
 use crate::world::identifiers::Group;
 
 /// What the runs of one of the tables are: rows of ascending customer numbers.
 pub(super) trait Run: Sized {
+    /// What a row holds besides day and customer.
+    type Row: Copy + Default + Send + Sync;
+
     fn customers(&self) -> &[u32];
+    fn row(&self, at: usize) -> Self::Row;
     fn pack(&self, packer: &mut Packer);
     /// None when the bytes are not those of a run.
     fn unpack(unpacker: &mut Unpacker<'_>) -> Option<Self>;
@@ -25,15 +30,21 @@ pub(super) struct PackedDay {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct RunPlace {
     begin: usize,
+    /// Rows of the day that stand before it.
+    rows_before: usize,
+    rows: usize,
     first_customer: u32,
     last_customer: u32,
 }
 
 impl RunPlace {
-    fn of(run: &impl Run, begin: usize) -> RunPlace {
+    /// Place of a run that begins at a byte, after these.
+    fn after(before: &[RunPlace], run: &impl Run, begin: usize) -> RunPlace {
         let customers = run.customers();
         RunPlace {
             begin,
+            rows_before: before.last().map_or(0, |last| last.rows_before + last.rows),
+            rows: customers.len(),
             first_customer: customers.first().copied().unwrap_or(u32::MAX),
             last_customer: customers.last().copied().unwrap_or(0),
         }
@@ -46,7 +57,7 @@ impl PackedDay {
         packer.number(rows.len() as u64);
         let mut runs = Vec::with_capacity(rows.len());
         for run in rows {
-            runs.push(RunPlace::of(run, packer.0.len()));
+            runs.push(RunPlace::after(&runs, run, packer.0.len()));
             run.pack(&mut packer);
         }
         packer.0.shrink_to_fit();
@@ -59,7 +70,7 @@ impl PackedDay {
         let mut runs = Vec::new();
         for _ in 0..unpacker.number()? {
             let begin = bytes.len() - unpacker.0.len();
-            runs.push(RunPlace::of(&R::unpack(&mut unpacker)?, begin));
+            runs.push(RunPlace::after(&runs, &R::unpack(&mut unpacker)?, begin));
         }
         unpacker.0.is_empty().then_some(PackedDay { day, bytes, runs })
     }
@@ -74,10 +85,27 @@ impl PackedDay {
         self.runs.len()
     }
 
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.runs.last().map_or(0, |last| last.rows_before + last.rows)
+    }
+
+    /// Number of a row of a run: rows are numbered in the order in which they stand.
+    pub fn row_number(&self, run: usize, at: usize) -> i64 {
+        let before = self.runs.get(run).map_or(0, |place| place.rows_before);
+        i64::from(self.day) << 32 | (before + at + 1) as i64
+    }
+
+    /// First and last customer of a run; the first is greater where it is empty.
+    pub fn customers(&self, run: usize) -> (u32, u32) {
+        let place = &self.runs[run];
+        (place.first_customer, place.last_customer)
+    }
+
     /// Whether a run may hold a customer with this number.
     pub fn may_hold(&self, run: usize, customer: f64) -> bool {
-        let place = &self.runs[run];
-        (f64::from(place.first_customer)..=f64::from(place.last_customer)).contains(&customer)
+        let (first, last) = self.customers(run);
+        (f64::from(first)..=f64::from(last)).contains(&customer)
     }
 
     /// The rows of a run.
@@ -96,6 +124,14 @@ pub(super) struct AdsRun {
     pub revenues: Vec<f64>,
 }
 
+/// What a row of ad revenue holds besides day and customer.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct AdsRow {
+    pub group: Option<Group>,
+    pub strength: f64,
+    pub revenue: f64,
+}
+
 /// The days a query can see. A query takes the whole shelf at its start and is not disturbed by later days.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shelf {
@@ -106,12 +142,40 @@ pub(super) struct Shelf {
 /// The shelf that the writer fills and queries read.
 pub(super) type SharedShelf = Arc<RwLock<Shelf>>;
 
+/// What the running statement sees, and the indexes it has made of it.
+#[derive(Default)]
+pub(super) struct Seen {
+    shelf: RwLock<Shelf>,
+    pub usage: Indexes<UsageRows>,
+    pub ads: Indexes<AdsRun>,
+}
+
+impl Seen {
+    /// From now on this shelf is seen.
+    pub fn see(&self, shelf: Shelf) {
+        *self.shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = shelf;
+        self.usage.clear();
+        self.ads.clear();
+    }
+
+    /// The shelf that is seen.
+    pub fn shelf(&self) -> Shelf {
+        self.shelf.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+    }
+}
+
+/// Rows of a run at most: whoever looks for one of them unpacks all.
+const LONGEST_RUN: usize = 1024;
+
 impl AdsRun {
     pub fn runs_of(rows: &[AdsRevenueRow]) -> Vec<AdsRun> {
         let mut runs: Vec<AdsRun> = Vec::new();
         for row in rows {
-            let continues =
-                |run: &AdsRun| run.group == row.group && run.customers.last() < Some(&row.customer);
+            let continues = |run: &AdsRun| {
+                run.group == row.group
+                    && run.customers.len() < LONGEST_RUN
+                    && run.customers.last() < Some(&row.customer)
+            };
             if !runs.last().is_some_and(continues) {
                 let (customers, strengths, revenues) = (Vec::new(), Vec::new(), Vec::new());
                 runs.push(AdsRun { group: row.group, customers, strengths, revenues });
@@ -192,8 +256,14 @@ impl Unpacker<'_> {
 }
 
 impl Run for UsageRows {
+    type Row = u32;
+
     fn customers(&self) -> &[u32] {
         &self.customers
+    }
+
+    fn row(&self, at: usize) -> u32 {
+        self.units[at]
     }
 
     fn pack(&self, packer: &mut Packer) {
@@ -209,8 +279,14 @@ impl Run for UsageRows {
 }
 
 impl Run for AdsRun {
+    type Row = AdsRow;
+
     fn customers(&self) -> &[u32] {
         &self.customers
+    }
+
+    fn row(&self, at: usize) -> AdsRow {
+        AdsRow { group: Some(self.group), strength: self.strengths[at], revenue: self.revenues[at] }
     }
 
     fn pack(&self, packer: &mut Packer) {

@@ -57,6 +57,26 @@ pub fn table(name: &str) -> Option<&'static Table> {
 }
 
 impl Table {
+    /// The statement that makes an ordinary table like it, with the types of its columns and its key.
+    pub fn declaration(&self) -> String {
+        let column = |column: &Column| match self.row_number() {
+            Some(key) if key == column.name => format!("{key} INTEGER PRIMARY KEY"),
+            _ => format!("{} {}", column.name, column.kind),
+        };
+        let mut parts: Vec<String> = self.columns.iter().map(column).collect();
+        if self.row_number().is_none() {
+            parts.push(format!("PRIMARY KEY ({})", self.key.join(", ")));
+        }
+        format!("CREATE TABLE {} ({})", self.name, parts.join(", "))
+    }
+
+    /// The column that numbers its rows, where one does.
+    pub fn row_number(&self) -> Option<&str> {
+        let [key] = self.key.as_slice() else { return None };
+        let own = self.columns.iter().find(|column| column.name == *key)?;
+        (own.kind == "INTEGER").then_some(&own.name)
+    }
+
     /// The table in a few lines of text.
     pub fn describe(&self) -> String {
         let mut text = format!("{}: {}.\n  Written {}.\n", self.name, self.description, self.written);
@@ -87,5 +107,16 @@ mod tests {
                 .all(|table| table.key.iter().all(|key| table.columns.iter().any(|c| c.name == *key)))
         );
         assert!(table("LEDGER").is_some() && table("customer_state").is_none());
+    }
+
+    #[test]
+    fn rows_are_numbered_where_the_key_is_one_whole_number() {
+        let number = |name: &str| table(name).and_then(Table::row_number);
+        assert_eq!(number("subscriptions"), Some("subscription_id"));
+        assert_eq!([number("research_projects"), number("daily_usage")], [None, None]);
+        let declared = table("daily_usage").map(Table::declaration).expect("a table");
+        let expected = "CREATE TABLE daily_usage (day INTEGER, customer_id INTEGER, usage_units INTEGER, \
+                        PRIMARY KEY (day, customer_id))";
+        assert_eq!(declared, expected);
     }
 }

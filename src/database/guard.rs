@@ -2,12 +2,14 @@
 //! functions (chapter 60 §3.4). Decided by what it does, never by how its text looks.
 
 use std::collections::hash_map::RandomState;
+use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{BuildHasher, Hasher};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, Mutex};
 
 use rusqlite::Connection;
 use rusqlite::hooks::{AuthAction, AuthContext, Authorization};
+use rusqlite::limits::Limit;
 
 use super::catalogue;
 
@@ -94,13 +96,101 @@ const INSIDES: [(&str, bool); 9] = [
 const UNSAFE_FUNCTIONS: [&str; 2] = ["load_extension", "fts3_tokenizer"];
 
 /// Tables that are functions of their arguments and hold nothing of their own.
-const FUNCTIONS: [&str; 2] = ["json_each", "json_tree"];
+const FUNCTIONS: [&str; 4] = ["json_each", "json_tree", "jsonb_each", "jsonb_tree"];
+
+/// Whether a name belongs to the engine's own tables.
+pub(super) fn is_of_engine(name: &str) -> bool {
+    let name = name.to_lowercase();
+    name.starts_with("sqlite_") || name.starts_with("pragma_") || name == "dbstat"
+}
+
+/// The name of the visible table that an inner one makes up.
+pub(super) fn visible_name(inside: &str) -> Option<&'static str> {
+    let table = catalogue::tables().iter().find(|table| {
+        let stem = inside.strip_suffix("_rows").unwrap_or(inside);
+        table.name.strip_suffix('s').unwrap_or(&table.name) == stem
+    });
+    table.map(|table| table.name.as_str()).filter(|_| is_inside(inside))
+}
+
+/// Whether a name belongs to a table inside the database; case does not count.
+pub(super) fn is_inside(name: &str) -> bool {
+    INSIDES.iter().any(|(table, _)| table.eq_ignore_ascii_case(name))
+}
+
+/// Bounds what a statement may be made of. A function works on its values in one step that nothing can stop, so
+/// values and patterns are short.
+pub(super) fn limit(connection: &Connection) -> rusqlite::Result<()> {
+    connection.set_limit(Limit::SQLITE_LIMIT_ATTACHED, 0)?;
+    connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, 2 << 20)?;
+    connection.set_limit(Limit::SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 1000)?;
+    connection.set_limit(Limit::SQLITE_LIMIT_SQL_LENGTH, 1 << 20)?;
+    connection.set_limit(Limit::SQLITE_LIMIT_EXPR_DEPTH, 500)?;
+    connection.set_limit(Limit::SQLITE_LIMIT_COMPOUND_SELECT, 200)?;
+    connection.set_limit(Limit::SQLITE_LIMIT_VDBE_OP, 250_000)?;
+    connection.set_limit(Limit::SQLITE_LIMIT_WORKER_THREADS, 0).map(|_| ())
+}
+
+/// Columns of visible tables that statements read, by table; shared between the authorizer and who asks for them.
+#[derive(Clone, Default)]
+pub(super) struct Reads(Arc<Mutex<Columns>>);
+
+/// Names of columns by table.
+pub(super) type Columns = BTreeMap<String, BTreeSet<String>>;
+
+impl Reads {
+    /// Those since they were last taken.
+    pub fn take(&self) -> Columns {
+        std::mem::take(&mut self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
+    }
+
+    fn add(&self, table: &str, column: &str) {
+        let mut reads = self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        reads.entry(table.to_owned()).or_default().insert(column.to_owned());
+    }
+}
+
+/// The views that visible tables are made of, under names that nobody can write.
+#[derive(Clone)]
+pub(super) struct InnerViews {
+    /// What their names begin with.
+    secret: String,
+    names: Vec<String>,
+}
+
+impl InnerViews {
+    /// Statements that put a temporary table in the place of a view, with the columns that are read filled. None where
+    /// the visible table is no view.
+    pub fn copy(&self, name: &str, read: &BTreeSet<String>) -> Option<String> {
+        let table = catalogue::table(name).filter(|table| self.names.contains(&table.name))?;
+        // Tables are joined by customers, and of columns that are joined by USING nobody says that they are read.
+        let is_filled = |column: &&str| {
+            read.contains(*column) || *column == CUSTOMER || table.key.iter().any(|key| key == column)
+        };
+        let columns = table.columns.iter().map(|column| column.name.as_str());
+        let filled: Vec<&str> = columns.filter(is_filled).collect();
+        let (name, secret, columns) = (&table.name, &self.secret, filled.join(", "));
+        let declaration = table.declaration().replacen("TABLE", "TEMP TABLE", 1);
+        let index = match filled.contains(&CUSTOMER) && table.row_number() != Some(CUSTOMER) {
+            true => format!("; CREATE INDEX temp.{name}_of_customers ON {name} ({CUSTOMER})"),
+            false => String::new(),
+        };
+        Some(format!(
+            "DROP VIEW temp.{name}; {declaration}; \
+             INSERT INTO temp.{name} ({columns}) SELECT {columns} FROM {secret}{name}{index}"
+        ))
+    }
+}
+
+/// The column that tables are joined by.
+const CUSTOMER: &str = "customer_id";
 
 /// Watches what statements do.
 pub(super) struct Guard {
     objections: Objections,
-    /// What the names of the inner views begin with; nobody outside can know it.
-    secret: String,
+    reads: Reads,
+    /// None where tables have no inside.
+    views: Option<InnerViews>,
 }
 
 impl Guard {
@@ -114,13 +204,30 @@ impl Guard {
             connection.prepare("SELECT name, sql FROM main.sqlite_schema WHERE type = 'view'")?;
         let views: Vec<(String, String)> =
             statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect::<Result<_, _>>()?;
-        for (name, sql) in views {
-            let body = sql.split_once(&name).map_or(sql.as_str(), |(_, body)| body);
+        for (name, sql) in &views {
+            let body = sql.split_once(name).map_or(sql.as_str(), |(_, body)| body);
             connection.execute_batch(&format!(
                 "CREATE TEMP VIEW {secret}{name}{body}; CREATE TEMP VIEW {name} AS SELECT * FROM {secret}{name}"
             ))?;
         }
-        Ok(Guard { objections: Objections::default(), secret })
+        let names = views.into_iter().map(|(name, _)| name).collect();
+        let views = Some(InnerViews { secret, names });
+        Ok(Guard { objections: Objections::default(), reads: Reads::default(), views })
+    }
+
+    /// A guard of tables that have no inside.
+    pub fn of_ordinary_tables() -> Guard {
+        Guard { objections: Objections::default(), reads: Reads::default(), views: None }
+    }
+
+    /// The columns that statements read under this guard.
+    pub fn reads(&self) -> Reads {
+        self.reads.clone()
+    }
+
+    /// The inner views.
+    pub fn views(&self) -> Option<InnerViews> {
+        self.views.clone()
     }
 
     /// The objections of this guard.
@@ -154,14 +261,18 @@ impl Guard {
     fn reading(&self, table: &str, column: &str, accessor: Option<&str>) -> Option<Objection> {
         let name = table.to_lowercase();
         let inside = INSIDES.iter().find(|(table, _)| *table == name);
-        let visible = catalogue::table(&name).is_some()
-            || FUNCTIONS.contains(&name.as_str())
-            || name.starts_with(&self.secret);
-        let from_view = accessor.is_some_and(|view| view.starts_with(&self.secret));
+        let is_inner_view =
+            |name: &str| self.views.as_ref().is_some_and(|views| name.starts_with(&views.secret));
+        if self.views.is_none() {
+            self.reads.add(&name, column);
+        }
+        let visible =
+            catalogue::table(&name).is_some() || FUNCTIONS.contains(&name.as_str()) || is_inner_view(&name);
+        let from_view = accessor.is_some_and(is_inner_view);
         // Without a column only rows are counted: those of a common table expression, or of a view that the
         // planner has opened up.
         let counted = column.is_empty() && inside.is_none_or(|(_, behind_view)| *behind_view);
-        let engine = name.starts_with("sqlite_") || name.starts_with("pragma_") || name == "dbstat";
+        let engine = is_of_engine(&name);
         match (visible || from_view || (counted && !engine), engine) {
             (true, _) => None,
             (false, true) => Some(Objection::Schema),

@@ -1,6 +1,7 @@
 //! Help for the SQL prompt: what an error means here, and why a result may be empty (chapter 60 §3.3).
 
-use super::catalogue::{Table, tables};
+use super::catalogue::{Table, table, tables};
+use super::tokens::{Kind, Token, tokens};
 
 /// The message of the engine, with what is valid instead.
 pub(super) fn explain_error(message: &str, sql: &str) -> String {
@@ -10,7 +11,9 @@ pub(super) fn explain_error(message: &str, sql: &str) -> String {
     if let Some(name) = message.strip_prefix("no such table: ") {
         let mut names: Vec<&str> = tables().iter().map(|table| table.name.as_str()).collect();
         names.sort_unstable();
-        return format!("there is no table {name}; the tables are {}", names.join(", "));
+        let alone = name.split_once('.').map_or("", |(_, alone)| alone);
+        let help = if table(alone).is_some() { format!("write {alone} alone; ") } else { String::new() };
+        return format!("there is no table {name}; {help}the tables are {}", names.join(", "));
     }
     if let Some(column) = message.strip_prefix("ambiguous column name: ") {
         let holders: Vec<&str> = tables()
@@ -18,10 +21,8 @@ pub(super) fn explain_error(message: &str, sql: &str) -> String {
             .filter(|table| table.columns.iter().any(|own| own.name.eq_ignore_ascii_case(column)))
             .map(|table| table.name.as_str())
             .collect();
-        return format!(
-            "column {column} is ambiguous: {} have it; write it with its table",
-            holders.join(", ")
-        );
+        let holders = if holders.is_empty() { "several tables".to_owned() } else { holders.join(", ") };
+        return format!("column {column} is ambiguous: {holders} have it; write it with its table");
     }
     message.to_owned()
 }
@@ -55,9 +56,9 @@ pub(super) fn hints(sql: &str) -> Option<String> {
         let lists = mentioned
             .iter()
             .flat_map(|table| &table.columns)
-            .filter(|own| own.name.eq_ignore_ascii_case(column) && !own.values.is_empty());
+            .filter(|own| own.name.eq_ignore_ascii_case(&column) && !own.values.is_empty());
         let lists: Vec<&Vec<String>> = lists.map(|own| &own.values).collect();
-        if !lists.is_empty() && !lists.iter().any(|values| values.iter().any(|known| known == value)) {
+        if !lists.is_empty() && !lists.iter().any(|values| values.contains(&value)) {
             let valid: Vec<String> = lists[0].iter().map(|known| format!("'{known}'")).collect();
             hints.push(format!("{column} is never '{value}'; it is one of {}", valid.join(", ")));
         }
@@ -65,22 +66,35 @@ pub(super) fn hints(sql: &str) -> Option<String> {
     (!hints.is_empty()).then(|| hints.join("; "))
 }
 
-/// Pairs of column and text out of `column = 'text'`, wherever they stand.
-fn text_comparisons(sql: &str) -> Vec<(&str, &str)> {
+/// Pairs of column and text out of `column = 'text'`, wherever they stand and whichever side is which. A text in double
+/// quotes is one where the engine finds no column of that name.
+fn text_comparisons(sql: &str) -> Vec<(String, String)> {
+    let own = tokens(sql);
     let mut found = Vec::new();
-    for (at, _) in sql.match_indices('=') {
-        let name_end = sql[..at].trim_end_matches(['=', ' ', '\n', '\t']);
-        let start =
-            name_end.rfind(|letter: char| !letter.is_alphanumeric() && letter != '_').map_or(0, |at| at + 1);
-        let rest = sql[at + 1..].trim_start_matches(['=', ' ', '\n', '\t']);
-        if let Some(text) = rest.strip_prefix('\'')
-            && let Some(end) = text.find('\'')
-            && start < name_end.len()
-        {
-            found.push((&name_end[start..], &text[..end]));
+    for (at, token) in own.iter().enumerate() {
+        let doubled = own.get(at + 1).is_some_and(|next| next.is_sign("="));
+        let compares = (token.is_sign("=") && !doubled) || token.is("IS");
+        let Some(left) = own[..at].iter().rfind(|before| !before.is_sign("=")) else { continue };
+        let Some(right) = own.get(at + 1).filter(|_| compares) else { continue };
+        for (column, text) in [(left, right), (right, left)] {
+            if is_text(text) && column.may_name() && !is_text(column) {
+                found.push((column.content().into_owned(), text.content().into_owned()));
+            }
         }
     }
     found
+}
+
+fn is_text(token: &Token<'_>) -> bool {
+    let is_column = |name: &str| {
+        let mut columns = tables().iter().flat_map(|table| &table.columns);
+        columns.any(|column| column.name.eq_ignore_ascii_case(name))
+    };
+    match token.kind {
+        Kind::Text => true,
+        Kind::Quoted => token.written.starts_with('"') && !is_column(&token.content()),
+        _ => false,
+    }
 }
 
 #[cfg(test)]
@@ -99,12 +113,16 @@ mod tests {
         let text = explain_error("no such table: customer", "SELECT 1 FROM customer");
         assert!(text.contains("ad_channel_leads, ads_revenue, agent_social_media_posts"));
         assert_eq!(text.matches(", ").count(), 18);
+        let text = explain_error("no such table: temp.customers", "SELECT 1 FROM temp.customers");
+        assert!(text.starts_with("there is no table temp.customers; write customers alone; the"), "{text}");
     }
 
     #[test]
     fn ambiguous_columns_name_their_tables() {
         let text = explain_error("ambiguous column name: status", "");
         assert!(text.contains("subscriptions, research_projects, issues"), "{text}");
+        let text = explain_error("ambiguous column name: rowid", "");
+        assert!(text.starts_with("column rowid is ambiguous: several tables have it"), "{text}");
     }
 
     #[test]
@@ -118,5 +136,22 @@ mod tests {
         assert_eq!(hints("SELECT * FROM ledger WHERE note = 'x'"), None);
         assert_eq!(hints("SELECT 1 WHERE status = 'active'"), None);
         assert!(hints("SELECT * FROM issues i WHERE i.status=='closed'").is_some());
+    }
+
+    #[test]
+    fn a_text_in_double_quotes_draws_the_same_hint() {
+        let plain = hints("SELECT * FROM subscriptions WHERE status = 'active'");
+        for sql in [
+            "SELECT * FROM subscriptions WHERE status = \"active\"",
+            "SELECT * FROM subscriptions WHERE \"status\" = \"active\"",
+            "SELECT * FROM subscriptions WHERE \"active\" == status",
+            "SELECT * FROM subscriptions WHERE 'active' = [status]",
+            "SELECT * FROM subscriptions AS s WHERE s.status IS \"active\"",
+        ] {
+            assert_eq!(hints(sql), plain, "{sql}");
+        }
+        assert_eq!(hints("SELECT * FROM subscriptions WHERE status = \"plan\""), None);
+        assert_eq!(hints("SELECT * FROM subscriptions WHERE status = \"lost\" -- or = 'active'"), None);
+        assert_eq!(hints("SELECT 'status = ''active''' FROM subscriptions WHERE end_day = 5"), None);
     }
 }

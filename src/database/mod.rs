@@ -11,14 +11,18 @@ pub mod text;
 
 mod block_table;
 mod blocks;
+mod by_customer;
 mod guard;
 mod help;
 mod interrupt;
 mod location;
 mod memory;
 mod plain_copy;
+mod plan;
 mod projector;
+mod released;
 mod rows;
+mod tokens;
 
 #[cfg(test)]
 mod tests;
@@ -26,6 +30,8 @@ mod tests;
 pub use catalogue::{Column, Table, table, tables};
 pub use interrupt::Interrupt;
 pub use location::Location;
-pub use projector::{Position, ProjectionError, Projector, desk_of, file_digest, is_consistent, position_of};
+pub use projector::{
+    Position, ProjectionError, Projector, desk_of, file_digest, has_layout_of_now, is_consistent, position_of,
+};
 pub use query::{Cell, Desk, QueryError, Rows, ScriptError, number_at, text_at};
 pub use rows::{Entry, ForecastRow};

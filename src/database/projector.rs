@@ -11,7 +11,7 @@ use rusqlite::{Connection, OptionalExtension};
 use super::blocks::{AdsRun, PackedDay, Run, SharedShelf, Shelf};
 use super::location::Location;
 use super::query::Desk;
-use super::rows::{Entry, RowWriter, create};
+use super::rows::{Entry, LAYOUT, RowWriter, create};
 use crate::world::events::{Facts, UsageRows};
 use crate::world::params::Params;
 
@@ -275,7 +275,7 @@ fn open_existing(
     }
     let connection = location.open_writer().ok()?;
     let position = stored_position(&connection).ok()??;
-    if !known(&position) {
+    if !known(&position) || !is_laid_out_now(&connection) {
         return None;
     }
     let issue_clock = connection.query_row("SELECT aged FROM issue_clock", [], |row| row.get(0)).ok()?;
@@ -295,11 +295,24 @@ pub fn desk_of(location: &Location) -> Result<(Desk, Position), ProjectionError>
     }
     let connection = location.open_reader().map_err(told)?;
     let position = stored_position(&connection).map_err(told)?.ok_or_else(missing)?;
+    if !is_laid_out_now(&connection) {
+        return Err(ProjectionError("another version of the program has laid it out".to_owned()));
+    }
     let shelf = SharedShelf::default();
     *shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner()) =
         load_shelf(&connection).ok_or_else(missing)?;
     let desk = Desk::open(location, &shelf, Arc::new(RwLock::new(()))).map_err(told)?;
     Ok((desk, position))
+}
+
+/// Whether the database at a location is laid out as this version does it.
+pub fn has_layout_of_now(location: &Location) -> bool {
+    location.open_reader().is_ok_and(|connection| is_laid_out_now(&connection))
+}
+
+fn is_laid_out_now(connection: &Connection) -> bool {
+    let layout = connection.query_row("PRAGMA user_version", [], |row| row.get::<_, u32>(0));
+    layout.is_ok_and(|layout| layout == LAYOUT)
 }
 
 /// Whether the structure of the database at a location is what it should be. Takes a while for a large one.

@@ -1,25 +1,29 @@
 //! Guarded queries: one read-only statement over the 19 visible tables (chapter 60 §3.4, rule C).
 //!
-//! The connection can only read; an authorizer (`guard.rs`) allows the visible tables and ordinary functions;
-//! limits bound the size of statements, values and results; a progress handler stops what takes too long or too
-//! much memory. What is refused is decided by what a statement does, never by how its text looks.
+//! A statement is first compiled against the released schema (`released.rs`), where nothing hidden has a name. The
+//! connection that answers it can only read; an authorizer (`guard.rs`) allows the visible tables and ordinary
+//! functions; limits bound the size of statements, values and results; a progress handler stops what takes too long or
+//! too much memory. What is refused is decided by what a statement does, never by how its text looks.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, RwLock};
 use std::time::{Duration, Instant};
 
 use rusqlite::Connection;
-use rusqlite::fallible_iterator::FallibleIterator;
 use rusqlite::hooks::{AuthContext, Authorization};
-use rusqlite::limits::Limit;
 use rusqlite::types::ValueRef;
 
 use super::block_table;
-use super::blocks::SharedShelf;
-use super::guard::{Guard, Objection, Objections, is_hidden_table};
+use super::blocks::{Seen, SharedShelf, Shelf};
+use super::guard::{
+    Guard, InnerViews, Objection, Objections, is_hidden_table, is_inside, is_of_engine, limit,
+};
 use super::help::{explain_error, hints};
 use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS};
 use super::location::Location;
+use super::plan;
+use super::released::{Reading, Released, without_explain};
+use super::tokens::tokens;
 
 /// One value of a result.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,8 +114,10 @@ const MOST_TEXT: usize = 64 << 20;
 
 /// A place to ask questions.
 pub struct Desk {
+    released: Released,
     connection: Connection,
     objections: Objections,
+    views: Option<InnerViews>,
     /// Set while the desk itself works on the connection.
     trusted: Arc<AtomicBool>,
     interrupt: Interrupt,
@@ -119,7 +125,7 @@ pub struct Desk {
     gate: Arc<RwLock<()>>,
     /// The blocks of all desks, and those that the running query sees.
     shelf: SharedShelf,
-    seen: SharedShelf,
+    seen: Arc<Seen>,
 }
 
 impl Desk {
@@ -129,26 +135,20 @@ impl Desk {
         shelf: &SharedShelf,
         gate: Arc<RwLock<()>>,
     ) -> rusqlite::Result<Desk> {
+        let released = Released::open()?;
         let mut connection = location.open_reader()?;
-        let seen = SharedShelf::default();
+        let seen = Arc::new(Seen::default());
         block_table::register(&connection, &seen)?;
         connection.pragma_update(None, "temp_store", "MEMORY")?;
         let guard = Guard::set_up(&connection)?;
         connection.pragma_update(None, "query_only", true)?;
-        connection.set_limit(Limit::SQLITE_LIMIT_ATTACHED, 0)?;
-        // A function works on its values in one step that nothing can stop, so values and patterns are short.
-        connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, 2 << 20)?;
-        connection.set_limit(Limit::SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 1000)?;
-        connection.set_limit(Limit::SQLITE_LIMIT_SQL_LENGTH, 1 << 20)?;
-        connection.set_limit(Limit::SQLITE_LIMIT_EXPR_DEPTH, 500)?;
-        connection.set_limit(Limit::SQLITE_LIMIT_COMPOUND_SELECT, 200)?;
-        connection.set_limit(Limit::SQLITE_LIMIT_VDBE_OP, 250_000)?;
-        connection.set_limit(Limit::SQLITE_LIMIT_WORKER_THREADS, 0)?;
+        limit(&connection)?;
         // Virtual tables connect at their first use, which the authorizer would refuse.
         for table in ["daily_usage", "ads_revenue"] {
             connection.prepare(&format!("SELECT 1 FROM {table}"))?;
         }
-        let (objections, trusted) = (guard.objections(), Arc::new(AtomicBool::new(false)));
+        let (objections, views) = (guard.objections(), guard.views());
+        let trusted = Arc::new(AtomicBool::new(false));
         let by_desk = trusted.clone();
         connection.authorizer(Some(move |context: AuthContext<'_>| {
             match by_desk.load(Ordering::Relaxed) {
@@ -159,7 +159,8 @@ impl Desk {
         let interrupt = Interrupt::new();
         let clock = interrupt.clone();
         connection.progress_handler(STEPS_BETWEEN_LOOKS as i32, Some(move || clock.must_end()))?;
-        Ok(Desk { connection, objections, trusted, interrupt, gate, shelf: shelf.clone(), seen })
+        let shelf = shelf.clone();
+        Ok(Desk { released, connection, objections, views, trusted, interrupt, gate, shelf, seen })
     }
 
     /// A handle that stops the queries of this desk.
@@ -196,16 +197,16 @@ impl Desk {
         let end = Instant::now() + time;
         let at = |statement: usize| move |error: QueryError| ScriptError { statement, error };
         self.look(sql, limits).map_err(at(1))?;
-        let mut batch = rusqlite::Batch::new(&self.connection, sql);
+        let mut statements = self.released.statements(sql);
         let mut done = Ok(());
         for number in 1.. {
             let own =
                 Limits { time: limits.time.min(end.saturating_duration_since(Instant::now())), ..limits };
             self.interrupt.go_on(own.time, own.steps);
-            let answer = match batch.next() {
+            let answer = match statements.next() {
                 Ok(None) => break,
-                Ok(Some(statement)) => self.fetch(statement, sql, own),
-                Err(error) => Err(Fault::Sqlite(error)),
+                Ok(Some(reading)) => self.fetch(reading, sql, own),
+                Err(fault) => Err(fault),
             };
             match answer {
                 Ok(rows) => answered(rows),
@@ -222,16 +223,18 @@ impl Desk {
     /// Fixes what the query sees: rows and blocks of the same commit, whatever is written meanwhile.
     fn look(&self, sql: &str, limits: Limits) -> Result<(), QueryError> {
         self.objections.clear();
+        self.released.objections().clear();
         self.interrupt.begin(limits.time, limits.steps);
         let _open = self.gate.read().unwrap_or_else(|poisoned| poisoned.into_inner());
         self.as_desk("BEGIN; SELECT seq FROM projection")
             .map_err(|error| self.told(sql, Fault::Sqlite(error), limits))?;
         let shelf = self.shelf.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
-        *self.seen.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = shelf;
+        self.seen.see(shelf);
         Ok(())
     }
 
     fn look_away(&self) -> Result<(), QueryError> {
+        self.seen.see(Shelf::default());
         self.as_desk("ROLLBACK").map_err(|error| refusal("sql_error", &error.to_string()))
     }
 
@@ -243,30 +246,32 @@ impl Desk {
     }
 
     fn run(&self, sql: &str, limits: Limits) -> Result<Rows, Fault> {
-        let mut batch = rusqlite::Batch::new(&self.connection, sql);
-        let Some(statement) = batch.next()? else {
-            return Err(Fault::Empty);
-        };
-        match batch.next() {
-            Ok(None) => {}
-            _ => return Err(Fault::Several),
+        let mut statements = self.released.statements(sql);
+        let reading = statements.next()?.ok_or(Fault::Empty)?;
+        match statements.next() {
+            Ok(None) => self.fetch(reading, sql, limits),
+            _ => Err(Fault::Several),
         }
-        self.fetch(statement, sql, limits)
     }
 
-    fn fetch(
-        &self,
-        mut statement: rusqlite::Statement<'_>,
-        sql: &str,
-        limits: Limits,
-    ) -> Result<Rows, Fault> {
-        if statement.is_explain() != 0 {
-            return Err(Fault::Explain);
+    fn fetch(&self, reading: Reading, sql: &str, limits: Limits) -> Result<Rows, Fault> {
+        let read = reading.joined_from_the_right.iter();
+        let copies: Vec<String> =
+            read.filter_map(|(table, columns)| self.views.as_ref()?.copy(table, columns)).collect();
+        if copies.is_empty() {
+            return self.answer(reading, sql, limits);
         }
-        if !statement.readonly() {
-            return Err(Fault::Write);
-        }
-        let columns: Vec<String> = statement.column_names().map(str::to_owned).collect();
+        let copies = copies.join("; ");
+        let copied = self
+            .as_desk(&format!("SAVEPOINT copies; PRAGMA query_only = 0; {copies}; PRAGMA query_only = 1"));
+        let answer = copied.map_err(Fault::Sqlite).and_then(|()| self.answer(reading, sql, limits));
+        self.as_desk("PRAGMA query_only = 1; ROLLBACK TO copies; RELEASE copies")?;
+        answer
+    }
+
+    fn answer(&self, reading: Reading, sql: &str, limits: Limits) -> Result<Rows, Fault> {
+        let Reading { sql: spelled, columns, is_plan, .. } = reading;
+        let mut statement = self.connection.prepare(&spelled)?;
         let width = columns.len();
         let mut cursor = statement.query([])?;
         let mut next = cursor.next()?;
@@ -288,27 +293,36 @@ impl Desk {
         let warning = truncated
             .then(|| format!("only the first {} rows are shown; more exist: aggregate in SQL", limits.rows));
         let hint = if rows.is_empty() { hints(sql) } else { None };
+        if is_plan {
+            plan::mask(&mut rows, sql);
+        }
         Ok(Rows { columns, rows, truncated, warning, hint })
     }
 
     fn told(&self, sql: &str, fault: Fault, limits: Limits) -> QueryError {
-        let objection = self.objections.last();
+        let objection = match self.released.objections().last() {
+            Objection::None => self.objections.last(),
+            objection => objection,
+        };
         match fault {
             Fault::Empty => refusal("sql_empty", "no SQL was given"),
             Fault::Several => {
                 refusal("sql_error", "one statement at a time; leave out what follows the first ;")
             }
-            Fault::Explain => refusal("sql_schema", "query plans are not shown"),
+            Fault::MachineCode => refusal(
+                "sql_schema",
+                "EXPLAIN alone shows machine code of the engine; EXPLAIN QUERY PLAN shows how a question is answered",
+            ),
+            Fault::Parameters => {
+                refusal("sql_error", "a statement has no parameters here; write the values where they belong")
+            }
             Fault::Write => write_refusal(),
             Fault::TooLarge => {
                 let most = MOST_TEXT >> 20;
                 refusal("sql_error", &format!("the result is larger than {most} MiB; ask for less at a time"))
             }
-            Fault::Sqlite(_) if objection == Objection::Write => write_refusal(),
-            Fault::Sqlite(_) if objection == Objection::Schema => refusal(
-                "sql_schema",
-                "schema statements are not allowed; the table browser describes all tables",
-            ),
+            Fault::Sqlite(_) if objection == Objection::Write || is_change(sql) => write_refusal(),
+            Fault::Sqlite(_) if objection == Objection::Schema => refusal("sql_schema", SCHEMA_WORDS),
             Fault::Sqlite(_) if objection == Objection::Hidden => hidden_refusal(None),
             Fault::Sqlite(error) => self.told_by_sqlite(sql, &error, limits),
         }
@@ -329,9 +343,6 @@ impl Desk {
                 (msg.clone(), usize::try_from(*offset).ok())
             }
             rusqlite::Error::SqliteFailure(_, Some(text)) => (text.clone(), None),
-            rusqlite::Error::InvalidParameterCount(..) => {
-                ("a statement has no parameters here; write the values where they belong".to_owned(), None)
-            }
             other => (other.to_string(), None),
         };
         if text.starts_with("cannot modify") || text.ends_with("may not be modified") {
@@ -339,23 +350,44 @@ impl Desk {
         }
         if let Some(table) = text.strip_prefix("no such table: ") {
             let name = table.rsplit('.').next().unwrap_or(table);
-            if is_hidden_table(name) {
+            if is_hidden_table(name) || is_inside(name) {
                 return hidden_refusal(Some(name));
             }
-            if name.to_lowercase().starts_with("pragma_") {
-                return refusal("sql_schema", "schema statements are not allowed");
+            if is_of_engine(name) {
+                return refusal("sql_schema", SCHEMA_WORDS);
             }
         }
         QueryError { code: "sql_error", message: explain_error(&text, sql), position }
     }
 }
 
-enum Fault {
+/// Whether a statement begins as one that changes something: what such a statement lacks is no help to anybody.
+fn is_change(sql: &str) -> bool {
+    const WORDS: [&str; 11] = [
+        "INSERT", "REPLACE", "UPDATE", "DELETE", "CREATE", "DROP", "ALTER", "ATTACH", "DETACH", "REINDEX",
+        "VACUUM",
+    ];
+    let own = tokens(without_explain(sql));
+    let first = own.iter().find(|token| !token.is_sign(";") && !token.is("EXPLAIN"));
+    first.is_some_and(|first| WORDS.iter().any(|word| first.is(word)))
+}
+
+/// What keeps a statement from being answered.
+#[derive(Debug)]
+pub(super) enum Fault {
+    /// There is no statement.
     Empty,
+    /// There is more than one.
     Several,
-    Explain,
+    /// It asks for the program of the engine's machine.
+    MachineCode,
+    /// It has parameters.
+    Parameters,
+    /// It changes something.
     Write,
+    /// It, or its result, is too large.
     TooLarge,
+    /// What the engine says.
     Sqlite(rusqlite::Error),
 }
 
@@ -364,6 +396,8 @@ impl From<rusqlite::Error> for Fault {
         Fault::Sqlite(error)
     }
 }
+
+const SCHEMA_WORDS: &str = "schema statements are not allowed; the table browser describes all tables";
 
 fn refusal(code: &'static str, message: &str) -> QueryError {
     QueryError { code, message: message.to_owned(), position: None }

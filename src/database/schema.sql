@@ -1,5 +1,8 @@
 -- The observable company. What is stored as codes comes back as words through ordinary views, so that the file
 -- opens in any SQLite tool; the two block tables (daily_usage, ads_revenue) are served by the program.
+--
+-- What follows from a row alone is a generated column of it: it takes no room, has its declared type, and the engine can
+-- join by it. What needs another table gets its type by CAST: without one, numbers and texts are never equal.
 
 CREATE TABLE projection (
     id INTEGER PRIMARY KEY CHECK (id = 1),
@@ -28,64 +31,71 @@ CREATE TABLE customer_rows (
     budget_label INTEGER,
     seats INTEGER,
     email TEXT,
-    contract_start_day INTEGER
+    contract_start_day INTEGER,
+    customer_type TEXT AS (CASE WHEN group_id LIKE 'E%' OR group_id LIKE 'D_E%' THEN 'large' ELSE 'small' END),
+    acquisition_source TEXT AS (CASE source
+        WHEN 0 THEN 'social_media' WHEN 1 THEN 'search_ads' WHEN 2 THEN 'linkedin' WHEN 3 THEN 'content_marketing'
+        WHEN 4 THEN 'referral_program' WHEN 5 THEN 'network' WHEN 6 THEN 'organic'
+    END)
 );
 
 CREATE VIEW customers AS
 SELECT
-    c.customer_id,
-    CASE WHEN c.group_id LIKE 'E%' OR c.group_id LIKE 'D_E%' THEN 'large' ELSE 'small' END AS customer_type,
-    c.group_id,
-    c.created_day,
-    (SELECT word FROM words WHERE axis = 'industry' AND group_id = c.group_id AND n = (c.persona & 255))
+    customer_id,
+    customer_type,
+    group_id,
+    created_day,
+    (SELECT word FROM words WHERE axis = 'industry' AND group_id = customers.group_id AND n = (persona & 255))
         AS persona_industry,
-    (SELECT word FROM words WHERE axis = 'role' AND group_id = c.group_id AND n = (c.persona >> 8 & 255))
+    (SELECT word FROM words WHERE axis = 'role' AND group_id = customers.group_id AND n = (persona >> 8 & 255))
         AS persona_role,
-    (SELECT word FROM words WHERE axis = 'experience' AND group_id = c.group_id AND n = (c.persona >> 16 & 255))
+    (SELECT word FROM words WHERE axis = 'experience' AND group_id = customers.group_id AND n = (persona >> 16 & 255))
         AS persona_experience,
-    (SELECT word FROM words WHERE axis = 'work_style' AND group_id = c.group_id AND n = (c.persona >> 24 & 255))
+    (SELECT word FROM words WHERE axis = 'work_style' AND group_id = customers.group_id AND n = (persona >> 24 & 255))
         AS persona_work_style,
-    (SELECT word FROM words WHERE axis = 'tech_savvy' AND group_id = c.group_id AND n = (c.persona >> 32 & 255))
+    (SELECT word FROM words WHERE axis = 'tech_savvy' AND group_id = customers.group_id AND n = (persona >> 32 & 255))
         AS persona_tech_savvy,
-    (SELECT word FROM words WHERE axis = 'size' AND group_id = c.group_id AND n = (c.persona >> 40 & 255))
+    (SELECT word FROM words WHERE axis = 'size' AND group_id = customers.group_id AND n = (persona >> 40 & 255))
         AS company_size_descriptor,
-    CASE WHEN c.email IS NOT NULL THEN
-        (SELECT word FROM words WHERE axis = 'work_style' AND group_id = c.group_id AND n = (c.persona >> 24 & 255))
-    END AS company_culture,
-    (SELECT word FROM words WHERE axis = 'decision' AND group_id = c.group_id AND n = (c.persona >> 48 & 255))
+    CAST(CASE WHEN email IS NOT NULL THEN
+        (SELECT word FROM words
+            WHERE axis = 'work_style' AND group_id = customers.group_id AND n = (persona >> 24 & 255))
+    END AS TEXT) AS company_culture,
+    (SELECT word FROM words WHERE axis = 'decision' AND group_id = customers.group_id AND n = (persona >> 48 & 255))
         AS company_decision_style,
-    (SELECT word FROM words WHERE axis = 'concern' AND group_id = c.group_id AND n = (c.persona >> 56 & 255))
+    (SELECT word FROM words WHERE axis = 'concern' AND group_id = customers.group_id AND n = (persona >> 56 & 255))
         AS company_primary_concern,
-    CASE WHEN c.persona IS NULL THEN NULL WHEN c.email IS NULL THEN
-        (SELECT word FROM words WHERE axis = 'experience' AND group_id = c.group_id AND n = (c.persona >> 16 & 255))
+    CAST(CASE WHEN persona IS NULL THEN NULL WHEN email IS NULL THEN
+        (SELECT word FROM words
+            WHERE axis = 'experience' AND group_id = customers.group_id AND n = (persona >> 16 & 255))
         || ' ' ||
-        (SELECT word FROM words WHERE axis = 'role' AND group_id = c.group_id AND n = (c.persona >> 8 & 255))
+        (SELECT word FROM words WHERE axis = 'role' AND group_id = customers.group_id AND n = (persona >> 8 & 255))
         || ' in ' ||
-        (SELECT word FROM words WHERE axis = 'industry' AND group_id = c.group_id AND n = (c.persona & 255))
-        || '; ' || (SELECT word FROM words WHERE axis = 'usage' AND group_id = c.group_id AND n = c.usage_label)
-        || ', ' || (SELECT word FROM words WHERE axis = 'budget' AND group_id = c.group_id AND n = c.budget_label)
-        || ', ' || (SELECT word FROM words WHERE axis = 'quality' AND group_id = c.group_id AND n = 0)
+        (SELECT word FROM words WHERE axis = 'industry' AND group_id = customers.group_id AND n = (persona & 255))
+        || '; ' || (SELECT word FROM words WHERE axis = 'usage' AND group_id = customers.group_id AND n = usage_label)
+        || ', ' || (SELECT word FROM words WHERE axis = 'budget' AND group_id = customers.group_id AND n = budget_label)
+        || ', ' || (SELECT word FROM words WHERE axis = 'quality' AND group_id = customers.group_id AND n = 0)
     ELSE
-        (SELECT word FROM words WHERE axis = 'size' AND group_id = c.group_id AND n = (c.persona >> 40 & 255))
+        (SELECT word FROM words WHERE axis = 'size' AND group_id = customers.group_id AND n = (persona >> 40 & 255))
         || ' ' ||
-        (SELECT word FROM words WHERE axis = 'industry' AND group_id = c.group_id AND n = (c.persona & 255))
-        || ' company with ' || c.seats
-        || (SELECT CASE WHEN c.seats >= n THEN '+' ELSE '' END FROM words WHERE axis = 'plus' AND group_id = c.group_id)
+        (SELECT word FROM words WHERE axis = 'industry' AND group_id = customers.group_id AND n = (persona & 255))
+        || ' company with ' || seats
+        || (SELECT CASE WHEN seats >= n THEN '+' ELSE '' END FROM words
+            WHERE axis = 'plus' AND group_id = customers.group_id)
         || ' seats, '
-        || (SELECT word FROM words WHERE axis = 'work_style' AND group_id = c.group_id AND n = (c.persona >> 24 & 255))
-        || '; ' || (SELECT word FROM words WHERE axis = 'quality' AND group_id = c.group_id AND n = 0)
+        || (SELECT word FROM words
+            WHERE axis = 'work_style' AND group_id = customers.group_id AND n = (persona >> 24 & 255))
+        || '; ' || (SELECT word FROM words WHERE axis = 'quality' AND group_id = customers.group_id AND n = 0)
         || ', concerned with '
-        || (SELECT word FROM words WHERE axis = 'concern' AND group_id = c.group_id AND n = (c.persona >> 56 & 255))
-    END AS persona_description,
-    c.email,
-    c.contract_start_day,
-    CASE c.source
-        WHEN 0 THEN 'social_media' WHEN 1 THEN 'search_ads' WHEN 2 THEN 'linkedin' WHEN 3 THEN 'content_marketing'
-        WHEN 4 THEN 'referral_program' WHEN 5 THEN 'network' WHEN 6 THEN 'organic'
-    END AS acquisition_source
-FROM customer_rows c;
+        || (SELECT word FROM words
+            WHERE axis = 'concern' AND group_id = customers.group_id AND n = (persona >> 56 & 255))
+    END AS TEXT) AS persona_description,
+    email,
+    contract_start_day,
+    acquisition_source
+FROM customer_rows customers;
 
--- Nobody has two subscriptions, so the customer is the key; status: 0 lead, 1 subscribed, 2 cancelled, 3 lost.
+-- Nobody has two subscriptions, so the customer is the key; state: 0 lead, 1 subscribed, 2 cancelled, 3 lost.
 CREATE TABLE subscription_rows (
     customer_id INTEGER PRIMARY KEY,
     subscription_id INTEGER NOT NULL,
@@ -94,11 +104,13 @@ CREATE TABLE subscription_rows (
     promotion REAL NOT NULL,
     start_day INTEGER NOT NULL,
     end_day INTEGER,
-    status INTEGER NOT NULL,
+    state INTEGER NOT NULL,
     billing_day INTEGER NOT NULL,
     seats INTEGER NOT NULL,
     contract_end_day INTEGER,
-    billed_once INTEGER NOT NULL
+    billed_once INTEGER NOT NULL,
+    effective_price REAL AS (max(0.0, listed_price - promotion)),
+    status TEXT AS (CASE state WHEN 0 THEN 'lead' WHEN 1 THEN 'subscribed' WHEN 2 THEN 'cancelled' ELSE 'lost' END)
 );
 
 CREATE VIEW subscriptions AS
@@ -108,50 +120,44 @@ SELECT
     plan,
     listed_price,
     promotion,
-    max(0.0, listed_price - promotion) AS effective_price,
+    effective_price,
     start_day,
     end_day,
-    CASE status WHEN 0 THEN 'lead' WHEN 1 THEN 'subscribed' WHEN 2 THEN 'cancelled' ELSE 'lost' END AS status,
+    status,
     billing_day AS billing_day_mod30,
-    NULL AS pending_plan,
-    NULL AS pending_price,
+    CAST(NULL AS TEXT) AS pending_plan,
+    CAST(NULL AS REAL) AS pending_price,
     seats AS seat_count,
-    1 AS contract_months,
+    CAST(1 AS INTEGER) AS contract_months,
     contract_end_day,
     billed_once AS first_billing_done
 FROM subscription_rows;
 
--- category: the twelve of the view; about: the customer of lead costs and payments.
+-- kind: the twelve categories; about: the customer of lead costs and payments; purpose: the note of everything else.
 CREATE TABLE ledger_rows (
     id INTEGER PRIMARY KEY,
     day INTEGER NOT NULL,
-    category INTEGER NOT NULL,
+    kind INTEGER NOT NULL,
     amount REAL NOT NULL,
     about INTEGER,
-    note TEXT
-);
-
--- Serves questions about days and about what money was for without the rows themselves. In the order in which rows
--- come: they go to its end, and a question without an order is answered as before.
-CREATE INDEX ledger_by_day ON ledger_rows (day, id, category, amount);
-
-CREATE VIEW ledger AS
-SELECT
-    id,
-    day,
-    CASE category
+    purpose TEXT,
+    category TEXT AS (CASE kind
         WHEN 0 THEN 'initial_funding' WHEN 1 THEN 'lead_acquisition_cost' WHEN 2 THEN 'subscription_payment'
         WHEN 3 THEN 'capacity' WHEN 4 THEN 'compute' WHEN 5 THEN 'operations' WHEN 6 THEN 'development'
         WHEN 7 THEN 'advertising' WHEN 8 THEN 'ad_revenue' WHEN 9 THEN 'market_research'
         WHEN 10 THEN 'group_research' ELSE 'research_project'
-    END AS category,
-    amount,
-    CASE category
+    END),
+    note TEXT AS (CASE kind
         WHEN 1 THEN 'Lead acquisition cost for customer ' || about
         WHEN 2 THEN 'Subscription payment from customer ' || about
-        ELSE note
-    END AS note
-FROM ledger_rows;
+        ELSE purpose
+    END)
+);
+
+-- Rows come in the order of days, so they go to its end.
+CREATE INDEX ledger_by_day ON ledger_rows (day);
+
+CREATE VIEW ledger AS SELECT id, day, category, amount, note FROM ledger_rows;
 
 -- An issue ages with the clock; aged_from and aged_to are its readings when the issue was opened and solved.
 CREATE TABLE issue_clock (
@@ -167,8 +173,11 @@ CREATE TABLE issue_rows (
     open_day INTEGER NOT NULL,
     aged_from INTEGER NOT NULL,
     aged_to INTEGER,
-    resolved_day INTEGER
+    resolved_day INTEGER,
+    status TEXT AS (CASE WHEN resolved_day IS NULL THEN 'open' ELSE 'resolved' END),
+    resolution_type TEXT AS (CASE WHEN resolved_day IS NULL THEN NULL ELSE 'ops_resolved' END)
 );
+CREATE INDEX issues_by_customer ON issue_rows (customer_id);
 
 CREATE VIEW issues AS
 SELECT
@@ -176,10 +185,10 @@ SELECT
     customer_id,
     group_id,
     open_day,
-    coalesce(aged_to, (SELECT aged FROM issue_clock)) - aged_from AS days_open,
-    CASE WHEN resolved_day IS NULL THEN 'open' ELSE 'resolved' END AS status,
+    CAST(coalesce(aged_to, (SELECT aged FROM issue_clock)) - aged_from AS INTEGER) AS days_open,
+    status,
     resolved_day,
-    CASE WHEN resolved_day IS NULL THEN NULL ELSE 'ops_resolved' END AS resolution_type
+    resolution_type
 FROM issue_rows;
 
 CREATE TABLE service_day (
@@ -247,7 +256,7 @@ CREATE TABLE predictions (
     predicted_upper REAL,
     submitted_at REAL NOT NULL,
     PRIMARY KEY (submit_day, horizon_days, metric)
-) WITHOUT ROWID;
+);
 
 CREATE TABLE enterprise_turns (
     message_id INTEGER PRIMARY KEY,
@@ -265,6 +274,7 @@ CREATE TABLE enterprise_turns (
     close_reason TEXT NOT NULL DEFAULT ''
 );
 CREATE INDEX enterprise_turns_by_thread ON enterprise_turns (thread_id);
+CREATE INDEX enterprise_turns_by_customer ON enterprise_turns (customer_id);
 
 CREATE TABLE notifications (
     notification_id INTEGER PRIMARY KEY,
@@ -281,7 +291,7 @@ CREATE TABLE research_projects (
     expected_completion_day INTEGER,
     expected_quality_boost REAL DEFAULT 0,
     quality_boost_applied REAL DEFAULT 0
-) WITHOUT ROWID;
+);
 
 CREATE TABLE macroeconomic_conditions (
     day INTEGER PRIMARY KEY,
@@ -307,7 +317,7 @@ CREATE TABLE group_info_levels (
     is_discoverable INTEGER NOT NULL DEFAULT 0,
     discovered_day INTEGER,
     last_research_day INTEGER
-) WITHOUT ROWID;
+);
 
 CREATE TABLE segment_discovery (
     id INTEGER PRIMARY KEY,
@@ -320,3 +330,27 @@ CREATE TABLE segment_discovery (
 -- Days of daily_usage and ads_revenue, packed.
 CREATE TABLE usage_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 CREATE TABLE ads_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
+
+-- What the engine is to expect of a large company: how many rows a table has, and how many of them an index finds. A small
+-- company is answered at once in any way.
+ANALYZE;
+INSERT INTO sqlite_stat1 (tbl, idx, stat) VALUES
+    ('words', 'words', '1500 150 6 1'),
+    ('customer_rows', NULL, '500000'),
+    ('subscription_rows', NULL, '500000'),
+    ('ledger_rows', 'ledger_by_day', '1400000 2800'),
+    ('issue_rows', 'issues_by_customer', '1100000 3'),
+    ('service_day', NULL, '500'),
+    ('config_history', NULL, '50'),
+    ('config_overrides', NULL, '100'),
+    ('social_media_posts', NULL, '1000'),
+    ('agent_social_media_posts', NULL, '70'),
+    ('predictions', 'sqlite_autoindex_predictions_1', '290 4 1 1'),
+    ('enterprise_turns', 'enterprise_turns_by_thread', '5000 4'),
+    ('enterprise_turns', 'enterprise_turns_by_customer', '5000 5'),
+    ('notifications', NULL, '5000'),
+    ('research_projects', 'sqlite_autoindex_research_projects_1', '20 1'),
+    ('macroeconomic_conditions', NULL, '16'),
+    ('ad_channel_leads', NULL, '5000'),
+    ('group_info_levels', 'sqlite_autoindex_group_info_levels_1', '26 1'),
+    ('segment_discovery', NULL, '30');

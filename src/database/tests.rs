@@ -15,7 +15,7 @@ const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(20), steps
 
 fn entry(facts: Facts) -> Entry {
     Entry {
-        notices: facts.notices.iter().map(crate::voice::notice).collect(),
+        notices: facts.notices.iter().map(|notice| crate::voice::notice(notice, None)).collect(),
         turns: facts.turns.iter().map(|_| String::new()).collect(),
         readings: facts.readings.iter().map(crate::voice::reading).collect(),
         addresses: facts
@@ -260,7 +260,9 @@ fn what_is_hidden_cannot_be_asked() {
         ("SELECT * FROM pragma_table_info('customers')", "sql_schema"),
         ("SELECT * FROM pragma_database_list", "sql_schema"),
         ("EXPLAIN SELECT 1", "sql_schema"),
-        ("EXPLAIN QUERY PLAN SELECT * FROM customers", "sql_schema"),
+        ("EXPLAIN QUERY PLAN DELETE FROM customers", "sql_write"),
+        ("EXPLAIN QUERY PLAN SELECT * FROM customer_rows", "sql_hidden_table"),
+        ("SELECT * FROM temp.customers", "sql_error"),
         ("SELECT 1; SELECT 2", "sql_error"),
         ("SELECT 1; DELETE FROM ledger", "sql_error"),
         ("SELECT load_extension('x')", "sql_write"),
@@ -276,6 +278,78 @@ fn what_is_hidden_cannot_be_asked() {
         }
     }
     assert_eq!(one(&desk, "SELECT count(*) FROM ledger WHERE day = 0"), 1.0);
+}
+
+#[test]
+fn a_query_plan_shows_the_way_and_nothing_of_the_inside() {
+    let mut company = Company::open(Location::memory());
+    let desk = company.weeks(1);
+    let plan = |sql: &str| -> Vec<String> {
+        let all = rows(&desk, &format!("EXPLAIN QUERY PLAN {sql}"));
+        assert_eq!(all.columns, ["id", "parent", "notused", "detail"]);
+        all.rows.iter().map(|row| text_at(row, 3).to_owned()).collect()
+    };
+    assert_eq!(plan("SELECT * FROM customers"), ["SCAN customers"]);
+    let lookup = "SELECT customer_id, (SELECT count(*) FROM issues i WHERE i.customer_id = c.customer_id) FROM customers c";
+    let expected = [
+        "SCAN customers",
+        "CORRELATED SCALAR SUBQUERY 1",
+        "SEARCH issues USING COVERING INDEX (customer_id=?)",
+    ];
+    assert_eq!(plan(lookup), expected);
+    assert_eq!(
+        plan("SELECT * FROM main.ledger WHERE rowid = 5"),
+        ["SEARCH ledger USING INTEGER PRIMARY KEY (rowid=?)"]
+    );
+    assert_eq!(plan("SELECT day FROM daily_usage u WHERE u.day = 3"), ["SCAN u"]);
+    for table in super::tables() {
+        let told = plan(&format!("SELECT DISTINCT * FROM {} ORDER BY 2 DESC", table.name)).join("\n");
+        for inside in ["_rows", "words", "axis", "inner_", "clock", "_by_", "blocks", "autoindex"] {
+            assert!(!told.contains(inside), "{told}");
+        }
+    }
+}
+
+#[test]
+fn rows_have_numbers_and_tables_the_name_of_their_schema() {
+    let mut company = Company::open(Location::memory());
+    let desk = company.weeks(2);
+    for table in super::tables() {
+        let name = &table.name;
+        for number in ["rowid", "oid", "_rowid_", "\"rowid\"", "[OID]", "`_RowId_`"] {
+            let both = rows(&desk, &format!("SELECT {number}, t.{number}, t.* FROM {name} t LIMIT 0"));
+            assert_eq!(both.columns.len(), 2 + table.columns.len());
+        }
+        let key = table.row_number().unwrap_or("rowid");
+        let numbers = rows(&desk, &format!("SELECT rowid, {key} FROM main.{name} ORDER BY oid LIMIT 50"));
+        assert_eq!(numbers.columns, [key, key]);
+        assert!(numbers.rows.iter().all(|row| row[0] == row[1]));
+    }
+    for (sql, columns) in [
+        (
+            "SELECT main.ledger.rowid + 1, main.ledger.amount FROM main.ledger",
+            "main.ledger.rowid + 1, amount",
+        ),
+        ("SELECT rowid AS n, rowid FROM customers ORDER BY n LIMIT 1", "n, customer_id"),
+        ("WITH rowid AS (SELECT 1 AS oid) SELECT oid, rowid.oid FROM rowid", "oid, oid"),
+        ("SELECT c._rowid_ FROM customers c JOIN subscriptions s ON s.rowid = c.rowid", "customer_id"),
+        ("SELECT rowid FROM customers, (SELECT customer_id FROM subscriptions LIMIT 1)", "customer_id"),
+        (
+            "SELECT max(rowid) FROM issues WHERE rowid < (SELECT rowid FROM ledger ORDER BY rowid DESC)",
+            "max(rowid)",
+        ),
+    ] {
+        assert_eq!(rows(&desk, sql).columns.join(", "), columns, "{sql}");
+    }
+    let error = refused(&desk, "SELECT rowid FROM ledger JOIN issues");
+    assert_eq!(error.code, "sql_error");
+    assert!(error.message.contains("ambiguous"), "{}", error.message);
+    let error = refused(&desk, "SELECT 1 FROM temp.ledger");
+    assert!(
+        error.message.starts_with("there is no table temp.ledger; write ledger alone;"),
+        "{}",
+        error.message
+    );
 }
 
 #[test]
@@ -340,6 +414,101 @@ fn empty_results_explain_themselves() {
     let empty = rows(&desk, "SELECT * FROM subscriptions WHERE status = 'active'");
     assert!(empty.hint.is_some_and(|hint| hint.contains("'subscribed'")));
     assert_eq!(rows(&desk, "SELECT count(*) FROM subscriptions WHERE status = 'active'").hint, None);
+    let in_double_quotes = rows(&desk, "SELECT * FROM subscriptions WHERE status = \"active\"");
+    assert!(in_double_quotes.hint.is_some_and(|hint| hint.contains("'subscribed'")));
+}
+
+#[test]
+fn mathematical_functions_are_there() {
+    let desk = Company::open(Location::memory()).weeks(0);
+    let sql = "SELECT ceil(1.2), ceiling(1.2), floor(-1.2), sqrt(9), pow(2, 3), power(2, 3), ln(1), log(100), log(2, 8), \
+               log10(1000), log2(8), exp(0), trunc(-1.7), mod(7, 4), pi(), sin(0), cos(0), tan(0), asin(0), acos(1), \
+               atan(0), atan2(0, 1), sinh(0), cosh(0), tanh(0), asinh(0), acosh(1), atanh(0), degrees(0), radians(0), \
+               sign(-3), sqrt(-1), floor('x')";
+    let row = rows(&desk, sql).rows.remove(0);
+    let numbers: Vec<f64> = (0..row.len()).map(|at| number_at(&row, at)).collect();
+    let expected = [
+        2.0,
+        2.0,
+        -2.0,
+        3.0,
+        8.0,
+        8.0,
+        0.0,
+        2.0,
+        3.0,
+        3.0,
+        3.0,
+        1.0,
+        -1.0,
+        3.0,
+        std::f64::consts::PI,
+        0.0,
+        1.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        -1.0,
+        0.0,
+        0.0,
+    ];
+    assert_eq!(numbers, expected);
+    assert_eq!(row[31..], [Cell::Null, Cell::Null]);
+}
+
+#[test]
+fn numbers_and_texts_compare_as_in_ordinary_tables() {
+    let mut company = Company::open(Location::memory());
+    let desk = company.weeks(10);
+    for (text, number) in [
+        ("subscriptions WHERE effective_price = '9'", "subscriptions WHERE effective_price = 9"),
+        ("subscriptions WHERE contract_months = '1'", "subscriptions"),
+        ("subscriptions WHERE '9.0' = effective_price", "subscriptions WHERE effective_price = 9"),
+        (
+            "subscriptions WHERE effective_price IN ('9', '18')",
+            "subscriptions WHERE effective_price IN (9, 18)",
+        ),
+        ("issues WHERE days_open >= '1'", "issues WHERE days_open >= 1"),
+        ("customers WHERE customer_type > 5", "customers"),
+    ] {
+        let (left, right) = (
+            one(&desk, &format!("SELECT count(*) FROM {text}")),
+            one(&desk, &format!("SELECT count(*) FROM {number}")),
+        );
+        assert!(left == right && left > 0.0, "{text}: {left}, {right}");
+    }
+    assert_eq!(
+        one(&desk, "SELECT count(*) FROM subscriptions WHERE pending_price IS NULL AND pending_plan IS NULL"),
+        one(&desk, "SELECT count(*) FROM subscriptions")
+    );
+}
+
+#[test]
+fn a_database_of_another_layout_is_made_anew() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let location = Location::File(folder.path().join("world.db"));
+    drop(Company::open(location.clone()).weeks(1));
+    assert!(super::has_layout_of_now(&location));
+    let file = rusqlite::Connection::open(folder.path().join("world.db")).expect("a file");
+    file.execute_batch("DROP INDEX issues_by_customer; PRAGMA user_version = 0").expect("an older layout");
+    drop(file);
+    assert!(!super::has_layout_of_now(&location));
+    assert!(super::desk_of(&location).is_err());
+    let (projector, found) =
+        Projector::start(location.clone(), Arc::new(Params::shipped()), |_| true).expect("it opens");
+    assert_eq!(found, None);
+    drop(projector);
+    assert!(super::has_layout_of_now(&location));
 }
 
 #[test]

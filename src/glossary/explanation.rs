@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{Subject, Term, subject, term};
 use crate::database::{Column, Table};
-use crate::tools::{Argument, Spec};
+use crate::tools::{Argument, Numbers, Spec};
 
 /// A part of an explanation.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -31,8 +31,8 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// Explains a subject.
-    pub fn of(subject: Subject) -> Explanation {
+    /// Explains a subject with the numbers in force.
+    pub fn of(subject: Subject, numbers: &Numbers) -> Explanation {
         let (note, sections, related, places) = match subject {
             Subject::Term(term) => of_term(term),
             Subject::Tool(spec) => of_tool(spec),
@@ -40,7 +40,8 @@ impl Explanation {
             Subject::Table(table) => of_table(table),
             Subject::Column(table, column) => of_column(table, column),
         };
-        let sections = sections.into_iter().filter(|section| !section.text.is_empty()).collect();
+        let filled = |section: Section| Section { text: numbers.fill(&section.text), ..section };
+        let sections = sections.into_iter().filter(|section| !section.text.is_empty()).map(filled).collect();
         Explanation { title: subject.title(), note, sections, related, places }
     }
 
@@ -158,7 +159,7 @@ mod tests {
     use super::*;
 
     fn explained(name: &str) -> Explanation {
-        Explanation::of(subject(name).unwrap_or_else(|| panic!("{name} is nothing")))
+        Explanation::of(subject(name).unwrap_or_else(|| panic!("{name} is nothing")), &Numbers::shipped())
     }
 
     #[test]
@@ -206,8 +207,10 @@ mod tests {
             .chain(
                 tables().flat_map(|table| table.columns.iter().map(move |own| Subject::Column(table, own))),
             );
+        let numbers = Numbers::shipped();
         for subject in subjects {
-            let explained = Explanation::of(subject);
+            let explained = Explanation::of(subject, &numbers);
+            assert!(!explained.as_text().contains("{operations.") && !explained.as_text().contains(":%}"));
             let first = &explained.sections[0];
             assert!(first.name.is_empty() && first.text.ends_with('.'), "{}: {first:?}", subject.name());
             assert!(!explained.note.is_empty(), "{}", subject.name());

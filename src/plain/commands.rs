@@ -19,19 +19,24 @@ use super::signals::{Phase, Watch};
 use crate::database::text::table;
 use crate::notation::nearest;
 use crate::session::library::NamedQuery;
-use crate::session::{Library, Mode, Refusal, Session, Via, rows_as_json};
+use crate::session::{Change, Library, Mode, Refusal, Session, Via, rows_as_json};
 use crate::tools::{self, Kind, Module, Tool};
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 23] = [
+const COMMANDS: [(&str, &str); 25] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("queries", "queries [NAME]           the library of queries, or the answer to one of them"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, let a week pass (also: next-week)"),
     ("dashboard", "dashboard                the dashboard of the last week"),
     ("status", "status                   run, day, cash, runway, subscribers and what waits"),
     ("inbox", "inbox                    threads that wait for an answer"),
+    (
+        "needs",
+        "needs                    what needs you, ranked by the money at risk, with the call that would mend it",
+    ),
     ("changes", "changes                  settings changed since the last week"),
     ("undo", "undo                     take the last setting of this week back"),
+    ("redo", "redo                     set again what undo took back"),
     ("history", "history [N]              the last N confirmed actions and weeks (20)"),
     (
         "report",
@@ -88,7 +93,7 @@ impl Desk {
         match word {
             "memo" if rest.is_empty() => self.show_memo(),
             "memo" => self.add_to_memo(rest),
-            "explain" | "what" => explain(word, rest),
+            "explain" | "what" => explain(word, rest, &self.session.numbers()),
             "glossary" => glossary(rest),
             _ => self.query(rest),
         }
@@ -177,10 +182,16 @@ impl Desk {
             "status" => none(arguments).map(|()| self.status()),
             "inbox" => none(arguments).map(|()| self.inbox()),
             "changes" => none(arguments).map(|()| self.changes()),
+            "needs" => none(arguments).map(|()| self.needs()),
             "undo" => none(arguments).map(|()| self.undo()),
+            "redo" => none(arguments).map(|()| self.redo()),
             "vars" => none(arguments).map(|()| self.call_named("get_vars", &json!({}))),
-            "help" => name(arguments).and_then(|name| readings::help(name, arguments)),
-            "tools" => name(arguments).and_then(|name| readings::tools(name, arguments)),
+            "help" => {
+                name(arguments).and_then(|name| readings::help(name, arguments, &self.session.numbers()))
+            }
+            "tools" => {
+                name(arguments).and_then(|name| readings::tools(name, arguments, &self.session.numbers()))
+            }
             "queries" => name(arguments).and_then(|name| match name {
                 Some(name) => self.named_query(name, arguments),
                 None => Ok(self.queries()),
@@ -211,12 +222,15 @@ impl Desk {
 
     fn undo(&mut self) -> Answer {
         match self.session.undo(Via::Plain) {
-            Ok(back) => {
-                let text: String =
-                    back.iter().map(|change| format!("{}\n", readings::change(change))).collect();
-                Answer::done("undo", format!("taken back\n{text}"), json!({ "taken_back": back }))
-            }
+            Ok(back) => Answer::done("undo", in_words("taken back", &back), json!({ "taken_back": back })),
             Err(refusal) => Answer::refused("undo", refusal),
+        }
+    }
+
+    fn redo(&mut self) -> Answer {
+        match self.session.redo(Via::Plain) {
+            Ok(again) => Answer::done("redo", in_words("set again", &again), json!({ "set_again": again })),
+            Err(refusal) => Answer::refused("redo", refusal),
         }
     }
 
@@ -255,6 +269,12 @@ fn tool_called(word: &str) -> Option<&'static dyn Tool> {
     tools::find(name)
         .filter(|tool| tool.spec().kind != Kind::Time && tool.spec().name != "query")
         .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))
+}
+
+/// What was restored, one change in a line.
+fn in_words(what: &str, changes: &[Change]) -> String {
+    let lines: String = changes.iter().map(|change| format!("{}\n", readings::change(change))).collect();
+    format!("{what}\n{lines}")
 }
 
 /// The argument of a tool that may be given without its name: the only required one, the one that is the whole, or the

@@ -9,7 +9,7 @@ use super::grammar::{Argument, Problem};
 use super::input::{Input, Read};
 use super::prompt;
 use crate::notation::{dollars, grouped, signed_dollars};
-use crate::session::{Forecasts, Mode, Session, Via, Week};
+use crate::session::{Mode, Session, Via, Week};
 use crate::tools::{FORECAST_KEYS, Forecast};
 
 /// What is filed before a week.
@@ -22,7 +22,7 @@ pub enum Filing {
         /// Forecasts.
         predictions: Value,
         /// Filled by the naive projection.
-        naive: bool,
+        naive: [bool; 4],
     },
     /// The person has to be asked.
     Ask,
@@ -35,19 +35,19 @@ pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<
     let is_naive = |argument: &Argument| argument.key.is_none() && argument.value == "naive";
     match arguments {
         [] if prompts => Ok(Filing::Ask),
-        [] => Ok(given(Value::Null, Value::Null, false)),
+        [] => Ok(given(Value::Null, Value::Null, [false; 4])),
         [Argument { key: None, value: Value::Object(body), .. }] => {
             let field = |name: &str| body.get(name).cloned().unwrap_or(Value::Null);
-            Ok(given(field("rationale"), field("predictions"), false))
+            Ok(given(field("rationale"), field("predictions"), [false; 4]))
         }
         [only] if is_naive(only) && session.manifest().mode == Mode::Baseline => {
-            Ok(given(Value::Null, naive.as_predictions(), true))
+            Ok(given(Value::Null, naive.as_predictions(), [true; 4]))
         }
-        [only] if is_naive(only) => Ok(given(json!("(none given)"), naive.as_predictions(), true)),
+        [only] if is_naive(only) => Ok(given(json!("(none given)"), naive.as_predictions(), [true; 4])),
         [why, only] if why.key.is_none() && is_naive(only) => {
-            Ok(given(why.value.clone(), naive.as_predictions(), true))
+            Ok(given(why.value.clone(), naive.as_predictions(), [true; 4]))
         }
-        [why, numbers @ ..] => Ok(given(why.value.clone(), predictions(why, numbers)?, false)),
+        [why, numbers @ ..] => Ok(given(why.value.clone(), predictions(why, numbers)?, [false; 4])),
     }
 }
 
@@ -131,18 +131,17 @@ pub fn ask(session: &Session, input: &mut Input<impl BufRead>) -> io::Result<Opt
         }
     };
     let mut forecasts = session.naive_forecasts();
-    let mut any_naive = false;
-    for (forecast, weeks) in forecasts.all.iter_mut().zip([1, 4, 12, 26]) {
+    let fields = forecasts.all.iter_mut().zip(&mut forecasts.filled_naively);
+    for ((forecast, filled), weeks) in fields.zip([1, 4, 12, 26]) {
         match ask_forecast(input, weeks, *forecast)? {
             None => return Ok(None),
             Some((given, naive)) => {
-                *forecast = given;
-                any_naive |= naive;
+                (*forecast, *filled) = (given, naive);
             }
         }
     }
-    let predictions = Forecasts { filled_naively: any_naive, ..forecasts }.as_predictions();
-    Ok(Some(Filing::Given { rationale: rationale.into(), predictions, naive: any_naive }))
+    let (predictions, naive) = (forecasts.as_predictions(), forecasts.filled_naively);
+    Ok(Some(Filing::Given { rationale: rationale.into(), predictions, naive }))
 }
 
 /// One forecast and whether it is the naive one.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::session::{Cell, Rows, Session, number_at, text_at};
+use crate::session::{Cell, Rows, Session, WEEK_OF_ENTRY, number_at, text_at};
 use crate::world::identifiers::Group;
 
 /// Who came and left by week and group. A deal that was left early ends in the future: it counts from the last day.
@@ -26,9 +26,6 @@ WHERE c.customer_id = s.customer_id AND s.status = 'subscribed' GROUP BY 1";
 
 const CHANNELS: &str =
     "SELECT group_id, channel_id, sum(leads_generated), sum(spend) FROM ad_channel_leads GROUP BY 1, 2";
-
-/// A decision day still belongs to the week before it.
-const LEDGER: &str = "SELECT (day + 6) / 7 AS week, category, sum(amount) FROM ledger GROUP BY 1, 2";
 
 const OUTAGES: &str = "SELECT day, downtime_minutes FROM service_day WHERE downtime_minutes > 0 ORDER BY day";
 
@@ -99,7 +96,8 @@ impl Books {
         let (leads, revenue) = (ask("leads", LEADS), ask("revenue", REVENUE));
         let groups = groups_of(&flows, &by_group(&leads), &by_group(&revenue), weeks);
         let channels = ask("channels", CHANNELS).rows.iter().map(|row| channel_of(row)).collect();
-        let ledger = ledger_of(&ask("the ledger", LEDGER));
+        let ledger = format!("SELECT {WEEK_OF_ENTRY}, category, sum(amount) FROM ledger GROUP BY 1, 2");
+        let ledger = ledger_of(&ask("the ledger", &ledger));
         let outage = |row: &Vec<Cell>| (number_at(row, 0) as u32, number_at(row, 1) as u32);
         let outages = ask("outages", OUTAGES).rows.iter().map(outage).collect();
         Books { groups, channels, ledger, outages, missing }

@@ -1,21 +1,23 @@
-//! A run told: what a week has changed and why it may have, and the whole run as a [`Story`] that can be written as
-//! Markdown or as a page for a browser.
+//! A run reported: what a week changed, and the whole run as a [`Story`] that can be written as Markdown or as a page for
+//! a browser. A report says what the records show; it names no causes.
 //!
 //! Everything here is computed from what a player may see: observations, the journal, and guarded queries. Each measure
 //! is one pure function. [`outline`] turns a story into a [`page::Page`]; the writers know nothing of companies.
 
 pub mod books;
-pub mod causes;
 pub mod chapters;
+pub mod funnel;
 pub mod highlights;
 pub mod html;
 pub mod logbook;
 pub mod markdown;
 pub mod measures;
 pub mod movement;
+pub mod needs;
 pub mod outline;
 pub mod page;
 pub mod ranking;
+pub mod review;
 pub mod story;
 pub mod svg;
 #[cfg(test)]
@@ -27,6 +29,7 @@ mod words;
 pub use logbook::Logbook;
 pub use story::Story;
 pub use week::WeekReport;
+pub use words::category_name;
 
 /// The report of a run as Markdown.
 pub fn as_markdown(story: &Story) -> String {

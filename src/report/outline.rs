@@ -64,10 +64,10 @@ fn result(story: &Story) -> Vec<Fact> {
     let last_day = whole(f64::from(seen.last_day));
     let most = story.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = story.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
-    let runway = match (seen.ended, seen.runway_weeks) {
+    let runway = match (seen.ended, seen.weeks_of_cash()) {
         (Some(_), _) => String::new(),
-        (None, None) => "cash grows".to_owned(),
-        (None, Some(weeks)) => format!("cash lasts {weeks:.0} weeks at this pace"),
+        (None, None) => "at this pace cash lasts to the last day".to_owned(),
+        (None, Some(weeks)) => format!("at this pace cash lasts {}", count(weeks, "week")),
     };
     let change = signed_dollars(seen.cash - story.start_cash);
     vec![

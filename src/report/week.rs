@@ -1,11 +1,11 @@
-//! A week told: what cash did and what that consists of, what changed most and why it may have, what is new, and
-//! what became of the forecasts for it.
+//! The report of a week: how cash changed and what that consists of, which figures changed most, what was set before
+//! it, what is new, and what became of the forecasts for it.
 
-use super::causes::{Figure, Seen, cause};
+use super::chapters::change_in_words;
 use super::movement::{Movement, movement};
-use super::words::{money, number, whole};
+use super::words::{category_name, money, number, whole};
 use crate::notation::{compact, percent};
-use crate::session::{Decisions, JournalEntry, Session, WeekFigures};
+use crate::session::{Booked, Category, Decisions, JournalEntry, Session, WeekFigures};
 
 /// A figure that moved.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,8 +22,9 @@ pub struct Move {
     pub good: Option<bool>,
     /// How it moved against the weeks before.
     pub movement: Movement,
-    /// Why it may have.
-    pub cause: Option<String>,
+    /// Categories of the ledger whose changes add up to this one, the largest first; empty where the figure is none of
+    /// the ledger's.
+    pub split: Vec<(&'static str, f64)>,
 }
 
 impl Move {
@@ -76,27 +77,39 @@ impl Due {
     }
 }
 
-/// A week told.
+/// The report of a week.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeekReport {
     /// Its figures.
     pub week: WeekFigures,
-    /// What the change of cash consists of: payments, running costs, the rest.
-    pub parts: [(&'static str, f64); 3],
+    /// What the change of cash consists of, by category of the ledger: income, then costs from the largest.
+    pub parts: Vec<(&'static str, f64)>,
     /// What changed, the most unusual first.
     pub moves: Vec<Move>,
+    /// Settings that were changed before it, old → new, then purchases, posts and offers.
+    pub decided: Vec<String>,
     /// Forecasts for its last day, the shortest first.
     pub due: Vec<Due>,
     /// Posts of customers in it.
     pub customer_posts: u32,
     /// Answers to our posts in it.
     pub comments: u32,
-    /// Posts of the press in it.
-    pub press: u32,
+    /// News items in it.
+    pub news_items: u32,
 }
 
-/// A figure: what it is, its name, how it is read and written, whether more of it is better.
-struct Row(Figure, &'static str, fn(&WeekFigures) -> f64, fn(f64) -> String, Option<bool>);
+/// A figure: its name, how it is read and written, whether more of it is better, and the categories of the ledger that
+/// make it up.
+struct Row(&'static str, fn(&WeekFigures) -> f64, fn(f64) -> String, Option<bool>, &'static [Category]);
+
+/// Costs that run from day to day.
+const RUNNING: [Category; 5] = [
+    Category::Capacity,
+    Category::Compute,
+    Category::Operations,
+    Category::Development,
+    Category::Advertising,
+];
 
 fn in_percent(share: f64) -> String {
     percent(share, 1)
@@ -111,35 +124,23 @@ fn conversion(week: &WeekFigures) -> f64 {
 }
 
 const FIGURES: [Row; 14] = [
-    Row(Figure::Revenue, "recurring revenue", |week| week.recurring_revenue, money, Some(true)),
-    Row(Figure::Payments, "payments", |week| week.payments, money, Some(true)),
-    Row(Figure::Costs, "running costs", |week| week.costs, money, Some(false)),
-    Row(Figure::Subscribers, "subscribers", |week| f64::from(week.individual_subscribers), whole, Some(true)),
-    Row(Figure::Seats, "enterprise seats", |week| f64::from(week.enterprise_seats), whole, Some(true)),
-    Row(Figure::Leads, "individual leads", |week| f64::from(week.new_individual_leads), whole, Some(true)),
-    Row(
-        Figure::CompanyLeads,
-        "company leads",
-        |week| f64::from(week.new_enterprise_leads),
-        whole,
-        Some(true),
-    ),
-    Row(
-        Figure::Signups,
-        "new subscribers",
-        |week| f64::from(week.new_individual_subscribers),
-        whole,
-        Some(true),
-    ),
-    Row(Figure::Conversion, "conversion", conversion, in_percent, Some(true)),
-    Row(Figure::Cancellations, "cancellations", |week| f64::from(week.cancellations), whole, Some(false)),
-    Row(Figure::Usage, "usage, units", |week| week.usage as f64, compact, None),
-    Row(Figure::Overload, "overload, peak", |week| week.overload_peak, in_percent, Some(false)),
-    Row(Figure::Outage, "outage, minutes", |week| f64::from(week.downtime_minutes), number, Some(false)),
-    Row(Figure::Issues, "open issues", |week| f64::from(week.open_issues), whole, Some(false)),
+    Row("recurring revenue", |week| week.recurring_revenue, money, Some(true), &[]),
+    Row("payments", |week| week.payments, money, Some(true), &[]),
+    Row("running costs", |week| week.costs, money, Some(false), &RUNNING),
+    Row("subscribers", |week| f64::from(week.individual_subscribers), whole, Some(true), &[]),
+    Row("enterprise seats", |week| f64::from(week.enterprise_seats), whole, Some(true), &[]),
+    Row("individual leads", |week| f64::from(week.new_individual_leads), whole, Some(true), &[]),
+    Row("enterprise leads", |week| f64::from(week.new_enterprise_leads), whole, Some(true), &[]),
+    Row("new subscribers", |week| f64::from(week.new_individual_subscribers), whole, Some(true), &[]),
+    Row("conversion", conversion, in_percent, Some(true), &[]),
+    Row("cancellations", |week| f64::from(week.cancellations), whole, Some(false), &[]),
+    Row("usage, units", |week| week.usage as f64, compact, None, &[]),
+    Row("overload, peak", |week| week.overload_peak, in_percent, Some(false), &[]),
+    Row("outage, minutes", |week| f64::from(week.downtime_minutes), number, Some(false), &[]),
+    Row("open issues", |week| f64::from(week.open_issues), whole, Some(false), &[]),
 ];
 
-/// What a week is told from.
+/// What the report of a week is made from.
 pub struct Sources<'a> {
     /// Figures of every week.
     pub weeks: &'a [WeekFigures],
@@ -149,7 +150,7 @@ pub struct Sources<'a> {
     pub journal: &'a [JournalEntry],
     /// Cash at the end of each day, day 0 first.
     pub cash_by_day: &'a [f64],
-    /// Days of posts: of customers, of comments on ours, of the press.
+    /// Days of posts: of customers, of comments on ours, of news items.
     pub posts: [&'a [u32]; 3],
 }
 
@@ -158,7 +159,7 @@ impl WeekReport {
     pub fn of_session(session: &Session) -> Option<WeekReport> {
         let mut posts: [Vec<u32>; 3] = Default::default();
         for post in session.posts() {
-            // The press is the only one without a profile, comments aside.
+            // News items are the only posts without a profile, comments aside.
             let kind = match (post.own_post, &post.profile) {
                 (Some(_), _) => 1,
                 (None, Some(_)) => 0,
@@ -181,30 +182,44 @@ impl WeekReport {
         let first_day = week.day - week.days_run.min(week.day) + 1;
         let count =
             |days: &[u32]| days.iter().filter(|day| (first_day..=week.day).contains(*day)).count() as u32;
-        let [customer_posts, comments, press] = sources.posts.map(count);
-        let rest = week.cash_change - week.payments + week.costs;
+        let [customer_posts, comments, news_items] = sources.posts.map(count);
         Some(WeekReport {
             week,
-            parts: [("payments", week.payments), ("running costs", -week.costs), ("the rest", rest)],
-            moves: moves(sources, &week, press),
+            parts: parts(&week.booked),
+            moves: moves(sources, &week),
+            decided: decided(sources, first_day - 1),
             due: due(sources, week.day),
             customer_posts,
             comments,
-            press,
+            news_items,
         })
     }
 }
 
-fn moves(sources: &Sources<'_>, week: &WeekFigures, press: u32) -> Vec<Move> {
+/// What was booked: income, then costs from the largest.
+fn parts(booked: &Booked) -> Vec<(&'static str, f64)> {
+    let mut parts: Vec<(&'static str, f64)> =
+        booked.entries().map(|(category, dollars)| (category_name(category), dollars)).collect();
+    parts.sort_by(|left, right| {
+        (left.1 < 0.0).cmp(&(right.1 < 0.0)).then(right.1.abs().total_cmp(&left.1.abs()))
+    });
+    parts
+}
+
+/// What was decided on a day, in words.
+fn decided(sources: &Sources<'_>, day: u32) -> Vec<String> {
+    let found = sources.decisions.iter().filter(|decided| decided.day == day);
+    found
+        .flat_map(|decided| {
+            decided.changes.iter().map(change_in_words).chain(decided.purchases.iter().cloned())
+        })
+        .collect()
+}
+
+fn moves(sources: &Sources<'_>, week: &WeekFigures) -> Vec<Move> {
     let nothing = WeekFigures::default();
     let before = sources.weeks.len().checked_sub(2).map_or(&nothing, |at| &sources.weeks[at]);
-    let first_day = before.day;
-    let own_posts = sources.journal.iter().filter(|entry| {
-        matches!(entry, JournalEntry::Call { day, tool, .. } if *day == first_day && tool == "post_social_media")
-    });
-    let decided = sources.decisions.iter().rev().find(|decided| decided.day == first_day);
-    let seen = Seen { now: week, before, decided, press, own_posts: own_posts.count() as u32 };
-    let moved = |Row(figure, name, read, write, more_is_better): &Row| {
+    let moved = |Row(name, read, write, more_is_better, categories): &Row| {
         // Before the first week there was nothing.
         let series: Vec<f64> = std::iter::once(&nothing).chain(sources.weeks).map(read).collect();
         let movement = movement(&series)?;
@@ -219,12 +234,23 @@ fn moves(sources: &Sources<'_>, week: &WeekFigures, press: u32) -> Vec<Move> {
             up,
             good: more_is_better.map(|better| better == up),
             movement,
-            cause: cause(*figure, up, &seen),
+            split: split(categories, &before.booked, &week.booked),
         })
     };
     let mut moves: Vec<Move> = FIGURES.iter().filter_map(moved).collect();
     moves.sort_by(|left, right| right.movement.unusual.total_cmp(&left.movement.unusual));
     moves
+}
+
+/// By how much each of some costs rose or fell, the largest change first.
+fn split(categories: &[Category], before: &Booked, now: &Booked) -> Vec<(&'static str, f64)> {
+    let mut changes: Vec<(&'static str, f64)> = categories
+        .iter()
+        .map(|category| (category_name(*category), before.of(*category) - now.of(*category)))
+        .filter(|(_, dollars)| *dollars != 0.0)
+        .collect();
+    changes.sort_by(|left, right| right.1.abs().total_cmp(&left.1.abs()));
+    changes
 }
 
 fn due(sources: &Sources<'_>, day: u32) -> Vec<Due> {
@@ -251,11 +277,29 @@ mod tests {
     use crate::report::test_kit;
 
     #[test]
-    fn a_week_names_its_parts_its_forecasts_and_what_moved() {
-        let session = test_kit::played(5);
+    fn the_parts_add_up_to_the_change_of_cash_and_agree_with_the_ledger() {
+        let mut session = test_kit::played(5);
         let report = WeekReport::of_session(&session).expect("five weeks have passed");
         let sum: f64 = report.parts.iter().map(|(_, dollars)| dollars).sum();
         assert!((sum - report.week.cash_change).abs() < 0.01);
+        for (at, week) in session.weeks().to_vec().iter().enumerate() {
+            let of_week = crate::session::entries_of_weeks(at as u32 + 1, at as u32 + 1);
+            let sql = format!("SELECT category, sum(amount) FROM ledger WHERE {of_week} GROUP BY 1");
+            for row in session.query(&sql).expect("rows").rows {
+                let (id, dollars) = (crate::session::text_at(&row, 0), crate::session::number_at(&row, 1));
+                let category = Category::ALL.into_iter().find(|own| own.id() == id).expect("a category");
+                assert!((week.booked.of(category) - dollars).abs() < 0.01, "week {} {id}", at + 1);
+            }
+        }
+        let costs = report.moves.iter().find(|moved| moved.name == "running costs").expect("they moved");
+        let split: f64 = costs.split.iter().map(|(_, dollars)| dollars).sum();
+        assert!((split - (costs.movement.new - costs.movement.old)).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_week_reports_its_forecasts_and_the_figures_that_moved() {
+        let session = test_kit::played(5);
+        let report = WeekReport::of_session(&session).expect("five weeks have passed");
         let horizons: Vec<u32> = report.due.iter().map(|due| due.horizon_days).collect();
         assert_eq!(horizons, [7, 28]);
         assert!(report.due.iter().all(|due| due.outcome == report.week.cash && due.miss() < 1.0));
@@ -263,15 +307,16 @@ mod tests {
         let order: Vec<f64> = report.moves.iter().map(|moved| moved.movement.unusual).collect();
         assert!(order.is_sorted_by(|left, right| left >= right), "{order:?}");
         assert!(report.moves.iter().all(|moved| moved.old != moved.new));
+        assert!(report.decided.is_empty(), "nothing was set before week 5: {:?}", report.decided);
     }
 
     #[test]
-    fn the_first_week_is_told_against_nothing_and_no_week_not_at_all() {
+    fn the_first_week_is_reported_against_nothing_and_no_week_not_at_all() {
         assert_eq!(WeekReport::of_session(&test_kit::played(0)), None);
         let report = WeekReport::of_session(&test_kit::played(1)).expect("a week");
         let costs = report.moves.iter().find(|moved| moved.name == "running costs").expect("they rose");
         assert_eq!((costs.old.as_str(), costs.up, costs.good), ("$0", true, Some(false)));
-        assert!(costs.cause.is_some());
         assert_eq!(costs.in_percent(), None);
+        assert!(report.decided.contains(&"price A: 0 → 12 $/month".to_owned()), "{:?}", report.decided);
     }
 }

@@ -1,11 +1,30 @@
-//! Small words for figures.
+//! How reports write figures and name what they are.
 
 use crate::notation::{compact, grouped};
+use crate::session::Category;
 
 /// Money with its sign before the dollar: `$1,234`, `-$45`.
 pub fn money(value: f64) -> String {
     let sign = if value < -0.5 { "-" } else { "" };
     format!("{sign}${}", grouped(value.abs(), 0))
+}
+
+/// Name of a category of the ledger, as every screen and report writes it.
+pub fn category_name(category: Category) -> &'static str {
+    match category {
+        Category::SubscriptionPayment => "payments",
+        Category::AdRevenue => "ad revenue",
+        Category::InitialFunding => "funding",
+        Category::Compute => "compute",
+        Category::Capacity => "capacity",
+        Category::Advertising => "advertising",
+        Category::LeadAcquisitionCost => "lead costs",
+        Category::Operations => "operations",
+        Category::Development => "development",
+        Category::ResearchProject => "R&D",
+        Category::MarketResearch => "market research",
+        Category::GroupResearch => "group studies",
+    }
 }
 
 /// A whole number.

@@ -1,4 +1,4 @@
-//! Calling tools: check, call, undo.
+//! Calling tools: check and call.
 
 use std::time::Instant;
 
@@ -9,9 +9,10 @@ use super::changes::{Change, changes, daily_cost};
 use super::error::RunError;
 use super::record::to_fill;
 use super::trajectory::Durability;
-use super::{JournalEntry, Session, UndoStep};
+use super::undo::{Reversal, Step};
+use super::{JournalEntry, Session};
 use crate::notation::cents;
-use crate::tools::{Arguments, Kind, Refusal, Task, Tool, View, find};
+use crate::tools::{Arguments, Kind, Refusal, Task, Tool, View, bounds, find};
 use crate::world::effect::{Deed, Effect};
 use crate::world::enterprise::letters::Letter;
 use crate::world::events::Offering;
@@ -122,12 +123,12 @@ impl Session {
         self.call_recorded(tool, arguments, via, None)
     }
 
-    fn call_recorded(
+    pub(super) fn call_recorded(
         &mut self,
         name: &str,
         arguments: &Value,
         via: Via,
-        undoes: Option<u64>,
+        reversal: Option<Reversal>,
     ) -> Result<Value, Refusal> {
         let started = Instant::now();
         let tool = self.tool(name)?;
@@ -145,7 +146,7 @@ impl Session {
             Ok((arguments, deed, task, answer))
         });
         let took_ms = started.elapsed().as_secs_f64() * 1e3;
-        let mut fields = CallFields { tool: tool.spec().name, arguments, via, took_ms, undoes };
+        let mut fields = CallFields { tool: tool.spec().name, arguments, via, took_ms, reversal };
         match planned {
             Err(refusal) => {
                 // A refusal changes nothing, so a disk that refuses its line takes nothing away.
@@ -153,8 +154,8 @@ impl Session {
                 Err(refusal)
             }
             Ok((given, deed, task, answer)) => {
-                let given = Value::Object(given.as_map().clone());
-                fields.arguments = &given;
+                let arguments = Value::Object(given.as_map().clone());
+                fields.arguments = &arguments;
                 let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
                 let accepted = fields.accepted(&answer);
                 // Statements can be kept even when the run is over, and then their line comes after its end.
@@ -166,36 +167,32 @@ impl Session {
                 };
                 recorded.map_err(not_saved)?;
                 task.iter().for_each(|task| self.apply_task(task));
-                self.apply(tool, given, undoes, deed);
+                self.apply(tool, &given, reversal, deed);
                 Ok(answer)
             }
         }
     }
 
-    fn apply(&mut self, tool: &'static dyn Tool, args: Value, undoes: Option<u64>, deed: Deed) {
-        let spec = tool.spec();
+    fn apply(&mut self, tool: &'static dyn Tool, given: &Arguments, reversal: Option<Reversal>, deed: Deed) {
+        let (spec, seq) = (tool.spec(), self.position.seq);
         if !deed.only_reads() {
+            let args = Value::Object(given.as_map().clone());
             let (day, tool) = (self.world.day, spec.name.to_owned());
-            self.journal.push(JournalEntry::Call { day, tool, args, undoes });
+            self.journal.push(JournalEntry::Call { seq, day, tool, args, reversal });
         }
         self.this_week.done.extend(self.in_words(&deed));
-        match &deed {
-            Deed::None | Deed::ReadInsights(_) => return,
-            Deed::Set(_) => {
-                let seq = self.position.seq;
-                let before = self.world.settings.clone();
-                self.this_week.undo.push(UndoStep { seq, tool: spec.name, before });
-            }
-            Deed::StartResearch(..)
-            | Deed::ResearchMarket(_)
-            | Deed::ResearchGroup(..)
-            | Deed::SendDeals(_)
-            | Deed::RejectDeals(_)
-            | Deed::Post(_) => {}
+        if matches!(deed, Deed::None | Deed::ReadInsights(_)) {
+            return;
         }
+        let settings = tool.row(given, &deed);
+        let before = matches!(deed, Deed::Set(_)).then(|| self.world.settings.clone());
         self.world.apply(deed, &self.params, to_fill(&mut self.facts, self.projector.as_ref()));
+        if let Some(restores) = before {
+            let changed = restores != self.world.settings;
+            self.this_week.keep(Step { seq, tool: spec.name, restores }, changed, reversal);
+        }
         self.called.extend_from_slice(&self.facts.ledger);
-        self.after_call();
+        self.after_call(settings);
     }
 
     /// What cannot be taken back of a deed, in words.
@@ -218,39 +215,21 @@ impl Session {
             Deed::RejectDeals(threads) => {
                 let ended = self.world.enterprise.threads.iter();
                 let ended = ended.filter(|thread| threads.contains(&thread.number));
-                ended.map(|thread| format!("talks with customer {} ended", thread.customer)).collect()
+                ended.map(|thread| format!("thread with customer {} ended", thread.customer)).collect()
             }
         }
     }
 
-    /// What follows every applied deed, live or replayed.
-    pub(super) fn after_call(&mut self) {
+    /// What follows every applied deed, live or replayed; with the settings family that it leaves.
+    fn after_call(&mut self, settings: Option<Value>) {
         if let Some(last) = self.cash_by_day.last_mut() {
             *last = self.world.finance.cash;
         }
-        self.follow_up();
+        self.follow_up(settings);
         // The database must not be ahead of what is on the disk.
         if self.sync_calls {
             self.commit_projection();
         }
-    }
-
-    /// Takes back the last setting of this week by sending the call that restores the old value.
-    ///
-    /// # Errors
-    /// `nothing_to_undo`, `cannot_undo` where no call can restore it, and the refusals of the call.
-    pub fn undo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
-        let Some(step) = self.this_week.undo.last().cloned() else {
-            let message = "nothing was set since the last week; purchases cannot be taken back";
-            return Err(Refusal::new("nothing_to_undo", message));
-        };
-        let tool = self.tool(step.tool)?;
-        let back = changes(&self.world.settings, &step.before);
-        let arguments = restoring_arguments(tool, &step.before, &back)?;
-        self.call_recorded(step.tool, &Value::Object(arguments), via, Some(step.seq))?;
-        // The restoring call has put a step of its own on top; both are done with.
-        self.this_week.undo.truncate(self.this_week.undo.len().saturating_sub(2));
-        Ok(back)
     }
 
     /// Settings changed since the last week, old -> new.
@@ -263,7 +242,8 @@ impl Session {
         find(tool).map(|tool| tool.current(&self.world.settings)).unwrap_or_default()
     }
 
-    fn daily_cost(&self, settings: &Settings) -> f64 {
+    /// Running costs that follow from settings alone, dollars a day.
+    pub(super) fn daily_cost(&self, settings: &Settings) -> f64 {
         daily_cost(settings, f64::from(self.params.capacity(settings.core.capacity_tier).cost_per_day))
     }
 
@@ -282,6 +262,13 @@ impl Session {
     }
 
     fn plan(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Effect), Refusal> {
+        let (arguments, effect) = self.plan_again(tool, arguments)?;
+        bounds::hold(tool.spec(), &arguments)?;
+        Ok((arguments, effect))
+    }
+
+    /// Plans a call that was accepted once, by a version that may have taken larger numbers.
+    fn plan_again(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Effect), Refusal> {
         let arguments = Arguments::of(tool.spec(), arguments)?;
         let effect = tool.plan(&self.view(), &arguments)?;
         Ok((arguments, effect))
@@ -330,7 +317,7 @@ impl Session {
         via: Via,
         refusal: &Refusal,
     ) {
-        let fields = CallFields { tool, arguments, via, took_ms: 0.0, undoes: None };
+        let fields = CallFields { tool, arguments, via, took_ms: 0.0, reversal: None };
         let _ = self.record_call(fields.refused(refusal), Durability::Written);
     }
 }
@@ -338,28 +325,7 @@ impl Session {
 fn letter_in_words(letter: &Letter) -> String {
     let offer = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
     let offers: Vec<String> = letter.offerings.iter().map(offer).collect();
-    format!("customer {} offered {}", letter.customer, offers.join(", "))
-}
-
-/// The arguments that restore what a tool had set before.
-fn restoring_arguments(
-    tool: &'static dyn Tool,
-    before: &Settings,
-    back: &[Change],
-) -> Result<Map<String, Value>, Refusal> {
-    let mut arguments = tool.current(before);
-    if tool.spec().name == "set_prices" {
-        // Only the prices that changed; the zero of the start is no price the tool takes.
-        arguments.retain(|plan, _| back.iter().any(|change| change.setting == format!("price {plan}")));
-        if let Some((plan, _)) = arguments.iter().find(|(_, price)| price.as_f64() == Some(0.0)) {
-            let message = format!("plan {plan} had no price before, and a price of 0 cannot be set");
-            return Err(Refusal::at(plan.clone(), "cannot_undo", message));
-        }
-    }
-    if tool.spec().name == "set_prices" && arguments.is_empty() {
-        return Err(Refusal::new("nothing_to_undo", "the last call changed nothing"));
-    }
-    Ok(arguments)
+    format!("offered to customer {}: {}", letter.customer, offers.join(", "))
 }
 
 /// A refusal that says the disk did not take a line.
@@ -375,7 +341,7 @@ struct CallFields<'a> {
     arguments: &'a Value,
     via: Via,
     took_ms: f64,
-    undoes: Option<u64>,
+    reversal: Option<Reversal>,
 }
 
 impl CallFields<'_> {
@@ -395,8 +361,8 @@ impl CallFields<'_> {
         fields.insert(outcome.to_owned(), value);
         fields.insert("via".to_owned(), json!(self.via));
         fields.insert("took_ms".to_owned(), json!((self.took_ms * 1e3).round() / 1e3));
-        if let Some(seq) = self.undoes {
-            fields.insert("undoes".to_owned(), seq.into());
+        if let Some((name, seq)) = self.reversal.map(Reversal::field) {
+            fields.insert(name.to_owned(), seq.into());
         }
         fields
     }
@@ -411,20 +377,18 @@ impl Session {
         let name = fields.get("tool").and_then(Value::as_str).ok_or("the call names no tool")?;
         let arguments = fields.get("args").unwrap_or(&Value::Null);
         let tool = self.tool(name).map_err(|refusal| refusal.message)?;
-        let (given, effect) = self.plan(tool, arguments).map_err(|refusal| refusal.to_string())?;
+        let (given, effect) = self.plan_again(tool, arguments).map_err(|refusal| refusal.to_string())?;
         let deed = self.world.resolve(effect, &self.params, &self.streams);
         let task = tool.task(&self.view(), &given);
-        // What statements said is not asked again: the database may be ahead of this line.
+        // What statements said is not asked again: the database may be ahead of this line. And documents may be worded
+        // differently by now.
         let runs = matches!(task, Some(Task::Run { .. }));
-        if !runs && fields.get("result") != Some(&tool.answer(&self.view(), &given, &deed)) {
+        let documents = tool.spec().kind == Kind::Engine && task.is_none();
+        if !runs && !documents && fields.get("result") != Some(&tool.answer(&self.view(), &given, &deed)) {
             return Err("the call answers differently now".to_owned());
         }
         task.iter().for_each(|task| self.apply_task(task));
-        let undoes = fields.get("undoes").and_then(Value::as_u64);
-        self.apply(tool, Value::Object(given.as_map().clone()), undoes, deed);
-        if undoes.is_some() {
-            self.this_week.undo.truncate(self.this_week.undo.len().saturating_sub(2));
-        }
+        self.apply(tool, &given, Reversal::of(fields), deed);
         Ok(())
     }
 

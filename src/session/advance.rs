@@ -3,19 +3,18 @@
 use serde_json::{Map, Value, json};
 
 use super::act::{Via, not_saved};
-use super::record::{StateHash, state_hash};
+use super::record::StateHash;
 use super::scripts::as_field;
 use super::snapshot::WEEKS_BETWEEN;
 use super::trajectory::{Durability, Line, seconds};
 use super::week::{Forecasts, WeekFigures};
 use super::xray::Xray;
-use super::{Decisions, Ended, JournalEntry, Session};
+use super::{Decisions, Ended, JournalEntry, Session, groups};
 use crate::database::{Entry, ForecastRow};
 use crate::notation::json_number;
 use crate::tools::{self, Kind, Refusal};
-use crate::world::events::{DayFigures, Notice, Sender, SubscriptionEnded, SubscriptionStatus};
+use crate::world::events::{Category, DayFigures, Notice, Sender, SubscriptionEnded, SubscriptionStatus};
 use crate::world::market::surges::week_end;
-use crate::world::state::PartHash;
 
 /// A day that was just simulated.
 pub struct DayReport<'a> {
@@ -88,7 +87,7 @@ impl Session {
         &mut self,
         rationale: &Value,
         predictions: &Value,
-        filled_naively: bool,
+        filled_naively: [bool; 4],
         via: Via,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Week, Refusal> {
@@ -129,8 +128,8 @@ impl Session {
         self.refuse_if_over(Kind::Time)?;
         let until = self.next_decision_day().min(self.world.day + days.max(1));
         let from = self.world.day;
-        let parts = self.run_days(until, progress);
-        Ok(self.close_days("step", from, parts))
+        let state = self.run_days(until, progress);
+        Ok(self.close_days("step", from, state))
     }
 
     /// Gives up an unfinished run for good.
@@ -139,7 +138,9 @@ impl Session {
     /// `run_over`, `not_saved`.
     pub fn end(&mut self) -> Result<(), Refusal> {
         self.refuse_if_over(Kind::Time)?;
-        self.close_run(Ended::Abandoned).map_or(Ok(()), |remark| Err(Refusal::new("not_saved", remark)))
+        let problem = self.close_run(Ended::Abandoned);
+        self.commit_projection();
+        problem.map_or(Ok(()), |problem| Err(Refusal::new("not_saved", problem)))
     }
 
     /// The day on which the week that holds the next day ends.
@@ -150,12 +151,12 @@ impl Session {
     /// Runs the week of an `advance` line and closes it.
     pub(super) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
         let from = self.world.day;
-        let parts = self.run_days(self.next_decision_day(), progress);
-        self.close_days("week", from, parts)
+        let state = self.run_days(self.next_decision_day(), progress);
+        self.close_days("week", from, state)
     }
 
-    /// Simulates days until one of them is reached, or cash is below zero. Returns hashes of the state's parts.
-    pub(super) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> Vec<PartHash> {
+    /// Simulates days until one of them is reached, or cash is below zero. Returns the hash of the state reached.
+    pub(super) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> StateHash {
         let week_end = self.next_decision_day();
         self.notices.clear();
         let mut day_before = None;
@@ -176,12 +177,20 @@ impl Session {
     }
 
     fn count_day(&mut self, figures: &DayFigures) {
+        groups::count(&mut self.running_groups, figures, &self.facts, &self.world);
         let week = &mut self.running_week;
         week.add(figures);
+        let leads = f64::from(figures.new_leads) * self.params.leads.lead_acquisition_cost;
+        week.booked.add(Category::LeadAcquisitionCost, -leads);
+        week.booked.add(Category::SubscriptionPayment, figures.payments_received);
+        for entry in self.called.iter().chain(&self.facts.ledger) {
+            week.booked.add(entry.category, entry.amount);
+        }
         for turn in self.facts.turns.iter().filter(|turn| turn.number == 0) {
             week.threads_opened += 1;
             week.thread_seats += turn.seats;
         }
+        week.issues_opened += self.facts.issues_opened.len() as u32;
         let replies = self.facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
         week.replies += replies.filter(|turn| turn.number > 0).count() as u32;
         let finished = |notice: &&Notice| {
@@ -207,6 +216,9 @@ impl Session {
         if complete || self.world.is_over(&self.params) {
             self.weeks.push(figures);
             self.running_week = WeekFigures::default();
+            let mut groups = std::mem::take(&mut self.running_groups);
+            groups::settle(&mut groups, &self.world);
+            self.group_weeks.push(groups);
         }
         self.decisions.push(Decisions {
             day: self.decisions.last().map_or(0, |before| before.until),
@@ -217,13 +229,13 @@ impl Session {
         self.journal.push(JournalEntry::Week { figures });
         self.this_week.settings = self.world.settings.clone();
         self.this_week.undo.clear();
+        self.this_week.redo.clear();
         figures
     }
 
     /// Writes the line that closes days that ran, and tells what came of them and what keeps the line from the disk.
-    fn close_days(&mut self, kind: &'static str, from: u32, parts: Vec<PartHash>) -> Week {
+    fn close_days(&mut self, kind: &'static str, from: u32, state: StateHash) -> Week {
         let figures = self.settle_figures();
-        let state = state_hash(parts, self.facts_chain.hash());
         let fields = self.closing_fields(from, &figures, &state);
         let day = self.world.day;
         let mut problem = self.append_done(kind, day, fields);
@@ -236,14 +248,14 @@ impl Session {
         }));
         // The database is written once everything is told: until then the processors are needed here.
         if snapshot {
-            self.keep_snapshot(state.0, false);
+            self.keep_snapshot(|| state.0, false);
         } else {
             self.commit_projection();
         }
         week
     }
 
-    /// Closes a run whose last day has passed or whose cash is gone.
+    /// Closes a run whose last day has passed or whose cash is gone; the database has to be told.
     pub(super) fn close_if_over(&mut self) -> Option<String> {
         if self.world.finance.is_bankrupt(&self.params) {
             self.close_run(Ended::Bankruptcy)
@@ -262,9 +274,7 @@ impl Session {
             ("score".to_owned(), self.score().map_or(Value::Null, json_number)),
         ]);
         let day = self.world.day;
-        let remark = self.append_done("end", day, fields);
-        self.commit_projection();
-        remark
+        self.append_done("end", day, fields)
     }
 
     /// Fields of a `week` or `step` line: what a replay has to arrive at.
@@ -304,7 +314,7 @@ impl Session {
             day: self.world.day,
             rationale,
             forecasts: forecasts.all.to_vec(),
-            filled_naively: forecasts.filled_naively,
+            filled_naively: forecasts.filled_naively.contains(&true),
         });
     }
 
@@ -316,8 +326,11 @@ impl Session {
             .and_then(|forecasts| serde_json::from_value(forecasts.clone()).ok())
             .ok_or("the forecasts cannot be read")?;
         let all = all.try_into().map_err(|_| "there are not four forecasts")?;
-        let first = line.fields.get("forecasts").and_then(|forecasts| forecasts.get(0));
-        let filled_naively = first.and_then(|first| first.get("filled_naively")) == Some(&Value::Bool(true));
+        let is_naive = |at: usize| {
+            let forecast = line.fields.get("forecasts").and_then(|forecasts| forecasts.get(at));
+            forecast.and_then(|forecast| forecast.get("filled_naively")) == Some(&Value::Bool(true))
+        };
+        let filled_naively = std::array::from_fn(is_naive);
         let rationale = line.fields.get("rationale").and_then(Value::as_str).unwrap_or_default();
         self.recall_calculations(&line.fields);
         self.file(rationale.to_owned(), &Forecasts { all, filled_naively }, &line.at);
@@ -341,18 +354,18 @@ impl Session {
 }
 
 fn advance_fields(rationale: &str, forecasts: &Forecasts, via: Via) -> Map<String, Value> {
-    let one = |forecast: &crate::tools::Forecast| {
+    let one = |(forecast, filled): (&crate::tools::Forecast, bool)| {
         json!({
             "horizon_days": forecast.horizon_days,
             "point": json_number(forecast.point),
             "lower": json_number(forecast.lower),
             "upper": json_number(forecast.upper),
-            "filled_naively": forecasts.filled_naively,
+            "filled_naively": filled,
         })
     };
     Map::from_iter([
         ("rationale".to_owned(), rationale.into()),
-        ("forecasts".to_owned(), forecasts.all.iter().map(one).collect()),
+        ("forecasts".to_owned(), forecasts.all.iter().zip(forecasts.filled_naively).map(one).collect()),
         ("via".to_owned(), json!(via)),
     ])
 }

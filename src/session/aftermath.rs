@@ -4,15 +4,16 @@
 
 use std::sync::Arc;
 
+use serde_json::Value;
+
 use super::Session;
 use super::feed::Feed;
-use super::record::{FactsChain, entry_of, to_fill};
-use crate::database::Projector;
+use super::record::{FactsChain, StateHash, entry_of, state_hash, to_fill};
+use crate::database::{Entry, Projector};
 use crate::world::day::step_day;
 use crate::world::events::{DayFigures, Facts};
 use crate::world::params::Params;
 use crate::world::random::Streams;
-use crate::world::state::PartHash;
 
 /// The parts of a session that a day leaves its traces in.
 struct Aftermath<'a> {
@@ -26,11 +27,14 @@ struct Aftermath<'a> {
 impl Aftermath<'_> {
     /// Facts are not copied for the database: the writer reads what the session still shows, and the session fills new
     /// ones while the writer needs these.
-    fn follow(self, facts: &Arc<Facts>, notices: Vec<String>) {
+    /// Nothing follows where there are no notices: nothing is left to be followed.
+    fn follow(self, facts: &Arc<Facts>, notices: Option<Vec<String>>, settings: Option<Value>) {
+        let Some(notices) = notices else { return };
         self.feed.word(facts, self.params, self.streams);
         self.facts_chain.add(facts);
         if let Some(projector) = self.projector {
-            projector.write(entry_of(facts, notices, self.feed, self.params));
+            let entry = entry_of(facts, notices, self.feed, self.params);
+            projector.write(Entry { settings, ..entry });
         }
     }
 }
@@ -45,34 +49,28 @@ impl Session {
         let aftermath = Aftermath { feed, facts_chain, projector, params, streams };
         let ((figures, trace), ()) = rayon::join(
             || step_day(world, params, streams, today),
-            || {
-                if let Some(notices) = day_before {
-                    aftermath.follow(facts_before, notices);
-                }
-            },
+            || aftermath.follow(facts_before, day_before, None),
         );
         self.trace = trace;
         figures
     }
 
-    /// What follows from a call.
-    pub(super) fn follow_up(&mut self) {
+    /// What follows from a call, which left this settings family if it set one.
+    pub(super) fn follow_up(&mut self, settings: Option<Value>) {
         let notices = self.notice_texts();
         let Session { params, streams, facts, feed, facts_chain, projector, .. } = self;
-        Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams }
-            .follow(facts, notices);
+        Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams }.follow(
+            facts,
+            Some(notices),
+            settings,
+        );
     }
 
     /// What follows from the last day of some, if there was any, with its notices; meanwhile the state is hashed.
-    /// Returns the hashes of its parts.
-    pub(super) fn end_days(&mut self, last_day: Option<Vec<String>>) -> Vec<PartHash> {
+    pub(super) fn end_days(&mut self, last_day: Option<Vec<String>>) -> StateHash {
         let Session { world, params, streams, facts, feed, facts_chain, projector, .. } = self;
         let aftermath = Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams };
-        let follow = || {
-            if let Some(notices) = last_day {
-                aftermath.follow(facts, notices);
-            }
-        };
-        rayon::join(|| world.part_hashes(), follow).0
+        let (parts, ()) = rayon::join(|| world.part_hashes(), || aftermath.follow(facts, last_day, None));
+        state_hash(parts, self.facts_chain.hash())
     }
 }

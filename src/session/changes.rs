@@ -83,7 +83,7 @@ fn items(settings: &Settings) -> Vec<Item> {
         add("set_model_tiers", format!("model tier {plan}"), f64::from(core.tiers[plan]), "tier");
     }
     for plan in Plan::ALL {
-        add("set_usage_quotas", format!("quota {plan}"), core.quotas[plan] as f64, "units/day");
+        add("set_usage_quotas", format!("quota {plan}"), core.quotas[plan].units(), "units/day");
     }
     add("set_daily_spend", "operations".to_owned(), core.operations, "$/day");
     add("set_daily_spend", "development".to_owned(), core.development, "$/day");

@@ -1,7 +1,7 @@
 //! Starting a run.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use serde_json::{Map, Value, json};
 
@@ -22,6 +22,7 @@ use crate::notation::json_number;
 use crate::world::MECHANICS;
 use crate::world::day::DayTrace;
 use crate::world::events::Facts;
+use crate::world::identifiers::ByGroup;
 use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::state::World;
@@ -162,6 +163,7 @@ impl Session {
             folder,
             _lock: lock,
             params,
+            numbers: OnceLock::new(),
             world,
             facts: facts.into(),
             facts_before: Arc::default(),
@@ -174,9 +176,11 @@ impl Session {
             weeks: Vec::new(),
             decisions: Vec::new(),
             running_week: WeekFigures::default(),
+            group_weeks: Vec::new(),
+            running_groups: ByGroup::default(),
             notices: Vec::new(),
             feed: Feed::default(),
-            this_week: ThisWeek { settings, undo: Vec::new(), done: Vec::new() },
+            this_week: ThisWeek { settings, undo: Vec::new(), redo: Vec::new(), done: Vec::new() },
             journal: Vec::new(),
             asked: Vec::new(),
             office: Office::default(),

@@ -128,7 +128,7 @@ fn settings_block(text: &mut String, world: &World) {
     let _ = writeln!(text, "\n--- Settings ---");
     let _ = writeln!(text, "Prices: {}", list(&|plan| dollars(core.prices[plan])));
     let _ = writeln!(text, "Model Tiers: {}", list(&|plan| core.tiers[plan].to_string()));
-    let _ = writeln!(text, "Quotas: {}", list(&|plan| grouped(core.quotas[plan] as f64, 0)));
+    let _ = writeln!(text, "Quotas: {}", list(&|plan| grouped(core.quotas[plan].units(), 0)));
     let _ = writeln!(text, "Capacity Tier: {}", core.capacity_tier);
     let _ = writeln!(text, "Ops: {}/day | Dev: {}/day", dollars(core.operations), dollars(core.development));
     let _ = writeln!(text, "Targeted spend and advertising: see config_overrides");

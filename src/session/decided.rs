@@ -3,6 +3,7 @@
 use serde_json::{Map, Value};
 
 use super::trajectory::Line;
+use super::undo::Reversal;
 use crate::tools::Forecast;
 
 /// A line of a trajectory, read.
@@ -29,8 +30,8 @@ pub enum Act {
         args: Value,
         /// What it answered.
         answer: Value,
-        /// It took back an earlier call.
-        undoes: bool,
+        /// What it did to an earlier call.
+        reversal: Option<Reversal>,
     },
     /// A call was refused.
     Refused {
@@ -171,7 +172,7 @@ fn call(fields: &Map<String, Value>) -> Act {
     let (tool, args) = (word(fields, "tool"), fields.get("args").cloned().unwrap_or(Value::Null));
     if fields.get("ok") == Some(&Value::Bool(true)) {
         let answer = fields.get("result").cloned().unwrap_or(Value::Null);
-        return Act::Call { tool, args, answer, undoes: fields.contains_key("undoes") };
+        return Act::Call { tool, args, answer, reversal: Reversal::of(fields) };
     }
     let message = fields.get("refusal").and_then(|refusal| refusal.get("message"));
     Act::Refused { tool, args, message: message.and_then(Value::as_str).unwrap_or("refused").to_owned() }
@@ -221,7 +222,7 @@ mod tests {
                 tool: "set_prices".to_owned(),
                 args: json!({"A": 1}),
                 answer: json!(2),
-                undoes: true
+                reversal: Some(Reversal::Undoes(3))
             }
         );
         let refusal = json!({"tool": "x", "args": null, "ok": false, "refusal": {"message": "no"}});

@@ -7,11 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::Session;
 use super::record::to_fill;
 use crate::tools::PublicPost;
-use crate::voice;
 use crate::voice::judge::{self, Circumstances, Judgement, Lexicon, Original, Submission};
 use crate::voice::posts::Writer;
 use crate::voice::posts::names::profile_name;
-use crate::world::events::{Facts, Matter, Notice, Post};
+use crate::world::events::{Facts, Matter, Post};
 use crate::world::identifiers::Group;
 use crate::world::market::social::reach::{self, Verdict};
 use crate::world::market::social::sentiment::Sentiment;
@@ -145,19 +144,6 @@ impl Session {
         }
         let facts = to_fill(&mut self.facts, self.projector.as_ref());
         reach::receive(&mut self.world, &verdicts, &self.params, &self.streams, facts);
-    }
-
-    /// Texts of the notices of the last day or call.
-    pub(super) fn notice_texts(&self) -> Vec<String> {
-        self.facts.notices.iter().map(|notice| self.notice_text(notice)).collect()
-    }
-
-    /// Text of a notice.
-    pub(super) fn notice_text(&self, notice: &Notice) -> String {
-        let Notice::OwnPostSeen(reaction) = notice else { return voice::notice(notice) };
-        let own = self.world.market.social.own.get(reaction.post as usize - 1);
-        let content = own.map_or("", |post| post.content.as_str());
-        voice::notices::reaction_to(content, reaction, &self.params.ceo_posts)
     }
 
     /// Every post of others so far, in the order of their numbers.

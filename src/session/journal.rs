@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 
 use super::error::RunError;
 use super::trajectory::Durability;
+use super::undo::Reversal;
 use super::{Filed, Session, WeekFigures, filed_forecasts};
 use crate::tools::{Forecast, Refusal};
 
@@ -14,14 +15,17 @@ use crate::tools::{Forecast, Refusal};
 pub enum JournalEntry {
     /// A tool was called.
     Call {
+        /// Its line in the trajectory.
+        seq: u64,
         /// Decision day.
         day: u32,
         /// Tool.
         tool: String,
         /// Arguments.
         args: Value,
-        /// It took back the call with this number.
-        undoes: Option<u64>,
+        /// What it did to an earlier call.
+        #[serde(flatten)]
+        reversal: Option<Reversal>,
     },
     /// A week was let pass.
     Advance {
@@ -31,7 +35,7 @@ pub enum JournalEntry {
         rationale: String,
         /// Forecasts of cash.
         forecasts: Vec<Forecast>,
-        /// They were filled by the naive projection.
+        /// Some of them were filled in by the naive projection.
         filled_naively: bool,
     },
     /// A week, or single days, ran.

@@ -9,6 +9,7 @@ mod advance;
 mod aftermath;
 pub mod archive;
 mod ask;
+mod booked;
 mod branch;
 mod changes;
 mod configuration;
@@ -18,14 +19,18 @@ mod create;
 mod dashboard;
 mod decided;
 mod error;
+mod estimates;
 mod feed;
 mod filed;
+mod groups;
 mod journal;
 pub mod library;
 mod manifest;
 mod mode;
+mod notices;
 mod observe;
 mod open;
+mod pace;
 mod place;
 mod playback;
 mod record;
@@ -35,6 +40,7 @@ mod scripts;
 mod snapshot;
 mod terms;
 mod trajectory;
+mod undo;
 mod verify;
 mod week;
 mod witness;
@@ -46,7 +52,7 @@ mod power_cut_tests;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
 
@@ -54,6 +60,7 @@ pub use act::{Preview, Via};
 pub use advance::{DayReport, Week};
 pub use archive::{Export, Imported, Seal, import_run};
 pub use ask::{desk_of_file, rows_as_json};
+pub use booked::Booked;
 pub use changes::{Change, Decisions};
 pub use configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
 pub use consent::{Consent, ConsentText};
@@ -62,13 +69,16 @@ pub use create::{NewRun, Storage};
 pub use dashboard::DeliveredQuality;
 pub use decided::{Act, Decided, Foreseen};
 pub use error::RunError;
+pub use estimates::Estimates;
 pub use filed::{Filed, filed_forecasts};
+pub use groups::GroupWeek;
 pub use journal::{ForecastScore, JournalEntry};
 pub use library::Library;
 pub use manifest::{FORMAT, Manifest, Parent};
 pub use mode::Mode;
 pub use observe::{Observation, WaitingThread};
 pub use open::Access;
+pub use pace::Pace;
 pub use place::{Chapter, Goal, Place, Went};
 pub use playback::Playback;
 pub use rescue::{Rescued, rescue};
@@ -77,27 +87,31 @@ pub use runs::{
     participant_folder, run_folder,
 };
 pub use scripts::Calculated;
-pub use terms::{RunningStudy, StudyLevel, Terms};
+pub use terms::{CapacityTier, ModelTier, RunningStudy, StudyLevel, Terms};
 pub use trajectory::{Line, Trajectory, seconds as moment_of};
+pub use undo::{Reversal, undone_calls};
 pub use verify::{Verification, verify};
-pub use week::{Forecasts, WeekFigures, week_of};
+pub use week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, week_of};
 pub use xray::Xray;
 
 pub use crate::database::{Cell, Desk, Interrupt, QueryError, Rows, number_at, text_at};
-pub use crate::tools::{PublicPost, Refusal};
+pub use crate::tools::{Numbers, PublicPost, Refusal};
 pub use crate::voice::judge::Judgement;
+pub use crate::world::events::Category;
+pub use crate::world::settings::{CoreSettings, Settings};
 
 use crate::database::{Position, Projector};
 use crate::world::day::DayTrace;
 use crate::world::events::{Facts, LedgerEntry};
+use crate::world::identifiers::ByGroup;
 use crate::world::params::Params;
 use crate::world::random::Streams;
-use crate::world::settings::Settings;
 use crate::world::state::World;
 use feed::Feed;
 use record::FactsChain;
 use scripts::Office;
 use trajectory::TrajectoryWriter;
+use undo::Step;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -134,6 +148,8 @@ pub struct Session {
     /// Held while the run may be written.
     _lock: Option<File>,
     params: Arc<Params>,
+    /// The numbers of the parameters, once they were asked for.
+    numbers: OnceLock<Arc<Numbers>>,
     streams: Streams,
     world: World,
     /// Facts of the last day or call.
@@ -155,6 +171,10 @@ pub struct Session {
     weeks: Vec<WeekFigures>,
     /// The week that has begun with single steps.
     running_week: WeekFigures,
+    /// What every week that ran brought of each group.
+    group_weeks: Vec<ByGroup<GroupWeek>>,
+    /// The same of the week that has begun.
+    running_groups: ByGroup<GroupWeek>,
     /// What was decided before each of them, or before single steps.
     decisions: Vec<Decisions>,
     /// What the last days put into the inbox: day and text.
@@ -188,17 +208,11 @@ struct ThisWeek {
     /// Settings before the first call.
     settings: Settings,
     /// Setting calls that can be taken back, newest last.
-    undo: Vec<UndoStep>,
+    undo: Vec<Step>,
+    /// Calls that took settings back and can be reversed themselves, newest last.
+    redo: Vec<Step>,
     /// Purchases and the like, in words.
     done: Vec<String>,
-}
-
-/// A setting call and what was before it.
-#[derive(Debug, Clone)]
-struct UndoStep {
-    seq: u64,
-    tool: &'static str,
-    before: Settings,
 }
 
 impl Session {
@@ -247,6 +261,16 @@ impl Session {
         &self.remarks
     }
 
+    /// The settings in force from tomorrow on.
+    pub fn settings(&self) -> &Settings {
+        &self.world.settings
+    }
+
+    /// The numbers that documentation names, as they are in this run.
+    pub fn numbers(&self) -> Arc<Numbers> {
+        self.numbers.get_or_init(|| Numbers::of(&self.params).into()).clone()
+    }
+
     /// The effective parameters.
     pub fn params(&self) -> &Params {
         &self.params
@@ -286,7 +310,7 @@ impl Session {
         if let Some(trajectory) = &mut self.trajectory {
             trajectory.sync()?;
         }
-        self.keep_snapshot(self.state_hash().0, true);
+        self.keep_snapshot(|| self.state_hash().0, true);
         match &self.projector {
             Some(projector) => Ok(projector.wait()?),
             None => Ok(()),

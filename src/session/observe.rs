@@ -2,10 +2,12 @@
 
 use serde::Serialize;
 
+use super::booked::Booked;
 use super::changes::Change;
 use super::dashboard::{self, DeliveredQuality, Waiting, delivered_quality};
 use super::mode::Mode;
-use super::week::{Forecasts, WeekFigures, week_of};
+use super::pace::Pace;
+use super::week::{WeekFigures, week_of};
 use super::{Ended, Session};
 use crate::world::day::closing_figures;
 use crate::world::identifiers::Group;
@@ -31,9 +33,17 @@ pub struct Observation {
     pub week: u32,
     /// Cash, dollars.
     pub cash: f64,
-    /// Its change over the last week, dollars.
+    /// Cash on day 0, before anything was bought, dollars.
+    pub starting_cash: f64,
+    /// Change of cash over the last week, from the end of the week before to its own, dollars; 0 before the first.
     pub cash_change: f64,
-    /// Weeks until cash is gone at the burn of the last four weeks; none while cash grows.
+    /// What was booked since the end of the last week: purchases, and days of a week that was begun.
+    pub booked_since: Booked,
+    /// How money goes on.
+    pub pace: Pace,
+    /// What the settings at the end of the last week committed to, dollars a day.
+    pub committed_before: f64,
+    /// Weeks until cash is gone at this pace; none where it lasts to the last day.
     pub runway_weeks: Option<f64>,
     /// Active subscriptions of individuals.
     pub subscribers: u32,
@@ -84,10 +94,17 @@ pub struct WaitingThread {
     pub days_left: u32,
 }
 
+impl Observation {
+    /// Whole weeks that cash lasts at this pace; none where it lasts to the last day.
+    pub fn weeks_of_cash(&self) -> Option<u32> {
+        self.runway_weeks.map(|weeks| weeks as u32)
+    }
+}
+
 impl Session {
     /// The company at a glance.
     pub fn observe(&self) -> Observation {
-        let closing = closing_figures(self.world());
+        let (closing, pace) = (closing_figures(self.world()), self.pace());
         Observation {
             run: self.manifest.id.clone(),
             mode: self.manifest.mode,
@@ -98,8 +115,12 @@ impl Session {
             last_day: self.manifest.days,
             week: week_of(self.world.day),
             cash: self.world.finance.cash,
+            starting_cash: self.manifest.cash,
             cash_change: self.cash_change(),
-            runway_weeks: self.runway_weeks(),
+            booked_since: self.booked_since(),
+            pace,
+            committed_before: self.daily_cost(&self.this_week.settings),
+            runway_weeks: self.runway_weeks(&pace),
             subscribers: closing.individual_subscribers,
             companies: self.companies(),
             seats: closing.enterprise_seats,
@@ -142,11 +163,6 @@ impl Session {
     /// Quality before any improvement, and what development has added for everybody.
     pub fn quality_base(&self) -> (f64, f64) {
         (self.params.quality.base_product_quality, self.world.product.shared_bonus)
-    }
-
-    /// The naive projection of cash.
-    pub fn naive_forecasts(&self) -> Forecasts {
-        Forecasts::naive(&self.cash_by_day, &self.params.limits.prediction_horizons_days)
     }
 
     /// Active subscribers with an open issue.
@@ -194,16 +210,18 @@ impl Session {
     }
 
     fn cash_change(&self) -> f64 {
-        let days = self.cash_by_day.len();
-        let before = self.cash_by_day[days.saturating_sub(8)];
-        self.world.finance.cash - before
+        let week = if self.running_week.days_run > 0 { Some(&self.running_week) } else { self.weeks.last() };
+        week.map_or(0.0, |week| week.cash_change)
     }
 
-    /// Weeks that cash lasts at the mean daily loss of the last 28 days.
-    fn runway_weeks(&self) -> Option<f64> {
-        let days = (self.cash_by_day.len() - 1).min(28);
-        let before = self.cash_by_day[self.cash_by_day.len() - 1 - days];
-        let lost_per_day = (before - self.world.finance.cash) / days.max(1) as f64;
-        (lost_per_day > 0.0).then(|| self.world.finance.cash.max(0.0) / lost_per_day / 7.0)
+    fn runway_weeks(&self, pace: &Pace) -> Option<f64> {
+        let left = f64::from(self.manifest.days.saturating_sub(self.world.day));
+        pace.runway_weeks(self.world.finance.cash).filter(|weeks| weeks * 7.0 < left)
+    }
+
+    fn booked_since(&self) -> Booked {
+        let mut booked = self.running_week.booked;
+        self.called.iter().for_each(|entry| booked.add(entry.category, entry.amount));
+        booked
     }
 }

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::error::RunError;
 use super::manifest::Manifest;
-use super::record::state_hash;
+use super::record::StateHash;
 use super::runs::lock_run;
 use super::snapshot::Snapshot;
 use super::trajectory::{Line, Trajectory, TrajectoryWriter, damaged_at};
@@ -16,7 +16,6 @@ use super::witness::Witnesses;
 use super::{Ended, Session};
 use crate::database::{Location, Position, Projector};
 use crate::world::params::Params;
-use crate::world::state::PartHash;
 
 /// What may be done with an opened run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -146,8 +145,8 @@ impl Session {
                 let from = self.world.day;
                 let days =
                     line.fields.get("days_run").and_then(Value::as_u64).ok_or("the line lacks days_run")?;
-                let parts = self.run_days(from + days as u32, &mut |_| {});
-                self.compare(from, parts, line)?;
+                let state = self.run_days(from + days as u32, &mut |_| {});
+                self.compare(from, &state, line)?;
                 self.commit_projection();
             }
             "end" => {
@@ -167,10 +166,9 @@ impl Session {
     }
 
     /// Settles the figures of days that ran again and compares the state with the recorded one.
-    fn compare(&mut self, from: u32, parts: Vec<PartHash>, line: &Line) -> Result<(), String> {
+    fn compare(&mut self, from: u32, state: &StateHash, line: &Line) -> Result<(), String> {
         let figures = self.settle_figures();
-        let state = state_hash(parts, self.facts_chain.hash());
-        let reached = self.closing_fields(from, &figures, &state);
+        let reached = self.closing_fields(from, &figures, state);
         self.facts_chain.close();
         if reached.get("state_hash") == line.fields.get("state_hash") {
             return same_figures(&reached, line);
@@ -205,6 +203,7 @@ impl Session {
         } else if self.ended.is_none() && self.world.is_over(&self.params) {
             // The program ended between the last week and the line that closes the run.
             let remark = self.close_if_over();
+            self.commit_projection();
             self.remarks.extend(remark);
         }
     }

@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 
 use super::Session;
 use crate::database::{self, text};
-use crate::tools::{Kept, Notebook, Refusal, Surroundings, TableDocument, Task};
+use crate::tools::{ColumnDocument, Kept, Notebook, Refusal, Surroundings, TableDocument, Task};
 use crate::voice;
 use crate::world::market::economy::Reading;
 
@@ -36,13 +36,22 @@ impl Surroundings for Office {
         let document = |table: &'static database::Table| TableDocument {
             name: &table.name,
             description: &table.description,
-            columns: table.columns.iter().map(|own| (own.name.as_str(), own.description.as_str())).collect(),
+            columns: table.columns.iter().map(document_of).collect(),
         };
         database::tables().iter().map(document).collect()
     }
 
     fn notebook(&self) -> &Notebook {
         &self.notebook
+    }
+}
+
+fn document_of(column: &'static database::Column) -> ColumnDocument {
+    ColumnDocument {
+        name: &column.name,
+        kind: &column.kind,
+        values: &column.values,
+        description: &column.description,
     }
 }
 

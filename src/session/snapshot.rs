@@ -16,16 +16,20 @@ use serde::{Deserialize, Serialize};
 
 use super::feed::Feed;
 use super::record::{FactsChain, state_hash};
-use super::{Calculated, Decisions, Ended, JournalEntry, Manifest, Session, ThisWeek, UndoStep, WeekFigures};
+use super::undo::Step;
+use super::{
+    Calculated, Decisions, Ended, GroupWeek, JournalEntry, Manifest, Session, ThisWeek, WeekFigures,
+};
 use crate::database::Position;
 use crate::tools::{Notebook, find};
 use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
 use crate::world::day::DayTrace;
 use crate::world::events::{Facts, LedgerEntry};
+use crate::world::identifiers::ByGroup;
 use crate::world::settings::Settings;
 use crate::world::state::World;
 
-const TITLE: &[u8] = b"novamind snapshot 1\n";
+const TITLE: &[u8] = b"novamind snapshot 2\n";
 const DIGEST: usize = blake3::OUT_LEN;
 /// Name of the file in a run's folder.
 pub(super) const FILE: &str = "snapshot.bin";
@@ -82,10 +86,13 @@ pub(super) struct Recalled {
     facts_chain: FactsChain,
     trace: DayTrace,
     cash_by_day: Vec<f64>,
+    group_weeks: Vec<ByGroup<GroupWeek>>,
+    running_groups: ByGroup<GroupWeek>,
     called: Vec<LedgerEntry>,
     /// Settings before the first call of this week.
     settings: Settings,
-    undo: Vec<UndoStep>,
+    undo: Vec<Step>,
+    redo: Vec<Step>,
     notes: Notes<'static>,
 }
 
@@ -145,39 +152,43 @@ impl Snapshot {
             notes,
             trace: reader.read()?,
             cash_by_day: reader.read()?,
+            group_weeks: reader.read()?,
+            running_groups: reader.read()?,
             called: reader.read()?,
             settings: reader.read()?,
             undo: reader.read()?,
+            redo: reader.read()?,
         };
         let (hash, _) = state_hash(world.part_hashes(), recalled.facts_chain.hash());
         (reader.left() == 0 && hash == self.header.state_hash).then_some(((world, facts), recalled))
     }
 }
 
-impl Canonical for UndoStep {
+impl Canonical for Step {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         self.seq.feed(hasher);
         self.tool.feed(hasher);
-        self.before.feed(hasher);
+        self.restores.feed(hasher);
     }
 }
 
-impl Restore for UndoStep {
+impl Restore for Step {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
         let (seq, tool): (u64, String) = reader.read()?;
-        Some(UndoStep { seq, tool: find(&tool)?.spec().name, before: reader.read()? })
+        Some(Step { seq, tool: find(&tool)?.spec().name, restores: reader.read()? })
     }
 }
 
 impl Session {
-    /// Keeps the present state, which has this hash, as a snapshot, behind everything the database has to take in up to
-    /// now. A closing one vouches for the database's file too. A disk that refuses it takes away nothing but time.
-    pub(super) fn keep_snapshot(&self, state_hash: String, closing: bool) {
+    /// Keeps the present state, which has this hash, as a snapshot, and has the database take in everything up to now; a
+    /// run without a folder keeps none. A closing one vouches for the database's file too. A disk that refuses it takes
+    /// away nothing but time.
+    pub(super) fn keep_snapshot(&self, state_hash: impl FnOnce() -> String, closing: bool) {
         let Some(folder) = self.folder.as_ref().filter(|_| self.trajectory.is_some()) else {
             return self.commit_projection();
         };
         let path = folder.join(FILE);
-        let (header, state) = (self.snapshot_header(state_hash), self.state_bytes());
+        let (header, state) = (self.snapshot_header(state_hash()), self.state_bytes());
         // Lines without rows move the database on, too: a snapshot ahead of it could not be used.
         self.commit_projection();
         match &self.projector {
@@ -222,18 +233,33 @@ impl Session {
         self.facts.feed(&mut bytes);
         self.trace.feed(&mut bytes);
         self.cash_by_day.feed(&mut bytes);
+        self.group_weeks.feed(&mut bytes);
+        self.running_groups.feed(&mut bytes);
         self.called.feed(&mut bytes);
         self.this_week.settings.feed(&mut bytes);
         self.this_week.undo.feed(&mut bytes);
+        self.this_week.redo.feed(&mut bytes);
         bytes.into_bytes()
     }
 
     /// Takes over what a snapshot kept besides world and facts.
     pub(super) fn remember(&mut self, recalled: Recalled, position: Position) {
-        let Recalled { facts_chain, trace, cash_by_day, called, settings, undo, notes } = recalled;
+        let Recalled {
+            facts_chain,
+            trace,
+            cash_by_day,
+            group_weeks,
+            running_groups,
+            called,
+            settings,
+            undo,
+            redo,
+            notes,
+        } = recalled;
         self.facts_chain = facts_chain;
-        self.this_week = ThisWeek { settings, undo, done: notes.done.into_owned() };
+        self.this_week = ThisWeek { settings, undo, redo, done: notes.done.into_owned() };
         (self.trace, self.cash_by_day, self.called) = (trace, cash_by_day, called);
+        (self.group_weeks, self.running_groups) = (group_weeks, running_groups);
         self.weeks = notes.weeks.into_owned();
         self.running_week = notes.running_week.into_owned();
         self.decisions = notes.decisions.into_owned();

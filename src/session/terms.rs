@@ -2,6 +2,8 @@
 
 use super::Session;
 use crate::world::identifiers::Group;
+use crate::world::product::development::targeted_development_gain;
+use crate::world::product::service::outage_probability;
 
 /// A level that a study of a group can reach (chapter 50 §4.5).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +16,28 @@ pub struct StudyLevel {
     pub days: u32,
     /// Largest relative error of an estimate.
     pub noise: f64,
+}
+
+/// A capacity tier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CapacityTier {
+    /// Tier, 0..=7.
+    pub tier: u8,
+    /// Units a day.
+    pub units: f64,
+    /// Dollars a day.
+    pub cost: f64,
+}
+
+/// A model tier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModelTier {
+    /// Tier, 1..=5.
+    pub tier: u8,
+    /// Dollars a unit.
+    pub unit_cost: f64,
+    /// What it multiplies product quality by.
+    pub multiplier: f64,
 }
 
 /// Terms of the tools.
@@ -33,6 +57,14 @@ pub struct Terms {
     pub economy_every_days: u32,
     /// Days from a measurement to its publication.
     pub economy_lag_days: u32,
+    /// Capacity tiers, the lowest first.
+    pub capacities: Vec<CapacityTier>,
+    /// Model tiers, the lowest first.
+    pub models: Vec<ModelTier>,
+    /// Issues of individuals that a day of operations solves: without spending, and for each dollar.
+    pub issues_solved: (f64, f64),
+    /// Least days that an R&D project takes.
+    pub research_least_days: u32,
     /// Names under which rivals appear in the news.
     pub rivals: Vec<String>,
 }
@@ -73,8 +105,38 @@ impl Session {
             targets: (params.group_research.min_target_level, params.group_research.max_target_level),
             economy_every_days: params.economy.macro_pmi_update_interval_days,
             economy_lag_days: params.economy.macro_pmi_publication_delay_days,
+            capacities: params
+                .capacity_tier
+                .iter()
+                .map(|tier| CapacityTier {
+                    tier: tier.tier,
+                    units: f64::from(tier.capacity_units),
+                    cost: f64::from(tier.cost_per_day),
+                })
+                .collect(),
+            models: params
+                .model_tier
+                .iter()
+                .map(|tier| ModelTier {
+                    tier: tier.tier,
+                    unit_cost: tier.unit_cost,
+                    multiplier: tier.quality_multiplier,
+                })
+                .collect(),
+            issues_solved: (params.issues.issue_resolution_base_rate, params.issues.individual_ops_scale),
+            research_least_days: params.development.rd_min_duration_days,
             rivals: params.competitor.competitor_names.clone(),
         }
+    }
+
+    /// Share of days with an outage while usage stays within capacity, at a spend on operations of dollars a day.
+    pub fn outage_share(&self, operations: f64) -> f64 {
+        outage_probability(operations, 0.0, &self.params.operations)
+    }
+
+    /// Quality that a day of targeted development adds for a group before the model's multiplier, at dollars a day.
+    pub fn targeted_gain(&self, dollars: f64) -> f64 {
+        targeted_development_gain(dollars, &self.params.development)
     }
 
     /// Studies that run, in the order they were ordered.

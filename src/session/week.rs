@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
+use super::booked::Booked;
 use crate::notation::json_number;
 use crate::tools::{FORECAST_KEYS, Forecast};
 use crate::world::events::DayFigures;
@@ -24,6 +25,8 @@ pub struct WeekFigures {
     pub enterprise_seats: u32,
     /// Active subscribers with an open issue.
     pub open_issues: u32,
+    /// Issues that were opened.
+    pub issues_opened: u32,
     /// Units used.
     pub usage: u64,
     /// Leads of individuals.
@@ -44,6 +47,8 @@ pub struct WeekFigures {
     pub companies_lost: u32,
     /// Their seats.
     pub seats_lost: u32,
+    /// Units used on the busiest day.
+    pub busiest_day: u64,
     /// Largest overload.
     pub overload_peak: f64,
     /// Minutes of outages.
@@ -54,6 +59,8 @@ pub struct WeekFigures {
     pub p95_ms_peak: f64,
     /// Highest error rate.
     pub error_rate_peak: f64,
+    /// What was booked by category since the end of the week before.
+    pub booked: Booked,
     /// Payments of subscribers, dollars.
     pub payments: f64,
     /// Running costs, dollars.
@@ -82,6 +89,7 @@ impl WeekFigures {
         self.enterprise_seats = day.enterprise_seats;
         self.recurring_revenue = day.mrr;
         self.usage += day.total_usage;
+        self.busiest_day = self.busiest_day.max(day.total_usage);
         self.new_individual_leads += day.new_individual_leads;
         self.new_enterprise_leads += day.new_enterprise_leads;
         self.new_individual_subscribers += day.new_individual_subscribers;
@@ -133,45 +141,27 @@ pub fn week_of(day: u32) -> u32 {
     day.div_ceil(7)
 }
 
-/// Four forecasts of cash, and whether they were filled in by the naive projection.
+/// The week that a row of the ledger belongs to, in SQL: weeks end with their last day, so what is bought on a decision
+/// day counts in the week that it opens.
+pub const WEEK_OF_ENTRY: &str = "CASE WHEN category IN ('research_project', 'market_research', 'group_research') \
+                                 THEN day / 7 + 1 ELSE (day + 6) / 7 END";
+
+/// The condition that rows of the ledger belong to some weeks, in SQL.
+pub fn entries_of_weeks(first: u32, last: u32) -> String {
+    let (from, to) = (7 * first.saturating_sub(1), 7 * last);
+    format!("day BETWEEN {from} AND {to} AND {WEEK_OF_ENTRY} BETWEEN {first} AND {last}")
+}
+
+/// Four forecasts of cash, and which of them the naive projection filled in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forecasts {
     /// One per horizon: 7, 28, 84, 182 days.
     pub all: [Forecast; 4],
-    /// Filled by the naive projection.
-    pub filled_naively: bool,
+    /// Filled in by the naive projection, whole or in part.
+    pub filled_naively: [bool; 4],
 }
 
 impl Forecasts {
-    /// The naive projection from the daily cash so far, day 0 first (chapter 70 §5): the mean daily change goes
-    /// on, with the interval of a random walk.
-    pub fn naive(cash_by_day: &[f64], horizons: &[u32]) -> Forecasts {
-        let window = cash_by_day.len().saturating_sub(1).min(28);
-        let recent = &cash_by_day[cash_by_day.len() - window - 1..];
-        let changes: Vec<f64> = recent.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let count = changes.len() as f64;
-        let mean = if changes.is_empty() { 0.0 } else { changes.iter().sum::<f64>() / count };
-        let spread = if changes.len() < 2 {
-            0.0
-        } else {
-            (changes.iter().map(|change| (change - mean) * (change - mean)).sum::<f64>() / (count - 1.0))
-                .sqrt()
-        };
-        let cash = cash_by_day.last().copied().unwrap_or(0.0);
-        let cents = |value: f64| (value * 100.0).round() / 100.0;
-        let project = |horizon_days: u32| {
-            let horizon = f64::from(horizon_days);
-            let (point, half) = (cash + mean * horizon, 1.96 * spread * horizon.sqrt());
-            Forecast {
-                horizon_days,
-                point: cents(point),
-                lower: cents(point - half),
-                upper: cents(point + half),
-            }
-        };
-        Forecasts { all: std::array::from_fn(|at| project(horizons[at])), filled_naively: true }
-    }
-
     /// The forecasts as the body of next_week carries them.
     pub fn as_predictions(&self) -> Value {
         let entry = |(key, forecast): (&str, &Forecast)| {
@@ -190,28 +180,11 @@ impl Forecasts {
 mod tests {
     use super::*;
 
-    const HORIZONS: [u32; 4] = [7, 28, 84, 182];
-
     #[test]
     fn check_2_of_chapter_60() {
         for (day, week) in [(0, 0), (1, 1), (7, 1), (8, 2), (497, 71), (500, 72), (504, 72)] {
             assert_eq!(week_of(day), week, "day {day}");
         }
-    }
-
-    #[test]
-    fn the_naive_projection_goes_on_as_before() {
-        let first = Forecasts::naive(&[1_000_000.0], &HORIZONS);
-        assert!(first.all.iter().all(|f| f.point == 1_000_000.0 && f.lower == f.point && f.upper == f.point));
-        let second = Forecasts::naive(&[1000.0, 915.0], &HORIZONS);
-        assert_eq!((second.all[0].point, second.all[0].lower), (320.0, 320.0));
-        let steady: Vec<f64> = (0..60).map(|day| 1000.0 - 85.0 * f64::from(day)).collect();
-        assert_eq!(Forecasts::naive(&steady, &HORIZONS).all[3].point, 1000.0 - 85.0 * 241.0);
-        let zigzag = [0.0, 10.0, 0.0, 10.0, 0.0];
-        let wide = Forecasts::naive(&zigzag, &HORIZONS);
-        let half = 1.96 * (400.0f64 / 3.0).sqrt() * 7.0f64.sqrt();
-        assert!((wide.all[0].upper - half).abs() < 0.01 && wide.all[0].point == 0.0);
-        assert_eq!(wide.as_predictions()["cash_1wk"]["point"], 0);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use std::path::Path;
 use super::error::RunError;
 use super::snapshot::{FILE, Snapshot};
 use super::trajectory::{BRANCH_THEM, Trajectory};
-use crate::database::{Location, Position, file_digest, is_consistent, position_of};
+use crate::database::{Location, Position, file_digest, has_layout_of_now, is_consistent, position_of};
 
 /// What stood beside the trajectory before it was read.
 pub(super) struct Witnesses {
@@ -70,10 +70,13 @@ impl Witnesses {
                 None => is_consistent(&location(folder)),
             }
         });
-        if !sound {
-            self.remarks.push("world.db is damaged and was made anew from the trajectory.".to_owned());
-        }
-        sound
+        let problem = match sound {
+            false => "is damaged",
+            true if !has_layout_of_now(&location(folder)) => "was made by another version of the program",
+            true => return true,
+        };
+        self.remarks.push(format!("world.db {problem} and was made anew from the trajectory."));
+        false
     }
 }
 

@@ -6,6 +6,7 @@ use serde_json::{Map, Value};
 use super::refusal::Refusal;
 use super::spec::{Range, Spec};
 use super::view::View;
+use crate::notation::json_number;
 use crate::world::identifiers::{Channel, Group, Plan};
 use crate::world::settings::{PerCustomer, PerGroup, PerPlan};
 
@@ -42,7 +43,7 @@ impl Arguments {
             return Err(Refusal::at(name.clone(), "unknown_argument", message));
         }
         map.retain(|_, value| !value.is_null());
-        for argument in spec.arguments.iter().filter(|argument| argument.required) {
+        for argument in spec.arguments.iter().filter(|argument| argument.required && !spec.own_missing()) {
             let given = map.contains_key(argument.name)
                 || argument.alias.is_some_and(|alias| map.contains_key(alias));
             if !given {
@@ -94,6 +95,14 @@ pub fn text<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str, Refusal
     match arguments.get(name) {
         None => Ok(""),
         Some(value) => value.as_str().ok_or_else(|| wrong_type(name, "text")),
+    }
+}
+
+/// An amount as it was sent: a whole number stays one, and 80.0 has its decimal point.
+pub fn amount_as_sent(amount: f64, sent: Option<&Value>) -> Value {
+    match sent.is_some_and(Value::is_f64) {
+        true => Value::from(amount),
+        false => json_number(amount),
     }
 }
 

@@ -4,20 +4,23 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use super::Tool;
+use super::bounds::MOST_DOLLARS;
 use super::spec::{Argument, ArgumentKind, Module, Spec};
+use super::{Numbers, Tool};
+use crate::notation::grouped;
 
 impl ArgumentKind {
     /// The kind in words, for instance `map channel -> map group -> number, >= 0`.
     pub fn words(&self) -> String {
         match self {
-            ArgumentKind::Number(range) => format!("number, {}", range.words()),
-            ArgumentKind::Integer(range) => format!("whole number, {}", range.words()),
+            ArgumentKind::Number(range) => format!("number, {}", range.whole_words()),
+            ArgumentKind::Integer(range) => format!("whole number, {}", range.whole_words()),
             ArgumentKind::Text => "text".to_owned(),
             ArgumentKind::Structure(words) => (*words).to_owned(),
-            ArgumentKind::Map(key, range) => format!("map {} -> number, {}", key.id(), range.words()),
+            ArgumentKind::Deals(words) => format!("{words}; prices at most {}", grouped(MOST_DOLLARS, 0)),
+            ArgumentKind::Map(key, range) => format!("map {} -> number, {}", key.id(), range.whole_words()),
             ArgumentKind::Matrix(outer, inner, range) => {
-                format!("map {} -> map {} -> number, {}", outer.id(), inner.id(), range.words())
+                format!("map {} -> map {} -> number, {}", outer.id(), inner.id(), range.whole_words())
             }
         }
     }
@@ -35,16 +38,16 @@ pub fn overview() -> String {
     text
 }
 
-/// Everything about one tool.
-pub fn manual(spec: &Spec) -> String {
+/// Everything about one tool, with the numbers in force.
+pub fn manual(spec: &Spec, numbers: &Numbers) -> String {
     let mut text = format!("{}.{} ({}): {}\n", spec.module.id(), spec.name, spec.code, spec.summary);
     for argument in spec.arguments {
         let _ = writeln!(text, "  {}", argument_line(argument));
     }
     if !spec.effect.is_empty() {
-        let _ = writeln!(text, "Effect ({}): {}", spec.when.id(), spec.effect);
+        let _ = writeln!(text, "Effect ({}): {}", spec.when.id(), numbers.fill(spec.effect));
     }
-    let _ = writeln!(text, "Cost: {}.", spec.cost);
+    let _ = writeln!(text, "Cost: {}.", numbers.fill(spec.cost));
     if !spec.writes.is_empty() {
         let _ = writeln!(text, "Tables: {}.", spec.writes.join(", "));
     }
@@ -64,8 +67,8 @@ fn argument_line(argument: &Argument) -> String {
     format!("{} ({}{unit}, {need}): {}", argument.name, argument.kind.words(), argument.doc)
 }
 
-/// One tool as JSON.
-pub fn as_json(tool: &dyn Tool) -> Value {
+/// One tool as JSON, with the numbers in force.
+pub fn as_json(tool: &dyn Tool, numbers: &Numbers) -> Value {
     let spec = tool.spec();
     let arguments: Vec<Value> = spec
         .arguments
@@ -93,8 +96,8 @@ pub fn as_json(tool: &dyn Tool) -> Value {
         "kind": spec.kind.id(),
         "summary": spec.summary,
         "arguments": arguments,
-        "effect": { "when": spec.when.id(), "description": spec.effect },
-        "cost": spec.cost,
+        "effect": { "when": spec.when.id(), "description": numbers.fill(spec.effect) },
+        "cost": numbers.fill(spec.cost),
         "writes": spec.writes,
         "refusals": spec.refusals,
         "returns": returns,

@@ -5,9 +5,11 @@
 //! tool touches one file and the list in [`catalogue`].
 
 pub mod arguments;
+pub mod bounds;
 pub mod catalogue;
 pub mod describe;
 pub mod notebook;
+pub mod numbers;
 pub mod refusal;
 pub mod spec;
 pub mod surroundings;
@@ -33,9 +35,10 @@ use serde_json::{Map, Value};
 pub use arguments::Arguments;
 pub use catalogue::{CATALOGUE, find};
 pub use notebook::{Kept, Notebook, Task};
+pub use numbers::Numbers;
 pub use refusal::Refusal;
 pub use spec::{Argument, ArgumentKind, Key, Kind, Module, Output, Range, Spec, When};
-pub use surroundings::{Surroundings, TableDocument};
+pub use surroundings::{ColumnDocument, Surroundings, TableDocument};
 pub use time::{FORECAST_KEYS, Forecast, forecasts, rationale};
 pub use view::{PublicPost, View};
 
@@ -62,6 +65,14 @@ pub trait Tool: Sync {
     /// What the session has to do for an accepted call besides its effect on the world.
     fn task(&self, _view: &View<'_>, _arguments: &Arguments) -> Option<Task> {
         None
+    }
+
+    /// The settings family that a call leaves, as its row shows it: amounts are numbers with a decimal point.
+    fn row(&self, _arguments: &Arguments, deed: &Deed) -> Option<Value> {
+        match deed {
+            Deed::Set(change) => change.family(),
+            _ => None,
+        }
     }
 
     /// The data of the answer, given what was decided. Numbers as chapter 50 says.

@@ -1,6 +1,9 @@
 //! What a tool is, as data: the single source for its form, its command, its route, its documentation and the
 //! check of its arguments.
 
+use super::bounds::{MOST_DOLLARS, MOST_UNITS};
+use crate::notation::grouped;
+
 /// Everything there is to know about a tool but its code.
 #[derive(Debug)]
 pub struct Spec {
@@ -55,6 +58,13 @@ pub enum Module {
     Enterprise,
     /// Time and data.
     Time,
+}
+
+impl Spec {
+    /// Whether missing arguments have a code of the tool's own.
+    pub fn own_missing(&self) -> bool {
+        self.refusals.iter().any(|code| code.ends_with("_missing"))
+    }
 }
 
 impl Module {
@@ -161,7 +171,7 @@ pub struct Argument {
     pub alias: Option<&'static str>,
     /// What it holds.
     pub kind: ArgumentKind,
-    /// Its absence is refused as `argument_missing`.
+    /// Its absence is refused: as `argument_missing`, or by a code of the tool's own.
     pub required: bool,
     /// Unit of its numbers.
     pub unit: &'static str,
@@ -180,6 +190,8 @@ pub enum ArgumentKind {
     Text,
     /// A list or an object of another shape, described in words.
     Structure(&'static str),
+    /// A list of deals with prices, described in words.
+    Deals(&'static str),
     /// A map from a key to a number.
     Map(Key, Range),
     /// A map of maps to a number.
@@ -195,19 +207,24 @@ pub struct Range {
     pub above: bool,
     /// Greatest value.
     pub most: f64,
+    /// Size up to which numbers are taken, so that sums stay numbers.
+    pub bound: f64,
 }
 
 impl Range {
-    /// Numbers of at least 0.
-    pub const AT_LEAST_ZERO: Range = Range { least: 0.0, above: false, most: f64::INFINITY };
-    /// Numbers above 0.
-    pub const ABOVE_ZERO: Range = Range { least: 0.0, above: true, most: f64::INFINITY };
+    /// Dollars of at least 0.
+    pub const AT_LEAST_ZERO: Range =
+        Range { least: 0.0, above: false, most: f64::INFINITY, bound: MOST_DOLLARS };
+    /// Dollars above 0.
+    pub const ABOVE_ZERO: Range = Range { above: true, ..Range::AT_LEAST_ZERO };
+    /// Units of at least 0.
+    pub const UNITS: Range = Range { bound: MOST_UNITS, ..Range::AT_LEAST_ZERO };
     /// Numbers from 0 to 1.
-    pub const SHARE: Range = Range { least: 0.0, above: false, most: 1.0 };
+    pub const SHARE: Range = Range::between(0.0, 1.0);
 
     /// Whole numbers from one to another.
     pub const fn between(least: f64, most: f64) -> Range {
-        Range { least, above: false, most }
+        Range { least, above: false, most, bound: f64::INFINITY }
     }
 
     /// Whether a number is allowed.
@@ -215,6 +232,19 @@ impl Range {
         value.is_finite()
             && value <= self.most
             && if self.above { value > self.least } else { value >= self.least }
+    }
+
+    /// Whether a number is not too large.
+    pub fn fits(&self, value: f64) -> bool {
+        value.abs() <= self.bound
+    }
+
+    /// The range in words with the size up to which numbers are taken.
+    pub fn whole_words(&self) -> String {
+        match self.bound.is_finite() {
+            true => format!("{}, at most {}", self.words(), grouped(self.bound, 0)),
+            false => self.words(),
+        }
     }
 
     /// The range in words, for instance `> 0`, `0 to 7`.

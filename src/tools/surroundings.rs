@@ -24,8 +24,31 @@ pub struct TableDocument {
     pub name: &'static str,
     /// What its rows are.
     pub description: &'static str,
-    /// Names of the columns and what they hold.
-    pub columns: Vec<(&'static str, &'static str)>,
+    /// Its columns.
+    pub columns: Vec<ColumnDocument>,
+}
+
+/// A visible column, as documentation tells of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ColumnDocument {
+    /// Name.
+    pub name: &'static str,
+    /// Declared type.
+    pub kind: &'static str,
+    /// All values it can have, where that is a short list.
+    pub values: &'static [String],
+    /// What it holds.
+    pub description: &'static str,
+}
+
+impl ColumnDocument {
+    /// Type, values and meaning in a line: `TEXT, one of 'open', 'resolved': how it stands`.
+    pub fn line(&self) -> String {
+        let values: Vec<String> = self.values.iter().map(|value| format!("'{value}'")).collect();
+        let values =
+            if values.is_empty() { String::new() } else { format!(", one of {}", values.join(", ")) };
+        format!("{}{values}: {}", self.kind, self.description)
+    }
 }
 
 /// A company alone: no words, no tables, nothing kept.

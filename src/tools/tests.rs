@@ -32,6 +32,7 @@ impl Company {
         let view = View::new(&self.world, &self.params);
         let arguments = Arguments::of(tool.spec(), &arguments)?;
         let effect = tool.plan(&view, &arguments)?;
+        super::bounds::hold(tool.spec(), &arguments)?;
         let deed = self.world.resolve(effect, &self.params, &self.streams);
         let data = tool.answer(&view, &arguments, &deed);
         if !deed.only_reads() {
@@ -89,6 +90,7 @@ fn set_prices() {
             (json!({"A": "12"}), "wrong_type", "A"),
             (json!({"A": true}), "wrong_type", "A"),
             (json!([1]), "wrong_type", ""),
+            (json!({"A": 5, "B": 1e308}), "amount_too_large", "B"),
         ],
     );
     company.call("set_prices", json!({"A": 12, "B": 25, "C": 55}));
@@ -123,13 +125,17 @@ fn set_usage_quotas() {
             (json!({"C": 5}), "quota_missing", "A"),
             (json!({"A": 5, "B": 5, "C": null}), "quota_missing", "C"),
             (json!({"A": 5, "B": -1, "C": 5}), "quota_negative", "B"),
-            (json!({"A": 5, "B": 1.5, "C": 5}), "wrong_type", "B"),
             (json!({"A": 5, "B": "many", "C": 5}), "wrong_type", "B"),
+            (json!({"A": 5, "B": 1e15, "C": 1.1e15}), "amount_too_large", "C"),
+            (json!({"A": 5, "B": 1e300, "C": 5}), "amount_too_large", "B"),
             (json!({"A": 5, "B": 5, "C": 5, "D": 5}), "unknown_argument", "D"),
         ],
     );
     let data = company.call("set_usage_quotas", json!({"A": 50000, "B": 200000, "C": 900000}));
     assert_eq!(data, json!({"quotas": {"A": 50000, "B": 200000, "C": 900000}}));
+    let data = company.call("set_usage_quotas", json!({"A": 59.5, "B": 200000.0, "C": 0}));
+    assert_eq!(data, json!({"quotas": {"A": 59.5, "B": 200000, "C": 0}}));
+    assert_eq!(company.world.settings.core.quotas.0.map(crate::world::quota::Quota::units), [59.5, 2e5, 0.0]);
 }
 
 #[test]
@@ -148,6 +154,8 @@ fn set_promotion() {
             (json!({"by_group_plan": {"S1": 4}}), "not_a_map", "by_group_plan.S1"),
             (json!({"by_group_plan": {"S1": {"D": 4}}}), "unknown_plan", "by_group_plan.S1.D"),
             (json!({"by_channel": {}}), "unknown_argument", "by_channel"),
+            (json!({"global_promotion": 1.1e9}), "amount_too_large", "global_promotion"),
+            (json!({"by_group_plan": {"S1": {"A": 1e300}}}), "amount_too_large", "by_group_plan.S1.A"),
         ],
     );
     // Check 6 of chapter 50.
@@ -175,6 +183,7 @@ fn set_daily_spend() {
             (json!({"sales": 5, "advertising": 5}), "advertising_not_here", "advertising"),
             (json!({"operations": -1}), "spend_negative", "operations"),
             (json!({"development": "1"}), "wrong_type", "development"),
+            (json!({"operations": 5, "development": 1e308}), "amount_too_large", "development"),
         ],
     );
     company.call("set_daily_spend", json!({"development": 200}));
@@ -216,6 +225,7 @@ fn set_targeted_ad_spend() {
                 "targeted_spend.linkedin.E1",
             ),
             (json!({"targeted_spend": {}, "more": 1}), "unknown_argument", "more"),
+            (json!({"linkedin": {"E1": 1e308}}), "amount_too_large", "targeted_spend.linkedin.E1"),
         ],
     );
     // Check 8 of chapter 50.
@@ -265,6 +275,7 @@ fn set_lead_promotion() {
             (json!({"by_channel": {"linkedin": -1}}), "promotion_negative", "by_channel.linkedin"),
             (json!({"by_channel_group": {"tv": {"S1": 1}}}), "unknown_channel", "by_channel_group.tv"),
             (json!({"by_channel_group": {"linkedin": 4}}), "not_a_map", "by_channel_group.linkedin"),
+            (json!({"by_channel": {"linkedin": 2e9}}), "amount_too_large", "by_channel.linkedin"),
         ],
     );
     let data = company.call("set_lead_promotion", json!({"by_channel": {"social_media": 3}}));
@@ -287,6 +298,8 @@ fn set_targeted_ops_spend() {
             (json!({"by_customer": {"x": 4}}), "customer_not_integer", "by_customer.x"),
             // Check 5 of chapter 50: the port leaves the first scope unchanged.
             (json!({"by_group": {"S2": 9}, "by_plan": {"D": 1}}), "unknown_plan", "by_plan.D"),
+            (json!({"by_customer": {"7": 1e10}}), "amount_too_large", "by_customer.7"),
+            (json!({"targeted_spend": {"S1": 1e10}}), "amount_too_large", "targeted_spend.S1"),
         ],
     );
     // Check 2 of chapter 50.
@@ -309,6 +322,7 @@ fn set_targeted_dev_spend() {
             (json!({"targeted_spend": 3}), "not_a_map", "targeted_spend"),
             (json!({"targeted_spend": {"D_S02": 3}}), "unknown_group", "targeted_spend.D_S02"),
             (json!({"targeted_spend": {"S1": "3"}}), "amount_invalid", "targeted_spend.S1"),
+            (json!({"S1": 1e308}), "amount_too_large", "targeted_spend.S1"),
         ],
     );
     let data = company.call("set_targeted_dev_spend", json!({"S1": 2500, "E3": 400}));
@@ -341,6 +355,30 @@ fn start_research_project() {
     let tiers = company.call("list_research_projects", json!({}));
     assert_eq!(tiers["tiers"].as_array().map(Vec::len), Some(20));
     assert_eq!((&tiers["tiers"][0]["in_progress"], &tiers["tiers"][0]["completed"]), (&json!(1), &json!(0)));
+}
+
+#[test]
+fn refusals_of_large_amounts_name_the_bound() {
+    let mut company = Company::new();
+    for (tool, arguments, message) in [
+        ("set_prices", json!({"B": 1.1e9}), "B is too large: at most $1,000,000,000/month"),
+        (
+            "set_daily_spend",
+            json!({"operations": 1e10}),
+            "operations is too large: at most $1,000,000,000/day",
+        ),
+        (
+            "set_usage_quotas",
+            json!({"A": 1e16, "B": 1, "C": 1}),
+            "A is too large: at most 1,000,000,000,000,000 units/day",
+        ),
+    ] {
+        let refusal = company.try_call(tool, arguments).expect_err("too large");
+        assert_eq!(refusal.message, message);
+        let manual = super::describe::manual(find(tool).expect("a tool").spec(), &super::Numbers::shipped());
+        assert!(manual.contains(", at most 1,000,000,000"));
+    }
+    company.call("set_prices", json!({"B": 1e9}));
 }
 
 #[test]
@@ -434,6 +472,13 @@ fn send_enterprise_deal() {
             (deal(json!([[2, [["B", "inf"]]]])), "wrong_type", "deals.0.offerings.0.price_per_seat"),
             // Of several that all fail, the first one speaks.
             (deal(json!([[99, [["B", 5]]], [2, []]])), "customer_not_found", "deals.0.customer_id"),
+            (deal(json!([[4_000_000_000u64, [["B", 5]]]])), "customer_not_found", "deals.0.customer_id"),
+            (deal(json!([[2, [["B", 5], ["C", 1e308]]]])), "amount_too_large", "deals.0.1.1.1"),
+            (
+                deal(json!({"customer_id": 2, "offerings": [{"plan": "B", "price": "1e10"}]})),
+                "amount_too_large",
+                "deals.offerings.0.price",
+            ),
         ],
     );
 }
@@ -502,12 +547,17 @@ fn reject_enterprise_deal() {
             (deal(json!([[null]])), "customer_missing", "deals.0.customer_id"),
             (deal(json!([4])), "no_active_thread", "deals.0.customer_id"),
             (deal(json!([77])), "no_active_thread", "deals.0.customer_id"),
-            (deal(json!([2, "x"])), "wrong_type", "deals.1.customer_id"),
+            (deal(json!(["x"])), "deal_malformed", "deals.0.customer_id"),
+            (deal(json!([{"customer_id": 2.5}, "x"])), "deal_malformed", "deals.0.customer_id"),
         ],
     );
     company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
-    let data = company.call("reject_enterprise_deal", deal(json!([2, {"customer_id": "4"}, [2], 3])));
+    let some = deal(json!([2, "x", {"customer_id": "4"}, [2], {"customer_id": [1]}, 3, {}]));
+    let data = company.call("reject_enterprise_deal", some);
     let expected = json!({"results": [
+        {"error": "invalid format"},
+        {"error": "invalid format"},
+        {"error": "missing customer_id"},
         {"customer_id": 2, "success": true},
         {"customer_id": 4, "success": true},
         {"customer_id": 2, "error": "no active thread"},

@@ -2,20 +2,39 @@
 
 use crate::notation::grouped;
 use crate::world::events::{Notice, Reaction};
+use crate::world::identifiers::Group;
 use crate::world::params::CeoPosts;
 
-/// Text of a notice.
-pub fn notice(notice: &Notice) -> String {
+/// The company that a notice is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Party {
+    /// Customer number.
+    pub customer: u32,
+    /// Group.
+    pub group: Group,
+    /// Whole seats.
+    pub seats: u32,
+}
+
+impl Party {
+    fn words(&self) -> String {
+        let noun = if self.seats == 1 { "seat" } else { "seats" };
+        format!("Customer {} ({}, {} {noun})", self.customer, self.group, grouped(f64::from(self.seats), 0))
+    }
+}
+
+/// Text of a notice, which names its company where that is known.
+pub fn notice(notice: &Notice, party: Option<Party>) -> String {
+    let who = party.map_or("A company".to_owned(), |party| party.words());
     match notice {
-        Notice::EnterpriseLead => {
-            "A company asks for an offer. It waits seven days for an answer.".to_owned()
+        Notice::EnterpriseLead => format!("{who} asks for an offer. It waits seven days for an answer."),
+        Notice::LeadLostByTimeout { days } if party.is_some() => {
+            format!("{who} got no answer for {days} days. The lead is lost.")
         }
         Notice::LeadLostByTimeout { days } => {
-            format!("A company that asked for an offer got no answer for {days} days and has turned away.")
+            format!("A lead that was lost earlier is reported again, {days} days after its last message.")
         }
-        Notice::LeadSilent => {
-            "A company that asked for an offer no longer answers; the talks are over.".to_owned()
-        }
+        Notice::LeadSilent => format!("{who} declines and answers no more. The lead is lost."),
         Notice::CounterOffer { customer } => format!("Customer {customer} answers with a price of its own."),
         Notice::ChurnThreat { customer } => format!(
             "Customer {customer} threatens to leave and pays nothing until this is settled. It waits seven days for an answer."
@@ -26,7 +45,7 @@ pub fn notice(notice: &Notice) -> String {
                 "Customer {customer} asks for the price of a {direction} plan. It waits seven days for an answer."
             )
         }
-        Notice::DealWon { price } => format!("A deal was closed at ${price:.2} a seat and month."),
+        Notice::DealWon { price } => format!("{who} accepts: a deal at ${price:.2} a seat and month."),
         Notice::ResearchComplete { tier, number } => format!("R&D complete: t{tier}_{number}"),
         Notice::EconomyUpdate(reading) => {
             let arrow = match reading.change {
@@ -90,26 +109,35 @@ mod tests {
     #[test]
     fn studies_and_finds_name_group_level_and_accuracy() {
         let group = crate::world::identifiers::Group::parse("D_S06").expect("a group");
-        let found = notice(&Notice::GroupFound { group, attempt: 4 });
+        let found = notice(&Notice::GroupFound { group, attempt: 4 }, None);
         assert_eq!(found, "Market research found group D_S06 (attempt 4). It is known at level 1.");
         for (before, words) in [(1, "raised"), (2, "refreshed")] {
             let study = crate::world::market::studies::Study { group, target: 2, before, due_day: 31 };
-            let text = notice(&Notice::StudyComplete { study, noise: 0.4 });
+            let text = notice(&Notice::StudyComplete { study, noise: 0.4 }, None);
             assert_eq!(text, format!("Study of group D_S06 complete: level 2, \u{b1}40% (day 31, {words})"));
         }
     }
 
     #[test]
     fn negotiations_say_what_chapter_40_lets_them_say() {
-        let leave = notice(&Notice::ChurnThreat { customer: 7 });
+        let leave = notice(&Notice::ChurnThreat { customer: 7 }, None);
         assert!(leave.starts_with("Customer 7 threatens to leave"), "{leave}");
-        let up = notice(&Notice::PlanWish { customer: 9, upgrade: true });
-        let down = notice(&Notice::PlanWish { customer: 9, upgrade: false });
+        let up = notice(&Notice::PlanWish { customer: 9, upgrade: true }, None);
+        let down = notice(&Notice::PlanWish { customer: 9, upgrade: false }, None);
         assert!(up.contains("Customer 9") && up.contains("higher") && down.contains("lower"));
-        assert!(notice(&Notice::CounterOffer { customer: 12 }).contains("Customer 12"));
-        assert_eq!(notice(&Notice::DealWon { price: 33.5 }), "A deal was closed at $33.50 a seat and month.");
-        assert!(notice(&Notice::LeadLostByTimeout { days: 7 }).contains("7 days"));
-        assert!(!notice(&Notice::LeadSilent).contains(char::is_numeric));
+        assert!(notice(&Notice::CounterOffer { customer: 12 }, None).contains("Customer 12"));
+        let group = crate::world::identifiers::Group::parse("E2").expect("a group");
+        let party = Some(Party { customer: 4711, group, seats: 1_094 });
+        assert_eq!(
+            notice(&Notice::DealWon { price: 33.5 }, party),
+            "Customer 4711 (E2, 1,094 seats) accepts: a deal at $33.50 a seat and month."
+        );
+        let unanswered = notice(&Notice::LeadLostByTimeout { days: 7 }, party);
+        assert_eq!(unanswered, "Customer 4711 (E2, 1,094 seats) got no answer for 7 days. The lead is lost.");
+        let again = notice(&Notice::LeadLostByTimeout { days: 16 }, None);
+        assert!(again.contains("reported again, 16 days"), "{again}");
+        assert!(notice(&Notice::LeadSilent, party).starts_with("Customer 4711 (E2, 1,094 seats) declines"));
+        assert!(!notice(&Notice::LeadSilent, None).contains(char::is_numeric));
     }
 
     #[test]
@@ -122,7 +150,7 @@ mod tests {
             phase: Phase::Declining,
         };
         assert_eq!(
-            notice(&Notice::EconomyUpdate(reading)),
+            notice(&Notice::EconomyUpdate(reading), None),
             "Purchasing managers' index 48.3 \u{2193} (neutral)"
         );
     }

@@ -58,7 +58,7 @@ impl Morning {
             core,
             weekday: params.calendar.weekly[(world.day % 7) as usize],
             month_day: params.calendar.monthly[(world.day % 30) as usize],
-            quotas: ByPlan::from_fn(|plan| core.quotas[plan] as f64),
+            quotas: ByPlan::from_fn(|plan| core.quotas[plan].units()),
             multipliers: ByPlan::from_fn(|plan| params.model(core.tiers[plan]).quality_multiplier),
             product: ByGroup::from_fn(|group| world.product.quality(group, params)),
             shared_quality: params.quality.base_product_quality + world.product.shared_bonus,
@@ -209,6 +209,7 @@ pub fn step_day(
     let figures = DayFigures {
         day,
         total_usage: service.total_usage,
+        usage: metered.by_group,
         overload: service.overload,
         outage: service.outage,
         downtime_minutes: service.downtime_minutes,
@@ -275,6 +276,7 @@ pub fn closing_figures(world: &World) -> DayFigures {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::world::quota::Quota;
     use crate::world::settings::Settings;
 
     /// A morning with plain values; tests change what matters to them.
@@ -355,7 +357,7 @@ pub(crate) mod tests {
         let core = &mut world.settings.core;
         core.prices = ByPlan([9.0, 18.0, 40.0]);
         core.tiers = ByPlan([1, 2, 3]);
-        core.quotas = ByPlan([60_000, 250_000, 1_200_000]);
+        core.quotas = ByPlan([60_000, 250_000, 1_200_000].map(Quota::from));
         core.operations = 300.0;
         core.development = 800.0;
         let channel = crate::world::identifiers::Channel::SocialMedia;

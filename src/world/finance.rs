@@ -93,7 +93,7 @@ mod tests {
         settings.targeted_development.targeted_spend.insert(s1, 33.0);
         let mut day = morning(8);
         day.core = settings.core;
-        let metered = Metered { total: 189, by_plan: ByPlan([60 + 44, 83 + 2, 0]) };
+        let metered = Metered { total: 189, by_plan: ByPlan([60 + 44, 83 + 2, 0]), ..Metered::default() };
         assert!((compute_cost(&metered, &day, &params) - 1.228).abs() < 1e-12);
         let (mut finance, mut facts) = (Finance { cash: 1000.0 }, Facts::default());
         let total = pay_running_costs(&mut finance, &metered, &day, &settings, &params, &mut facts);

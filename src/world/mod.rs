@@ -14,6 +14,7 @@ pub mod identifiers;
 pub mod market;
 pub mod params;
 pub mod product;
+pub mod quota;
 pub mod random;
 pub mod retention;
 pub mod series;

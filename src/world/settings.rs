@@ -10,6 +10,7 @@ use super::canonical::canonical;
 use super::events::SettingsChange;
 use super::identifiers::{ByPlan, Channel, Group, Plan};
 use super::params::Params;
+use super::quota::Quota;
 
 /// Dollars (or strengths) per group, in the order in which the player listed them.
 pub type PerGroup = IndexMap<Group, f64>;
@@ -45,7 +46,7 @@ pub struct CoreSettings {
     /// Model tiers, 1..=5.
     pub tiers: ByPlan<u8>,
     /// Quotas, units a day and customer.
-    pub quotas: ByPlan<u64>,
+    pub quotas: ByPlan<Quota>,
     /// Operations, dollars a day.
     pub operations: f64,
     /// Development, dollars a day.
@@ -137,6 +138,12 @@ fn total<K>(map: &IndexMap<K, f64>) -> f64 {
     map.values().sum()
 }
 
+fn opening_quotas(params: &Params) -> ByPlan<Quota> {
+    let initial = &params.initial;
+    let units = [initial.default_quota_a, initial.default_quota_b, initial.default_quota_c];
+    ByPlan(units.map(|units| Quota::of(units as f64).unwrap_or_default()))
+}
+
 impl Settings {
     /// The settings of day 0.
     pub fn opening(params: &Params) -> Settings {
@@ -144,7 +151,7 @@ impl Settings {
         let core = CoreSettings {
             prices: ByPlan([initial.default_price_a, initial.default_price_b, initial.default_price_c]),
             tiers: ByPlan([initial.default_tier_a, initial.default_tier_b, initial.default_tier_c]),
-            quotas: ByPlan([initial.default_quota_a, initial.default_quota_b, initial.default_quota_c]),
+            quotas: opening_quotas(params),
             operations: initial.default_spend_operations,
             development: initial.default_spend_development,
             capacity_tier: initial.default_capacity_tier,

@@ -47,7 +47,7 @@ static COMPANY: LazyLock<Company> = LazyLock::new(|| {
     let settings = &mut world.settings;
     settings.core.prices = ByPlan([12.0, 25.0, 55.0]);
     settings.core.tiers = ByPlan([1, 2, 4]);
-    settings.core.quotas = ByPlan([60_000, 250_000, 1_200_000]);
+    settings.core.quotas = ByPlan([60_000, 250_000, 1_200_000].map(Into::into));
     settings.core.operations = 1_000.0;
     settings.core.capacity_tier = 5;
     settings.targeted_development.targeted_spend.insert(s1, 6_000.0);

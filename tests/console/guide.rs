@@ -14,7 +14,7 @@ fn the_tour_goes_on_by_doing_and_is_resumed_where_it_stopped() {
     console.shows("day 0/500");
     console.press("8");
     console.shows("Tour · 2 of 11 · Prices");
-    console.press("enter '12' enter '25' enter '55' enter ctrl-s");
+    console.press("enter enter '12' down '25' down '55' enter ctrl-s");
     console.shows("Tour · 3 of 11 · Quotas");
     console.press("f4 esc");
     assert!(!console.screen().contains("Tour ·"), "it is closed");

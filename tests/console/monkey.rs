@@ -158,7 +158,7 @@ fn play(dice: &mut Dice, steps: usize) {
 /// A shop that opens, in a window of some size.
 fn opened(runs: &Path, dice: &mut Dice) -> Console {
     let mut console = Console::in_new_run(runs, (120, 40));
-    console.press("8 enter '12' enter '25' enter '55' enter ctrl-s esc 1");
+    console.press("8 enter enter '12' down '25' down '55' enter ctrl-s 1");
     console.size = a_size(dice);
     console
 }
@@ -222,7 +222,7 @@ const DRAFTS: [(&str, &str); 5] = [
     ("0 esc esc tab tab e", "0"),
     ("n enter ctrl-u", "n enter"),
     // A filter that is still typed would make another tool the first.
-    ("8 esc esc esc home enter", "8 esc esc home enter"),
+    ("8 esc esc esc home enter enter", "8 esc esc home enter"),
 ];
 
 /// Keys that walk through the console and change no text.

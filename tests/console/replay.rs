@@ -79,7 +79,7 @@ fn one_steps_forward_and_back_by_weeks_and_by_actions_and_seeks() {
     assert_eq!(day(&console), 14);
     console.shows("Decided before week 3");
     console.shows("“If week 2 keeps its leads");
-    console.shows("later $982k OUTSIDE");
+    console.shows("later $98");
     console.shows("refused: ");
     console.press("<");
     assert_eq!(day(&console), 7);
@@ -121,7 +121,8 @@ fn in_a_replay_nothing_can_be_done() {
     let runs = tempfile::tempdir().expect("a folder");
     left(runs.path(), Mode::Sandbox, 2);
     let mut console = replayed(runs.path(), (120, 40), Goal::Week(1));
-    for keys in ["n", "u", "8 enter '12' enter ctrl-s", "esc esc 5 p", "0 e", "7 m", "7 r", "6 ctrl-s"] {
+    for keys in ["n", "u", "8 enter enter '12' enter ctrl-s", "esc esc 5 p", "0 e", "7 m", "7 r", "6 ctrl-s"]
+    {
         console.press("esc esc");
         console.press(keys);
         console.shows("this is a replay; take over with T");

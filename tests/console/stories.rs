@@ -6,11 +6,11 @@ use super::harness::Console;
 
 /// The forms that open a shop.
 fn open_shop(console: &mut Console) {
-    console.press("8 enter '12' enter '25' enter '55' enter ctrl-s esc");
-    console.press("down enter '1' enter '2' enter '4' enter ctrl-s esc");
-    console.press("down enter '60k' enter '250k' enter '1.2M' enter ctrl-s esc");
-    console.press("down down enter '200' enter '200' enter ctrl-s esc");
-    console.press("down enter down down down '750' enter ctrl-s esc");
+    console.press("8 enter enter '12' down '25' down '55' enter ctrl-s");
+    console.press("down enter enter '1' down '2' down '4' enter ctrl-s");
+    console.press("down enter enter '60k' down '250k' down '1.2M' enter ctrl-s");
+    console.press("down down enter enter '200' down '200' enter ctrl-s");
+    console.press("down enter down down down enter '750' enter ctrl-s");
 }
 
 #[test]
@@ -20,7 +20,7 @@ fn a_newcomer_plays_two_weeks_leaves_and_comes_back() {
     console.shows("New run");
     console.press("n enter");
     console.shows("day 0/500");
-    console.shows("no plan has a price yet");
+    console.shows("no plan has a price: nobody");
     open_shop(&mut console);
     console.shows("Tools ●11");
     console.press("c");
@@ -101,7 +101,7 @@ fn a_week_is_not_filed_without_a_reason_and_four_forecasts() {
     console.shows("that was not sent");
     console.press("esc n enter");
     console.shows("why not");
-    console.press("enter f enter");
+    console.press("enter '6' enter f enter");
     console.shows("What changed most");
 }
 
@@ -109,13 +109,13 @@ fn a_week_is_not_filed_without_a_reason_and_four_forecasts() {
 fn what_is_set_can_be_taken_back_and_the_zero_of_the_start_cannot() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
-    console.press("8 down down down down enter '300' enter ctrl-s");
+    console.press("8 down down down down enter enter '300' enter ctrl-s");
     console.shows("set_daily_spend: done");
     console.press("u");
     console.shows("taken back: operations");
     console.press("u");
     console.shows("! ");
-    console.press("esc home enter '12' enter ctrl-s u");
+    console.press("esc home enter enter '12' enter ctrl-s u");
     console.shows("a price of 0 cannot be set");
 }
 
@@ -123,13 +123,13 @@ fn what_is_set_can_be_taken_back_and_the_zero_of_the_start_cannot() {
 fn a_purchase_asks_once_and_a_refusal_stands_at_its_cell() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
-    console.press(": 'start_res' enter '1' enter ctrl-s");
+    console.press(": 'start_res' enter enter '1' enter ctrl-s");
     console.shows("cannot be taken back");
     console.press("enter");
     console.shows("$1,000,000");
     console.press("ctrl-s y");
     console.shows("start_research_project: done");
-    console.press("'1' enter");
+    console.press("enter enter '1' enter");
     console.shows("tier 1 is already running");
     console.press("y");
     assert_eq!(console.copied, [r#"research.start_research_project({"tier": 1})"#]);

@@ -171,7 +171,7 @@ fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
     run.set_memo("größer").expect("a memo");
     let calculation = json!({"name": "cash now", "code": "SELECT sum(amount) FROM ledger"});
     run.call("register_daily_calculation", &calculation, Via::Script).expect("a calculation");
-    run.advance_given(&json!(""), &json!({}), false, Via::Form, &mut |_| {}).expect_err("no rationale");
+    run.advance_given(&json!(""), &json!({}), [false; 4], Via::Form, &mut |_| {}).expect_err("no rationale");
     let forecasts = run.naive_forecasts();
     run.advance("wait", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     run.step(2, &mut |_| {}).expect("two days");

@@ -93,7 +93,7 @@ fn what_was_confirmed_survives_a_kill() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
     terminal.wait_for("day 0/500");
-    terminal.type_keys("8\r12\r25\r55\r");
+    terminal.type_keys("8\r\r12\t25\t55\r");
     terminal.wait_for("pricing.set_prices");
     terminal.type_keys("\x13");
     terminal.wait_for("set_prices: done");

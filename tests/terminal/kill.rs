@@ -28,7 +28,7 @@ fn recorded(runs: &Path) -> (usize, usize) {
 fn set_a_price(terminal: &mut Terminal, price: usize) {
     terminal.type_keys("8");
     terminal.wait_for("set_prices");
-    terminal.type_keys(&format!("\r{price}\r"));
+    terminal.type_keys(&format!("\r\r{price}\r"));
     terminal.wait_for("pricing.set_prices");
     terminal.type_keys("\x13");
     terminal.wait_for("set_prices: done");
@@ -61,7 +61,7 @@ fn kills(count: usize) {
         // Something is under way when it happens.
         match *dice.pick(&["week", "call"]) {
             "week" => begin_a_week(&mut terminal),
-            _ => terminal.type_keys("8\r17\r\x13"),
+            _ => terminal.type_keys("8\r\r17\r\x13"),
         }
         let (moment, patience) = (Instant::now(), Duration::from_micros(dice.roll(60_000) as u64));
         while moment.elapsed() < patience {

@@ -15,9 +15,10 @@ impl App {
         let figure = self.with_screen(|screen, look| screen.figure(look)).flatten();
         let Stage::Run(run) = &mut self.stage else { return };
         run.explained = true;
+        let numbers = run.company.numbers.clone();
         let dialog = match figure {
-            Some(figure) => Explain::figure(&figure),
-            None => Explain::screen(run.here),
+            Some(figure) => Explain::figure(&figure, numbers),
+            None => Explain::screen(run.here, numbers),
         };
         self.layers.push(Layer::Dialog(Box::new(dialog)));
     }
@@ -26,7 +27,8 @@ impl App {
     pub(super) fn explain_subject(&mut self, subject: Subject) {
         let Stage::Run(run) = &mut self.stage else { return };
         run.explained = true;
-        self.layers.push(Layer::Dialog(Box::new(Explain::subject(subject))));
+        let explain = Explain::subject(subject, run.company.numbers.clone());
+        self.layers.push(Layer::Dialog(Box::new(explain)));
     }
 
     pub(super) fn show_glossary(&mut self) {

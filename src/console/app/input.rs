@@ -52,8 +52,6 @@ impl App {
             let goes_on = |action: &Action| matches!(action, Action::Complete | Action::NextStep);
             let plain = chord.is_printable();
             own.or_else(|| self.keys.action(&scopes, chord).filter(|action| goes_on(action) && !plain))
-        } else if chord.begins_number() && self.takes_digits() {
-            None
         } else {
             self.keys.action(&scopes, chord).or_else(|| self.anywhere(chord))
         };
@@ -82,10 +80,6 @@ impl App {
                 }
             }
         }
-    }
-
-    fn takes_digits(&self) -> bool {
-        self.layers.is_empty() && self.run().is_some_and(|run| run.screens.get(run.here).takes_digits())
     }
 
     /// What a chord means even over a dialog: leaving and drawing again must always be possible.
@@ -240,6 +234,7 @@ impl App {
             Action::Report => self.show_report(),
             Action::WriteReport => self.follow(vec![Effect::WriteReport]),
             Action::Undo => self.follow(vec![Effect::Undo]),
+            Action::Redo => self.follow(vec![Effect::Redo]),
             Action::FocusNext | Action::FocusPrevious => self.move_focus(action == Action::FocusNext),
             Action::Back => self.back(),
             Action::Explain => self.explain(),
@@ -348,7 +343,7 @@ impl App {
             lines.push("Nothing was changed since the last week.".to_owned());
         } else {
             lines.push(String::new());
-            lines.push("u takes back the last setting; purchases stay.".to_owned());
+            lines.push("u takes back the last setting, U sets it again; purchases stay.".to_owned());
         }
         self.open(Reader::new("Changes of this week", lines.join("\n")));
     }

@@ -117,15 +117,13 @@ impl App {
                 }
                 ScreenId::Tools
             }
-            News::Undone(back, company) => {
-                self.changed(company.clone());
-                match back {
-                    Ok(changes) => {
-                        self.say(format!("taken back: {}", in_words(changes)));
-                    }
-                    Err(refusal) => self.complain(refusal.to_string()),
-                }
-                return;
+            News::Undone(changes, company) => {
+                self.restored("taken back", changes, company);
+                ScreenId::Tools
+            }
+            News::Redone(changes, company) => {
+                self.restored("set again", changes, company);
+                ScreenId::Tools
             }
             News::MemoKept(kept, company) => {
                 match kept {
@@ -231,6 +229,15 @@ impl App {
             if let Layer::Dialog(dialog) = layer {
                 dialog.take_story(story);
             }
+        }
+    }
+
+    /// Settings were restored, or could not be.
+    fn restored(&mut self, what: &str, changes: &Result<Vec<Change>, Refusal>, company: &Arc<Company>) {
+        self.changed(company.clone());
+        match changes {
+            Ok(changes) => self.say(format!("{what}: {}", in_words(changes))),
+            Err(refusal) => self.complain(refusal.to_string()),
         }
     }
 

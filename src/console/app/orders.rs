@@ -57,6 +57,7 @@ impl App {
             }
             Effect::Call { tool, arguments } => self.change(Job::Call(tool, arguments)),
             Effect::Undo => self.change(Job::Undo),
+            Effect::Redo => self.change(Job::Redo),
             Effect::Advance { rationale, forecasts } => self.advance(rationale, forecasts),
             Effect::Ask(sql) => self.sql_question = self.ask(sql),
             Effect::AskBehind(sql) => self.rows_question = self.ask(sql),
@@ -90,6 +91,28 @@ impl App {
                     run.screens.tools.show(tool, &company);
                 }
                 self.show(ScreenId::Tools);
+            }
+            Effect::ShowCell(tool, of) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    let company = run.company.clone();
+                    run.screens.tools.show_cell(tool, &of, &company);
+                }
+                self.show(ScreenId::Tools);
+            }
+            Effect::Prefill { tool, arguments } => {
+                if let Stage::Run(run) = &mut self.stage {
+                    let company = run.company.clone();
+                    let effects = run.screens.tools.prefill(tool, &arguments, &company);
+                    self.follow(effects);
+                }
+                self.show(ScreenId::Tools);
+            }
+            Effect::ShowThread(number) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    let company = run.company.clone();
+                    run.screens.inbox.show(number, &company);
+                }
+                self.show(ScreenId::Inbox);
             }
             Effect::ShowGroup(screen, group) => {
                 if let Stage::Run(run) = &mut self.stage {

@@ -14,9 +14,10 @@ use crate::console::worker::Job;
 use crate::session::Goal;
 
 /// What only the person who plays can do.
-const OF_PLAYERS: [Action; 14] = [
+const OF_PLAYERS: [Action; 15] = [
     Action::NextWeek,
     Action::Undo,
+    Action::Redo,
     Action::Tour,
     Action::Apply,
     Action::SendOffer,

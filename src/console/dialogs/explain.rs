@@ -1,5 +1,7 @@
 //! What a figure, a field or a screen is: words for it, the rows behind it, and terms that lead on.
 
+use std::sync::Arc;
+
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
@@ -12,6 +14,7 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::glossary::{self, Explanation, Subject};
+use crate::session::Numbers;
 
 /// Something that can be chosen below the text.
 #[derive(Debug, Clone, Copy)]
@@ -44,8 +47,8 @@ struct Page {
 }
 
 impl Page {
-    fn of(subject: Subject) -> Page {
-        let told = Explanation::of(subject);
+    fn of(subject: Subject, numbers: &Numbers) -> Page {
+        let told = Explanation::of(subject, numbers);
         let places = told.places.iter().filter_map(|name| Action::named(Scope::Global, name));
         Page {
             title: told.title,
@@ -63,18 +66,20 @@ pub struct Explain {
     pages: Vec<Page>,
     /// There are rows behind the figure.
     rows: bool,
+    /// The numbers that texts name.
+    numbers: Arc<Numbers>,
 }
 
 impl Explain {
     /// Explains a subject.
-    pub fn subject(subject: Subject) -> Explain {
-        Explain { pages: vec![Page::of(subject)], rows: false }
+    pub fn subject(subject: Subject, numbers: Arc<Numbers>) -> Explain {
+        Explain { pages: vec![Page::of(subject, &numbers)], rows: false, numbers }
     }
 
     /// Explains the figure that is selected on a screen.
-    pub fn figure(figure: &Figure) -> Explain {
+    pub fn figure(figure: &Figure, numbers: Arc<Numbers>) -> Explain {
         let mut page = match glossary::subject(figure.term) {
-            Some(subject) => Page::of(subject),
+            Some(subject) => Page::of(subject, &numbers),
             None => Page {
                 title: String::new(),
                 note: String::new(),
@@ -91,11 +96,11 @@ impl Explain {
         if let Some(sql) = &figure.sql {
             page.parts.push(("rows behind".to_owned(), sql.trim().to_owned()));
         }
-        Explain { pages: vec![page], rows: figure.sql.is_some() }
+        Explain { pages: vec![page], rows: figure.sql.is_some(), numbers }
     }
 
     /// Explains a screen, and lists its terms.
-    pub fn screen(screen: ScreenId) -> Explain {
+    pub fn screen(screen: ScreenId, numbers: Arc<Numbers>) -> Explain {
         let entry = screen.action().entry();
         let help = "Select a figure or a field to have it explained, or choose a term of this screen.";
         let page = Page {
@@ -105,7 +110,7 @@ impl Explain {
             links: glossary::terms_of(entry.name).map(Subject::Term).map(Link::To).collect(),
             selected: 0,
         };
-        Explain { pages: vec![page], rows: false }
+        Explain { pages: vec![page], rows: false, numbers }
     }
 
     fn page(&self) -> &Page {
@@ -115,7 +120,10 @@ impl Explain {
     fn follow(&mut self) -> Outcome {
         let page = self.page();
         match page.links.get(page.selected) {
-            Some(Link::To(subject)) => self.pages.push(Page::of(*subject)),
+            Some(Link::To(subject)) => {
+                let next = Page::of(*subject, &self.numbers);
+                self.pages.push(next);
+            }
             Some(Link::Place(action)) => return Outcome::close_with(vec![Effect::Do(*action)]),
             None => return Outcome::close(),
         }
@@ -275,7 +283,7 @@ mod tests {
     #[test]
     fn a_figure_is_explained_with_its_rows_and_leads_on_and_back() {
         let company = company();
-        let mut dialog = Explain::figure(&figure("churn", Some("SELECT 1")));
+        let mut dialog = Explain::figure(&figure("churn", Some("SELECT 1")), Numbers::shipped().into());
         let shown = dialog_picture(&dialog, &company, 80, 21);
         for part in [
             "cancellations of S1",
@@ -299,7 +307,7 @@ mod tests {
     #[test]
     fn the_last_links_go_to_the_places_of_a_term() {
         let company = company();
-        let mut dialog = Explain::figure(&figure("runway", None));
+        let mut dialog = Explain::figure(&figure("runway", None), Numbers::shipped().into());
         in_dialog(&mut dialog, Action::Last, &company);
         let outcome = in_dialog(&mut dialog, Action::Open, &company);
         assert!(outcome.close && matches!(outcome.effects[..], [Effect::Do(Action::Cash)]));
@@ -308,12 +316,13 @@ mod tests {
     #[test]
     fn a_screen_lists_its_terms_and_an_unknown_term_says_what_it_can() {
         let company = company();
-        let shown = dialog_picture(&Explain::screen(ScreenId::Inbox), &company, 80, 21);
+        let shown =
+            dialog_picture(&Explain::screen(ScreenId::Inbox, Numbers::shipped().into()), &company, 80, 21);
         assert!(
             shown.contains("Negotiate with companies.") && shown.contains("Enterprise customer"),
             "{shown}"
         );
-        let mut odd = Explain::figure(&figure("no-such-term", None));
+        let mut odd = Explain::figure(&figure("no-such-term", None), Numbers::shipped().into());
         let shown = dialog_picture(&odd, &company, 80, 21);
         assert!(shown.contains("cancellations of S1"), "{shown}");
         assert!(in_dialog(&mut odd, Action::Open, &company).close);
@@ -323,7 +332,7 @@ mod tests {
     fn every_term_fits_every_window() {
         let company = company();
         for term in glossary::terms() {
-            let dialog = Explain::subject(Subject::Term(term));
+            let dialog = Explain::subject(Subject::Term(term), Numbers::shipped().into());
             for (width, height) in [(0, 0), (3, 2), (60, 13), (80, 21), (200, 57)] {
                 let shown = dialog_picture(&dialog, &company, width, height);
                 assert!(width < 60 || shown.contains(&term.title), "{}: {shown}", term.id);

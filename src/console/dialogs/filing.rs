@@ -10,13 +10,14 @@ use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Align, Canvas, Click, centered, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
-use crate::console::screens::{Look, overview};
+use crate::console::screens::Look;
 use crate::console::text::{number, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::fan::draw_fan;
 use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::console::widgets::{Editor, Field};
 use crate::notation::{dollars, grouped, percent};
+use crate::report::review::money_lines;
 use crate::session::Forecasts;
 use crate::tools::Forecast;
 
@@ -37,10 +38,11 @@ pub struct Filing {
     at: (usize, usize),
     /// The cell is being typed into.
     typing: bool,
-    /// What was in the cell before it was typed into.
+    /// What was in the cell before it was typed into, and whether the naive projection had filled it.
     before: Field,
-    /// Cells hold the naive projection untouched.
-    naive: bool,
+    was_filled: bool,
+    /// Cells that the naive projection filled in.
+    filled: [[bool; 3]; 4],
     problem: Option<String>,
     /// Tools whose forms hold values that were not sent.
     unsent: Vec<&'static str>,
@@ -58,7 +60,8 @@ impl Default for Filing {
             at: (0, 0),
             typing: false,
             before: Field::default(),
-            naive: false,
+            was_filled: false,
+            filled: Default::default(),
             problem: None,
             unsent: Vec::new(),
         }
@@ -76,8 +79,7 @@ impl Filing {
 
     /// Whether a draft would be lost.
     pub fn has_draft(&self) -> bool {
-        !self.rationale.is_blank()
-            || (!self.naive && self.cells.iter().flatten().any(|cell| !cell.is_empty()))
+        !self.rationale.is_blank() || self.typed().any(|(row, column)| !self.cells[row][column].is_empty())
     }
 
     /// Number of the step, from 1.
@@ -121,21 +123,36 @@ impl Filing {
         };
     }
 
+    /// Places of the cells that the person filled in, or left empty.
+    fn typed(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        (0..4).flat_map(|row| (0..3).map(move |column| (row, column))).filter(|at| !self.filled[at.0][at.1])
+    }
+
+    /// Fills the empty cells with the naive projection. Around a point that was typed its interval keeps its width.
     fn fill_naively(&mut self, company: &Company) {
-        for (row, forecast) in self.cells.iter_mut().zip(&company.naive.all) {
-            *row = [forecast.lower, forecast.point, forecast.upper].map(|value| Field::of(grouped(value, 0)));
+        for (row, naive) in company.naive.all.iter().enumerate() {
+            let typed = |column: usize| parse_number(self.cells[row][column].text());
+            let (low, high) = (typed(0).unwrap_or(f64::NEG_INFINITY), typed(2).unwrap_or(f64::INFINITY));
+            let point = typed(1).unwrap_or(naive.point.max(low).min(high));
+            let values = [point - (naive.point - naive.lower), point, point + (naive.upper - naive.point)];
+            for (column, value) in values.into_iter().enumerate() {
+                if self.cells[row][column].is_empty() {
+                    self.cells[row][column] = Field::of(grouped(value, 0));
+                    self.filled[row][column] = true;
+                }
+            }
         }
-        (self.naive, self.problem) = (true, None);
+        self.problem = None;
     }
 
     /// The forecasts as typed, or the first cell that is wrong.
     fn forecasts(&self, company: &Company) -> Result<Forecasts, ((usize, usize), String)> {
         let mut all = company.naive;
-        all.filled_naively = self.naive;
-        if self.naive {
-            return Ok(all);
-        }
+        all.filled_naively = self.filled.map(|row| row.contains(&true));
         for (row, cells) in self.cells.iter().enumerate() {
+            if self.filled[row] == [true; 3] {
+                continue;
+            }
             let mut values = [0.0; 3];
             for (column, cell) in cells.iter().enumerate() {
                 values[column] = parse_number(cell.text())
@@ -228,6 +245,7 @@ impl Dialog for Filing {
                 self.typing = false;
                 let before = self.before.clone();
                 *self.cell() = before;
+                self.filled[self.at.0][self.at.1] = self.was_filled;
             }
             Action::Commit | Action::CommitNext | Action::CommitDown | Action::CommitPrevious => {
                 self.typing = false;
@@ -248,7 +266,6 @@ impl Dialog for Filing {
             }
             Step::Forecasts if self.typing => {
                 self.problem = (!self.cell().number_key(key)).then(|| ONLY_NUMBERS.to_owned());
-                self.naive = false;
             }
             Step::Forecasts => {
                 let starts = crate::console::keys::Chord::of(key).begins_number();
@@ -256,7 +273,8 @@ impl Dialog for Filing {
                     self.before = self.cell().clone();
                     *self.cell() = Field::default();
                     self.cell().key(key);
-                    (self.typing, self.naive, self.problem) = (true, false, None);
+                    self.was_filled = std::mem::take(&mut self.filled[self.at.0][self.at.1]);
+                    (self.typing, self.problem) = (true, None);
                 }
             }
             Step::Review => {}
@@ -320,6 +338,11 @@ fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &
     let seen = &company.seen;
     let mut lines: Vec<TextLine<'_>> = Vec::new();
     let head = |text: &str, canvas: &Canvas<'_>| TextLine::from(canvas.span(text.to_owned(), Role::Header));
+    lines.push(head("Money", canvas));
+    let money = money_lines(seen).into_iter().map(|line| format!("  {line}"));
+    let money = money.flat_map(|line| wrapped(&line, area.width as usize));
+    lines.extend(money.map(|line| TextLine::from(canvas.span(line, Role::Text))));
+    lines.push(TextLine::default());
     lines.push(head("Changes since the last week", canvas));
     for change in &seen.changes {
         lines.push(TextLine::from(vec![
@@ -341,22 +364,21 @@ fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &
         let text = format!("  ! the form of {tool} holds values that were not applied");
         lines.push(TextLine::from(canvas.span(text, Role::Warning)));
     }
-    let alerts = overview::alerts(company);
-    for alert in &alerts {
-        for (at, text) in wrapped(&alert.text, area.width.saturating_sub(4) as usize).into_iter().enumerate()
-        {
+    for need in &company.needs {
+        let words = wrapped(&need.in_words(), area.width.saturating_sub(4) as usize);
+        for (at, text) in words.into_iter().enumerate() {
             let mark = if at > 0 {
                 "    "
-            } else if alert.urgent {
+            } else if need.urgent {
                 "  ! "
             } else {
                 "  · "
             };
-            let role = if alert.urgent { Role::Warning } else { Role::Text };
+            let role = if need.urgent { Role::Warning } else { Role::Text };
             lines.push(TextLine::from(canvas.span(format!("{mark}{text}"), role)));
         }
     }
-    if alerts.is_empty() && unsent.is_empty() {
+    if company.needs.is_empty() && unsent.is_empty() {
         lines.push(TextLine::from(canvas.span("  nothing needs you", Role::Dim)));
     }
     let room = area.height as usize;
@@ -417,10 +439,11 @@ impl Filing {
         for (at, row) in rows.by_ref().take(4).enumerate() {
             self.draw_horizon(canvas, row, at, company);
         }
-        if self.naive
+        if self.filled.as_flattened().contains(&true)
             && let Some(row) = rows.next()
         {
-            canvas.text(row, "naive: the last four weeks go on like this; recorded as such", Role::Dim);
+            let words = "naive: income and use of the last four weeks at the costs set now; recorded as such";
+            canvas.text(row, words, Role::Dim);
         }
         let used = 7;
         let left = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };

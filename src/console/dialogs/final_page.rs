@@ -354,7 +354,7 @@ mod tests {
                 "of 18 beside the published results",
                 "▌ You",
                 "Rule-based baseline",
-                "1 wk 0% inside",
+                "1 wk ",
                 "ads on best channel",
                 "of 2 tried",
                 "targeted development  97%",

@@ -114,9 +114,13 @@ fn recent(company: &Company) -> Vec<&'static str> {
 fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
     let acts = |tool: &str| find(tool).is_some_and(|tool| tool.spec().kind.acts());
     match effect {
-        Effect::Do(Action::NextWeek | Action::Undo) if company.replayed => Some("this is a replay"),
+        Effect::Do(Action::NextWeek | Action::Undo | Action::Redo) if company.replayed => {
+            Some("this is a replay")
+        }
         Effect::ShowTool(tool) if acts(tool) && company.replayed => Some("this is a replay"),
-        Effect::Do(Action::NextWeek | Action::Undo) if !company.is_running() => Some("the run is over"),
+        Effect::Do(Action::NextWeek | Action::Undo | Action::Redo) if !company.is_running() => {
+            Some("the run is over")
+        }
         Effect::Do(Action::Report) if company.weeks.is_empty() => Some("no week has passed yet"),
         Effect::ShowTool(tool) if acts(tool) && !company.is_running() => Some("the run is over"),
         _ => None,

@@ -1,5 +1,5 @@
-//! What a week has brought: what cash did and why, what changed most and why it may have, what is new and where to
-//! look, what became of the forecasts, what comes next.
+//! The report of a week: how cash changed and what that consists of, which figures changed most, what was set before it,
+//! what is new and where to look, what became of the forecasts, what comes next.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -8,12 +8,13 @@ use unicode_width::UnicodeWidthStr;
 use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, centered, fit};
-use crate::console::screens::overview::{self, Alert};
+use crate::console::screens::overview::needs::screen_of;
 use crate::console::screens::{Look, ScreenId};
-use crate::console::text::{arrow, short_dollars, wrapped};
+use crate::console::text::{arrow, flowed, short_dollars, wrapped};
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped, percent, signed_dollars};
 use crate::report::WeekReport;
+use crate::report::needs::Need;
 use crate::report::week::{Due, Move};
 
 /// Widest that reads well.
@@ -81,22 +82,24 @@ impl Report {
     ) -> Vec<Line<'a>> {
         let height = height as usize;
         let head = self.head(canvas, told, width, if height >= 26 { 4 } else { 1 });
-        let alerts = overview::alerts(look.company);
+        let needs = &look.company.needs;
         let notices = &look.company.notices;
         let news = news(canvas, told, width, look);
-        // Headings and the blank lines between four parts.
-        let airy = height >= 18;
-        let fixed = head.len() + news.len() + 2 + if airy { 3 } else { 0 };
+        let decided = decided(canvas, told, width, if height >= 26 { 6 } else { 2 });
+        // Headings and the blank lines between five parts.
+        let airy = height >= 24;
+        let fixed = head.len() + decided.len() + news.len() + 2 + if airy { 4 } else { 0 };
         let room = height.saturating_sub(fixed);
-        let shown_alerts = alerts.len().min((room / 5).max(1)).max(1);
+        let shown_needs = needs.len().min((room / 5).max(1)).max(1);
         let moves =
-            moved(canvas, told, width, room.saturating_sub(shown_alerts + usize::from(!notices.is_empty())));
-        let left = room.saturating_sub(shown_alerts + moves.len());
-        let parts: [Part<'a>; 4] = [
+            moved(canvas, told, width, room.saturating_sub(shown_needs + usize::from(!notices.is_empty())));
+        let left = room.saturating_sub(shown_needs + moves.len());
+        let parts: [Part<'a>; 5] = [
             head,
+            decided,
             with_heading(canvas, "What changed most", moves),
             news.into_iter().chain(notice_lines(canvas, notices, width, left.min(8))).collect(),
-            with_heading(canvas, "What comes next", next(canvas, &alerts, shown_alerts, width, look)),
+            with_heading(canvas, "What comes next", next(canvas, needs, shown_needs, width, look)),
         ];
         let mut lines = Vec::new();
         for (at, part) in parts.into_iter().enumerate() {
@@ -119,7 +122,8 @@ impl Report {
         ])];
         let parts: Vec<String> =
             told.parts.iter().map(|(name, amount)| format!("{name} {}", signed_dollars(*amount))).collect();
-        lines.push(Line::from(canvas.span(fit(&parts.join(" · "), width as usize), Role::Text)));
+        let parts = flowed(&parts, width as usize).into_iter();
+        lines.extend(parts.map(|line| Line::from(canvas.span(line, Role::Text))));
         let remark = self.remark.iter().flat_map(|remark| wrapped(remark, width as usize));
         lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
         lines.extend(told.due.iter().take(forecasts).map(|due| forecast_line(canvas, due)));
@@ -148,7 +152,27 @@ fn forecast_line<'a>(canvas: &Canvas<'_>, due: &Due) -> Line<'a> {
     ])
 }
 
-/// The most unusual moves that have room, each with why it may be.
+/// What was decided before the week, in so many lines at the most.
+fn decided<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, most: usize) -> Part<'a> {
+    let lines = |pieces: &[String]| flowed(pieces, (width as usize).saturating_sub(9));
+    let mut shown = told.decided.len();
+    let mut found = lines(&told.decided);
+    while found.len() > most && shown > 0 {
+        shown -= 1;
+        let more = format!("and {} more", told.decided.len() - shown);
+        found = lines(&[&told.decided[..shown], &[more]].concat());
+    }
+    if found.is_empty() {
+        found.push("nothing".to_owned());
+    }
+    let line = |(at, text): (usize, String)| {
+        let heading = if at == 0 { "Decided  " } else { "         " };
+        Line::from(vec![canvas.span(heading, Role::Header), canvas.span(text, Role::Text)])
+    };
+    found.into_iter().enumerate().map(line).collect()
+}
+
+/// The most unusual moves that have room.
 fn moved<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, room: usize) -> Part<'a> {
     if told.moves.is_empty() {
         return vec![Line::from(canvas.span("  nothing", Role::Dim))];
@@ -178,9 +202,9 @@ fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16) -> Part<'a> {
         canvas.span(format!("{:>12}", own.new), Role::Strong),
         canvas.span(format!("  {glyph} {share:<7}"), role),
     ];
-    let cause = own.cause.as_ref().map(|cause| format!("may be: {cause}"));
+    let split = own.split.iter().map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars)));
     let said: Vec<String> =
-        [own.movement.standing()].into_iter().filter(|text| !text.is_empty()).chain(cause).collect();
+        [own.movement.standing()].into_iter().filter(|text| !text.is_empty()).chain(split).collect();
     let said = said.join(" · ");
     if said.is_empty() {
         return vec![Line::from(line)];
@@ -197,12 +221,17 @@ fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16) -> Part<'a> {
 /// What is new, each with the key of the screen that shows it, in as many lines as it takes.
 fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>) -> Part<'a> {
     let kinds: [(u32, &str, &str, ScreenId); 6] = [
-        (told.week.threads_opened, "talk", "talks", ScreenId::Inbox),
+        (told.week.threads_opened, "thread", "threads", ScreenId::Inbox),
         (told.week.replies, "reply", "replies", ScreenId::Inbox),
         (told.customer_posts, "post", "posts", ScreenId::Social),
         (told.comments, "comment on ours", "comments on ours", ScreenId::Social),
-        (told.press, "news", "news", ScreenId::Social),
-        (told.week.research_finished, "finished research", "finished research", ScreenId::Product),
+        (told.news_items, "news item", "news items", ScreenId::Social),
+        (
+            told.week.research_finished,
+            "finished R&D project or study",
+            "finished R&D projects and studies",
+            ScreenId::Product,
+        ),
     ];
     let found: Vec<_> = kinds.into_iter().filter(|(count, ..)| *count > 0).collect();
     let mut lines = vec![vec![canvas.span("New  ", Role::Header)]];
@@ -257,22 +286,22 @@ fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], width: u16, 
 }
 
 /// What needs the person, and the key that goes on.
-fn next<'a>(canvas: &Canvas<'_>, alerts: &[Alert], shown: usize, width: u16, look: &Look<'_>) -> Part<'a> {
-    if alerts.is_empty() {
+fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], shown: usize, width: u16, look: &Look<'_>) -> Part<'a> {
+    if needs.is_empty() {
         let key = look.keys.label(Action::NextWeek).unwrap_or_default();
         let text = format!("  nothing waits; close this and {key} lets the next week pass");
         return vec![Line::from(canvas.span(text, Role::Dim))];
     }
-    let line = |alert: &Alert| {
-        let key = look.keys.label(alert.at().action()).map_or(String::new(), |key| format!(" → {key}"));
-        let (sign, role) = if alert.urgent { ("!", Role::Warning) } else { ("·", Role::Text) };
+    let line = |need: &Need| {
+        let key = look.keys.label(screen_of(need).action()).map_or(String::new(), |key| format!(" → {key}"));
+        let (sign, role) = if need.urgent { ("!", Role::Warning) } else { ("·", Role::Text) };
         let room = (width as usize).saturating_sub(4 + key.width());
         Line::from(vec![
-            canvas.span(format!("  {sign} {}", fit(&alert.text, room)), role),
+            canvas.span(format!("  {sign} {}", fit(&need.text, room)), role),
             canvas.span(key, Role::Key),
         ])
     };
-    alerts.iter().take(shown).map(line).collect()
+    needs.iter().take(shown).map(line).collect()
 }
 
 #[cfg(test)]

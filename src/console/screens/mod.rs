@@ -131,11 +131,6 @@ pub trait Screen {
     /// means that characters are typed.
     fn scopes(&self) -> Vec<Scope>;
 
-    /// Whether digits begin to type a number here instead of switching screens.
-    fn takes_digits(&self) -> bool {
-        false
-    }
-
     /// Actions worth showing in the footer.
     fn hints(&self) -> Vec<Action> {
         Vec::new()

@@ -4,7 +4,7 @@ use crate::console::screens::journal::entries::in_words;
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped};
-use crate::session::{Act, Chapter, Decided, Foreseen, Place};
+use crate::session::{Act, Chapter, Decided, Foreseen, Place, Reversal};
 
 /// Longest JSON that is written in one line, in bytes.
 const ONE_LINE: usize = 90;
@@ -18,9 +18,13 @@ pub fn title(chapter: &Chapter) -> String {
 pub fn brief(entry: &Decided) -> Vec<(String, Role)> {
     let one = |text: String, role: Role| vec![(text, role)];
     match &entry.act {
-        Act::Call { tool, args, undoes, .. } => {
-            let back = if *undoes { "undo: " } else { "" };
-            one(format!("{back}{tool} {}", in_words(args)).trim_end().to_owned(), Role::Text)
+        Act::Call { tool, args, reversal, .. } => {
+            let sign = match reversal {
+                Some(Reversal::Undoes(_)) => "undo: ",
+                Some(Reversal::Redoes(_)) => "redo: ",
+                None => "",
+            };
+            one(format!("{sign}{tool} {}", in_words(args)).trim_end().to_owned(), Role::Text)
         }
         Act::Refused { tool, args, message } => vec![
             (format!("{tool} {}", in_words(args)).trim_end().to_owned(), Role::Text),
@@ -97,9 +101,13 @@ fn in_full(act: &Act) -> String {
         text.lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n")
     };
     match act {
-        Act::Call { tool, args, answer, undoes } => {
-            let back = if *undoes { " (took back an earlier call)" } else { "" };
-            format!("{tool}{back}\n{}\n  answered\n{}", pretty(args), pretty(answer))
+        Act::Call { tool, args, answer, reversal } => {
+            let remark = match reversal {
+                Some(Reversal::Undoes(_)) => " (took back an earlier call)",
+                Some(Reversal::Redoes(_)) => " (repeated a call that was taken back)",
+                None => "",
+            };
+            format!("{tool}{remark}\n{}\n  answered\n{}", pretty(args), pretty(answer))
         }
         Act::Refused { tool, args, message } => {
             format!("{tool}\n{}\n  refused: {message}", pretty(args))
@@ -174,14 +182,15 @@ mod tests {
 
     #[test]
     fn lines_are_told_in_few_words() {
-        let call = |undoes| Act::Call {
+        let call = |reversal| Act::Call {
             tool: "set_prices".to_owned(),
             args: json!({"A": 12}),
             answer: json!({}),
-            undoes,
+            reversal,
         };
-        assert_eq!(said(call(false)), ["set_prices A 12"]);
-        assert_eq!(said(call(true)), ["undo: set_prices A 12"]);
+        assert_eq!(said(call(None)), ["set_prices A 12"]);
+        assert_eq!(said(call(Some(Reversal::Undoes(3)))), ["undo: set_prices A 12"]);
+        assert_eq!(said(call(Some(Reversal::Redoes(4)))), ["redo: set_prices A 12"]);
         let refused = Act::Refused {
             tool: "set_prices".to_owned(),
             args: json!({"A": -1}),

@@ -6,10 +6,15 @@ use crate::world::events::{Category, Source};
 use crate::world::identifiers::Group;
 use crate::world::params::Params;
 
+/// Number of the layout of the database. A file with another one is made anew: raise it with every change of
+/// `schema.sql` or of what is written into its tables.
+pub(in crate::database) const LAYOUT: u32 = 2;
+
 /// Creates the tables, the words, and row 1 of `customers`: the market observer.
 pub(in crate::database) fn create(connection: &mut Connection, params: &Params) -> rusqlite::Result<()> {
     let transaction = connection.transaction()?;
     transaction.execute_batch(include_str!("../schema.sql"))?;
+    transaction.pragma_update(None, "user_version", LAYOUT)?;
     transaction.execute(
         "INSERT INTO customer_rows (customer_id, group_id, created_day, email) \
          VALUES (1, 'S1', 0, 'market_observer@external')",

@@ -2,8 +2,8 @@
 
 use rusqlite::{Transaction, params};
 
-use super::ForecastRow;
-use crate::notation::plain_numbers;
+use super::{Entry, ForecastRow};
+use crate::notation::spaced_json;
 use crate::world::events::{Facts, Notice, ResearchChange, SettingsChange};
 use crate::world::identifiers::{Group, Plan};
 
@@ -24,8 +24,12 @@ pub(super) fn service(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite:
 }
 
 pub(super) fn research(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-    let mut write = transaction
-        .prepare_cached("INSERT OR REPLACE INTO research_projects VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")?;
+    // A project that is completed stays where it stands: a row that is replaced would go to the end.
+    let mut write = transaction.prepare_cached(
+        "INSERT INTO research_projects VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) \
+         ON CONFLICT (project_id) DO UPDATE SET status = excluded.status, \
+         quality_boost_applied = excluded.quality_boost_applied",
+    )?;
     for change in &facts.research {
         let (project, status, applied) = match change {
             ResearchChange::Started(project) => (project, "in_progress", 0.0),
@@ -67,11 +71,12 @@ pub(super) fn notices(
     Ok(())
 }
 
-pub(super) fn settings(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+pub(super) fn settings(transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
+    let facts = &entry.facts;
     for change in &facts.settings {
         let (tool, kind) = match change {
             SettingsChange::Core(core) => {
-                let quota = |plan| core.quotas[plan] as i64;
+                let quota = |plan: Plan| core.quotas[plan].units();
                 transaction
                     .prepare_cached(
                         "INSERT OR REPLACE INTO config_history (day, price_A, price_B, price_C, tier_A, tier_B, tier_C, \
@@ -102,12 +107,12 @@ pub(super) fn settings(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite
             SettingsChange::TargetedOperations(_) => ("set_targeted_ops_spend", "targeted_ops_spend"),
             SettingsChange::TargetedDevelopment(_) => ("set_targeted_dev_spend", "targeted_dev_spend"),
         };
-        let json = plain_numbers(change.family().unwrap_or_default()).to_string();
+        let family = entry.settings.clone().or_else(|| change.family()).unwrap_or_default();
         transaction
             .prepare_cached(
                 "INSERT INTO config_overrides (day, tool_name, setting_type, settings_json) VALUES (?1, ?2, ?3, ?4)",
             )?
-            .execute(params![facts.day, tool, kind, json])?;
+            .execute(params![facts.day, tool, kind, spaced_json(&family)])?;
     }
     Ok(())
 }
@@ -136,11 +141,16 @@ pub(super) fn discovery(transaction: &Transaction<'_>, facts: &Facts) -> rusqlit
         let found = attempt.found.map(Group::id);
         log.execute(params![facts.day, attempt.cost, found.is_some(), found])?;
     }
-    let mut write =
-        transaction.prepare_cached("INSERT OR REPLACE INTO group_info_levels VALUES (?1, ?2, ?3, ?4, ?5)")?;
+    let mut write = transaction.prepare_cached(
+        "INSERT INTO group_info_levels VALUES (?1, ?2, ?3, ?4, ?5) \
+         ON CONFLICT (group_id) DO UPDATE SET info_level = excluded.info_level, \
+         discovered_day = excluded.discovered_day, last_research_day = excluded.last_research_day",
+    )?;
     for (group, own) in &facts.knowledge {
         let hidden = !group.initially_known();
-        write.execute(params![group.id(), own.level, hidden, own.discovered_day, own.last_research_day])?;
+        // What is known from the start was never studied.
+        let studied = own.last_research_day.filter(|day| hidden || *day > 0);
+        write.execute(params![group.id(), own.level, hidden, own.discovered_day, studied])?;
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use rusqlite::{Transaction, params};
 
-pub(super) use create::create;
+pub(super) use create::{LAYOUT, create};
 
 use super::blocks::{AdsRun, PackedDay, SharedShelf};
 use crate::world::customers::persona::PersonaPicks;
@@ -34,11 +34,12 @@ pub struct Entry {
     pub readings: Vec<String>,
     /// Text of each turn of the facts; empty where nothing is said in words.
     pub turns: Vec<String>,
-    /// Address of each company that came or wrote, by customer number.
     /// Text of each post of others among the facts.
     pub posts: Vec<String>,
-    /// Address of each company among the arrivals, by customer number.
+    /// Address of each company that came or wrote, by customer number.
     pub addresses: BTreeMap<u32, String>,
+    /// The settings family that was set, as its row shows it.
+    pub settings: Option<serde_json::Value>,
     /// Forecasts that were filed.
     pub forecasts: Vec<ForecastRow>,
 }
@@ -158,7 +159,7 @@ impl RowWriter {
         posts::posts(transaction, facts, &entry.posts)?;
         posts::own_posts(transaction, facts)?;
         direct::notices(transaction, facts, &entry.notices)?;
-        direct::settings(transaction, facts)?;
+        direct::settings(transaction, entry)?;
         direct::forecasts(transaction, &entry.forecasts)?;
         direct::discovery(transaction, facts)
     }
@@ -302,7 +303,7 @@ impl RowWriter {
 
     /// Lead costs, payments, then everything else, as chapter 60 §5 orders them.
     fn ledger(&self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-        const HEAD: &str = "INSERT INTO ledger_rows (day, category, amount, about, note) VALUES";
+        const HEAD: &str = "INSERT INTO ledger_rows (day, kind, amount, about, purpose) VALUES";
         let lead_cost = -self.params.leads.lead_acquisition_cost;
         let leads =
             facts.arrivals.iter().map(|arrival| (Category::LeadAcquisitionCost, lead_cost, arrival.customer));
@@ -393,7 +394,7 @@ impl RowWriter {
         insert_rows(transaction, "INSERT INTO subscription_rows VALUES", rows)?;
         let mut deal = transaction.prepare_cached(
             "UPDATE subscription_rows SET contract_end_day = ?2, start_day = coalesce(?3, start_day), \
-             status = coalesce(?4, status) WHERE customer_id = ?1",
+             state = coalesce(?4, state) WHERE customer_id = ?1",
         )?;
         for (customer, row) in std::mem::take(&mut self.deals) {
             let status = row.activated.map(|_| SubscriptionStatus::Subscribed as u8);
@@ -413,9 +414,8 @@ impl RowWriter {
                 terms.billed_once,
             ])?;
         }
-        let mut end = transaction.prepare_cached(
-            "UPDATE subscription_rows SET end_day = ?2, status = ?3 WHERE customer_id = ?1",
-        )?;
+        let mut end = transaction
+            .prepare_cached("UPDATE subscription_rows SET end_day = ?2, state = ?3 WHERE customer_id = ?1")?;
         for (customer, ending) in std::mem::take(&mut self.endings) {
             end.execute(params![customer, ending.day, ending.status as u8])?;
         }

@@ -3,6 +3,7 @@
 use rusqlite::{Transaction, params};
 
 use super::Entry;
+use crate::notation::point_number;
 use crate::world::events::{Facts, Offering, Sender, ThreadTurn, TurnContent};
 
 /// Writes the turns of an entry, with their words.
@@ -57,8 +58,9 @@ fn offer_json(content: &TurnContent) -> String {
         TurnContent::Offer(offerings) => {
             let one = |offering: &Offering| {
                 format!(
-                    "{{\"plan\": \"{}\", \"price_per_seat\": {:?}, \"contract_months\": 1}}",
-                    offering.plan, offering.price
+                    "{{\"plan\": \"{}\", \"price_per_seat\": {}, \"contract_months\": 1}}",
+                    offering.plan,
+                    point_number(offering.price)
                 )
             };
             format!("[{}]", offerings.iter().map(one).collect::<Vec<_>>().join(", "))
@@ -66,7 +68,7 @@ fn offer_json(content: &TurnContent) -> String {
         TurnContent::Counter { asked: offering, .. } | TurnContent::Acceptance(offering)
             if offering.price != 0.0 =>
         {
-            format!("{{\"price\": {:?}}}", offering.price)
+            format!("{{\"price\": {}}}", point_number(offering.price))
         }
         _ => "{}".to_owned(),
     }

@@ -76,6 +76,7 @@ use crate::session::{Configuration, Refusal, RunError as SessionError};
 
 pub use cases::{CASES, keep_a_large_company};
 pub use machine::calibrate;
+pub use queries::company_to_ask;
 
 /// What a figure counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

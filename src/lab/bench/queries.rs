@@ -2,11 +2,13 @@
 
 use std::time::Instant;
 
+use serde_json::json;
+
 use super::company::{Company, Keep};
 use super::{Bench, BenchError, Figure, Samples, Unit};
 use crate::lab::statistics::median;
-use crate::session::Session;
 use crate::session::library::Library;
+use crate::session::{Session, Via};
 
 /// About the most subscribers that P1a ever has.
 const SUBSCRIBERS: u32 = 190_000;
@@ -32,6 +34,21 @@ pub const FIGURES: &[Figure] = &[
     Figure::shown("query support-wait", Unit::Milliseconds),
     Figure::shown("query prices-paid", Unit::Milliseconds),
 ];
+
+/// The company that is asked when it is at its largest, with five weeks of in-app ads behind it: as many rows in every
+/// table as there ever are.
+///
+/// # Errors
+/// It cannot be played or kept.
+pub fn company_to_ask(bench: &Bench) -> Result<Session, BenchError> {
+    let mut company = Company::grown(SUBSCRIBERS, Keep::Disk, bench)?;
+    company.session.call("set_ads_strength", &json!({"global_strength": 0.1}), Via::Script)?;
+    for _ in 0..5 {
+        company.week()?;
+    }
+    company.session.wait_for_database()?;
+    Ok(company.session)
+}
 
 /// Asks every query of the library several times; the slowest is the one whose median is largest.
 pub fn queries(bench: &Bench) -> Result<Samples, BenchError> {

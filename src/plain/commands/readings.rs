@@ -1,5 +1,7 @@
 //! Readings: what the company looks like, and what there is to know about commands, tools and tables.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Value, json};
 
 use super::super::answers::Answer;
@@ -8,7 +10,10 @@ use super::{COMMANDS, Desk, problem, tool_called, words};
 use crate::database;
 use crate::glossary;
 use crate::notation::{dollars, grouped, nearest, signed_dollars};
-use crate::session::{Change, JournalEntry};
+use crate::report::funnel::{Funnel, funnels};
+use crate::report::needs::{Need, Place, needs};
+use crate::report::review::money_lines;
+use crate::session::{Change, JournalEntry, Numbers, Reversal, undone_calls};
 use crate::tools::{self, Kind, describe};
 
 impl Desk {
@@ -20,7 +25,8 @@ impl Desk {
 
     pub(super) fn status(&self) -> Answer {
         let seen = self.session.observe();
-        let runway = seen.runway_weeks.map_or("endless".to_owned(), |weeks| format!("{weeks:.0} weeks"));
+        let runway =
+            seen.weeks_of_cash().map_or("to the last day".to_owned(), |weeks| format!("{weeks} weeks"));
         let ended = seen.ended.map_or(String::new(), |ended| format!("ended: {}\n", ended.id()));
         let text = format!(
             "run {} · seed {} · {}\nday {} of {} · week {}\n{ended}cash {} ({} over the last week) · runway {runway}\n\
@@ -59,11 +65,49 @@ impl Desk {
         Answer::done("status", text, data)
     }
 
+    pub(super) fn needs(&self) -> Answer {
+        let needs = needs(&self.session);
+        let row = |need: &Need| {
+            let call = match &need.place {
+                Place::Call(tool, arguments) if !arguments.is_null() => {
+                    json!({ "tool": tool, "args": arguments })
+                }
+                _ => Value::Null,
+            };
+            json!({
+                "problem": need.problem.id(),
+                "text": need.text,
+                "proposal": need.proposal,
+                "call": call,
+                "at_risk": need.at_risk.round(),
+                "urgent": need.urgent,
+            })
+        };
+        let data = json!({ "needs": needs.iter().map(row).collect::<Vec<Value>>() });
+        let mut lines: Vec<String> = needs.iter().flat_map(need_lines).collect();
+        if lines.is_empty() {
+            lines.push("nothing needs you".to_owned());
+        }
+        Answer::done("needs", lines.join("\n"), data)
+    }
+
     pub(super) fn inbox(&self) -> Answer {
         let waiting = self.session.observe().waiting;
-        let data = json!({ "threads": waiting });
+        let funnel = |own: &Funnel| {
+            json!({
+                "group": own.group.id(),
+                "came": own.came,
+                "no_plan_good_enough": own.turned_away(),
+                "asked": own.asked,
+                "signed": own.signed,
+            })
+        };
+        let funnels_so_far: Vec<Value> = funnels(&self.session).iter().map(funnel).collect();
+        let data = json!({ "threads": waiting, "funnels": funnels_so_far });
         if waiting.is_empty() {
-            return Answer::done("inbox", "no thread waits for an answer".to_owned(), data);
+            let mut lines = vec!["no thread waits for an answer".to_owned()];
+            lines.extend(funnels(&self.session).iter().map(Funnel::in_words));
+            return Answer::done("inbox", lines.join("\n"), data);
         }
         let call = Answer::call("inbox", data.clone());
         Answer::done("inbox", call.as_text().trim_start_matches("ok inbox\n").to_owned(), data)
@@ -71,24 +115,45 @@ impl Desk {
 
     pub(super) fn changes(&self) -> Answer {
         let seen = self.session.observe();
-        let data = json!({ "changes": seen.changes, "purchases": seen.purchases });
         let mut lines: Vec<String> = seen.changes.iter().map(change).collect();
-        lines.extend(seen.purchases);
+        lines.extend(seen.purchases.iter().cloned());
         if lines.is_empty() {
             lines.push("nothing changed since the last week".to_owned());
         }
+        lines.extend(money_lines(&seen));
+        let data = json!({
+            "changes": seen.changes,
+            "purchases": seen.purchases,
+            "committed_per_day": seen.pace.committed,
+            "one_time_costs": -seen.booked_since.sum(),
+            "runway_weeks": seen.runway_weeks,
+        });
         Answer::done("changes", lines.join("\n"), data)
     }
 
     pub(super) fn history(&self, count: u32) -> Answer {
         let journal = self.session.journal();
+        let undone = undone_calls(journal);
         let last = &journal[journal.len().saturating_sub(count as usize)..];
-        let mut text: String = last.iter().map(|entry| entry_line(entry) + "\n").collect();
+        let mut text: String = last.iter().map(|entry| entry_line(entry, &undone) + "\n").collect();
         if text.is_empty() {
             text = "nothing was done yet".to_owned();
         }
         Answer::done("history", text, json!({ "entries": last }))
     }
+}
+
+/// A need in one line, and the call that would mend it in another.
+fn need_lines(need: &Need) -> Vec<String> {
+    let mark = if need.urgent { '!' } else { '-' };
+    let risk = grouped(need.at_risk, 0);
+    let mut lines = vec![format!("{mark} {} (${risk} of the next four weeks at risk)", need.in_words())];
+    if let Place::Call(tool, arguments) = &need.place
+        && !arguments.is_null()
+    {
+        lines.push(format!("  {tool} {arguments}"));
+    }
+    lines
 }
 
 /// A change as one line.
@@ -97,11 +162,16 @@ pub fn change(change: &Change) -> String {
     format!("{}: {} → {} {}", change.setting, number(change.old), number(change.new), change.unit)
 }
 
-fn entry_line(entry: &JournalEntry) -> String {
+fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>) -> String {
     match entry {
-        JournalEntry::Call { day, tool, args, undoes } => {
-            let undo = if undoes.is_some() { " (undo)" } else { "" };
-            format!("day {day:>3}  {tool}{undo} {args}")
+        JournalEntry::Call { seq, day, tool, args, reversal } => {
+            let remark = match reversal {
+                _ if undone.contains(seq) => " (undone)",
+                Some(Reversal::Undoes(_)) => " (undo)",
+                Some(Reversal::Redoes(_)) => " (redo)",
+                None => "",
+            };
+            format!("day {day:>3}  {tool}{remark} {args}")
         }
         JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
             let naive = if *filled_naively { ", naive" } else { "" };
@@ -120,7 +190,7 @@ fn entry_line(entry: &JournalEntry) -> String {
 }
 
 /// `help [NAME]`.
-pub(super) fn help(name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
+pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers) -> Result<Answer, Problem> {
     let Some(name) = name else {
         let lines: Vec<&str> =
             COMMANDS.iter().map(|(_, line)| *line).filter(|line| !line.is_empty()).collect();
@@ -136,13 +206,13 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument]) -> Result<Answer,
         return Ok(Answer::done("help", (*line).to_owned(), json!({ "command": line })));
     }
     if tools::find(name).is_some() || tool_called(name).is_some() {
-        return self::tools(Some(name), arguments);
+        return self::tools(Some(name), arguments, numbers);
     }
     if database::table(name).is_some() {
         return tables(Some(name), arguments);
     }
     if let Ok(found) = glossary::find(name) {
-        return Ok(words::answer("help", found));
+        return Ok(words::answer("help", found, numbers));
     }
     let names = COMMANDS.iter().map(|(name, _)| *name).chain(callable());
     let names = names.chain(database::tables().iter().map(|table| table.name.as_str()));
@@ -150,16 +220,20 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument]) -> Result<Answer,
 }
 
 /// `tools [NAME]`.
-pub(super) fn tools(name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
+pub(super) fn tools(
+    name: Option<&str>,
+    arguments: &[Argument],
+    numbers: &Numbers,
+) -> Result<Answer, Problem> {
     let Some(name) = name else {
-        let all: Value = tools::CATALOGUE.iter().map(|tool| describe::as_json(*tool)).collect();
+        let all: Value = tools::CATALOGUE.iter().map(|tool| describe::as_json(*tool, numbers)).collect();
         return Ok(Answer::done("tools", describe::overview(), json!({ "tools": all })));
     };
     let tool = tools::find(name)
         .or_else(|| tool_called(name))
         .or_else(|| tools::catalogue::find_code(name))
         .ok_or_else(|| problem(arguments, &not_there("no tool", name, tools::catalogue::nearest(name))))?;
-    Ok(Answer::done("tools", describe::manual(tool.spec()), describe::as_json(tool)))
+    Ok(Answer::done("tools", describe::manual(tool.spec(), numbers), describe::as_json(tool, numbers)))
 }
 
 /// `tables [NAME]`.

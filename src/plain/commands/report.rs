@@ -59,14 +59,19 @@ fn in_words(report: &WeekReport) -> String {
         report.parts.iter().map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars))).collect();
     let change = signed_dollars(week.cash_change);
     let mut lines = vec![format!("week to day {}: cash {change}, of it {}", week.day, parts.join(", "))];
+    if !report.decided.is_empty() {
+        lines.push(format!("decided before it: {}", report.decided.join("; ")));
+    }
     for moved in report.moves.iter().take(TOLD) {
         let mut line = format!("{} {} → {}", moved.name, moved.old, moved.new);
         let standing = moved.movement.standing();
         if !standing.is_empty() {
             line += &format!(", {standing}");
         }
-        if let Some(cause) = &moved.cause {
-            line += &format!("; may be: {cause}");
+        if !moved.split.is_empty() {
+            let split =
+                moved.split.iter().map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars)));
+            line += &format!("; {}", split.collect::<Vec<_>>().join(", "));
         }
         lines.push(line);
     }
@@ -76,15 +81,19 @@ fn in_words(report: &WeekReport) -> String {
         lines.push(format!("forecast of {weeks} weeks ago: {verdict} the interval, missed by {miss}"));
     }
     lines.push(format!(
-        "new: {} threads, {} replies, {} posts, {} comments on ours, {} news, {} finished research",
+        "new: {} threads, {} replies, {} posts, {} comments on ours, {} news items, {} finished R&D projects and studies",
         week.threads_opened,
         week.replies,
         report.customer_posts,
         report.comments,
-        report.press,
+        report.news_items,
         week.research_finished
     ));
     lines.join("\n").replace("of 1 weeks ago", "of 1 week ago")
+}
+
+fn parts(parts: &[(&'static str, f64)]) -> Value {
+    parts.iter().map(|(name, dollars)| json!({ "part": name, "dollars": dollars })).collect()
 }
 
 fn as_data(report: &WeekReport) -> Value {
@@ -95,7 +104,7 @@ fn as_data(report: &WeekReport) -> Value {
             "new": moved.movement.new,
             "unusual": moved.movement.unusual,
             "standing": moved.movement.standing(),
-            "may_be": moved.cause,
+            "split": parts(&moved.split),
         })
     };
     let due = |due: &crate::report::week::Due| {
@@ -111,7 +120,8 @@ fn as_data(report: &WeekReport) -> Value {
     json!({
         "day": report.week.day,
         "cash_change": report.week.cash_change,
-        "parts": report.parts.iter().map(|(name, dollars)| json!({ "part": name, "dollars": dollars })).collect::<Vec<_>>(),
+        "parts": parts(&report.parts),
+        "decided": report.decided,
         "moves": report.moves.iter().map(moved).collect::<Vec<_>>(),
         "forecasts": report.due.iter().map(due).collect::<Vec<_>>(),
     })

@@ -4,15 +4,16 @@ use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use crate::glossary::{self, Explanation, Subject, Term, terms};
+use crate::session::Numbers;
 
 /// `explain TERM`, and `what TERM`.
-pub(super) fn explain(command: &str, words: &str) -> Answer {
+pub(super) fn explain(command: &str, words: &str, numbers: &Numbers) -> Answer {
     let column = command.chars().count() + 2;
     if words.is_empty() {
         return Answer::usage(format!("{command} needs a term, for instance {command} runway"), column);
     }
     match glossary::find(words) {
-        Ok(found) => answer("explain", found),
+        Ok(found) => answer("explain", found, numbers),
         Err(near) if near.is_empty() => {
             Answer::usage(format!("there is nothing called {words}; glossary lists every term"), column)
         }
@@ -23,8 +24,8 @@ pub(super) fn explain(command: &str, words: &str) -> Answer {
 }
 
 /// The explanation of a subject.
-pub(super) fn answer(command: &str, subject: Subject) -> Answer {
-    let told = Explanation::of(subject);
+pub(super) fn answer(command: &str, subject: Subject, numbers: &Numbers) -> Answer {
+    let told = Explanation::of(subject, numbers);
     let sections: Vec<Value> =
         told.sections.iter().map(|section| json!({ "name": section.name, "text": section.text })).collect();
     let see: Vec<String> = told.related.iter().map(Subject::name).collect();
@@ -69,13 +70,13 @@ mod tests {
 
     #[test]
     fn a_term_is_explained_in_words_and_as_data() {
-        let told = explain("what", "Delivered quality");
+        let told = explain("what", "Delivered quality", &Numbers::shipped());
         let text = told.as_text();
         assert!(text.starts_with("Delivered quality (product)\n"), "{text}");
         assert!(text.contains("\nmore: Base quality plus") && text.contains("\nsee: base-quality"), "{text}");
         let object = told.as_json(3, 7);
         assert_eq!((&object["command"], &object["data"]["kind"]), (&json!("explain"), &json!("term")));
-        assert!(explain("explain", "set_prices.A").is_ok());
+        assert!(explain("explain", "set_prices.A", &Numbers::shipped()).is_ok());
     }
 
     #[test]
@@ -85,7 +86,7 @@ mod tests {
             ("runwey", "near it: runway", 9),
             ("qqqqqqqqqqqq", "glossary lists every term", 9),
         ] {
-            match explain("explain", words) {
+            match explain("explain", words, &Numbers::shipped()) {
                 Answer::Usage { problem, column: at } => {
                     assert!(problem.contains(part), "{problem}");
                     assert_eq!(at, column);

@@ -243,7 +243,8 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
         wording: span.rationale.as_deref().map(Wording::of).unwrap_or_default(),
         decisions,
         forecasts: span.forecasts.iter().map(forecast).collect(),
-        filled_naively: span.forecasts.first().map(|forecast| forecast.filled_naively),
+        filled_naively: (!span.forecasts.is_empty())
+            .then(|| span.forecasts.iter().any(|forecast| forecast.filled_naively)),
         figures: span.figures.clone(),
         state_hash: span.state_hash.clone(),
     }

@@ -10,8 +10,7 @@ use crate::world::identifiers::Group;
 /// Reads the newest posts of others.
 pub struct GetSocialPosts;
 
-const ANY: ArgumentKind =
-    ArgumentKind::Integer(Range { least: f64::NEG_INFINITY, above: false, most: f64::INFINITY });
+const ANY: ArgumentKind = ArgumentKind::Integer(Range::between(f64::NEG_INFINITY, f64::INFINITY));
 
 static SPEC: Spec = Spec {
     name: "get_social_posts",

@@ -1,6 +1,6 @@
 use serde_json::{Map, Value, json};
 
-use super::super::arguments::{Arguments, per_group};
+use super::super::arguments::{Arguments, amount_as_sent, per_group};
 use super::super::as_data;
 use super::super::marketing::BUDGET;
 use super::super::{
@@ -9,6 +9,7 @@ use super::super::{
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
 use crate::world::events::SettingsChange;
+use crate::world::identifiers::Group;
 use crate::world::settings::{Settings, TargetedDevelopment};
 
 /// Aims development.
@@ -31,11 +32,11 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: Some("targeted_spend"),
     when: When::NextDay,
-    effect: "Raises the quality the group gets by 0.0225 ln(1 + spend / 5000) a day, five times what general \
-             development does, for good.",
+    effect: "Raises the quality the group gets by {development.targeted_dev_improvement_coef} ln(1 + spend / \
+             {development.targeted_dev_spend_scale}) a day, for good.",
     cost: "the sum of the map on every simulated day",
     writes: &["config_overrides"],
-    refusals: &["not_a_map", "unknown_group", "amount_invalid"],
+    refusals: &["not_a_map", "unknown_group", "amount_invalid", "amount_too_large"],
     returns: &[
         Output { name: "targeted_spend", kind: "map group -> number", doc: "$/day" },
         Output { name: "total_extra_per_day", kind: "number", doc: "sum of the map, $/day" },
@@ -59,6 +60,15 @@ impl Tool for SetTargetedDevSpend {
         let given = arguments.get("targeted_spend").unwrap_or(&Value::Null);
         let targeted_spend = per_group(given, "targeted_spend", BUDGET, view)?;
         Ok(Effect::Set(SettingsChange::TargetedDevelopment(TargetedDevelopment { targeted_spend })))
+    }
+
+    fn row(&self, arguments: &Arguments, deed: &Deed) -> Option<Value> {
+        let Deed::Set(SettingsChange::TargetedDevelopment(development)) = deed else { return None };
+        let sent = |group: &Group| arguments.get("targeted_spend").and_then(|map| map.get(group.id()));
+        let amount =
+            |(group, amount): (&Group, &f64)| (group.id().to_owned(), amount_as_sent(*amount, sent(group)));
+        let amounts: Map<String, Value> = development.targeted_spend.iter().map(amount).collect();
+        Some(json!({ "targeted_spend": amounts }))
     }
 
     fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {

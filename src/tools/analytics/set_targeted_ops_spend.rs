@@ -53,8 +53,8 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: Some("targeted_spend"),
     when: When::NextDay,
-    effect: "Every entry solves open issues of its own after the general pool did: about 0.6 a day per dollar for \
-             individuals, 0.1 for companies. It does not touch outages. A map that is given replaces its whole \
+    effect: "Every entry solves open issues of its own after the general pool did: about \
+             {issues.individual_ops_scale} a day per dollar for individuals, {issues.enterprise_ops_scale} for companies. It does not touch outages. A map that is given replaces its whole \
              scope, {} clears it, a scope left out stays.",
     cost: "the sum of all entries on every simulated day, whether or not anybody has an issue",
     writes: &["config_overrides"],
@@ -65,6 +65,7 @@ static SPEC: Spec = Spec {
         "unknown_plan",
         "amount_invalid",
         "customer_not_integer",
+        "amount_too_large",
     ],
     returns: &[
         Output { name: "by_group", kind: "map group -> number", doc: "$/day" },

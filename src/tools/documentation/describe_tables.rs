@@ -34,7 +34,7 @@ static SPEC: Spec = Spec {
     returns: &[Output {
         name: "tables",
         kind: "map table -> {description, columns}",
-        doc: "what its rows are; columns maps each name to its meaning",
+        doc: "what its rows are; columns maps each name to its type, its values where they are few, and its meaning",
     }],
     example: r#"{"table_names": "predictions"}"#,
 };
@@ -55,7 +55,7 @@ impl Tool for DescribeTables {
         let names = chosen(arguments, "table_names", &known, "table_not_found").unwrap_or_default();
         let entry = |table: &TableDocument| {
             let columns: Map<String, Value> =
-                table.columns.iter().map(|(name, doc)| ((*name).to_owned(), (*doc).into())).collect();
+                table.columns.iter().map(|own| (own.name.to_owned(), own.line().into())).collect();
             (table.name.to_owned(), json!({ "description": table.description, "columns": columns }))
         };
         let described = tables.iter().filter(|table| names.contains(&table.name)).map(entry);

@@ -3,7 +3,7 @@ use serde_json::Value;
 use super::super::arguments::Arguments;
 use super::super::describe::as_json;
 use super::super::{
-    Argument, ArgumentKind, CATALOGUE, Kind, Module, Output, Refusal, Spec, Tool, View, When,
+    Argument, ArgumentKind, CATALOGUE, Kind, Module, Numbers, Output, Refusal, Spec, Tool, View, When,
 };
 use super::chosen;
 use crate::world::effect::{Deed, Effect};
@@ -49,9 +49,10 @@ impl Tool for GetToolDocumentation {
         chosen(arguments, "tool_names", &all_names(), "tool_not_found").map(|_| Effect::None)
     }
 
-    fn answer(&self, _: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
         let names = chosen(arguments, "tool_names", &all_names(), "tool_not_found").unwrap_or_default();
         let tools = CATALOGUE.iter().filter(|tool| names.contains(&tool.spec().name));
-        tools.map(|tool| (tool.spec().name.to_owned(), as_json(*tool))).collect()
+        let numbers = Numbers::of(view.params());
+        tools.map(|tool| (tool.spec().name.to_owned(), as_json(*tool, &numbers))).collect()
     }
 }

@@ -34,6 +34,19 @@ pub(super) enum Unreadable {
     Element(Failure),
 }
 
+impl Unreadable {
+    /// What is wrong with the element, where everything that cannot be read concerns its own element only.
+    pub(super) fn of_element(self) -> Failure {
+        match self {
+            Unreadable::Element(failure) => failure,
+            Unreadable::Call(refusal) => {
+                let refusal = Refusal { code: "deal_malformed", ..refusal };
+                Failure::unreadable(None, "invalid format", refusal)
+            }
+        }
+    }
+}
+
 impl From<Failure> for Unreadable {
     fn from(failure: Failure) -> Unreadable {
         Unreadable::Element(failure)

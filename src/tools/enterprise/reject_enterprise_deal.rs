@@ -57,9 +57,8 @@ fn read(view: &View<'_>, arguments: &Arguments) -> Result<(Vec<Fate>, Vec<u32>),
     for (at, element) in elements(arguments.get("deals"), "[{\"customer_id\": 207}]")?.iter().enumerate() {
         let path = format!("deals.{at}");
         let given = match named(element, &path) {
-            Err(Unreadable::Call(refusal)) => return Err(refusal),
-            Err(Unreadable::Element(failure)) => {
-                fates.push(Fate::Failed(failure));
+            Err(unreadable) => {
+                fates.push(Fate::Failed(unreadable.of_element()));
                 continue;
             }
             Ok(given) => given,

@@ -22,7 +22,7 @@ static SPEC: Spec = Spec {
     arguments: &[Argument {
         name: "deals",
         alias: None,
-        kind: ArgumentKind::Structure(
+        kind: ArgumentKind::Deals(
             "list of [customer_id, [[plan, price_per_seat], …]] or {customer_id, offerings: [{plan, price_per_seat}, …]}",
         ),
         required: false,
@@ -35,9 +35,10 @@ static SPEC: Spec = Spec {
     when: When::CustomerReply,
     effect: "The company answers at least a day later, by its own pace: it takes its best offering, names a price of \
              its own, or falls silent for good once its patience with turns is used up or no price would do. Every \
-             offer uses up a turn, and only the newest one is answered. A message of a customer that waits for more \
-             than a day before it is answered costs goodwill; after seven days without an answer it is lost. A \
-             subscriber without an open thread is offered new terms: silence then loses it.",
+             offer uses up a turn, and only the newest one is answered. Each day beyond {enterprise.late_reply_free_days} \
+             that a message of the company waits costs {enterprise.late_reply_relationship_delta_per_day:-} of its \
+             relationship; after {enterprise.agent_response_timeout_days} days without an answer the thread ends. A \
+             subscriber without an open thread is offered new terms: if it declines, it leaves.",
     cost: "nothing",
     writes: &["enterprise_turns"],
     refusals: &[
@@ -51,6 +52,7 @@ static SPEC: Spec = Spec {
         "customer_not_found",
         "not_enterprise",
         "no_subscription",
+        "amount_too_large",
     ],
     returns: RESULTS,
     example: r#"{"deals": [[207, [["B", 31.5], ["C", 54]]], [9, [["A", 8]]]]}"#,

@@ -25,7 +25,7 @@ static SPEC: Spec = Spec {
         Argument {
             name: "reply_to_post_id",
             alias: None,
-            kind: ArgumentKind::Integer(Range { least: 1.0, above: false, most: f64::INFINITY }),
+            kind: ArgumentKind::Integer(Range::between(1.0, f64::INFINITY)),
             required: false,
             unit: "post",
             doc: "number of the post that is answered; without it the post stands for itself",

@@ -29,11 +29,21 @@ static SPEC: Spec = Spec {
     own_unknown: true,
     whole: None,
     when: When::NextDay,
-    effect: "Operations lower the chance of an outage and solve open issues; development raises the quality all \
-             groups get, day by day and for good, by 0.0045 ln(1 + spend / 5000).",
+    effect: "Operations make outages rarer: a day has one with a probability of {operations.base_outage_prob} \
+             exp(-spend / {operations.ops_outage_reduction_scale}), at least {operations.ops_outage_min_prob}, and more \
+             often above capacity. They solve open issues: {issues.issue_resolution_base_rate} a day without spending, \
+             {issues.individual_ops_scale} more per dollar for individuals, {issues.enterprise_ops_scale} for companies. \
+             Development raises the quality all groups get, day by day and for good, by \
+             {development.dev_improvement_coef} ln(1 + spend / {development.dev_spend_scale}).",
     cost: "both amounts on every simulated day",
     writes: &["config_history"],
-    refusals: &["nothing_given", "unknown_category", "advertising_not_here", "spend_negative"],
+    refusals: &[
+        "nothing_given",
+        "unknown_category",
+        "advertising_not_here",
+        "spend_negative",
+        "amount_too_large",
+    ],
     returns: &[
         Output { name: "updated", kind: "map -> number", doc: "what was sent, $/day" },
         Output { name: "current", kind: "map -> number", doc: "both budgets, $/day" },

@@ -51,6 +51,7 @@ static SPEC: Spec = Spec {
         "unknown_group",
         "unknown_channel",
         "promotion_negative",
+        "amount_too_large",
     ],
     returns: &[
         Output { name: "global", kind: "number", doc: "$/month" },

@@ -1,6 +1,6 @@
 use serde_json::{Map, Value, json};
 
-use super::super::arguments::{Arguments, per_channel_group};
+use super::super::arguments::{Arguments, amount_as_sent, per_channel_group};
 use super::super::as_data;
 use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When,
@@ -10,7 +10,7 @@ use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
 use crate::world::events::SettingsChange;
 use crate::world::identifiers::{Channel, Group};
-use crate::world::settings::{Settings, TargetedAds};
+use crate::world::settings::{PerGroup, Settings, TargetedAds};
 
 /// Sets the advertising budgets.
 pub struct SetTargetedAdSpend;
@@ -34,9 +34,16 @@ static SPEC: Spec = Spec {
     when: When::NextDay,
     effect: "Brings leads of the group from the next day; how many a channel brings differs by group and changes \
              every month. ad_channel_leads counts them per pair.",
-    cost: "the sum of the matrix on every simulated day",
+    cost: "the sum of the matrix on every simulated day, and {leads.lead_acquisition_cost:$} for every lead",
     writes: &["config_overrides"],
-    refusals: &["unknown_channel", "nesting_inverted", "not_a_map", "unknown_group", "amount_invalid"],
+    refusals: &[
+        "unknown_channel",
+        "nesting_inverted",
+        "not_a_map",
+        "unknown_group",
+        "amount_invalid",
+        "amount_too_large",
+    ],
     returns: &[
         Output { name: "targeted_spend", kind: "map channel -> map group -> number", doc: "$/day" },
         Output { name: "total_per_day", kind: "number", doc: "sum of the matrix, $/day" },
@@ -92,6 +99,26 @@ impl Tool for SetTargetedAdSpend {
         let matrix = upright(given, view)?;
         let targeted_spend = per_channel_group(&matrix, "targeted_spend", BUDGET, view)?;
         Ok(Effect::Set(SettingsChange::TargetedAds(TargetedAds { targeted_spend })))
+    }
+
+    fn row(&self, arguments: &Arguments, deed: &Deed) -> Option<Value> {
+        let Deed::Set(SettingsChange::TargetedAds(ads)) = deed else { return None };
+        let given = arguments.get("targeted_spend");
+        let sent = |channel: Channel, group: Group| {
+            let (channel, group) = (channel.id(), group.id());
+            let in_order = |outer: &str, inner: &str| given?.get(outer)?.get(inner);
+            in_order(channel, group).or_else(|| in_order(group, channel))
+        };
+        let groups = |channel: Channel, groups: &PerGroup| -> Value {
+            let amount = |(group, amount): (&Group, &f64)| {
+                (group.id().to_owned(), amount_as_sent(*amount, sent(channel, *group)))
+            };
+            Value::Object(groups.iter().map(amount).collect())
+        };
+        let matrix = ads.targeted_spend.iter();
+        let matrix: Map<String, Value> =
+            matrix.map(|(channel, own)| (channel.id().to_owned(), groups(*channel, own))).collect();
+        Some(json!({ "targeted_spend": matrix }))
     }
 
     fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {

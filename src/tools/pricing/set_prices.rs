@@ -36,7 +36,7 @@ static SPEC: Spec = Spec {
              again. Companies pay what was agreed.",
     cost: "nothing",
     writes: &["config_history"],
-    refusals: &["nothing_given", "unknown_plan", "price_not_positive"],
+    refusals: &["nothing_given", "unknown_plan", "price_not_positive", "amount_too_large"],
     returns: &[
         Output { name: "updated", kind: "map plan -> number", doc: "what was sent, $/month" },
         Output { name: "current", kind: "map plan -> number", doc: "all three prices, $/month" },

@@ -49,6 +49,7 @@ static SPEC: Spec = Spec {
         "promotion_negative",
         "customer_not_integer",
         "unknown_plan",
+        "amount_too_large",
     ],
     returns: &[
         Output { name: "global", kind: "number", doc: "$/month and seat" },

@@ -1,19 +1,22 @@
 use serde_json::{Map, Value, json};
 
-use super::super::arguments::{Arguments, integer, number, wrong_type};
+use super::super::arguments::{Arguments, number, wrong_type};
+use super::super::bounds::{MOST_UNITS, too_large};
 use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
 use super::{by_plan, core_of};
+use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
 use crate::world::events::SettingsChange;
 use crate::world::identifiers::Plan;
+use crate::world::quota::Quota;
 use crate::world::settings::Settings;
 
 /// Caps usage.
 pub struct SetUsageQuotas;
 
 const fn quota(name: &'static str, doc: &'static str) -> Argument {
-    let kind = ArgumentKind::Integer(Range::AT_LEAST_ZERO);
-    Argument { name, alias: None, kind, required: false, unit: "units/day", doc }
+    let kind = ArgumentKind::Number(Range::UNITS);
+    Argument { name, alias: None, kind, required: true, unit: "units/day", doc }
 }
 
 static SPEC: Spec = Spec {
@@ -34,8 +37,8 @@ static SPEC: Spec = Spec {
              perceives in the same proportion; a quota of 0 delivers nothing.",
     cost: "nothing itself; compute is charged per unit used",
     writes: &["config_history"],
-    refusals: &["quota_missing", "quota_negative"],
-    returns: &[Output { name: "quotas", kind: "map plan -> integer", doc: "all three quotas, units/day" }],
+    refusals: &["quota_missing", "quota_negative", "amount_too_large"],
+    returns: &[Output { name: "quotas", kind: "map plan -> number", doc: "all three quotas, units/day" }],
     example: r#"{"A": 50000, "B": 200000, "C": 900000}"#,
 };
 
@@ -45,7 +48,7 @@ impl Tool for SetUsageQuotas {
     }
 
     fn current(&self, settings: &Settings) -> Map<String, Value> {
-        by_plan(|plan| Value::from(settings.core.quotas[plan]))
+        by_plan(|plan| json_number(settings.core.quotas[plan].units()))
     }
 
     fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
@@ -59,13 +62,17 @@ impl Tool for SetUsageQuotas {
                 let message = format!("quota of plan {plan} must not be negative");
                 return Err(Refusal::at(plan.id(), "quota_negative", message));
             }
-            core.quotas[plan] = integer(value).ok_or_else(|| wrong_type(plan.id(), "a whole number"))? as u64;
+            let units = number(value).ok_or_else(|| wrong_type(plan.id(), "a number"))?;
+            core.quotas[plan] = match Quota::of(units) {
+                Some(quota) => quota,
+                None => return Err(too_large(MOST_UNITS, plan.id(), "units/day")),
+            };
         }
         Ok(Effect::Set(SettingsChange::Core(core)))
     }
 
     fn answer(&self, view: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
         let core = core_of(deed, &view.settings().core);
-        json!({ "quotas": by_plan(|plan| Value::from(core.quotas[plan])) })
+        json!({ "quotas": by_plan(|plan| json_number(core.quotas[plan].units())) })
     }
 }

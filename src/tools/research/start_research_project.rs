@@ -28,7 +28,7 @@ static SPEC: Spec = Spec {
     whole: None,
     when: When::AtCompletion,
     effect: "On its completion day the gain is added to the quality of every group, for good. Projects take at \
-             least 30 days; tiers are independent, may be repeated, and run in parallel, one per tier at a time.",
+             least {development.rd_min_duration_days} days; tiers are independent, may be repeated, and run in parallel, one per tier at a time.",
     cost: "the price of the tier, at once",
     writes: &["ledger", "research_projects"],
     refusals: &["rd_tier_unknown", "rd_in_progress", "insufficient_funds"],

@@ -28,7 +28,7 @@ static SPEC: Spec = Spec {
         Argument {
             name: "timeout_seconds",
             alias: None,
-            kind: ArgumentKind::Number(Range { least: 0.0, above: true, most: LONGEST_SECONDS }),
+            kind: ArgumentKind::Number(Range { above: true, ..Range::between(0.0, LONGEST_SECONDS) }),
             required: false,
             unit: "s",
             doc: "time for all statements together; 600 if left out",

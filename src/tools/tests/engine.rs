@@ -2,7 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::super::{Arguments, Kept, Notebook, Refusal, Surroundings, TableDocument, Task, View, find};
+use super::super::{
+    Arguments, ColumnDocument, Kept, Notebook, Refusal, Surroundings, TableDocument, Task, View, find,
+};
 use crate::world::effect::Deed;
 use crate::world::events::Facts;
 use crate::world::market::economy::Reading;
@@ -15,6 +17,10 @@ struct Desk {
     notebook: Notebook,
 }
 
+fn column(name: &'static str, description: &'static str) -> ColumnDocument {
+    ColumnDocument { name, kind: "INTEGER", values: &[], description }
+}
+
 impl Surroundings for Desk {
     fn describe(&self, _: &Reading) -> String {
         String::new()
@@ -25,9 +31,13 @@ impl Surroundings for Desk {
             TableDocument {
                 name: "ledger",
                 description: "cash",
-                columns: vec![("id", "number"), ("day", "day")],
+                columns: vec![column("id", "number"), column("day", "day")],
             },
-            TableDocument { name: "issues", description: "support", columns: vec![("issue_id", "number")] },
+            TableDocument {
+                name: "issues",
+                description: "support",
+                columns: vec![column("issue_id", "number")],
+            },
         ]
     }
 
@@ -153,7 +163,7 @@ fn documents_of_tables_and_tools() {
     let mut desk = Desk::default();
     let data = desk.call("list_all_tables", json!({}));
     assert_eq!(data, json!({"count": 2, "tables": {"ledger": "cash", "issues": "support"}}));
-    let ledger = json!({"description": "cash", "columns": {"id": "number", "day": "day"}});
+    let ledger = json!({"description": "cash", "columns": {"id": "INTEGER: number", "day": "INTEGER: day"}});
     for given in [json!("ledger"), json!(["ledger"]), json!(["ledger", "nothing"])] {
         let data = desk.call("describe_tables", json!({"table_names": given}));
         assert_eq!(data, json!({"tables": {"ledger": ledger}}));

@@ -2,6 +2,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::super::arguments::{Arguments, number};
+use super::super::bounds::{MOST_FORECAST, refuse_beyond};
 use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, View, When};
 use crate::world::effect::{Deed, Effect};
 
@@ -27,7 +28,7 @@ static SPEC: Spec = Spec {
             name: "predictions",
             alias: None,
             kind: ArgumentKind::Structure(
-                "cash_1wk, cash_4wk, cash_12wk, cash_26wk: each {point, lower, upper}",
+                "cash_1wk, cash_4wk, cash_12wk, cash_26wk: each {point, lower, upper}, at most 1,000,000,000,000,000",
             ),
             required: false,
             unit: "$",
@@ -47,6 +48,7 @@ static SPEC: Spec = Spec {
         "prediction_not_object",
         "prediction_field_missing",
         "prediction_not_number",
+        "amount_too_large",
         "prediction_interval_inverted",
         "prediction_point_outside",
         "run_over",
@@ -144,6 +146,9 @@ fn read_forecast(key: &str, given: Option<&Value>, horizon_days: u32) -> Result<
     }
     let forecast =
         Forecast { horizon_days, point: read("point")?, lower: read("lower")?, upper: read("upper")? };
+    for (name, value) in [("point", forecast.point), ("lower", forecast.lower), ("upper", forecast.upper)] {
+        refuse_beyond(value, MOST_FORECAST, &format!("{field}.{name}"), "$")?;
+    }
     if forecast.lower > forecast.upper {
         let message = format!("forecast {key}: lower {} is above upper {}", forecast.lower, forecast.upper);
         return Err(refuse("prediction_interval_inverted", message));
@@ -191,6 +196,9 @@ mod tests {
             (json!({"point": true, "lower": 1, "upper": 2}), "prediction_not_number"),
             (json!({"point": 1, "lower": 3, "upper": 1}), "prediction_interval_inverted"),
             (json!({"point": 5, "lower": 0, "upper": 1}), "prediction_point_outside"),
+            (json!({"point": 1, "lower": 1, "upper": 1e308}), "amount_too_large"),
+            (json!({"point": 1, "lower": -1.1e15, "upper": 1}), "amount_too_large"),
+            (json!({"point": 1, "lower": -1e15, "upper": 1e15}), "accepted"),
             (json!({"point": 1, "lower": 1, "upper": 1, "note": "ignored"}), "accepted"),
         ] {
             assert_eq!(code(with_first(first)), expected);

@@ -143,7 +143,7 @@ fn strains(world: &World, params: &Params) -> (f64, f64, f64) {
             open += u32::from(block.open_issue_days[at] > 0);
             days += block.open_issue_days[at];
             let rate = block.usage_rate[at];
-            let quota = core.quotas[block.plan[at]] as f64;
+            let quota = core.quotas[block.plan[at]].units();
             let factor = quota_factor(quota, quota_demand(rate * weekday, rate, params), &params.quality);
             short += u32::from(factor < 1.0);
         }
@@ -211,6 +211,7 @@ mod tests {
     use super::*;
     use crate::world::day::step_day;
     use crate::world::events::Facts;
+    use crate::world::quota::Quota;
     use crate::world::random::Streams;
 
     #[test]
@@ -223,7 +224,7 @@ mod tests {
         for day in 1..=60 {
             match day {
                 20 => world.settings.core.prices.0[1] *= 1.2,
-                40 => world.settings.core.quotas.0[0] *= 2,
+                40 => world.settings.core.quotas.0[0] = Quota::from(120_000),
                 50 => world.settings.promotion.global = 2.0,
                 _ => {}
             }

@@ -241,18 +241,6 @@ pub fn sums<const COLUMNS: usize>(columns: [&[f64]; COLUMNS]) -> [f64; COLUMNS] 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-
-    #[test]
-    fn columns_are_added_up_in_their_order_whatever_their_lengths() {
-        let column = |length: usize, seed: f64| -> Vec<f64> {
-            (0..length).map(|at| libm::sin(at as f64 * seed) * 1e3 + 0.1).collect()
-        };
-        let columns = [column(700, 0.3), column(3, 1.7), column(0, 1.0), column(41, 12.9)];
-        let one_by_one = columns.each_ref().map(|column| column.iter().fold(0.0, |sum, value| sum + value));
-        assert_eq!(sums(columns.each_ref().map(Vec::as_slice)), one_by_one);
-        let alike = [&columns[0][..], &columns[0][..]];
-        assert_eq!(sums(alike), [one_by_one[0]; 2]);
-    }
     use proptest::prelude::*;
 
     /// A subscriber with plain values; tests change what matters to them.
@@ -286,6 +274,18 @@ pub(crate) mod tests {
             issue: 0,
             required: 0.2,
         }
+    }
+
+    #[test]
+    fn columns_are_added_up_in_their_order_whatever_their_lengths() {
+        let column = |length: usize, seed: f64| -> Vec<f64> {
+            (0..length).map(|at| libm::sin(at as f64 * seed) * 1e3 + 0.1).collect()
+        };
+        let columns = [column(700, 0.3), column(3, 1.7), column(0, 1.0), column(41, 12.9)];
+        let one_by_one = columns.each_ref().map(|column| column.iter().fold(0.0, |sum, value| sum + value));
+        assert_eq!(sums(columns.each_ref().map(Vec::as_slice)), one_by_one);
+        let alike = [&columns[0][..], &columns[0][..]];
+        assert_eq!(sums(alike), [one_by_one[0]; 2]);
     }
 
     proptest! {

@@ -210,8 +210,8 @@ impl Customers {
     }
 
     /// Works through all blocks that hold anybody like [`Customers::sweep`], where the work takes next to nothing.
-    pub fn skim<R: Send>(&mut self, work: impl Fn(&mut Block) -> R + Sync) -> Vec<R> {
-        shared_out(self.jobs(), Shares::Large, |(_, _, block)| work(block))
+    pub fn skim<R: Send>(&mut self, work: impl Fn(Group, &mut Block) -> R + Sync) -> Vec<R> {
+        shared_out(self.jobs(), Shares::Large, |(group, _, block)| work(group, block))
     }
 
     /// Blocks that hold anybody, with their group and number.

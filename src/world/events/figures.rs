@@ -1,5 +1,7 @@
 //! Figures of a day.
 
+use crate::world::identifiers::{ByGroup, ByPlan};
+
 /// Figures of a day (chapter 20 §5, day result).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DayFigures {
@@ -7,6 +9,8 @@ pub struct DayFigures {
     pub day: u32,
     /// Units used.
     pub total_usage: u64,
+    /// The same by group and by the plan they were used on.
+    pub usage: ByGroup<ByPlan<u64>>,
     /// Usage above capacity.
     pub overload: f64,
     /// Whether there was an outage.

@@ -4,7 +4,7 @@ use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::day::Morning;
 use crate::world::events::{Facts, UsageRows};
-use crate::world::identifiers::{ByPlan, Plan};
+use crate::world::identifiers::{ByGroup, ByPlan, Plan};
 use crate::world::params::{CustomerGeneration, Params, UsageQuota};
 
 /// Units used today.
@@ -14,6 +14,8 @@ pub struct Metered {
     pub total: u64,
     /// By plan, for the cost of compute.
     pub by_plan: ByPlan<u64>,
+    /// By group and plan.
+    pub by_group: ByGroup<ByPlan<u64>>,
 }
 
 /// Usage rate of a billing period, units a day for the whole account: max(0, N(u, 0.2 u)) times seats;
@@ -35,11 +37,12 @@ pub fn usage_today(usage_rate: f64, weekday: f64, quota: f64) -> u32 {
 
 /// Meters every active subscription: one row each, also when nothing was used.
 pub fn meter(customers: &mut Customers, morning: &Morning, params: &Params, facts: &mut Facts) -> Metered {
-    let by_block = customers.skim(|block| meter_block(block, morning, params));
+    let by_block = customers.skim(|group, block| (group, meter_block(block, morning, params)));
     let mut metered = Metered::default();
-    for (by_plan, rows) in by_block {
+    for (group, (by_plan, rows)) in by_block {
         for plan in Plan::ALL {
             metered.by_plan[plan] += by_plan[plan];
+            metered.by_group[group][plan] += by_plan[plan];
             metered.total += by_plan[plan];
         }
         facts.usage.push(rows);

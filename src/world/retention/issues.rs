@@ -111,6 +111,7 @@ pub fn read_calls(group: Group, number: u32, block: &Block, hotline: &Hotline<'_
     let keys = [u64::from(day), group.index() as u64, u64::from(number)];
     let mut words = [0u32; BLOCK as usize];
     streams.open(Part::IssueOpening, keys).fill(&mut words);
+    // Copied out, so that the compiler sees them unchanged from row to row.
     let issues = &params.issues.clone();
     let mut waiting = [0u64; BLOCK as usize / ROWS];
     let mut calling = waiting;

@@ -6,6 +6,7 @@ use super::model::{Amounts, Books, CATEGORIES, side};
 use crate::console::canvas::{Align, Canvas, Click, fit};
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
+use crate::session::Category;
 
 /// Narrowest column of a week, with the gap.
 const NARROWEST: u16 = 3;
@@ -128,10 +129,10 @@ fn legend(books: &Books, width: usize) -> Vec<Vec<(usize, String)>> {
     let mut lines: Vec<Vec<(usize, String)>> = Vec::new();
     let mut used = width;
     for (at, category) in CATEGORIES.iter().enumerate() {
-        if !books.is_used(at) || category.id == "initial_funding" {
+        if !books.is_used(at) || category.category == Category::InitialFunding {
             continue;
         }
-        let text = format!("{} {}", category.glyph, category.name);
+        let text = format!("{} {}", category.glyph, category.name());
         let length = text.chars().count() + 2;
         if used + length > width + 2 || lines.is_empty() {
             lines.push(Vec::new());

@@ -18,12 +18,11 @@ use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
-use crate::console::readings::Reading;
 use crate::console::text::{arrow, short_dollars};
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Table};
 use crate::notation::{compact, dollars, percent};
-use crate::session::Rows;
+use crate::session::Category;
 
 /// Panes.
 const TABLE: usize = 0;
@@ -38,7 +37,7 @@ const WIDE: u16 = 176;
 #[derive(Default)]
 pub struct Cash {
     focus: usize,
-    books: Option<Books>,
+    books: Books,
     /// The week that is looked at; none for the last one.
     week: Option<u32>,
     table: Table,
@@ -51,15 +50,13 @@ pub struct Cash {
 
 impl Cash {
     fn week(&self) -> u32 {
-        let last = self.books.as_ref().map_or(0, Books::last);
+        let last = self.books.last();
         self.week.unwrap_or(last).min(last)
     }
 
     /// Makes the table of the week that is looked at.
     fn refresh(&mut self) {
-        let Some(books) = &self.books else { return };
-        let week = self.week();
-        let (columns, subjects, rows) = table_of(books, week);
+        let (columns, subjects, rows) = table_of(&self.books, self.week());
         if self.subjects.is_empty() {
             self.table = Table::new(Vec::new()).by_cell();
             self.table.set(columns, rows);
@@ -71,8 +68,7 @@ impl Cash {
     }
 
     fn move_week(&mut self, step: i64) {
-        let Some(books) = &self.books else { return };
-        let last = books.last();
+        let last = self.books.last();
         let week = (i64::from(self.week()) + step).clamp(1.min(i64::from(last)), i64::from(last)) as u32;
         self.week = (week != last).then_some(week);
         self.refresh();
@@ -94,7 +90,7 @@ impl Cash {
             (TABLE, 2) => (week.saturating_sub(1), week),
             (TABLE, 3) => (week.saturating_sub(1), week.saturating_sub(1)),
             (TABLE, 4) => (week.saturating_sub(3).max(1.min(week)), week),
-            (TABLE, 5) => (0, self.books.as_ref().map_or(week, Books::last)),
+            (TABLE, 5) => (0, self.books.open_week()),
             _ => (week, week),
         };
         Some((subject, weeks))
@@ -102,8 +98,7 @@ impl Cash {
 
     /// The steps from the cash of the week before to that of the week.
     fn steps(&self, company: &Company) -> Vec<Step> {
-        let all = |books| waterfall(books, company, self.week(), usize::MAX);
-        self.books.as_ref().map(all).unwrap_or_default()
+        waterfall(&self.books, company, self.week(), usize::MAX)
     }
 
     fn drill(&self, company: &Company) -> Vec<Effect> {
@@ -139,7 +134,7 @@ fn table_of(books: &Books, week: u32) -> (Vec<Column>, Vec<Subject>, Vec<Vec<Cel
     let mut subjects = vec![Subject::Net];
     for income in [true, false] {
         let used = |at: &usize| CATEGORIES[*at].income == income && books.is_used(*at);
-        let now = |at: &usize| CATEGORIES[*at].id != "initial_funding" || week < 2;
+        let now = |at: &usize| CATEGORIES[*at].category != Category::InitialFunding || week < 2;
         subjects.push(if income { Subject::Income } else { Subject::Costs });
         subjects.extend((0..CATEGORIES.len()).filter(used).filter(now).map(Subject::Category));
     }
@@ -223,16 +218,9 @@ impl Screen for Cash {
         Some(Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))) })
     }
 
-    fn readings(&self) -> &'static [Reading] {
-        &[Reading::LedgerByWeek]
-    }
-
-    fn take(&mut self, _: Reading, rows: &Rows, look: &Look<'_>) {
-        self.books = Some(Books::of(rows, look.company));
-        self.refresh();
-    }
-
     fn renew(&mut self, look: &Look<'_>) {
+        self.books = Books::of(look.company);
+        self.refresh();
         self.outlook.renew(look.company);
     }
 
@@ -356,10 +344,6 @@ impl Cash {
         let focused = self.focus == TABLE;
         let title = format!("Books of {}", week_words(self.week(), look.company));
         let inside = canvas.pane(area, &title, &note, focused);
-        if self.books.is_none() {
-            canvas.text(inside, "reading the ledger …", Role::Dim);
-            return;
-        }
         self.table.draw(canvas, inside, focused, TABLE);
         if focused {
             let open = look.keys.label(Action::Open).unwrap_or_default();
@@ -375,10 +359,9 @@ impl Cash {
         let note = arrow(change, &dollars(change.abs()));
         let title = format!("From week {} to {week}", week.saturating_sub(1));
         let inside = canvas.pane(area, &title, &note, focused);
-        let Some(books) = &self.books else { return };
         // Without the focus all of the way is seen, small steps together; with it every step can be reached.
         let most = if focused { usize::MAX } else { inside.height as usize };
-        let steps = waterfall(books, company, week, most);
+        let steps = waterfall(&self.books, company, week, most);
         let selected = focused.then(|| self.step.min(steps.len().saturating_sub(1)));
         falls::draw(canvas, inside, &steps, selected, FALLS);
         self.week_keys(canvas, area, look, focused);
@@ -388,16 +371,12 @@ impl Cash {
         canvas.click(area, Click::Pane(WEEKS));
         let focused = self.focus == WEEKS;
         let subject = self.table.selected().and_then(|row| self.subjects.get(row));
-        let note = match (&self.books, subject) {
-            (Some(books), Some(subject)) => {
-                let amount = subject.of(&books.week(self.week()));
-                format!("week {}: {} {}", self.week(), subject.name(), money(amount))
-            }
-            _ => String::new(),
-        };
+        let note = subject.map_or(String::new(), |subject| {
+            let amount = subject.of(&self.books.week(self.week()));
+            format!("week {}: {} {}", self.week(), subject.name(), money(amount))
+        });
         let inside = canvas.pane(area, "Weeks, income above costs", &note, focused);
-        let Some(books) = &self.books else { return };
-        bars::draw(canvas, inside, books, self.week(), WEEKS);
+        bars::draw(canvas, inside, &self.books, self.week(), WEEKS);
         self.week_keys(canvas, area, look, focused);
     }
 

@@ -4,46 +4,49 @@ use std::collections::BTreeMap;
 
 use crate::console::company::Company;
 use crate::notation::grouped;
-use crate::session::{Rows, week_of};
-use crate::session::{number_at, text_at};
+use crate::report::category_name;
+use crate::session::{Booked, Category, entries_of_weeks, week_of};
 
-/// A category of the ledger.
+/// A category of the ledger on this screen.
 #[derive(Debug, PartialEq, Eq)]
-pub struct Category {
-    /// Name in the ledger.
-    pub id: &'static str,
-    /// Name on screen.
-    pub name: &'static str,
+pub struct Shown {
+    /// Category.
+    pub category: Category,
     /// What its part of a bar is made of; different without colours, and without blocks.
     pub glyph: char,
     /// Money that comes in.
     pub income: bool,
 }
 
-const fn category(id: &'static str, name: &'static str, glyph: char, income: bool) -> Category {
-    Category { id, name, glyph, income }
+impl Shown {
+    /// Name on screen.
+    pub fn name(&self) -> &'static str {
+        category_name(self.category)
+    }
+}
+
+const fn shown(category: Category, glyph: char, income: bool) -> Shown {
+    Shown { category, glyph, income }
 }
 
 /// Number of categories.
-pub const COUNT: usize = 12;
-const PAYMENTS: usize = 0;
+pub const COUNT: usize = Category::ALL.len();
 const FUNDING: usize = 2;
-const LEADS: usize = 6;
 
 /// All categories: income, then costs.
-pub static CATEGORIES: [Category; COUNT] = [
-    category("subscription_payment", "payments", '█', true),
-    category("ad_revenue", "ad revenue", '░', true),
-    category("initial_funding", "funding", '$', true),
-    category("compute", "compute", '▓', false),
-    category("capacity", "capacity", '▒', false),
-    category("advertising", "advertising", '≡', false),
-    category("lead_acquisition_cost", "lead costs", '×', false),
-    category("operations", "operations", '+', false),
-    category("development", "development", '─', false),
-    category("research_project", "R&D", '▲', false),
-    category("market_research", "discovery", '?', false),
-    category("group_research", "insights", '▼', false),
+pub static CATEGORIES: [Shown; COUNT] = [
+    shown(Category::SubscriptionPayment, '█', true),
+    shown(Category::AdRevenue, '░', true),
+    shown(Category::InitialFunding, '$', true),
+    shown(Category::Compute, '▓', false),
+    shown(Category::Capacity, '▒', false),
+    shown(Category::Advertising, '≡', false),
+    shown(Category::LeadAcquisitionCost, '×', false),
+    shown(Category::Operations, '+', false),
+    shown(Category::Development, '─', false),
+    shown(Category::ResearchProject, '▲', false),
+    shown(Category::MarketResearch, '?', false),
+    shown(Category::GroupResearch, '▼', false),
 ];
 
 /// Dollars by category; costs are negative.
@@ -53,37 +56,31 @@ pub type Amounts = [f64; COUNT];
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Books {
     weeks: BTreeMap<u32, Amounts>,
+    /// The last week that ran; what was bought since belongs to the next.
+    last: u32,
 }
 
 impl Books {
-    /// The books from what the ledger says of everything but customers, from the payments of each week, and from
-    /// the cash that is left: what neither of the two explains was paid for leads.
-    pub fn of(rows: &Rows, company: &Company) -> Books {
-        let mut weeks: BTreeMap<u32, Amounts> = BTreeMap::new();
-        for week in 0..=week_of(company.seen.day) {
-            weeks.insert(week, [0.0; COUNT]);
-        }
-        for row in &rows.rows {
-            let Some(at) = CATEGORIES.iter().position(|category| category.id == text_at(row, 1)) else {
-                continue;
-            };
-            weeks.entry(number_at(row, 0) as u32).or_insert([0.0; COUNT])[at] += number_at(row, 2);
-        }
+    /// The books of a company.
+    pub fn of(company: &Company) -> Books {
+        let last = week_of(company.seen.day);
+        let mut funding = [0.0; COUNT];
+        funding[FUNDING] = company.seen.starting_cash;
+        let mut weeks = BTreeMap::from([(0, funding)]);
         for figures in &company.weeks {
-            weeks.entry(week_of(figures.day)).or_insert([0.0; COUNT])[PAYMENTS] += figures.payments;
+            weeks.insert(week_of(figures.day), amounts_of(&figures.booked));
         }
-        for (week, amounts) in weeks.iter_mut().filter(|(week, _)| **week > 0) {
-            if let Some((before, after)) = cash_around(company, *week) {
-                let unexplained = after - before - amounts.iter().sum::<f64>();
-                // Cents are rounding; a lead never brings money.
-                amounts[LEADS] = if unexplained < -0.01 { unexplained } else { 0.0 };
-            }
-        }
-        Books { weeks }
+        weeks.insert(company.weeks.len() as u32 + 1, amounts_of(&company.seen.booked_since));
+        Books { weeks, last }
     }
 
-    /// The last week.
+    /// The last week that ran.
     pub fn last(&self) -> u32 {
+        self.last
+    }
+
+    /// The week that is open: it holds what was bought since the last one ended.
+    pub fn open_week(&self) -> u32 {
         self.weeks.keys().next_back().copied().unwrap_or(0)
     }
 
@@ -123,13 +120,17 @@ impl Books {
             .weeks
             .iter()
             .rev()
-            .filter(|(week, _)| **week > 0)
+            .filter(|(week, _)| (1..=self.last).contains(*week))
             .take(count)
             .map(|(week, amounts)| (*week, without_funding(*amounts)))
             .collect();
         last.reverse();
         last
     }
+}
+
+fn amounts_of(booked: &Booked) -> Amounts {
+    std::array::from_fn(|at| booked.of(CATEGORIES[at].category))
 }
 
 fn without_funding(mut amounts: Amounts) -> Amounts {
@@ -151,12 +152,14 @@ pub fn days_of(week: u32) -> (u32, u32) {
     }
 }
 
-/// Cash at the end of the week before and at the end of a week, or now.
+/// Cash at the end of the week before and at the end of a week, or now while it is open.
 pub fn cash_around(company: &Company, week: u32) -> Option<(f64, f64)> {
-    let start = 7 * (week.checked_sub(1)?) as usize;
-    let before = company.cash_by_day.get(start)?;
-    let after = company.cash_by_day.get(start + 7).or(company.cash_by_day.last())?;
-    Some((*before, *after))
+    let ended = |week: u32| company.weeks.get(week.checked_sub(1)? as usize).map(|figures| figures.cash);
+    let before = match week.checked_sub(1)? {
+        0 => company.seen.starting_cash,
+        before => ended(before)?,
+    };
+    Some((before, ended(week).unwrap_or(company.seen.cash)))
 }
 
 /// A step of the way from one week's cash to the next.
@@ -193,7 +196,7 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
     let own = if moved.len() > room { room - 1 } else { moved.len() };
     for at in &moved[..own] {
         let to = cash + amounts[*at];
-        let (name, subject) = (CATEGORIES[*at].name.to_owned(), Subject::Category(*at));
+        let (name, subject) = (CATEGORIES[*at].name().to_owned(), Subject::Category(*at));
         steps.push(Step { name, from: cash, to, is_level: false, subject });
         cash = to;
     }
@@ -215,17 +218,16 @@ pub fn money(value: f64) -> String {
 
 /// The statement behind a category, or a side of the books, from one week to another.
 pub fn statement(what: &Subject, (first, last): (u32, u32)) -> String {
-    let (from, to) = (days_of(first).0, days_of(last).1);
     let condition = match what {
-        Subject::Category(at) => format!("\n    AND category = '{}'", CATEGORIES[*at].id),
+        Subject::Category(at) => format!("\n    AND category = '{}'", CATEGORIES[*at].category.id()),
         Subject::Income => "\n    AND amount > 0".to_owned(),
         Subject::Costs => "\n    AND amount < 0".to_owned(),
         Subject::Net => String::new(),
     };
     let weeks = if first == last { format!("week {last}") } else { format!("weeks {first} to {last}") };
     format!(
-        "-- {weeks}\nSELECT day, category, amount, note\nFROM ledger\nWHERE day BETWEEN {from} AND {to}{condition}\n\
-         ORDER BY id"
+        "-- {weeks}\nSELECT day, category, amount, note\nFROM ledger\nWHERE {}{condition}\nORDER BY id",
+        entries_of_weeks(first, last)
     )
 }
 
@@ -246,7 +248,7 @@ impl Subject {
     /// Name on screen.
     pub fn name(self) -> &'static str {
         match self {
-            Subject::Category(at) => CATEGORIES[at].name,
+            Subject::Category(at) => CATEGORIES[at].name(),
             Subject::Income => "income",
             Subject::Costs => "costs",
             Subject::Net => "net",
@@ -256,9 +258,11 @@ impl Subject {
     /// What explains it.
     pub fn term(self) -> &'static str {
         match self {
-            Subject::Category(PAYMENTS) => "payments",
-            Subject::Category(LEADS) => "lead-costs",
-            Subject::Category(_) => "ledger.category",
+            Subject::Category(at) => match CATEGORIES[at].category {
+                Category::SubscriptionPayment => "payments",
+                Category::LeadAcquisitionCost => "lead-costs",
+                _ => "ledger.category",
+            },
             Subject::Income | Subject::Costs | Subject::Net => "ledger.amount",
         }
     }

@@ -31,9 +31,41 @@ fn fact(words: String, figures: String, title: String, term: &'static str, sql: 
 /// The lines of a group; bars have so many cells.
 pub fn facts(company: &Company, market: &Market, facts: &Facts, group: Group, bars: usize) -> Vec<Fact> {
     // A small window has room for the parts that change most; money comes last.
-    let mut lines = plans(facts, group, bars);
+    let mut lines = companies(company, group);
+    lines.extend(plans(facts, group, bars));
     lines.extend(sources(company, facts, group));
     lines.extend(money(company, market, facts, group));
+    lines
+}
+
+/// The way of companies to a deal.
+fn companies(company: &Company, group: Group) -> Vec<Fact> {
+    let Some(funnel) = company.funnels.iter().find(|funnel| funnel.group == group) else { return Vec::new() };
+    let asked = "SELECT DISTINCT c.customer_id, c.created_day, t.day AS asked_day, t.seat_count\nFROM customers c\n\
+                 JOIN enterprise_turns t ON t.customer_id = c.customer_id AND t.turn_number = 0 AND t.thread_type = 'new_lead'";
+    let came = format!(
+        "SELECT customer_id, created_day, acquisition_source FROM customers\nWHERE group_id = '{group}' AND customer_type = \
+         'large'\nORDER BY customer_id DESC"
+    );
+    let of_group = format!("\nWHERE c.group_id = '{group}'");
+    let mut lines = vec![head("companies, whole run", String::new())];
+    for (name, count, sql) in [
+        ("came", funnel.came, came.clone()),
+        ("no plan good enough", funnel.turned_away(), came),
+        ("asked for an offer", funnel.asked, format!("{asked}{of_group}")),
+        (
+            "signed",
+            funnel.signed,
+            format!(
+                "SELECT c.customer_id, t.day, t.offer_json, t.seat_count\nFROM customers c\nJOIN enterprise_turns t ON \
+                 t.customer_id = c.customer_id AND t.thread_type = 'new_lead' AND t.close_reason = 'accepted' AND t.sender = \
+                 'customer'{of_group}"
+            ),
+        ),
+    ] {
+        let title = format!("companies of {group}: {name}");
+        lines.push(fact(format!("  {name}"), grouped(f64::from(count), 0), title, "lead", Some(sql)));
+    }
     lines
 }
 

@@ -53,7 +53,7 @@ const FLOWS: [(&str, &str); 3] =
 /// What a choice leads to.
 pub fn choose(choice: usize, group: Group) -> Effect {
     match TOOLS.get(choice) {
-        Some((tool, _)) => Effect::ShowTool(tool),
+        Some((tool, _)) => Effect::ShowCell(tool, group.to_string()),
         None if choice == TOOLS.len() => Effect::ShowGroup(ScreenId::Market, group),
         None => Effect::EditSql(format!(
             "-- customers of {group}\nSELECT s.plan, s.status, count(*) AS customers, \

@@ -38,6 +38,8 @@ impl Place {
     }
 }
 
+/// Leads below which a channel is not called the best.
+const ENOUGH: f64 = 3.0;
 /// Rows that the map wants inside its pane.
 pub const HEIGHT: u16 = Channel::ALL.len() as u16 + 2;
 const NAMES: u16 = 18;
@@ -66,7 +68,9 @@ pub fn draw(
         canvas.aligned(Rect { width: CELL - 2, ..cell }, group.id(), Role::Header, Align::Right);
         let best = Channel::ALL
             .iter()
-            .filter_map(|channel| market.measured(*channel, *group).per_thousand())
+            .map(|channel| market.measured(*channel, *group))
+            .filter(|measured| measured.leads >= ENOUGH)
+            .filter_map(|measured| measured.per_thousand())
             .fold(0.0, f64::max);
         for (line, channel) in Channel::ALL.iter().enumerate() {
             let y = area.y + 1 + line as u16;
@@ -104,6 +108,8 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, value: Option<f64>, best: f64,
     };
     let share = if best > 0.0 { value / best } else { 0.0 };
     let (glyph, role) = match share {
+        // Too few leads for a comparison.
+        share if share > 1.0 || best == 0.0 => (" ", Role::Dim),
         share if share >= 0.999 => ("█", Role::Good),
         share if share >= 0.5 => ("▓", Role::Text),
         share if share >= 0.2 => ("▒", Role::Text),

@@ -74,7 +74,10 @@ fn a_group_opens_and_leads_to_its_tools() {
     assert!(text.contains("S2 · individual") && text.contains("set_targeted_dev_spend"), "{text}");
     act(&mut screen, Action::Down, &company);
     let effects = act(&mut screen, Action::Open, &company);
-    assert!(matches!(effects[..], [Effect::ShowTool("set_targeted_dev_spend")]), "{effects:?}");
+    assert!(
+        matches!(&effects[..], [Effect::ShowCell("set_targeted_dev_spend", of)] if of == "S2"),
+        "{effects:?}"
+    );
     act(&mut screen, Action::Last, &company);
     let Some(Effect::EditSql(sql)) = act(&mut screen, Action::Open, &company).pop() else {
         panic!("no query")

@@ -108,11 +108,14 @@ fn nobody(inbox: &Inbox, look: &Look<'_>) -> String {
     if !inbox.letters.threads.is_empty() {
         return format!("Nobody here. {} shows the other threads.", key(Action::OtherThreads));
     }
+    let funnels: Vec<String> =
+        look.company.funnels.iter().map(|own| format!("· {}", own.in_words())).collect();
     format!(
-        "No company has written yet.\n\nCompanies ask for an offer when they hear of you and a plan is good enough \
-         for them:\n· advertise to groups whose ids begin with E ({} set_targeted_ad_spend; linkedin reaches \
-         offices)\n· give a plan a better model tier and a quota that holds a whole office\n· develop for these \
-         groups (set_targeted_dev_spend)\n\nEach one waits 7 days for an answer, then it is lost.",
+        "No company has asked for an offer yet.\n\n{}\n\nA company asks when it hears of you and a plan is good enough \
+         for it at some price:\n· ads for these groups bring companies ({} set_targeted_ad_spend)\n· a better model tier, \
+         development for the group and a quota that holds a whole office make a plan good enough\n\nA company that asked \
+         waits 7 days for an answer.",
+        funnels.join("\n"),
         key(Action::Tools)
     )
 }
@@ -188,6 +191,9 @@ fn conversation(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, Ro
         let more = lines_of(&rest, width.saturating_sub(2));
         lines.extend(more.into_iter().map(|line| (format!("{indent}{line}"), role)));
     }
+    if let Some(end) = thread.end_in_words() {
+        lines.extend(wrapped(&end, width).into_iter().map(|line| (line, Role::Strong)));
+    }
     lines
 }
 
@@ -197,7 +203,7 @@ fn lines_of(text: &str, width: usize) -> Vec<String> {
 
 fn words_of(turn: &Turn) -> String {
     match (turn.closes.as_str(), turn.sender.as_str()) {
-        ("agent_rejected", _) => "ended the talks".to_owned(),
+        ("agent_rejected", _) => "ended the thread".to_owned(),
         (_, "agent") => format!("offered {}", in_words(&turn.offers)),
         _ if turn.text.is_empty() => "asks for an offer".to_owned(),
         _ => turn.text.clone(),
@@ -275,30 +281,19 @@ fn draw_offer(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_
     }
     rows.next();
     let list = ["A", "B", "C"].iter().zip(lists).map(|(plan, price)| format!("{plan} {}", cents(price)));
-    let mut notes = vec![(format!("list {}", list.collect::<Vec<_>>().join(" · ")), Role::Dim)];
+    let lists = (format!("list {}", list.collect::<Vec<_>>().join(" · ")), Role::Dim);
+    let mut notes = Vec::new();
     let planned = inbox.planned(look.company);
     match planned.first() {
         _ if batch => {
-            notes.extend(
-                wrapped(&summary(&planned), inside.width as usize)
-                    .into_iter()
-                    .map(|line| (line, Role::Strong)),
-            );
+            let lines = wrapped(&summary(&planned), inside.width as usize).into_iter();
+            notes.extend(lines.map(|line| (line, Role::Strong)));
         }
-        Some((_, Err(why))) => notes.push((format!("not to be sent: {why}"), Role::Warning)),
-        Some((thread, Ok(offers))) => {
-            notes.extend(money_notes(inbox, thread, offers, inside.width, look));
-            if let Some((_, price)) = thread.asked() {
-                let best = offers.iter().map(|(_, own)| own - price).fold(f64::INFINITY, f64::min);
-                let sign = if best < 0.0 { "-" } else { "+" };
-                notes.push((
-                    format!("they ask {}; yours {sign}{}", cents(price), cents(best.abs())),
-                    Role::Text,
-                ));
-            }
-        }
+        Some((_, Err(why))) => notes.push((format!("can't send: {why}"), Role::Warning)),
+        Some((thread, Ok(offers))) => notes = offer_notes(inbox, thread, offers, inside.width, look),
         None => {}
     }
+    notes.push(lists);
     for (row, (text, role)) in rows.zip(notes) {
         canvas.text(row, &text, role);
     }
@@ -308,31 +303,45 @@ fn draw_offer(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_
     }
 }
 
-/// What the estimate of compute rests on; where its columns do not fit, the estimate itself.
-fn money_notes(
+/// What there is to know of an offer, the most important first: what a quota does not cover, what they ask, and what the
+/// estimate of compute rests on; where its columns do not fit, the estimate itself.
+fn offer_notes(
     inbox: &Inbox,
     thread: &Thread,
     offers: &[(Plan, f64)],
     width: u16,
     look: &Look<'_>,
 ) -> Vec<(String, Role)> {
-    let Some((units, source)) = inbox.usage.per_seat(look.company, &thread.group) else {
-        return vec![("compute unknown: nobody of the group uses it yet".to_owned(), Role::Dim)];
+    let priced = || {
+        let money = |sold: &(Plan, f64)| (sold.0, Money::of(&inbox.usage, look.company, thread, *sold));
+        offers.iter().map(money)
     };
     let mut notes = Vec::new();
-    if width < WORTH {
-        for (plan, price) in offers {
-            let money = Money::of(&inbox.usage, look.company, thread, (*plan, *price));
-            if let (Some(compute), Some(margin)) = (money.compute, money.margin()) {
-                let role = if margin < 0.0 { Role::Bad } else { Role::Text };
-                let text =
-                    format!("{plan} est. compute {}/mo, margin {}", dollars(compute), percent(margin, 0));
-                notes.push((text, role));
-            }
-        }
-    } else {
+    for (plan, (quota, wanted)) in priced().filter_map(|(plan, money)| Some((plan, money.covered?))) {
+        let (quota, share) = (grouped(quota, 0), percent(quota / wanted, 0));
+        let text = format!("! {plan}: quota {quota} covers {share} of {} units a day", grouped(wanted, 0));
+        notes.push((text, Role::Warning));
+    }
+    if let Some((_, price)) = thread.asked() {
+        let best = offers.iter().map(|(_, own)| own - price).fold(f64::INFINITY, f64::min);
+        let sign = if best < 0.0 { "-" } else { "+" };
+        notes.push((format!("they ask {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
+    }
+    let Some((units, source)) = inbox.usage.per_seat(look.company, &thread.group) else {
+        notes.push(("compute unknown: nobody of the group uses it yet".to_owned(), Role::Dim));
+        return notes;
+    };
+    if width >= WORTH {
         let text = format!("compute est.: {} units/seat/day, {source}", grouped(units, 0));
         notes.push((text, Role::Dim));
+        return notes;
+    }
+    for (plan, money) in priced() {
+        if let (Some(compute), Some(margin)) = (money.compute, money.margin()) {
+            let role = if margin < 0.0 { Role::Bad } else { Role::Text };
+            let text = format!("{plan} est. compute {}/mo, margin {}", dollars(compute), percent(margin, 0));
+            notes.push((text, role));
+        }
     }
     notes
 }

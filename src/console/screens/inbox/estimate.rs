@@ -43,6 +43,13 @@ impl Usage {
     }
 }
 
+impl Usage {
+    /// Units a day that a company would use with all its seats.
+    pub fn wanted(&self, company: &Company, thread: &Thread) -> Option<f64> {
+        self.per_seat(company, &thread.group).map(|(units, _)| units * thread.seats)
+    }
+}
+
 /// Money of one line of an offer, dollars a month.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Money {
@@ -50,18 +57,20 @@ pub struct Money {
     pub monthly: f64,
     /// What compute would cost.
     pub compute: Option<f64>,
+    /// The quota of the plan and what the company would use, units a day, where the quota is less. All seats of a company
+    /// share one quota.
+    pub covered: Option<(f64, f64)>,
 }
 
 impl Money {
     /// Of a plan at a price a seat.
     pub fn of(usage: &Usage, company: &Company, thread: &Thread, (plan, price): (Plan, f64)) -> Money {
-        let units = usage.per_seat(company, &thread.group).map(|(units, _)| units);
+        let wanted = usage.wanted(company, thread);
         let quota = company.setting("set_usage_quotas", plan.id());
-        // Nobody uses more than the quota of the plan.
-        let units = units.map(|units| if quota > 0.0 { units.min(quota) } else { units });
         let compute =
-            units.zip(unit_cost(company, plan)).map(|(units, cost)| units * MONTH * cost * thread.seats);
-        Money { monthly: price * thread.seats, compute }
+            wanted.zip(unit_cost(company, plan)).map(|(units, cost)| units.min(quota) * MONTH * cost);
+        let covered = wanted.filter(|wanted| *wanted > quota).map(|wanted| (quota, wanted));
+        Money { monthly: price * thread.seats, compute, covered }
     }
 
     /// Share of the payment that compute leaves.
@@ -84,6 +93,10 @@ mod tests {
 
     #[test]
     fn compute_is_what_the_group_uses_at_the_cost_of_the_model() {
+        let set_quota = |company: &mut Company, units: f64| {
+            let quotas = serde_json::json!({"A": 1.0, "B": units, "C": 1.0});
+            company.settings.insert("set_usage_quotas", quotas.as_object().cloned().expect("an object"));
+        };
         let mut company = company();
         let thread = Thread { group: "E1".to_owned(), seats: 100.0, ..Thread::default() };
         let row = |group: &str, seats: i64, units: i64| {
@@ -94,14 +107,15 @@ mod tests {
         let usage = Usage::read(&Rows { rows, ..Rows::default() });
         assert_eq!(usage.per_seat(&company, "E1"), Some((40.0, "E1 on the last day".to_owned())));
         let cost = unit_cost(&company, Plan::B).expect("a cost");
+        set_quota(&mut company, 1e6);
         let money = Money::of(&usage, &company, &thread, (Plan::B, 30.0));
         let compute = 40.0 * 30.0 * cost * 100.0;
-        assert_eq!((money.monthly, money.compute), (3000.0, Some(compute)));
+        assert_eq!((money.monthly, money.compute, money.covered), (3000.0, Some(compute), None));
         assert_eq!(money.margin(), Some(1.0 - compute / 3000.0));
-        let quotas = serde_json::json!({"A": 1.0, "B": 10.0, "C": 1.0});
-        company.settings.insert("set_usage_quotas", quotas.as_object().cloned().expect("an object"));
+        set_quota(&mut company, 1000.0);
         let capped = Money::of(&usage, &company, &thread, (Plan::B, 30.0));
-        assert_eq!(capped.compute, Some(10.0 * 30.0 * cost * 100.0));
+        assert_eq!(capped.compute, Some(1000.0 * 30.0 * cost), "all seats share one quota");
+        assert_eq!(capped.covered, Some((1000.0, 4000.0)));
         let (studied, source) = usage.per_seat(&company, "E2").expect("a study");
         assert!(studied > 0.0 && source == "the study of E2, level 1", "{source}");
         assert_eq!(usage.per_seat(&company, "D_E01"), None);

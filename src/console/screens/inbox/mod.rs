@@ -113,6 +113,18 @@ impl Inbox {
         }
     }
 
+    /// Shows a thread among those that wait.
+    pub fn show(&mut self, number: u32, company: &Company) {
+        self.view = View::Waiting;
+        self.focus = LIST;
+        self.typing = None;
+        self.table.act(Action::Close, 0);
+        self.refresh(company);
+        if let Some(row) = self.row_of_number(number) {
+            self.table.select(row);
+        }
+    }
+
     fn number_of(&self, row: usize) -> Option<u32> {
         self.letters.threads.get(*self.rows.get(row)?).map(|thread| thread.number)
     }
@@ -265,10 +277,6 @@ impl Screen for Inbox {
         }
     }
 
-    fn takes_digits(&self) -> bool {
-        self.focus == OFFER && self.here().is_some()
-    }
-
     fn hints(&self) -> Vec<Action> {
         match self.focus {
             _ if self.typing.is_some() => vec![Action::Commit, Action::SendOffer, Action::Discard],
@@ -316,7 +324,7 @@ impl Screen for Inbox {
             (OFFER, _) => post::usage_figure(thread),
             (LIST, 5) => post::figure(thread, "seats of", "seats"),
             (LIST, 6) => post::figure(thread, "price asked by", "offer"),
-            _ => post::figure(thread, "talks with", "thread"),
+            _ => post::figure(thread, "thread with", "thread"),
         };
         Some(figure)
     }
@@ -399,9 +407,6 @@ impl Screen for Inbox {
     }
 
     fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
-        if self.focus == OFFER && self.typing.is_none() && self.here().is_some() {
-            self.typing = Some(Field::to_replace(""));
-        }
         if let Some(field) = &mut self.typing {
             let taken = field.number_key(key);
             return if taken { Vec::new() } else { vec![Effect::Complain(ONLY_NUMBERS.to_owned())] };

@@ -1,6 +1,6 @@
 //! Threads of negotiations as the player may know them: what the rows say, and what they do not.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
@@ -106,6 +106,21 @@ impl Thread {
         }
     }
 
+    /// How a thread that came to nothing ended; none while it is open, and where a row of it says so.
+    pub fn end_in_words(&self) -> Option<String> {
+        if self.state != State::Lost {
+            return None;
+        }
+        let last = self.turns.last()?;
+        Some(match last.sender.as_str() {
+            "agent" => {
+                let offers = super::offer::in_words(&last.offers);
+                format!("#{} declined {offers} of day {} without another word.", self.customer, last.day)
+            }
+            _ => format!("#{} got no answer to its message of day {}.", self.customer, last.day),
+        })
+    }
+
     /// What the player offered last.
     pub fn offered(&self) -> &[(Plan, f64)] {
         let own = self.turns.iter().rev().find(|turn| !turn.offers.is_empty());
@@ -172,10 +187,15 @@ impl Letters {
     pub fn settle(&mut self, waiting: &[WaitingThread]) {
         let mut left = self.read.clone();
         let mut threads: Vec<Thread> = waiting.iter().map(|own| of_waiting(own, &mut left)).collect();
+        // A company has one open thread at the most, its newest.
+        let mut newest: BTreeSet<u32> = threads.iter().map(|thread| thread.customer).collect();
         for (_, mut thread) in left.into_iter().rev() {
             let firm = self.firms.get(&thread.customer);
             thread.group = firm.map_or(String::new(), |firm| firm.group.clone());
             thread.state = state_of(&thread, firm);
+            if !newest.insert(thread.customer) && thread.state == State::Theirs {
+                thread.state = State::Lost;
+            }
             threads.push(thread);
         }
         self.threads = threads;

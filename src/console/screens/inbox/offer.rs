@@ -146,7 +146,7 @@ impl Offer {
             None if terms.is_empty() && self.0.iter().all(|term| term.plan == Choice::Nothing) => {
                 Err("no plan is chosen".to_owned())
             }
-            None if terms.is_empty() => Err("it has named no price yet".to_owned()),
+            None if terms.is_empty() => Err("they named no price".to_owned()),
             None => Ok(terms),
         }
     }

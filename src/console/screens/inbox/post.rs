@@ -94,8 +94,8 @@ impl Inbox {
                     in_words(offers)
                 ),
                 _ => format!(
-                    "Nothing is open with {to} in this thread. If it subscribes, {} opens new talks; if they \
-                     fail, the company leaves.",
+                    "Nothing is open with {to} in this thread. If it subscribes, {} opens a new thread; if that \
+                     comes to nothing, the company leaves.",
                     in_words(offers)
                 ),
             }
@@ -125,7 +125,7 @@ impl Inbox {
         let others = open.len() - leads;
         if others > 0 {
             text += &format!(
-                "{others} subscriber{} on present terms; talks may begin again from the next day on.",
+                "{others} subscriber{} on present terms; a new thread can be opened from the next day on.",
                 if others == 1 { " stays" } else { "s stay" }
             );
         }

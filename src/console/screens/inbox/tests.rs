@@ -85,8 +85,7 @@ fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usi
             let chord = Chord::parse(&chord).expect("a key");
             let scopes = screen.scopes();
             let text = scopes[0].is_text() && chord.is_printable();
-            let number = chord.begins_number() && screen.takes_digits();
-            effects = match known.action(&scopes, chord).filter(|_| !text && !number) {
+            effects = match known.action(&scopes, chord).filter(|_| !text) {
                 Some(action) => screen.act(action, &look),
                 None => screen.key(&chord.event(), &look),
             };
@@ -229,7 +228,7 @@ fn without_threads_it_says_what_brings_companies() {
     for width in [80, 120, 200] {
         let text = drawn(&screen, &company, width, 37);
         assert!(
-            text.contains("No company has written yet") && text.contains("set_targeted_ad_spend"),
+            text.contains("No company has asked for an offer yet") && text.contains("set_targeted_ad_spend"),
             "{text}"
         );
     }

@@ -1,6 +1,6 @@
 //! The journal as lines to walk: weeks with the newest first, in each what was done in its order.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
@@ -8,7 +8,7 @@ use crate::console::company::Company;
 use crate::console::text::{number, short_dollars};
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, signed_dollars};
-use crate::session::{Filed, JournalEntry, WeekFigures};
+use crate::session::{Filed, JournalEntry, Reversal, WeekFigures, undone_calls};
 use crate::tools::{Forecast, Kind, Spec, find};
 
 /// A line.
@@ -50,10 +50,11 @@ struct Group<'a> {
 pub fn lines(company: &Company) -> Vec<Line> {
     let mut groups = vec![Group::default()];
     let mut settings = Settings::default();
+    let undone = undone_calls(&company.journal);
     for entry in &company.journal {
         let Some(last) = groups.last_mut() else { continue };
         match entry {
-            JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings)),
+            JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings, &undone)),
             JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
                 last.filed = Some(Filing { day: *day, rationale, forecasts, naively: *filled_naively });
             }
@@ -199,23 +200,29 @@ impl Filing<'_> {
     }
 }
 
-fn of_call(entry: &JournalEntry, settings: &mut Settings) -> Option<Line> {
-    let JournalEntry::Call { day, tool, args, undoes } = entry else { return None };
-    let back = if undoes.is_some() { "undo: " } else { "" };
+/// A call as a line; a call that was taken back is shown as such, and so is the call that did it.
+fn of_call(entry: &JournalEntry, settings: &mut Settings, undone: &BTreeSet<u64>) -> Option<Line> {
+    let JournalEntry::Call { seq, day, tool, args, reversal } = entry else { return None };
     let spec = find(tool).map(|tool| tool.spec());
     let words = match spec.filter(|spec| spec.kind == Kind::Setting) {
         Some(spec) => settings.change(spec, args),
         None => in_words(args),
     };
-    let text = format!("  {back}{tool} {words}").trim_end().to_owned();
+    let is_undone = undone.contains(seq);
+    let (sign, remark) = match reversal {
+        _ if is_undone => ("undone: ", "\n\nThis call was taken back."),
+        Some(Reversal::Undoes(_)) => ("undo: ", "\n\nThis took back an earlier call."),
+        Some(Reversal::Redoes(_)) => ("redo: ", "\n\nThis repeated a call that was taken back."),
+        None => ("", ""),
+    };
+    let gone = is_undone || matches!(reversal, Some(Reversal::Undoes(_)));
     let pretty = serde_json::to_string_pretty(args).unwrap_or_default();
-    let undone = if undoes.is_some() { "\n\nThis took back an earlier call." } else { "" };
     Some(Line {
         day: *day,
-        text,
-        role: if undoes.is_some() { Role::Dim } else { Role::Text },
+        text: format!("  {sign}{tool} {words}").trim_end().to_owned(),
+        role: if gone { Role::Dim } else { Role::Text },
         title: format!("{tool} · day {day}"),
-        whole: format!("{tool}\n\n{pretty}{undone}"),
+        whole: format!("{tool}\n\n{pretty}{remark}"),
         term: spec.map_or("decision-day", |spec| spec.name),
         sql: spec.and_then(|spec| kept_in(spec, *day)),
     })

@@ -309,7 +309,7 @@ mod tests {
         let screen = renewed(&company);
         let texts: Vec<String> = screen.table.rows().iter().map(|row| row[1].text.clone()).collect();
         assert_eq!(texts[0], "week 2 · now · 2 actions");
-        assert_eq!(texts[1], "  set_prices A 12 → 13");
+        assert_eq!(texts[1], "  undone: set_prices A 12 → 13");
         assert_eq!(texts[2], "  undo: set_prices A 13 → 12");
         assert!(texts[3].starts_with("week 1 · day 7 · cash $"), "{texts:#?}");
         assert_eq!(texts[4], "  why  Cheaper than the others. See who comes.");

@@ -6,7 +6,7 @@ use crate::console::text::arrow;
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, spark};
 use crate::notation::{dollars, grouped, percent};
-use crate::session::WeekFigures;
+use crate::session::{WEEK_OF_ENTRY, WeekFigures, entries_of_weeks};
 
 /// A figure of the week.
 pub struct Metric {
@@ -26,6 +26,8 @@ pub struct Metric {
 
 /// Where the rows behind a figure are.
 enum Source {
+    /// All of the ledger up to the end of a week.
+    Cash,
     /// In the ledger, under a condition.
     Ledger(&'static str),
     /// Subscriptions that are active now, under a condition; they are those of the last week only.
@@ -75,7 +77,7 @@ const DEALS: &str = "c.customer_type = 'large' AND s.status IN ('subscribed', 'c
 
 /// All figures, in their order on the screen.
 pub static METRICS: [Metric; 22] = [
-    metric("cash", "cash", |week| week.cash, dollars, true, Source::Ledger("TRUE")),
+    metric("cash at week's end", "cash", |week| week.cash, dollars, true, Source::Cash),
     metric("recurring revenue", "mrr", |week| week.recurring_revenue, dollars, true, Source::Active("TRUE")),
     metric(
         "payments",
@@ -248,22 +250,27 @@ pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
     let (from, to) = weeks_of(column);
     let (from, to) = (week.saturating_sub(from).max(1.min(week)), week.saturating_sub(to));
     let weeks = if from == to { format!("week {to}") } else { format!("weeks {from} to {to}") };
-    let days = ((7 * from).saturating_sub(6), 7 * to);
     let now = to == week;
     Figure {
-        title: format!("{} of {weeks}", metric.name),
+        title: format!("{}, {weeks}", metric.name),
         term: metric.term,
-        sql: statement(&metric.source, days, now),
+        sql: statement(&metric.source, (from, to), now),
     }
 }
 
-/// The rows of days; those that hold only now are left out for other weeks.
-fn statement(source: &Source, (from, to): (u32, u32), now: bool) -> Option<String> {
+/// The rows of some weeks; those that hold only now are left out for other weeks.
+fn statement(source: &Source, weeks: (u32, u32), now: bool) -> Option<String> {
+    let (from, to) = ((7 * weeks.0).saturating_sub(6), 7 * weeks.1);
     let between = |day: &str| format!("{day} BETWEEN {from} AND {to}");
     Some(match source {
+        Source::Cash => format!(
+            "SELECT {WEEK_OF_ENTRY} AS week, category, sum(amount) AS amount\nFROM ledger\nWHERE {}\nGROUP BY 1, 2\n\
+             ORDER BY 1 DESC, 3 DESC",
+            entries_of_weeks(0, weeks.1)
+        ),
         Source::Ledger(condition) => format!(
             "SELECT day, category, amount, note\nFROM ledger\nWHERE {} AND {condition}\nORDER BY id",
-            between("day")
+            entries_of_weeks(weeks.0, weeks.1)
         ),
         Source::Active(condition) if now => format!(
             "SELECT s.customer_id, c.group_id, s.plan, s.seat_count, s.effective_price,\n    \

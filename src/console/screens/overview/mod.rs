@@ -1,7 +1,7 @@
-//! The company at a glance: cash with the fan of the last forecasts, what needs the person, the week, quality.
+//! The company at a glance: cash with the fan of the last forecasts, what needs the person, the week, quality, news.
 
-pub mod alerts;
 mod figures;
+pub mod needs;
 mod news;
 #[cfg(test)]
 mod tests;
@@ -11,8 +11,8 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::{Constraint, Layout, Rect};
 use unicode_width::UnicodeWidthStr;
 
-pub use self::alerts::{Alert, alerts};
 use self::figures::METRICS;
+use self::news::Item;
 use super::product::model::{Day, projects, service};
 use super::{Figure, Look, Screen, ScreenId};
 use crate::console::action::{Action, Scope};
@@ -25,6 +25,7 @@ use crate::console::theme::Role;
 use crate::console::widgets::chart::note_room;
 use crate::console::widgets::{Axis, Cell, Column, Line, Table, chart, fan};
 use crate::notation::dollars;
+use crate::report::needs::Need;
 use crate::session::Rows;
 use crate::world::identifiers::Plan;
 
@@ -33,32 +34,32 @@ const NEEDS: usize = 0;
 const WEEK: usize = 1;
 const QUALITY: usize = 2;
 const CASH: usize = 3;
+const NEWS: usize = 4;
 
 /// The screen.
 #[derive(Default)]
 pub struct Overview {
     focus: usize,
-    /// What needs the person, the most urgent first.
-    alerts: Vec<Alert>,
-    alert: usize,
+    /// The need that is selected.
+    need: usize,
     week: Table,
     quality: Table,
     days: Vec<Day>,
-    /// What the readings say of the last week.
-    notices: Vec<Alert>,
-    research: Vec<Alert>,
+    /// What is new: the readings tell a part of it.
+    notices: Vec<Item>,
+    research: Vec<Item>,
+    news: Vec<Item>,
+    /// The item that is selected.
+    item: usize,
 }
 
 impl Overview {
-    /// Puts together what needs the person.
-    fn rank(&mut self, company: &Company) {
-        self.alerts = alerts(company);
-        if company.is_running() {
-            self.alerts.extend(self.notices.iter().chain(&self.research).cloned());
-            self.alerts.extend(news::of_posts(company));
-            alerts::sort(&mut self.alerts);
-        }
-        self.alert = self.alert.min(self.alerts.len().saturating_sub(1));
+    /// Puts together what is new.
+    fn gather(&mut self, company: &Company) {
+        self.news = self.research.iter().chain(&self.notices).cloned().collect();
+        self.news.extend(news::of_posts(company));
+        self.news.sort_by_key(|item| item.kind);
+        self.item = self.item.min(self.news.len().saturating_sub(1));
     }
 
     fn list(&mut self) -> Option<&mut Table> {
@@ -69,18 +70,33 @@ impl Overview {
         }
     }
 
-    fn act_on_alerts(&mut self, action: Action) -> Vec<Effect> {
-        let last = self.alerts.len().saturating_sub(1);
-        match action {
-            Action::Up => self.alert = self.alert.saturating_sub(1),
-            Action::Down => self.alert = (self.alert + 1).min(last),
-            Action::First => self.alert = 0,
-            Action::Last => self.alert = last,
-            Action::Open => return self.alerts.get(self.alert).map(Alert::way).into_iter().collect(),
-            _ => {}
+    fn act_on_needs(&mut self, action: Action, company: &Company) -> Vec<Effect> {
+        if action == Action::Open {
+            return company.needs.get(self.need).map(needs::way_of).into_iter().collect();
         }
+        walk(&mut self.need, company.needs.len(), action);
         Vec::new()
     }
+
+    fn act_on_news(&mut self, action: Action) -> Vec<Effect> {
+        if action == Action::Open {
+            return self.news.get(self.item).map(Item::way).into_iter().collect();
+        }
+        walk(&mut self.item, self.news.len(), action);
+        Vec::new()
+    }
+}
+
+/// Moves a selection among rows.
+fn walk(selected: &mut usize, rows: usize, action: Action) {
+    let last = rows.saturating_sub(1);
+    *selected = match action {
+        Action::Up => selected.saturating_sub(1),
+        Action::Down => (*selected + 1).min(last),
+        Action::First => 0,
+        Action::Last => last,
+        _ => *selected,
+    };
 }
 
 /// Delivered quality by group and plan.
@@ -117,7 +133,7 @@ impl Screen for Overview {
     }
 
     fn panes(&self) -> usize {
-        4
+        5
     }
 
     fn focus(&self) -> usize {
@@ -125,13 +141,14 @@ impl Screen for Overview {
     }
 
     fn set_focus(&mut self, pane: usize) {
-        self.focus = pane.min(CASH);
+        self.focus = pane.min(NEWS);
     }
 
     fn figure(&self, look: &Look<'_>) -> Option<Figure> {
         let company = look.company;
         match self.focus {
-            NEEDS => self.alerts.get(self.alert).map(|alert| alert.figure(company.seen.day)),
+            NEEDS => company.needs.get(self.need).map(|need| needs::figure_of(need, company.seen.day)),
+            NEWS => self.news.get(self.item).map(|item| item.figure(company.seen.day)),
             WEEK => {
                 let metric = METRICS.get(self.week.selected()?)?;
                 Some(figures::figure(metric, self.week.selected_column(), company))
@@ -160,12 +177,13 @@ impl Screen for Overview {
             Reading::WeekNotices => self.notices = news::of_notices(rows),
             _ => self.research = news::of_research(&projects(rows), look.company.seen.day),
         }
-        self.rank(look.company);
+        self.gather(look.company);
     }
 
     fn renew(&mut self, look: &Look<'_>) {
         let company = look.company;
-        self.rank(company);
+        self.gather(company);
+        self.need = self.need.min(company.needs.len().saturating_sub(1));
         let rows = METRICS.iter().map(|metric| figures::row_of(metric, company)).collect();
         let first = self.week.rows().is_empty();
         if first {
@@ -183,7 +201,8 @@ impl Screen for Overview {
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
         match (self.focus, action) {
-            (NEEDS, action) => return self.act_on_alerts(action),
+            (NEEDS, action) => return self.act_on_needs(action, look.company),
+            (NEWS, action) => return self.act_on_news(action),
             (WEEK, Action::Open) => return self.follow_metric(),
             (QUALITY, Action::Open) => return vec![Effect::Show(ScreenId::Product)],
             (CASH, Action::Open) => return vec![Effect::Show(ScreenId::Cash)],
@@ -214,9 +233,14 @@ impl Screen for Overview {
 
     fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
         self.set_focus(pane);
-        if pane == NEEDS {
-            let again = self.alert == row;
-            self.alert = row.min(self.alerts.len().saturating_sub(1));
+        let rows = match pane {
+            NEEDS => Some((&mut self.need, look.company.needs.len())),
+            NEWS => Some((&mut self.item, self.news.len())),
+            _ => None,
+        };
+        if let Some((selected, count)) = rows {
+            let again = *selected == row;
+            *selected = row.min(count.saturating_sub(1));
             return if again { self.act(Action::Open, look) } else { Vec::new() };
         }
         let Some(table) = self.list() else { return Vec::new() };
@@ -252,7 +276,8 @@ impl Overview {
 
     fn draw_pane(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>, pane: usize) {
         match pane {
-            NEEDS => self.draw_alerts(canvas, area),
+            NEEDS => self.draw_needs(canvas, area, look.company),
+            NEWS => self.draw_news(canvas, area),
             WEEK => self.draw_week(canvas, area, look),
             QUALITY => self.draw_quality(canvas, area, look),
             _ => self.draw_cash(canvas, area, look.company),
@@ -272,66 +297,68 @@ impl Overview {
             trends::draw_usage(canvas, used, &self.days);
         }
         self.draw_quality(canvas, below, look);
-        let needs = self.needs_height(right.width, right.height / 3);
+        let needs = needs_height(look.company, right.width, right.height / 3);
         let table = (METRICS.len() as u16 + 3).min(right.height.saturating_sub(needs));
-        let charts = trends::height(right.height.saturating_sub(needs + table));
-        let [above, week, small] =
-            Layout::vertical([Constraint::Length(needs), Constraint::Min(6), Constraint::Length(charts)])
-                .areas(right);
-        self.draw_alerts(canvas, above);
+        let left = right.height.saturating_sub(needs + table);
+        let news = if left >= 3 { (self.news.len().max(1) as u16 + 2).min(left) } else { 0 };
+        let charts = trends::height(left - news);
+        let [above, new, week, small] = Layout::vertical([
+            Constraint::Length(needs),
+            Constraint::Length(news),
+            Constraint::Min(6),
+            Constraint::Length(charts),
+        ])
+        .areas(right);
+        self.draw_needs(canvas, above, look.company);
+        if news > 0 {
+            self.draw_news(canvas, new);
+        }
         self.draw_week(canvas, week, look);
         trends::draw(canvas, small, look.company);
     }
 
     fn draw_small(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let needs = self.needs_height(area.width, area.height * 2 / 5);
+        let needs = needs_height(look.company, area.width, area.height * 2 / 5);
         let [above, below] = Layout::vertical([Constraint::Length(needs), Constraint::Min(0)]).areas(area);
-        self.draw_alerts(canvas, above);
+        self.draw_needs(canvas, above, look.company);
         // Name, figure and change of the week, with what the names need.
         let left = 48.min(area.width * 3 / 5);
         let [week, side] = Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas(below);
         self.draw_week(canvas, week, look);
         match self.focus {
             QUALITY => self.draw_quality(canvas, side, look),
+            NEWS => self.draw_news(canvas, side),
             _ => self.draw_cash(canvas, side, look.company),
         }
     }
 
-    /// Height of the alerts with their border, at most so much.
-    fn needs_height(&self, width: u16, most: u16) -> u16 {
-        let room = width.saturating_sub(2);
-        let lines: usize = self.alerts.iter().map(|alert| lines_of(alert, room).len()).sum();
-        (lines.max(1) as u16 + 2).min(most.max(4))
-    }
-
-    fn draw_alerts(&self, canvas: &mut Canvas<'_>, area: Rect) {
+    fn draw_needs(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
         let focused = self.focus == NEEDS;
         canvas.click(area, Click::Pane(NEEDS));
-        let urgent = self.alerts.iter().filter(|alert| alert.urgent).count();
-        let note =
-            if urgent > 0 { format!("{urgent} now · {} in all", self.alerts.len()) } else { String::new() };
+        let needs = &company.needs;
+        let urgent = needs.iter().filter(|need| need.urgent).count();
+        let note = if urgent > 0 { format!("{urgent} now · {} in all", needs.len()) } else { String::new() };
         let inside = canvas.pane(area, "Needs you", &note, focused);
-        if self.alerts.is_empty() {
-            canvas.text(inside, "nothing: n lets the week pass", Role::Dim);
+        if needs.is_empty() {
+            let text = match company.seen.ended {
+                Some(_) => "the run is over; readings and queries stay open",
+                None => "nothing: n lets the week pass",
+            };
+            canvas.text(inside, text, Role::Dim);
         }
-        let all: Vec<Vec<String>> = self.alerts.iter().map(|alert| lines_of(alert, inside.width)).collect();
-        // The first alert that is shown, so that the selected one is seen whole.
-        let mut from = 0;
-        let height = |from: usize| all[from..=self.alert].iter().map(Vec::len).sum::<usize>();
-        while from < self.alert && height(from) > inside.height as usize {
-            from += 1;
+        let rows: Vec<Row> = needs.iter().map(Row::of_need).collect();
+        draw_rows(canvas, inside, &rows, self.need, focused, NEEDS);
+    }
+
+    fn draw_news(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        canvas.click(area, Click::Pane(NEWS));
+        let focused = self.focus == NEWS;
+        let inside = canvas.pane(area, "New this week", "", focused);
+        if self.news.is_empty() {
+            canvas.text(inside, "nothing", Role::Dim);
         }
-        let mut y = inside.y;
-        for (at, lines) in all.iter().enumerate().skip(from) {
-            if y >= inside.bottom() {
-                break;
-            }
-            let alert = &self.alerts[at];
-            let place = Rect { y, height: lines.len() as u16, ..inside }.intersection(inside);
-            draw_alert(canvas, place, alert, lines, focused && at == self.alert);
-            canvas.click(place, Click::Row(NEEDS, at));
-            y += lines.len() as u16;
-        }
+        let rows: Vec<Row> = self.news.iter().map(Row::of_item).collect();
+        draw_rows(canvas, inside, &rows, self.item, focused, NEWS);
     }
 
     fn draw_week(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
@@ -384,26 +411,69 @@ impl Overview {
     }
 }
 
-/// Columns that the screen of an alert takes at the right.
-fn way_of(alert: &Alert) -> String {
-    format!("→ {}", alert.at().action().entry().title)
+/// A row of words that leads to a screen.
+struct Row {
+    text: String,
+    urgent: bool,
+    way: String,
 }
 
-/// The words of an alert in lines: whole, beside the name of its screen in the first one.
-fn lines_of(alert: &Alert, width: u16) -> Vec<String> {
-    let room = (width as usize).saturating_sub(way_of(alert).width() + 4);
-    wrapped(&alert.text, room.max(12))
+impl Row {
+    fn of_need(need: &Need) -> Row {
+        Row { text: need.in_words(), urgent: need.urgent, way: Row::way(needs::screen_of(need)) }
+    }
+
+    fn of_item(item: &Item) -> Row {
+        Row { text: item.text.clone(), urgent: false, way: Row::way(item.screen()) }
+    }
+
+    fn way(screen: ScreenId) -> String {
+        format!("→ {}", screen.action().entry().title)
+    }
+
+    /// The words in lines: whole, beside the name of the screen in the first one.
+    fn lines(&self, width: u16) -> Vec<String> {
+        let room = (width as usize).saturating_sub(self.way.width() + 4);
+        wrapped(&self.text, room.max(12))
+    }
 }
 
-fn draw_alert(canvas: &mut Canvas<'_>, area: Rect, alert: &Alert, lines: &[String], selected: bool) {
-    let role = match (selected, alert.urgent) {
+/// Height of the needs with their border, at most so much.
+fn needs_height(company: &Company, width: u16, most: u16) -> u16 {
+    let room = width.saturating_sub(2);
+    let lines: usize = company.needs.iter().map(|need| Row::of_need(need).lines(room).len()).sum();
+    (lines.max(1) as u16 + 2).min(most.max(4))
+}
+
+/// Draws rows from the first on with which the selected one is seen whole.
+fn draw_rows(canvas: &mut Canvas<'_>, area: Rect, rows: &[Row], selected: usize, focused: bool, pane: usize) {
+    let all: Vec<Vec<String>> = rows.iter().map(|row| row.lines(area.width)).collect();
+    let mut from = 0;
+    let height = |from: usize| all[from..].iter().take(selected + 1 - from).map(Vec::len).sum::<usize>();
+    while from < selected && height(from) > area.height as usize {
+        from += 1;
+    }
+    let mut y = area.y;
+    for (at, lines) in all.iter().enumerate().skip(from) {
+        if y >= area.bottom() {
+            break;
+        }
+        let place = Rect { y, height: lines.len() as u16, ..area }.intersection(area);
+        draw_row(canvas, place, &rows[at], lines, focused && at == selected);
+        canvas.click(place, Click::Row(pane, at));
+        y += lines.len() as u16;
+    }
+}
+
+fn draw_row(canvas: &mut Canvas<'_>, area: Rect, row: &Row, lines: &[String], selected: bool) {
+    let role = match (selected, row.urgent) {
         (true, _) => Role::Selection,
         (false, true) => Role::Warning,
         (false, false) => Role::Text,
     };
     canvas.clear(area, if selected { role } else { Role::Text });
     for (at, (line, y)) in lines.iter().zip(area.top()..area.bottom()).enumerate() {
-        let mark = match (at, alert.urgent) {
+        let mark = match (at, row.urgent) {
             (0, true) => "!",
             (0, false) => "·",
             _ => " ",
@@ -411,5 +481,5 @@ fn draw_alert(canvas: &mut Canvas<'_>, area: Rect, alert: &Alert, lines: &[Strin
         canvas.text(Rect { y, height: 1, ..area }, &format!("{mark} {line}"), role);
     }
     let way = if selected { role } else { Role::Dim };
-    canvas.aligned(Rect { height: area.height.min(1), ..area }, &way_of(alert), way, Align::Right);
+    canvas.aligned(Rect { height: area.height.min(1), ..area }, &row.way, way, Align::Right);
 }

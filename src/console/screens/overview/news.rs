@@ -1,43 +1,104 @@
-//! What has happened in the last week, as alerts: notices, posts and the news.
+//! What is new since the last week: what was finished, found and published, and what people wrote.
 
-use super::alerts::{Alert, Kind};
 use crate::console::company::Company;
+use crate::console::effect::Effect;
 use crate::console::posts::Kind as Author;
 use crate::console::screens::product::model::Project;
+use crate::console::screens::{Figure, ScreenId};
 use crate::session::Rows;
 use crate::session::text_at;
 
-/// What the notices of a week say, the newest first.
-pub fn of_notices(rows: &Rows) -> Vec<Alert> {
-    let mut alerts = Vec::new();
-    for row in &rows.rows {
-        let message = text_at(row, 2).trim_end_matches('.').to_owned();
-        alerts.push(match text_at(row, 1) {
-            "macro_economic_update" => Alert::note(Kind::Economy, message),
-            "market_discovery" | "group_research_complete" => Alert::note(Kind::Study, message),
-            "social_media" => Alert::note(Kind::Posts, message),
-            _ => continue,
-        });
-    }
-    alerts
+/// What an item is about; items stand in this order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// An R&D project was finished.
+    Research,
+    /// A study was finished or a group found.
+    Study,
+    /// The index of the economy was published.
+    Economy,
+    /// People write about the company.
+    Posts,
+    /// The press writes.
+    Press,
 }
 
-/// R&D that has ended in the last week, with what it adds.
-pub fn of_research(projects: &[Project], day: u32) -> Vec<Alert> {
+/// Something new.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Item {
+    /// What it is about.
+    pub kind: Kind,
+    /// Words.
+    pub text: String,
+}
+
+impl Item {
+    /// Where more of it stands.
+    pub fn screen(&self) -> ScreenId {
+        match self.kind {
+            Kind::Research => ScreenId::Product,
+            Kind::Study | Kind::Economy => ScreenId::Market,
+            Kind::Posts | Kind::Press => ScreenId::Social,
+        }
+    }
+
+    /// What leads there.
+    pub fn way(&self) -> Effect {
+        Effect::Show(self.screen())
+    }
+
+    /// The figure it speaks of.
+    pub fn figure(&self, day: u32) -> Figure {
+        let (term, sql) = match self.kind {
+            Kind::Research => {
+                ("research", "SELECT *\nFROM research_projects\nORDER BY started_day DESC".to_owned())
+            }
+            Kind::Study => {
+                ("info-level", "SELECT *\nFROM group_info_levels\nWHERE info_level > 0".to_owned())
+            }
+            Kind::Economy => ("pmi", "SELECT *\nFROM macroeconomic_conditions\nORDER BY day DESC".to_owned()),
+            Kind::Posts | Kind::Press => (
+                "social_media_posts.content",
+                format!(
+                    "SELECT post_id, day, content\nFROM social_media_posts\nWHERE day BETWEEN {} AND {day}\nORDER BY post_id DESC",
+                    day.saturating_sub(6)
+                ),
+            ),
+        };
+        Figure { title: self.text.clone(), term, sql: Some(sql) }
+    }
+}
+
+/// What the notices of a week say, the newest first.
+pub fn of_notices(rows: &Rows) -> Vec<Item> {
+    let mut items = Vec::new();
+    for row in &rows.rows {
+        let kind = match text_at(row, 1) {
+            "macro_economic_update" => Kind::Economy,
+            "market_discovery" | "group_research_complete" => Kind::Study,
+            "social_media" => Kind::Posts,
+            _ => continue,
+        };
+        items.push(Item { kind, text: text_at(row, 2).trim_end_matches('.').to_owned() });
+    }
+    items
+}
+
+/// R&D that was finished in the last week, with what it adds.
+pub fn of_research(projects: &[Project], day: u32) -> Vec<Item> {
     let ended = |project: &&Project| project.done && project.expected + 7 > day && project.expected <= day;
-    let words = |project: &Project| {
-        let text = format!("R&D {} is done: {:+.4} quality for everybody", project.id, project.boost);
-        Alert::note(Kind::Research, text)
+    let words = |project: &Project| Item {
+        kind: Kind::Research,
+        text: format!("R&D {} is done: {:+.4} quality for everybody", project.id, project.boost),
     };
     projects.iter().filter(ended).map(words).collect()
 }
 
-/// What people and the press wrote in the last week; many more posts than usual need the person.
-pub fn of_posts(company: &Company) -> Vec<Alert> {
+/// What people and the press wrote in the last week.
+pub fn of_posts(company: &Company) -> Vec<Item> {
     let day = company.seen.day;
-    // Number of posts of the last week, and of the four before it.
+    // Posts of the last week, and of the four before it; the newest stand first.
     let (mut own, mut before, mut press) = (0u32, 0u32, 0u32);
-    // The newest stand first; what is older than five weeks does not count.
     for post in company.posts.iter().take_while(|post| post.day + 35 > day) {
         let weeks = day.saturating_sub(post.day) / 7;
         match (post.kind, weeks) {
@@ -48,17 +109,16 @@ pub fn of_posts(company: &Company) -> Vec<Alert> {
         }
     }
     let usual = f64::from(before) / 4.0;
-    let mut alerts = Vec::new();
-    let noun = |count: u32| if count == 1 { "post" } else { "posts" };
-    if own >= 8 && f64::from(own) > 2.0 * usual {
-        let text = format!("{own} posts about us in a week, {usual:.0} is usual: read what it is about");
-        alerts.push(Alert { kind: Kind::Stir, text, urgent: true });
-    } else if own > 0 {
-        alerts.push(Alert::note(Kind::Posts, format!("{own} new {} about us", noun(own))));
+    let mut items = Vec::new();
+    if own > 0 {
+        let noun = if own == 1 { "post" } else { "posts" };
+        let compared =
+            if before > 0 { format!(" (mean of the four weeks before: {usual:.0})") } else { String::new() };
+        items.push(Item { kind: Kind::Posts, text: format!("{own} new {noun} about us{compared}") });
     }
     if press > 0 {
-        let text = format!("{press} {} of the press on rivals and the economy", noun(press));
-        alerts.push(Alert::note(Kind::Press, text));
+        let noun = if press == 1 { "news item" } else { "news items" };
+        items.push(Item { kind: Kind::Press, text: format!("{press} {noun} on rivals and the economy") });
     }
-    alerts
+    items
 }

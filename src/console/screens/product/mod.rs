@@ -12,6 +12,7 @@ mod tests;
 use std::collections::BTreeMap;
 
 use ratatui::layout::{Constraint, Layout, Rect};
+use serde_json::json;
 
 use self::model::{Ages, Day, Offer, PlanFacts, Project, Rung, Sales};
 use super::{Figure, Look, Screen};
@@ -22,7 +23,8 @@ use crate::console::effect::Effect;
 use crate::console::readings::Reading;
 use crate::console::theme::Role;
 use crate::notation::{grouped, percent};
-use crate::session::Rows;
+use crate::session::{Category, Rows};
+use crate::world::identifiers::Plan;
 
 /// Panes, with their titles.
 const PANES: [&str; 6] = ["Quality", "Plans", "Capacity", "Service", "Issues", "R&D"];
@@ -75,15 +77,33 @@ impl Product {
         }
     }
 
-    fn open(&self) -> Vec<Effect> {
+    /// Leads to the very object that is selected: its cell, or the form with it proposed.
+    fn open(&self, company: &Company) -> Vec<Effect> {
         let place = self.places[self.focus.0];
+        let cell = |tool: &'static str, of: Option<String>| match of {
+            Some(of) => Effect::ShowCell(tool, of),
+            None => Effect::ShowTool(tool),
+        };
+        let tier = |tool: &'static str, tier: Option<u32>| match tier {
+            Some(tier) => Effect::Prefill { tool, arguments: json!({ "tier": tier }) },
+            None => Effect::ShowTool(tool),
+        };
         vec![match self.focus.0 {
-            QUALITY => Effect::ShowTool("set_targeted_dev_spend"),
-            PLANS => Effect::ShowTool(plans::tool_of(place)),
-            CAPACITY => Effect::ShowTool("set_capacity_tier"),
+            QUALITY => {
+                let group = company.quality.get(place).map(|quality| quality.group.to_string());
+                cell("set_targeted_dev_spend", group)
+            }
+            PLANS => cell(plans::tool_of(place), Some(Plan::ALL[self.column.min(2)].to_string())),
+            CAPACITY => tier("set_capacity_tier", self.rungs.get(place).map(|rung| rung.tier)),
             SERVICE => Effect::EditSql("SELECT * FROM service_day ORDER BY day DESC".to_owned()),
-            ISSUES => Effect::ShowTool("set_targeted_ops_spend"),
-            _ => Effect::ShowTool("start_research_project"),
+            ISSUES => {
+                let group = self.issues.as_ref().and_then(|issues| issues.keys().nth(place));
+                cell("set_targeted_ops_spend", group.map(ToString::to_string))
+            }
+            _ => {
+                let offer = place.checked_sub(self.projects.len()).and_then(|at| self.offers.get(at));
+                tier("start_research_project", offer.map(|offer| offer.tier))
+            }
         }]
     }
 
@@ -125,26 +145,13 @@ impl Screen for Product {
     }
 
     fn readings(&self) -> &'static [Reading] {
-        &[
-            Reading::Service,
-            Reading::Research,
-            Reading::LedgerByWeek,
-            Reading::Subscribers,
-            Reading::Usage,
-            Reading::OpenIssues,
-        ]
+        &[Reading::Service, Reading::Research, Reading::Subscribers, Reading::Usage, Reading::OpenIssues]
     }
 
     fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
         match reading {
             Reading::Service => self.days = model::service(rows),
             Reading::Research => self.projects = model::projects(rows),
-            Reading::LedgerByWeek => {
-                self.spent = research::Spent {
-                    development: model::spent(rows, "development"),
-                    operations: model::spent(rows, "operations"),
-                };
-            }
             Reading::Subscribers => self.sales.take_subscribers(rows),
             Reading::Usage => self.sales.take_usage(rows),
             Reading::OpenIssues => self.issues = Some(model::issues(rows)),
@@ -154,6 +161,11 @@ impl Screen for Product {
     }
 
     fn renew(&mut self, look: &Look<'_>) {
+        let spent = |category| model::spent(&look.company.weeks, category);
+        self.spent = research::Spent {
+            development: spent(Category::Development),
+            operations: spent(Category::Operations),
+        };
         self.rungs = model::ladder(look.company);
         self.offers = model::offers(look.company);
         self.plans = self.sales.plans(look.company);
@@ -179,7 +191,7 @@ impl Screen for Product {
             Action::Right if self.focus.0 == PLANS && self.column < 2 => self.column += 1,
             Action::Left => self.set_focus((self.focus.0 + PANES.len() - 1) % PANES.len()),
             Action::Right => self.set_focus((self.focus.0 + 1) % PANES.len()),
-            Action::Open => return self.open(),
+            Action::Open => return self.open(look.company),
             _ => {}
         }
         Vec::new()

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::console::company::Company;
-use crate::session::Rows;
+use crate::session::{Category, Rows, WeekFigures};
 use crate::session::{number_at, text_at};
 use crate::world::identifiers::Plan;
 
@@ -231,7 +231,7 @@ pub struct Offer {
     pub name: String,
     /// Dollars.
     pub cost: f64,
-    /// Days it takes on average.
+    /// Mean of its days, or the least a project takes where that is more.
     pub days: f64,
     /// Quality it adds on average.
     pub boost: f64,
@@ -247,19 +247,14 @@ pub fn offers(company: &Company) -> Vec<Offer> {
         tier: number(tier, "tier") as u32,
         name: tier.get("name").and_then(Value::as_str).unwrap_or("").to_owned(),
         cost: number(tier, "cost"),
-        days: number(tier, "mean_days"),
+        days: number(tier, "mean_days").max(f64::from(company.terms.research_least_days)),
         boost: number(tier, "mean_quality_boost"),
         counts: (number(tier, "in_progress") as u64, number(tier, "completed") as u64),
     };
     tiers.into_iter().flatten().map(offer).collect()
 }
 
-/// Dollars of a category by week, from the first week on.
-pub fn spent(rows: &Rows, category: &str) -> Vec<f64> {
-    let mut weeks: BTreeMap<u32, f64> = BTreeMap::new();
-    for row in rows.rows.iter().filter(|row| text_at(row, 1) == category) {
-        *weeks.entry(number_at(row, 0) as u32).or_default() -= number_at(row, 2);
-    }
-    let last = weeks.keys().next_back().copied().unwrap_or(0);
-    (1..=last).map(|week| weeks.get(&week).copied().unwrap_or(0.0)).collect()
+/// Dollars spent on a category by week, from the first week on.
+pub fn spent(weeks: &[WeekFigures], category: Category) -> Vec<f64> {
+    weeks.iter().map(|week| -week.booked.of(category)).collect()
 }

@@ -39,6 +39,23 @@ fn the_readings_agree_with_the_company() {
 }
 
 #[test]
+fn a_rung_of_the_ladder_leads_to_the_form_with_that_tier() {
+    let mut session = played(2);
+    let company = Company::of(&session);
+    let mut screen: Product = shown(&mut session, &company);
+    screen.set_focus(CAPACITY);
+    screen.places[CAPACITY] = 5;
+    let effects = act(&mut screen, Action::Open, &company);
+    let [Effect::Prefill { tool: "set_capacity_tier", arguments }] = &effects[..] else {
+        panic!("{effects:?}")
+    };
+    assert_eq!(arguments, &json!({"tier": 5}));
+    let text = drawn(&screen, &company, 120, 37);
+    assert!(!text.contains(" 12 days"), "no project takes less than 30 days:\n{text}");
+    assert!(screen.offers.iter().all(|offer| offer.days >= 30.0));
+}
+
+#[test]
 fn every_pane_leads_somewhere() {
     let mut session = played(2);
     let company = Company::of(&session);
@@ -49,6 +66,19 @@ fn every_pane_leads_somewhere() {
             match act(&mut screen, Action::Open, &company).pop() {
                 Some(Effect::ShowTool(tool)) => {
                     assert!(crate::tools::CATALOGUE.iter().any(|own| own.spec().name == tool), "{tool}");
+                }
+                Some(Effect::ShowCell(tool, of)) => {
+                    let mut tools = crate::console::screens::tools::Tools::default();
+                    tools.show_cell(tool, &of, &company);
+                    assert!(
+                        tools.place_path().is_some_and(|path| path.split('.').any(|name| name == of)),
+                        "{tool} {of}"
+                    );
+                }
+                Some(Effect::Prefill { tool, arguments }) => {
+                    let mut tools = crate::console::screens::tools::Tools::default();
+                    tools.prefill(tool, &arguments, &company);
+                    assert_eq!(tools.typed_arguments(), Some(arguments));
                 }
                 Some(Effect::EditSql(sql)) => {
                     session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));

@@ -137,7 +137,7 @@ fn draw_form(
     let used = (shown.len() as u16 + 1).min(rest.height);
     let below = Rect { y: rest.y + used, height: rest.height - used, ..rest };
     let used = draw_earlier(&form.earlier, canvas, below);
-    draw_manual(spec, canvas, Rect { y: below.y + used, height: below.height - used, ..below });
+    draw_manual(spec, canvas, Rect { y: below.y + used, height: below.height - used, ..below }, look);
     canvas.pane_keys(area, &keys(form, look));
 }
 
@@ -158,7 +158,7 @@ fn draw_earlier(calls: &[(u32, String)], canvas: &mut Canvas<'_>, area: Rect) ->
 }
 
 /// The manual of the tool, in large windows.
-fn draw_manual(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect) {
+fn draw_manual(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     if area.height < 8 {
         return;
     }
@@ -166,7 +166,8 @@ fn draw_manual(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect) {
     if let Some(row) = rows.next() {
         canvas.text(row, "manual", Role::Header);
     }
-    for (row, line) in rows.zip(wrapped(&describe::manual(spec), area.width as usize)) {
+    for (row, line) in rows.zip(wrapped(&describe::manual(spec, &look.company.numbers), area.width as usize))
+    {
         canvas.text(row, &line, Role::Dim);
     }
 }

@@ -8,7 +8,6 @@ use super::sheet::{Place, Sheet};
 use crate::console::action::Action;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
-use crate::console::keys::Chord;
 use crate::console::widgets::Field;
 use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::notation::dollars;
@@ -207,20 +206,27 @@ impl Form {
                 return vec![Effect::Complain("a customer number is expected, for instance 17".to_owned())];
             }
             self.at = Place { block, row: self.sheet.blocks[block].rows.len() - 1, column: 0 };
+            self.edit();
             return Vec::new();
         }
         self.typing = None;
-        if let Some(slot) = self.sheet.slot_mut(self.at)
-            && !slot.is_changed()
-            && slot.draft.as_ref().is_some_and(|draft| parse_number(draft.text()).is_some())
-        {
-            // What was typed is what holds: the cell counts as untouched.
-            slot.draft = None;
+        let scalar = self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_scalar);
+        if let Some(slot) = self.sheet.slot_mut(self.at) {
+            let text = slot.draft.as_ref().map_or("", Field::text).trim();
+            let same = !slot.is_changed() && parse_number(text).is_some();
+            // What was typed is what holds, or a number was emptied: the cell counts as untouched.
+            if same || (scalar && text.is_empty()) {
+                slot.draft = None;
+            }
         }
         match action {
             Action::CommitNext => self.walk(Action::Right),
             Action::CommitPrevious => self.walk(Action::Up),
             _ => self.walk(Action::Down),
+        }
+        // Enter ends typing; the keys that move go on in the cell they lead to.
+        if action != Action::Commit {
+            self.edit();
         }
         self.check()
     }
@@ -298,27 +304,13 @@ impl Form {
         self.at = Place { block, row, column: self.at.column.min(cells - 1) };
     }
 
-    /// Takes a typed key; a digit begins to type, in a line of text any letter.
+    /// Takes a key that is typed into a cell.
     pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         if let Some((_, field)) = &mut self.adding {
             field.key(key);
             return Vec::new();
         }
         let text = self.is_at_text();
-        let begins = if text { Chord::of(key).is_letter() } else { Chord::of(key).begins_number() };
-        if self.typing.is_none() && begins {
-            if self.at_adding_row().is_some() {
-                self.edit();
-                return self.key(key);
-            }
-            if let Some(slot) = self.sheet.slot_mut(self.at) {
-                let empty = slot.draft.is_none() || !text;
-                self.typing = Some(slot.draft.clone());
-                if empty {
-                    slot.draft = Some(Field::default());
-                }
-            }
-        }
         if self.typing.is_some()
             && let Some(slot) = self.sheet.slot_mut(self.at)
             && let Some(field) = &mut slot.draft

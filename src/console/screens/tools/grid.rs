@@ -249,7 +249,10 @@ fn draw_cell(form: &Form, place: Place, canvas: &mut Canvas<'_>, area: Rect, her
 fn is_wrong(form: &Form, block: &Block, slot: &Slot, place: Place) -> bool {
     let outside = match slot.value() {
         Err(()) => true,
-        Ok(Some(value)) if slot.is_changed() => !block.range().holds(value),
+        Ok(Some(value)) if slot.is_changed() => {
+            let range = block.range();
+            !(range.holds(value) && range.fits(value))
+        }
         Ok(_) => false,
     };
     let blamed = match &form.preview {

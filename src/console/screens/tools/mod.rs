@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
+use serde_json::Value;
 
 use super::{Figure, Look, Screen, ScreenId};
 use crate::console::action::{Action, Scope};
@@ -78,6 +79,39 @@ impl Tools {
             self.focus = 1;
             self.form(company);
         }
+    }
+
+    /// Shows the form of a tool at the first cell that is for a group, a plan or the like.
+    pub fn show_cell(&mut self, tool: &str, of: &str, company: &Company) {
+        self.show(tool, company);
+        if let Some(form) = self.form(company)
+            && let Some(place) = form.sheet.place_for(of)
+        {
+            form.at = place;
+        }
+    }
+
+    /// Path of the cell that has the focus.
+    #[cfg(test)]
+    pub fn place_path(&self) -> Option<String> {
+        let form = self.seen_form()?;
+        let block = form.sheet.blocks.get(form.at.block)?;
+        Some(block.path(form.at.row, form.at.column))
+    }
+
+    /// Arguments that the form on screen would send.
+    #[cfg(test)]
+    pub fn typed_arguments(&self) -> Option<Value> {
+        self.seen_form()?.sheet.arguments().ok()
+    }
+
+    /// Shows the form of a tool with arguments typed into it.
+    pub fn prefill(&mut self, tool: &str, arguments: &Value, company: &Company) -> Vec<Effect> {
+        self.show(tool, company);
+        self.form(company).map_or(Vec::new(), |form| {
+            form.sheet.fill(arguments);
+            form.check()
+        })
     }
 
     /// Tools whose forms hold values that were not sent.
@@ -160,10 +194,6 @@ impl Screen for Tools {
         }
     }
 
-    fn takes_digits(&self) -> bool {
-        self.focus == 1 && self.seen_form().is_some_and(|form| !form.sheet.blocks.is_empty())
-    }
-
     fn hints(&self) -> Vec<Action> {
         match self.focus {
             0 if self.typing.is_some() => vec![Action::Commit, Action::Discard],
@@ -172,6 +202,7 @@ impl Screen for Tools {
                 vec![Action::CommitDown, Action::CommitNext, Action::Apply, Action::Discard]
             }
             _ => vec![
+                Action::EditCell,
                 Action::Apply,
                 Action::SameDown,
                 Action::ResetForm,
@@ -221,10 +252,18 @@ impl Screen for Tools {
                     form.preview = Some(preview.clone());
                 }
             }
+            // What a form said of its call holds no longer.
+            News::Undone(Ok(_), _) | News::Redone(Ok(_), _) => {
+                self.forms.values_mut().for_each(|form| form.answer = None);
+            }
             News::Called(tool, answer, _) => {
                 if let Some(form) = self.forms.get_mut(tool) {
                     if answer.is_ok() {
                         form.reset(look.company);
+                        // What was sent is done with; keys are those of the list again.
+                        if form.spec.kind.acts() {
+                            self.focus = 0;
+                        }
                     } else if let Err(refusal) = answer
                         && let Some(place) =
                             refusal.field.as_ref().and_then(|field| form.sheet.place_of(field))

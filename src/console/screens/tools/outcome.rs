@@ -124,7 +124,7 @@ pub(super) fn outcome_lines(
             lines.extend(wrapped(text, width).into_iter().map(|line| (line, Role::Dim)));
         }
     };
-    about(form.spec.effect);
+    about(&look.company.numbers.fill(form.spec.effect));
     lines
 }
 

@@ -87,7 +87,7 @@ impl Block {
             }
             ArgumentKind::Map(key, _) => (keys(key, current), vec![String::new()]),
             ArgumentKind::Matrix(outer, inner, _) => (keys(outer, current), keys(inner, None)),
-            ArgumentKind::Text | ArgumentKind::Structure(_) => {
+            ArgumentKind::Text | ArgumentKind::Structure(_) | ArgumentKind::Deals(_) => {
                 (vec![argument.name.to_owned()], vec![String::new()])
             }
         };
@@ -109,7 +109,7 @@ impl Block {
             | ArgumentKind::Integer(range)
             | ArgumentKind::Map(_, range)
             | ArgumentKind::Matrix(_, _, range) => range,
-            ArgumentKind::Text | ArgumentKind::Structure(_) => Range::AT_LEAST_ZERO,
+            ArgumentKind::Text | ArgumentKind::Structure(_) | ArgumentKind::Deals(_) => Range::AT_LEAST_ZERO,
         }
     }
 
@@ -120,7 +120,7 @@ impl Block {
 
     /// Whether it is one line of text: words, or a list written as JSON.
     pub fn is_text(&self) -> bool {
-        matches!(self.argument.kind, ArgumentKind::Text | ArgumentKind::Structure(_))
+        matches!(self.argument.kind, ArgumentKind::Text | ArgumentKind::Structure(_) | ArgumentKind::Deals(_))
     }
 
     /// Whether rows can be added: customers are too many to list.
@@ -266,6 +266,20 @@ impl Sheet {
         sheet
     }
 
+    /// Types arguments into their cells; cells they do not name stay as they are.
+    pub fn fill(&mut self, arguments: &Value) {
+        let places: Vec<Place> = self.places().collect();
+        for place in places {
+            let path = self.blocks[place.block].path(place.row, place.column);
+            let found = path.split('.').try_fold(arguments, |value, name| value.get(name));
+            if let Some(number) = found.and_then(Value::as_f64)
+                && let Some(slot) = self.slot_mut(place)
+            {
+                slot.draft = Some(Field::of(plain(number)));
+            }
+        }
+    }
+
     /// Whether something differs from what holds.
     pub fn is_changed(&self) -> bool {
         self.blocks.iter().any(Block::is_changed)
@@ -291,6 +305,14 @@ impl Sheet {
     /// The cell that a refusal names.
     pub fn place_of(&self, path: &str) -> Option<Place> {
         self.places().find(|place| self.blocks[place.block].path(place.row, place.column) == path)
+    }
+
+    /// The first cell whose path has this name in it.
+    pub fn place_for(&self, name: &str) -> Option<Place> {
+        let is_for = |place: &Place| {
+            self.blocks[place.block].path(place.row, place.column).split('.').any(|own| own == name)
+        };
+        self.places().find(is_for)
     }
 
     /// All cells in reading order.

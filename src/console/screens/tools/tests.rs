@@ -3,7 +3,7 @@ use serde_json::json;
 use super::*;
 use crate::console::keys::{Chord, Keys};
 use crate::console::test_kit::{act, company, drawn, played, shown, sweep};
-use crate::session::Via;
+use crate::session::{Refusal, Via};
 
 /// Types into the form of a tool; words are keys, the rest is typed letter by letter.
 fn typed(tool: &str, keys: &[&str]) -> (Tools, Vec<Effect>) {
@@ -27,22 +27,72 @@ fn typed(tool: &str, keys: &[&str]) -> (Tools, Vec<Effect>) {
 }
 
 #[test]
-fn digits_begin_to_type_and_enter_goes_down() {
-    let (_, effects) = typed("set_prices", &["1", "2", "enter", "2", "5", "enter", "5", "5", "ctrl-s"]);
+fn enter_edits_a_cell_and_arrows_go_on_in_the_next() {
+    let (_, effects) =
+        typed("set_prices", &["enter", "1", "2", "down", "2", "5", "down", "5", "5", "ctrl-s"]);
     let Some(Effect::Call { tool, arguments }) = effects.first() else { panic!("{effects:?}") };
     assert_eq!((*tool, arguments), ("set_prices", &json!({"A": 12, "B": 25, "C": 55})));
 }
 
 #[test]
+fn keys_pressed_outside_a_cell_type_nothing() {
+    let (tools, _) = typed("set_targeted_ad_spend", &["9", "$", "-", "5"]);
+    let form = tools.seen_form().expect("a form");
+    assert!(!form.is_typing() && !form.sheet.is_changed(), "{:?}", form.sheet.arguments());
+}
+
+#[test]
+fn one_quota_is_changed_alone_and_an_emptied_number_stays_what_it_was() {
+    let mut session = played(1);
+    let company = Company::of(&session);
+    let keys = Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 10 };
+    let mut tools: Tools = shown(&mut session, &company);
+    tools.show("set_usage_quotas", &company);
+    let press = |tools: &mut Tools, key: &str| {
+        let chord = Chord::parse(key).expect(key);
+        let typed = tools.scopes()[0].is_text() && chord.is_printable();
+        match keys.action(&tools.scopes(), chord).filter(|_| !typed) {
+            Some(action) => tools.act(action, &look),
+            None => tools.key(&chord.event(), &look),
+        }
+    };
+    for key in ["down", "enter", "9", "0", "0", "down", "backspace", "enter"] {
+        press(&mut tools, key);
+    }
+    let effects = press(&mut tools, "ctrl-s");
+    let [Effect::Call { tool, arguments }] = &effects[..] else { panic!("{effects:?}") };
+    assert_eq!(arguments, &json!({"A": 60_000, "B": 900, "C": 1_200_000}));
+    session.call(tool, arguments, Via::Form).expect("all three quotas were sent");
+}
+
+#[test]
+fn after_a_call_the_keys_are_those_of_the_list_again() {
+    let (mut tools, _) = typed("set_prices", &["enter", "1", "2", "enter"]);
+    let (company, keys) = (company(), Keys::shipped());
+    let look = Look { company: &company, keys: &keys, page: 10 };
+    let refused = Refusal::at("A", "price_not_positive", "no");
+    tools.hear(&News::Called("set_prices", Err(refused), company.clone().into()), &look);
+    assert_eq!(tools.focus(), 1, "a refused call is mended where it was typed");
+    tools.hear(&News::Called("set_prices", Ok(json!({})), company.clone().into()), &look);
+    assert_eq!((tools.focus(), tools.scopes()), (0, vec![Scope::List]));
+    assert!(tools.seen_form().expect("a form").answer.is_some());
+    tools.hear(&News::Undone(Ok(Vec::new()), company.clone().into()), &look);
+    assert!(tools.seen_form().expect("a form").answer.is_none(), "what was answered holds no longer");
+}
+
+#[test]
 fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
-    let keys =
-        ["[", "[", "7", ",", "[", "[", "\"", "B", "\"", ",", "3", "0", "]", "]", "]", "]", "enter", "ctrl-s"];
+    let keys = [
+        "enter", "[", "[", "7", ",", "[", "[", "\"", "B", "\"", ",", "3", "0", "]", "]", "]", "]", "enter",
+        "ctrl-s",
+    ];
     let (tools, effects) = typed("send_enterprise_deal", &keys);
     let Some(Effect::ConfirmCall { tool, arguments, text }) = effects.first() else { panic!("{effects:?}") };
     assert_eq!((*tool, arguments), ("send_enterprise_deal", &json!({"deals": [[7, [["B", 30]]]]})));
     assert!(text.contains("cannot be taken back"), "{text}");
     assert!(tools.holds_unsent_text());
-    let (_, effects) = typed("send_enterprise_deal", &["[", "7", "enter", "ctrl-s"]);
+    let (_, effects) = typed("send_enterprise_deal", &["enter", "[", "7", "enter", "ctrl-s"]);
     assert!(
         matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: a list")),
         "{effects:?}"
@@ -53,13 +103,13 @@ fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
 
 #[test]
 fn escape_brings_back_what_was_there() {
-    let (tools, _) = typed("set_prices", &["1", "2", "enter", "up", "9", "9", "esc"]);
+    let (tools, _) = typed("set_prices", &["enter", "1", "2", "enter", "up", "enter", "9", "9", "esc"]);
     assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
 }
 
 #[test]
 fn the_same_value_goes_down_a_column() {
-    let (tools, _) = typed("set_targeted_ad_spend", &["right", "4", "0", "enter", "up", "="]);
+    let (tools, _) = typed("set_targeted_ad_spend", &["right", "enter", "4", "0", "enter", "up", "="]);
     let arguments = tools.seen_form().expect("a form").sheet.arguments().expect("numbers");
     let matrix = arguments["targeted_spend"].as_object().expect("a matrix");
     assert_eq!(matrix.len(), 5);
@@ -70,13 +120,13 @@ fn the_same_value_goes_down_a_column() {
 fn a_form_without_changes_is_not_sent_and_a_wrong_cell_is_named() {
     let (_, effects) = typed("set_prices", &["ctrl-s"]);
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing differs")));
-    let (_, effects) = typed("set_prices", &["1", "-", "ctrl-s"]);
+    let (_, effects) = typed("set_prices", &["enter", "1", "-", "ctrl-s"]);
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("A: a number")));
 }
 
 #[test]
 fn drafts_stay_when_another_tool_is_looked_at() {
-    let (mut tools, _) = typed("set_prices", &["1", "2", "enter"]);
+    let (mut tools, _) = typed("set_prices", &["enter", "1", "2", "enter"]);
     let (company, keys) = (company(), Keys::shipped());
     let look = Look { company: &company, keys: &keys, page: 10 };
     tools.show("set_daily_spend", &company);
@@ -94,9 +144,9 @@ fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
     tools.show("set_prices", &company);
     let keys = Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 10 };
-    for key in ["1", "4", "enter", "esc"] {
+    for key in ["enter", "1", "4", "enter", "esc"] {
         let chord = Chord::parse(key).expect(key);
-        match keys.action(&tools.scopes(), chord).filter(|_| !chord.begins_number()) {
+        match keys.action(&tools.scopes(), chord) {
             Some(action) => tools.act(action, &look),
             None => tools.key(&chord.event(), &look),
         };

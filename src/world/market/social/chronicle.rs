@@ -5,6 +5,7 @@ use crate::world::canonical::canonical;
 use crate::world::events::ServiceDay;
 use crate::world::identifiers::{ByGroup, ByPlan, Group};
 use crate::world::product::Product;
+use crate::world::quota::Quota;
 use crate::world::settings::Settings;
 
 /// Days that are remembered besides today.
@@ -28,7 +29,7 @@ pub struct Page {
     /// List prices, dollars a month.
     pub prices: ByPlan<f64>,
     /// Quotas, units a day.
-    pub quotas: ByPlan<u64>,
+    pub quotas: ByPlan<Quota>,
     /// The largest discount anybody could have, dollars a month.
     pub discount: f64,
     /// Whether there was an outage.

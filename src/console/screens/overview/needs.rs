@@ -1,0 +1,82 @@
+//! What needs the person, as rows of this screen: where each leads, and the figure it speaks of.
+
+use crate::console::effect::Effect;
+use crate::console::screens::{Figure, ScreenId};
+use crate::report::needs::{Need, Place, Problem};
+use crate::session::entries_of_weeks;
+
+/// The screen on which a need is looked after.
+pub fn screen_of(need: &Need) -> ScreenId {
+    match &need.place {
+        Place::Call(..) => ScreenId::Tools,
+        Place::Thread(_) => ScreenId::Inbox,
+        Place::Group(_) => ScreenId::Customers,
+        Place::Books => ScreenId::Cash,
+    }
+}
+
+/// What leads there: to the very form, thread or group.
+pub fn way_of(need: &Need) -> Effect {
+    match &need.place {
+        Place::Call(tool, arguments) => Effect::Prefill { tool, arguments: arguments.clone() },
+        Place::Thread(number) => Effect::ShowThread(*number),
+        Place::Group(group) => Effect::ShowGroup(ScreenId::Customers, *group),
+        Place::Books => Effect::Show(ScreenId::Cash),
+    }
+}
+
+/// The figure that a need speaks of.
+pub fn figure_of(need: &Need, day: u32) -> Figure {
+    let from = day.saturating_sub(6);
+    let days = |columns: &str| {
+        format!("SELECT {columns}\nFROM service_day\nWHERE day BETWEEN {from} AND {day}\nORDER BY day")
+    };
+    let leads_of = |group: &str| {
+        format!(
+            "SELECT c.customer_id, c.created_day, c.acquisition_source, s.plan, s.status, s.listed_price\nFROM customers c\n\
+             LEFT JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}' AND c.created_day \
+             BETWEEN {from} AND {day}"
+        )
+    };
+    let (term, sql) = match need.problem {
+        Problem::Runway => {
+            let week = day.div_ceil(7);
+            let weeks = entries_of_weeks(week.saturating_sub(3).max(1), week);
+            (
+                "runway",
+                Some(format!(
+                    "SELECT category, sum(amount) AS dollars, sum(amount) / 4 AS dollars_a_week\nFROM ledger\nWHERE {weeks}\n\
+                     GROUP BY 1\nORDER BY 2"
+                )),
+            )
+        }
+        Problem::Threads => (
+            "thread",
+            Some(format!(
+                "SELECT customer_id, thread_type, max(turn_number) AS turn, day, sender, seat_count\n\
+                 FROM enterprise_turns\nGROUP BY customer_id, thread_type\n\
+                 HAVING sender <> 'agent' AND closed = 0 AND day >= {from}\nORDER BY seat_count DESC"
+            )),
+        ),
+        Problem::NoPrice => ("set_prices", None),
+        Problem::NoQuota => ("set_usage_quotas", None),
+        Problem::NoLeads => ("lead", None),
+        Problem::NoSales(group) => ("conversion", Some(leads_of(group.id()))),
+        Problem::Unwanted(group) => ("delivered-quality", Some(leads_of(group.id()))),
+        Problem::Margin => ("gross-margin", None),
+        Problem::Overload | Problem::Capacity => {
+            ("overload", Some(days("day, total_usage_units, capacity_units, capacity_tier")))
+        }
+        Problem::Outages => ("outage", Some(days("day, downtime_minutes, p95_ms, error_rate"))),
+        Problem::Backlog => ("issues", Some(days("day, total_usage_units, downtime_minutes"))),
+        Problem::Churn(group) => (
+            "churn",
+            Some(format!(
+                "SELECT s.customer_id, s.plan, s.listed_price, s.start_day, s.end_day\nFROM subscriptions s\n\
+                 JOIN customers c ON c.customer_id = s.customer_id\nWHERE c.group_id = '{group}' AND s.status = 'cancelled' \
+                 AND s.end_day BETWEEN {from} AND {day}"
+            )),
+        ),
+    };
+    Figure { title: need.text.clone(), term, sql }
+}

@@ -1,0 +1,136 @@
+//! Packed days by customer, for statements that look up one customer after the other: packed rows can only be looked
+//! through run by run.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use super::blocks::{PackedDay, Run};
+
+/// Bytes that the indexes of one statement may take together.
+const MOST_BYTES: usize = 256 << 20;
+
+/// Rows of some days, those of a customer side by side in the order in which they stand.
+pub(super) struct ByCustomer<R: Run> {
+    first_customer: u32,
+    /// Where the rows of each customer begin, and where those of the last one end.
+    begins: Vec<u32>,
+    /// Number of each row.
+    pub numbers: Vec<i64>,
+    /// What stands in each row besides day and customer.
+    pub rows: Vec<R::Row>,
+}
+
+impl<R: Run> ByCustomer<R> {
+    /// None where the days cannot be read.
+    fn of(days: &[Arc<PackedDay>]) -> Option<ByCustomer<R>> {
+        let customers = customers_of(days);
+        let mut begins = vec![0u32; customers.len() + 1];
+        let place = |customer: u32| (customer - customers.start) as usize;
+        for_each_run::<R>(days, |_, run| {
+            run.customers().iter().for_each(|customer| begins[place(*customer) + 1] += 1);
+        })?;
+        for at in 1..begins.len() {
+            begins[at] += begins[at - 1];
+        }
+        let mut next = begins.clone();
+        let count = begins.last().map_or(0, |end| *end as usize);
+        let mut numbers = vec![0; count];
+        let mut rows = vec![R::Row::default(); count];
+        for_each_run::<R>(days, |first_number, run| {
+            for (at, customer) in run.customers().iter().enumerate() {
+                let own = &mut next[place(*customer)];
+                numbers[*own as usize] = first_number + at as i64;
+                rows[*own as usize] = run.row(at);
+                *own += 1;
+            }
+        })?;
+        Some(ByCustomer { first_customer: customers.start, begins, numbers, rows })
+    }
+
+    /// Where the rows of a customer stand.
+    pub fn rows_of(&self, customer: f64) -> Range<usize> {
+        let at = customer - f64::from(self.first_customer);
+        if at.fract() != 0.0 || !(0.0..(self.begins.len() - 1) as f64).contains(&at) {
+            return 0..0;
+        }
+        self.begins[at as usize] as usize..self.begins[at as usize + 1] as usize
+    }
+}
+
+/// Numbers of the customers that may have rows.
+fn customers_of(days: &[Arc<PackedDay>]) -> Range<u32> {
+    let of_runs = days.iter().flat_map(|day| (0..day.len()).map(|run| day.customers(run)));
+    let of_runs = of_runs.filter(|(first, last)| first <= last);
+    let (first, last) = of_runs.fold((u32::MAX, 0), |all, own| (all.0.min(own.0), all.1.max(own.1)));
+    if first <= last { first..last + 1 } else { 0..0 }
+}
+
+/// Does something with every run and the number of its first row. None where one cannot be read.
+fn for_each_run<R: Run>(days: &[Arc<PackedDay>], mut work: impl FnMut(i64, &R)) -> Option<()> {
+    for day in days {
+        for run in 0..day.len() {
+            work(day.row_number(run, 0), &day.open::<R>(run)?);
+        }
+    }
+    Some(())
+}
+
+/// The indexes that the running statement has of the days of one table.
+pub(super) struct Indexes<R: Run>(Mutex<Made<R>>);
+
+struct Made<R: Run> {
+    by_days: BTreeMap<(usize, usize), Lookups<R>>,
+    bytes: usize,
+}
+
+/// What looking up customers in some days has come to.
+struct Lookups<R: Run> {
+    /// Rows that were looked through.
+    rows: usize,
+    index: Option<Arc<ByCustomer<R>>>,
+}
+
+impl<R: Run> Default for Indexes<R> {
+    fn default() -> Self {
+        Indexes(Mutex::new(Made { by_days: BTreeMap::new(), bytes: 0 }))
+    }
+}
+
+impl<R: Run> Indexes<R> {
+    /// The index of some days. There is one as soon as looking through their rows has taken as long as making it does.
+    pub fn get(&self, days: &[Arc<PackedDay>], range: &Range<usize>) -> Option<Arc<ByCustomer<R>>> {
+        let mut made = self.made();
+        let lookups = made.by_days.get(&(range.start, range.end))?;
+        if lookups.index.is_some() {
+            return lookups.index.clone();
+        }
+        let days = days.get(range.clone())?;
+        let rows: usize = days.iter().map(|day| day.rows()).sum();
+        let bytes =
+            rows * (size_of::<i64>() + size_of::<R::Row>()) + customers_of(days).len() * size_of::<u32>();
+        if lookups.rows < 2 * rows || made.bytes + bytes > MOST_BYTES {
+            return None;
+        }
+        let index = Arc::new(ByCustomer::of(days)?);
+        made.bytes += bytes;
+        made.by_days.insert((range.start, range.end), Lookups { rows, index: Some(index.clone()) });
+        Some(index)
+    }
+
+    /// Counts rows that were looked through for one customer.
+    pub fn looked_through(&self, range: &Range<usize>, rows: usize) {
+        let mut made = self.made();
+        let none = Lookups { rows: 0, index: None };
+        made.by_days.entry((range.start, range.end)).or_insert(none).rows += rows;
+    }
+
+    /// Forgets all of them.
+    pub fn clear(&self) {
+        *self.made() = Made { by_days: BTreeMap::new(), bytes: 0 };
+    }
+
+    fn made(&self) -> MutexGuard<'_, Made<R>> {
+        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}

@@ -1,0 +1,107 @@
+//! Query plans for people: how a question is answered, without the names of what only the inside has.
+
+use super::catalogue::{table, tables};
+use super::guard::visible_name;
+use super::query::{Cell, text_at};
+use super::tokens::tokens;
+
+/// The column of a plan with the number of the step that a step belongs to; the first column numbers it.
+const PARENT: usize = 1;
+
+/// The column of a plan that is told in words.
+const DETAIL: usize = 3;
+
+/// What stands for a name that only the inside has.
+const MASK: &str = "\u{2026}";
+
+/// Words of plans that are not written in capitals.
+const WORDS: [&str; 3] = ["rowid", "subquery", "join"];
+
+/// Masks the plan of a statement. How words are looked up inside is no step of the question: such steps are left out.
+pub(super) fn mask(plan: &mut Vec<Vec<Cell>>, sql: &str) {
+    for row in plan.iter_mut() {
+        if let Some(Cell::Text(detail)) = row.get_mut(DETAIL) {
+            *detail = masked(detail, sql);
+        }
+    }
+    let of_inside = |row: &Vec<Cell>| {
+        let detail = text_at(row, DETAIL);
+        let looked_up = detail.strip_prefix("SEARCH ").or(detail.strip_prefix("SCAN "));
+        looked_up.is_some_and(|rest| rest.starts_with(MASK))
+    };
+    let (inside, mut rest): (Vec<_>, Vec<_>) = plan.drain(..).partition(of_inside);
+    let parents: Vec<&Cell> = inside.iter().filter_map(|row| row.get(PARENT)).collect();
+    let still: Vec<Cell> = rest.iter().filter_map(|row| row.get(PARENT).cloned()).collect();
+    rest.retain(|row| row.first().is_none_or(|own| !parents.contains(&own) || still.contains(own)));
+    *plan = rest;
+}
+
+/// One line of a plan.
+fn masked(detail: &str, sql: &str) -> String {
+    // How a virtual table was asked is told in its own letters.
+    let detail = detail.split_once(" VIRTUAL TABLE INDEX").map_or(detail, |(before, _)| before);
+    let mut text = String::new();
+    for word in detail.split_inclusive(|letter: char| !is_of_word(letter)) {
+        let name = word.trim_end_matches(|letter| !is_of_word(letter));
+        let shown = if name.is_empty() { "" } else { shown(name, sql) };
+        // The name of an index says nothing: what it is asked for stands behind it.
+        let is_index = shown == MASK && text.ends_with("INDEX ");
+        text += if is_index { "" } else { shown };
+        text += if is_index { word[name.len()..].trim_start() } else { &word[name.len()..] };
+    }
+    text.trim_end().to_owned()
+}
+
+fn is_of_word(letter: char) -> bool {
+    letter.is_alphanumeric() || letter == '_'
+}
+
+/// What is shown for a word of a plan.
+fn shown<'a>(word: &'a str, sql: &str) -> &'a str {
+    let language = word.chars().all(|letter| letter.is_ascii_uppercase() || letter.is_ascii_digit());
+    let column = || {
+        let mut columns = tables().iter().flat_map(|table| &table.columns);
+        columns.any(|column| column.name.eq_ignore_ascii_case(word))
+    };
+    let asked = || {
+        let mut contents = tokens(sql).into_iter().map(|token| token.content());
+        contents.any(|content| content.split(|letter| !is_of_word(letter)).any(|own| own == word))
+    };
+    if language || WORDS.contains(&word) || table(word).is_some() || column() || asked() {
+        return word;
+    }
+    visible_name(word).unwrap_or(MASK)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plan_names_only_what_everybody_knows() {
+        let sql = "SELECT * FROM customers c JOIN issues mine USING (customer_id)";
+        for (detail, expected) in [
+            ("SCAN c", "SCAN c"),
+            ("SCAN customer_rows", "SCAN customers"),
+            (
+                "SEARCH issue_rows USING INDEX issues_by_customer (customer_id=?)",
+                "SEARCH issues USING INDEX (customer_id=?)",
+            ),
+            ("SCAN ledger_rows USING COVERING INDEX ledger_by_day", "SCAN ledger USING COVERING INDEX"),
+            (
+                "SEARCH mine USING INTEGER PRIMARY KEY (rowid>?)",
+                "SEARCH mine USING INTEGER PRIMARY KEY (rowid>?)",
+            ),
+            (
+                "SEARCH words USING PRIMARY KEY (axis=? AND n=?)",
+                "SEARCH \u{2026} USING PRIMARY KEY (\u{2026}=? AND \u{2026}=?)",
+            ),
+            ("CO-ROUTINE inner_0f_customers", "CO-ROUTINE \u{2026}"),
+            ("SCAN daily_usage VIRTUAL TABLE INDEX 0:=c", "SCAN daily_usage"),
+            ("SCAN (subquery-3)", "SCAN (subquery-3)"),
+            ("USE TEMP B-TREE FOR GROUP BY", "USE TEMP B-TREE FOR GROUP BY"),
+        ] {
+            assert_eq!(masked(detail, sql), expected);
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! The tables as the released simulator declares them, empty and without anything beside them.
+//!
+//! Every statement is compiled against them before it is asked. What they refuse is refused in their words, which name
+//! nothing that only the inside has; the names of a result's columns are theirs. And a spelling that only ordinary
+//! tables understand (`rowid`, `main.ledger`) is replaced where they show that it makes no difference: both
+//! spellings must compile to the same program.
+
+use rusqlite::fallible_iterator::FallibleIterator;
+use rusqlite::hooks::{AuthContext, Authorization};
+use rusqlite::types::Value;
+use rusqlite::{Batch, Connection, Statement};
+
+use super::catalogue::{Table, table, tables};
+use super::guard::{Columns, Guard, Objections, Reads, limit};
+use super::query::Fault;
+use super::tokens::{Token, tokens};
+
+/// Spellings that are tried for one statement at most.
+const MOST_ATTEMPTS: usize = 200;
+
+/// Names of the number of a row.
+const ROW_NUMBERS: [&str; 3] = ["rowid", "oid", "_rowid_"];
+
+/// The released schema.
+pub(super) struct Released {
+    connection: Connection,
+    objections: Objections,
+    reads: Reads,
+}
+
+/// A statement that the released schema takes.
+#[derive(Debug)]
+pub(super) struct Reading {
+    /// As it is to be asked.
+    pub sql: String,
+    /// Names of the columns of its result.
+    pub columns: Vec<String>,
+    /// Whether it asks how a question is answered, and not for the answer.
+    pub is_plan: bool,
+    /// The columns it reads if it has a RIGHT or FULL JOIN: the engine cannot search a view there.
+    pub joined_from_the_right: Columns,
+}
+
+/// What a statement compiles to: the steps of its program. Names of columns are no part of it, but whatever is found by
+/// them is.
+type Program = Vec<Vec<Value>>;
+
+impl Released {
+    /// Declares the tables in memory.
+    pub fn open() -> rusqlite::Result<Released> {
+        let mut connection = Connection::open_in_memory()?;
+        let declarations: Vec<String> = tables().iter().map(Table::declaration).collect();
+        connection.execute_batch(&declarations.join(";\n"))?;
+        connection.pragma_update(None, "query_only", true)?;
+        limit(&connection)?;
+        let guard = Guard::of_ordinary_tables();
+        let (objections, reads) = (guard.objections(), guard.reads());
+        connection.authorizer(Some(move |context: AuthContext<'_>| -> Authorization {
+            guard.authorize(&context)
+        }))?;
+        Ok(Released { connection, objections, reads })
+    }
+
+    /// What was objected to last.
+    pub fn objections(&self) -> &Objections {
+        &self.objections
+    }
+
+    /// The statements of a text, each compiled when it is its turn.
+    pub fn statements<'a>(&'a self, sql: &'a str) -> Statements<'a> {
+        Statements { released: self, batch: Batch::new(&self.connection, sql) }
+    }
+
+    fn read(&self, statement: &Statement<'_>) -> Result<Reading, Fault> {
+        if statement.is_explain() == 1 {
+            return Err(Fault::MachineCode);
+        }
+        if !statement.readonly() {
+            return Err(Fault::Write);
+        }
+        if statement.parameter_count() > 0 {
+            return Err(Fault::Parameters);
+        }
+        let sql = statement.expanded_sql().ok_or(Fault::TooLarge)?;
+        let columns = statement.column_names().map(str::to_owned).collect();
+        let reads = self.reads.take();
+        let joined_from_the_right = if joins_from_the_right(&sql) { reads } else { Columns::new() };
+        let is_plan = statement.is_explain() == 2;
+        Ok(Reading { sql: self.respelled(sql), columns, is_plan, joined_from_the_right })
+    }
+
+    /// The statement in a spelling that does without `main.` and the numbers of rows, as far as that makes no
+    /// difference.
+    fn respelled(&self, sql: String) -> String {
+        let own = tokens(&sql);
+        let places: Vec<Place> = (0..own.len()).filter_map(|at| Place::of(&own, at)).collect();
+        let Some(program) = self.program(&sql).filter(|_| !places.is_empty()) else { return sql };
+        let qualifiers = qualifiers(&own);
+        let mut spelled = sql.clone();
+        let mut attempts = 0;
+        // From the end, so that the places before stay where they are.
+        for place in places.iter().rev() {
+            for other in place.spellings(&qualifiers) {
+                attempts += 1;
+                if attempts > MOST_ATTEMPTS {
+                    return spelled;
+                }
+                let attempt = format!("{}{other}{}", &spelled[..place.begin], &spelled[place.end..]);
+                if self.program(&attempt).as_ref() == Some(&program) {
+                    spelled = attempt;
+                    break;
+                }
+            }
+        }
+        spelled
+    }
+
+    /// What a statement compiles to; none if it does not.
+    fn program(&self, sql: &str) -> Option<Program> {
+        let mut statement = self.connection.prepare(&format!("EXPLAIN {}", without_explain(sql))).ok()?;
+        let width = statement.column_count();
+        let steps = statement
+            .query_map([], |row| (0..width).map(|at| row.get(at)).collect::<rusqlite::Result<Vec<Value>>>());
+        steps.ok()?.collect::<rusqlite::Result<_>>().ok()
+    }
+}
+
+/// The statements of a text, one after the other.
+pub(super) struct Statements<'a> {
+    released: &'a Released,
+    batch: Batch<'a, 'a>,
+}
+
+impl Statements<'_> {
+    /// The next statement; none after the last one.
+    pub fn next(&mut self) -> Result<Option<Reading>, Fault> {
+        self.released.reads.take();
+        match self.batch.next()? {
+            Some(statement) => self.released.read(&statement).map(Some),
+            None => Ok(None),
+        }
+    }
+}
+
+/// A place in a statement that ordinary tables understand and views do not.
+struct Place {
+    begin: usize,
+    end: usize,
+    /// The number of a row, with no table before it; otherwise `main.`, or one with a table.
+    kind: PlaceKind,
+}
+
+#[derive(PartialEq)]
+enum PlaceKind {
+    Main,
+    RowNumber { qualified: bool },
+}
+
+impl Place {
+    fn of(tokens: &[Token<'_>], at: usize) -> Option<Place> {
+        let token = &tokens[at];
+        let dot =
+            |at: Option<usize>| at.and_then(|at| tokens.get(at)).is_some_and(|token| token.is_sign("."));
+        if !token.may_name() {
+            return None;
+        }
+        let (name, place) = (token.content(), token.place());
+        if name.eq_ignore_ascii_case("main") && dot(Some(at + 1)) {
+            let end = tokens.get(at + 2)?.at;
+            return Some(Place { begin: place.start, end, kind: PlaceKind::Main });
+        }
+        let is_number = ROW_NUMBERS.iter().any(|number| name.eq_ignore_ascii_case(number));
+        let qualified = dot(at.checked_sub(1));
+        is_number.then_some(Place {
+            begin: place.start,
+            end: place.end,
+            kind: PlaceKind::RowNumber { qualified },
+        })
+    }
+
+    /// What may stand there instead, the likeliest first.
+    fn spellings(&self, qualifiers: &[&str]) -> Vec<String> {
+        let keys = || tables().iter().filter_map(Table::row_number);
+        match self.kind {
+            PlaceKind::Main => vec![String::new()],
+            PlaceKind::RowNumber { qualified: true } => keys().map(str::to_owned).collect(),
+            PlaceKind::RowNumber { qualified: false } => {
+                let with =
+                    qualifiers.iter().flat_map(|table| keys().map(move |key| format!("{table}.{key}")));
+                keys().map(str::to_owned).chain(with).collect()
+            }
+        }
+    }
+}
+
+/// Words of a statement that may stand before a column: what follows a table's name, and the name itself.
+fn qualifiers<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
+    let mut found: Vec<&str> = Vec::new();
+    for (at, token) in tokens.iter().enumerate() {
+        if !token.may_name() || table(&token.content()).is_none() {
+            continue;
+        }
+        let after: Vec<&Token<'a>> = tokens[at + 1..].iter().filter(|next| !next.is("AS")).take(1).collect();
+        let names = after.into_iter().chain([token]).filter(|name| name.may_name());
+        found.extend(names.map(|name| name.written));
+    }
+    found.dedup();
+    found
+}
+
+/// Whether a statement has a RIGHT or FULL JOIN.
+fn joins_from_the_right(sql: &str) -> bool {
+    let own = tokens(sql);
+    own.windows(2).any(|pair| {
+        (pair[0].is("RIGHT") || pair[0].is("FULL")) && (pair[1].is("JOIN") || pair[1].is("OUTER"))
+    })
+}
+
+/// A statement without a leading `EXPLAIN QUERY PLAN`.
+pub(super) fn without_explain(sql: &str) -> &str {
+    let own = tokens(sql);
+    let head = ["EXPLAIN", "QUERY", "PLAN"];
+    let explains = own.len() > head.len() && own.iter().zip(head).all(|(token, word)| token.is(word));
+    if explains { &sql[own[head.len()].at..] } else { sql }
+}

@@ -1,0 +1,150 @@
+//! Whether cash lasts and plans earn what they cost.
+
+use serde_json::{Map, Value, json};
+
+use super::{AHEAD, MONTH, Need, Place, Problem, Situation};
+use crate::notation::json_number;
+use crate::report::words::{count, money, whole};
+use crate::session::ModelTier;
+use crate::world::identifiers::{Group, Plan};
+
+/// Weeks of cash below which it is urgent.
+const SHORT: f64 = 8.0;
+
+/// Cash that does not last eight weeks at this pace.
+pub(super) fn runway(situation: &Situation<'_>) -> Option<Need> {
+    let seen = &situation.seen;
+    let weeks = seen.runway_weeks.filter(|weeks| *weeks < SHORT)?;
+    let pace = &seen.pace;
+    let out = (pace.committed + pace.variable) * 7.0;
+    let (name, dollars, place) = largest_budget(situation);
+    let proposal = (dollars > 0.0).then(|| {
+        format!("the largest budget is {name}, {} a day = {} a week", money(dollars), money(dollars * 7.0))
+    });
+    Some(Need {
+        problem: Problem::Runway,
+        text: format!(
+            "cash lasts {} at this pace: {} a week come in, {} go out",
+            count(weeks as u32, "week"),
+            money(pace.income * 7.0),
+            money(out)
+        ),
+        proposal,
+        place,
+        at_risk: seen.cash.max(0.0) + situation.revenue_ahead(),
+        urgent: true,
+    })
+}
+
+/// The largest of the budgets that the settings hold: its name, dollars a day, and its form with what leaves eight weeks.
+fn largest_budget(situation: &Situation<'_>) -> (&'static str, f64, Place) {
+    let settings = situation.session.settings();
+    let (core, development) = (&settings.core, &settings.targeted_development);
+    let missing = situation.seen.cash.max(0.0) / (SHORT * 7.0) + situation.seen.pace.net();
+    let kept = |dollars: f64| ((dollars + missing.min(0.0)).max(0.0)).floor();
+    let scaled = |dollars: f64, total: f64| json_number((dollars * kept(total) / total.max(1e-9)).floor());
+    let ads: Map<String, Value> = settings
+        .targeted_ads
+        .targeted_spend
+        .iter()
+        .map(|(channel, groups)| {
+            let groups: Map<String, Value> = groups
+                .iter()
+                .map(|(group, dollars)| (group.id().to_owned(), scaled(*dollars, situation.ads)))
+                .collect();
+            (channel.id().to_owned(), Value::Object(groups))
+        })
+        .collect();
+    let targeted: Map<String, Value> = development
+        .targeted_spend
+        .iter()
+        .map(|(group, dollars)| (group.id().to_owned(), scaled(*dollars, development.total())))
+        .collect();
+    let budgets = [
+        (
+            "development for single groups",
+            development.total(),
+            Place::Call("set_targeted_dev_spend", json!({ "targeted_spend": targeted })),
+        ),
+        (
+            "advertising",
+            situation.ads,
+            Place::Call("set_targeted_ad_spend", json!({ "targeted_spend": ads })),
+        ),
+        (
+            "development",
+            core.development,
+            Place::Call("set_daily_spend", json!({ "development": kept(core.development) })),
+        ),
+        (
+            "operations",
+            core.operations,
+            Place::Call("set_daily_spend", json!({ "operations": kept(core.operations) })),
+        ),
+    ];
+    let largest = budgets.into_iter().max_by(|left, right| left.1.total_cmp(&right.1));
+    largest.filter(|budget| budget.1 > 0.0).unwrap_or(("", 0.0, Place::Books))
+}
+
+/// Plans whose individual subscribers cost more in compute than they pay.
+pub(super) fn margin(situation: &Situation<'_>) -> Vec<Need> {
+    let Some(groups) = situation.group_week() else { return Vec::new() };
+    let days = situation.week().map_or(7, |week| week.days_run).max(1);
+    let models = &situation.terms.models;
+    let of_plan = |plan: Plan| {
+        let people = || Group::all().filter(|group| !group.is_enterprise());
+        let subscribers: u32 = people().map(|group| groups[group].subscribers[plan]).sum();
+        let revenue: f64 = people().map(|group| groups[group].revenue[plan]).sum();
+        let units: u64 = people().map(|group| groups[group].usage[plan]).sum();
+        let a_month = units as f64 / f64::from(days) * MONTH;
+        let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
+        let cost = a_month * now.unit_cost;
+        if subscribers == 0 || cost <= revenue {
+            return None;
+        }
+        let (proposal, place) = cheaper(situation, plan, now, a_month, revenue);
+        Some(Need {
+            problem: Problem::Margin,
+            text: format!(
+                "plan {plan} loses money: {} pay {} a month and cost {} in compute",
+                count(subscribers, "individual"),
+                money(revenue),
+                money(cost)
+            ),
+            proposal: Some(proposal),
+            place,
+            at_risk: (cost - revenue) * AHEAD / MONTH,
+            urgent: true,
+        })
+    };
+    Plan::ALL.into_iter().filter_map(of_plan).collect()
+}
+
+/// The best model whose cost the plan's revenue covers at the same use, or a quota that does.
+fn cheaper(
+    situation: &Situation<'_>,
+    plan: Plan,
+    now: &ModelTier,
+    units: f64,
+    revenue: f64,
+) -> (String, Place) {
+    let lower = situation.terms.models.iter().rev().filter(|model| model.tier < now.tier);
+    let covered = lower.filter(|model| units * model.unit_cost < revenue).map(|model| {
+        let cost = money(units * model.unit_cost);
+        let text = format!("model tier {} costs {cost} at the same use and delivers less", model.tier);
+        (text, Place::Call("set_model_tiers", json!({ plan.id(): model.tier })))
+    });
+    covered.into_iter().next().unwrap_or_else(|| {
+        let held = situation.settings.quotas[plan].units();
+        let quota = (held * revenue / (units * now.unit_cost)).floor();
+        let quotas: Map<String, Value> = Plan::ALL
+            .into_iter()
+            .map(|of| {
+                let kept = situation.settings.quotas[of].units();
+                (of.id().to_owned(), json_number(if of == plan { quota } else { kept }))
+            })
+            .collect();
+        let text = format!("a quota below today's {} units a day limits what they can use", whole(held));
+        (text, Place::Call("set_usage_quotas", Value::Object(quotas)))
+    })
+}

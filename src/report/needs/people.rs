@@ -1,0 +1,136 @@
+//! Whether companies are answered and subscribers stay.
+
+use serde_json::{Map, Value};
+
+use super::{AHEAD, MONTH, Need, Place, Problem, Situation};
+use crate::notation::{json_number, percent};
+use crate::report::chapters::change_in_words;
+use crate::report::words::{count, money, whole};
+use crate::session::{Change, Decisions};
+use crate::world::identifiers::{Group, Plan};
+
+/// Cancellations of a week below which nobody speaks of a wave.
+const FEW: f64 = 20.0;
+/// Weeks of a cycle of bills.
+const CYCLE: usize = 4;
+/// How many times its usual size the share that leaves must be.
+const WAVE: f64 = 2.0;
+/// Days in which every subscriber is billed once, and so decides.
+const BILLING: u32 = 30;
+/// Settings that subscribers judge when they are billed.
+const JUDGED: [&str; 5] =
+    ["set_prices", "set_model_tiers", "set_usage_quotas", "set_promotion", "set_ads_strength"];
+
+/// Threads that end within the coming week unless they are answered now.
+pub(super) fn threads(situation: &Situation<'_>) -> Option<Need> {
+    let waiting = &situation.seen.waiting;
+    let last = situation.seen.day + waiting.iter().map(|thread| thread.days_left).max()?;
+    let lowest =
+        Plan::ALL.into_iter().map(|plan| situation.settings.prices[plan]).filter(|price| *price > 0.0);
+    let lowest = lowest.fold(f64::INFINITY, f64::min);
+    let value = |thread: &crate::session::WaitingThread| {
+        let price = thread.asked.unwrap_or(if lowest.is_finite() { lowest } else { 0.0 });
+        f64::from(thread.seats) * price
+    };
+    let a_month: f64 = waiting.iter().map(value).sum();
+    let seats: u32 = waiting.iter().map(|thread| thread.seats).sum();
+    let first = waiting.iter().max_by(|left, right| value(left).total_cmp(&value(right)))?;
+    let (who, fate) = match waiting.len() {
+        1 => ("1 company waits".to_owned(), "the thread ends"),
+        more => (format!("{} wait", count(more as u32, "company")), "their threads end"),
+    };
+    Some(Need {
+        problem: Problem::Threads,
+        text: format!(
+            "{who} for an answer ({}, {} a month at what they ask or the lowest list price); without one {fate} by day \
+             {last}",
+            count(seats, "seat"),
+            money(a_month)
+        ),
+        proposal: None,
+        place: Place::Thread(first.thread),
+        at_risk: a_month * AHEAD / MONTH,
+        urgent: true,
+    })
+}
+
+/// Groups whose subscribers cancel far more than they did.
+pub(super) fn churn(situation: &Situation<'_>) -> Vec<Need> {
+    let people = Group::all().filter(|group| !group.is_enterprise());
+    people.filter_map(|group| wave(situation, group)).collect()
+}
+
+fn wave(situation: &Situation<'_>, group: Group) -> Option<Need> {
+    let weeks = situation.groups;
+    let there = |at: usize| f64::from(weeks[at][group].subscribers.0.iter().sum::<u32>());
+    let left = |at: usize| f64::from(weeks[at][group].left);
+    // Who cancels does so on a bill, a month after signing up at the earliest: they are measured against those who were
+    // there four weeks before.
+    let share = |at: usize| left(at) / there(at - CYCLE).max(1.0);
+    let last = weeks.len().checked_sub(1)?;
+    let before = last.saturating_sub(CYCLE).max(CYCLE)..last;
+    if before.len() < CYCLE {
+        return None;
+    }
+    let mean = |of: &dyn Fn(usize) -> f64| before.clone().map(of).sum::<f64>() / before.len() as f64;
+    let (gone, usual) = (left(last), mean(&left));
+    if gone <= FEW || share(last) <= WAVE * mean(&share) {
+        return None;
+    }
+    let (now, had) = (&weeks[last], there(last - 1));
+    let mean_price = now[group].revenue.0.iter().sum::<f64>() / there(last).max(1.0);
+    let set = judged(situation);
+    let told = set.map_or(String::new(), |(day, changes)| {
+        let words: Vec<String> = changes.iter().take(2).map(|change| change_in_words(change)).collect();
+        let more = match changes.len().saturating_sub(2) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        format!("; on day {day} you changed {}{more}", words.join(", "))
+    });
+    let place =
+        judged(situation).map_or(Place::Group(group), |(_, changes)| restored(situation, &changes, group));
+    Some(Need {
+        problem: Problem::Churn(group),
+        text: format!(
+            "{group}: {} of {} cancelled last week ({}); the mean of the four weeks before was {}{told}",
+            whole(gone),
+            whole(had),
+            percent(gone / had.max(1.0), 1),
+            whole(usual)
+        ),
+        proposal: None,
+        place,
+        at_risk: gone * mean_price * AHEAD / 7.0,
+        urgent: true,
+    })
+}
+
+/// The last change of something that subscribers judge, while some of them meet it at their first bill since.
+fn judged<'a>(situation: &'a Situation<'_>) -> Option<(u32, Vec<&'a Change>)> {
+    let recent = |decided: &&Decisions| decided.day + BILLING + 7 > situation.seen.day;
+    situation.decisions.iter().rev().take_while(recent).find_map(|decided| {
+        let changes: Vec<&Change> = decided
+            .changes
+            .iter()
+            .filter(|change| JUDGED.contains(&change.tool) && change.old != 0.0)
+            .collect();
+        (!changes.is_empty()).then_some((decided.day, changes))
+    })
+}
+
+/// The form of the first changed setting with what held before, where it is a setting by plan.
+fn restored(situation: &Situation<'_>, changes: &[&Change], group: Group) -> Place {
+    let Some(first) = changes.first() else { return Place::Group(group) };
+    let mut arguments = match first.tool {
+        "set_prices" | "set_model_tiers" => Map::new(),
+        "set_usage_quotas" => situation.session.current("set_usage_quotas"),
+        _ => return Place::Group(group),
+    };
+    for change in changes.iter().filter(|change| change.tool == first.tool) {
+        if let Some(plan) = change.setting.split_whitespace().next_back().and_then(Plan::parse) {
+            arguments.insert(plan.id().to_owned(), json_number(change.old));
+        }
+    }
+    Place::Call(first.tool, Value::Object(arguments))
+}

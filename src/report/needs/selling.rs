@@ -1,0 +1,342 @@
+//! Whether the company can be bought from, is heard of, and offers what leads take.
+
+use serde_json::{Map, Value, json};
+
+use super::{AHEAD, Need, Place, Problem, Situation, rounded_up};
+use crate::notation::{json_number, percent};
+use crate::report::words::{count, money, number, whole};
+use crate::session::{DeliveredQuality, Estimates, GroupWeek};
+use crate::world::identifiers::{Channel, Group, Plan};
+
+/// Leads of a week from which on it counts how few sign.
+const ENOUGH_LEADS: u32 = 20;
+/// Share of the leads below which few sign.
+const FEW: f64 = 0.1;
+/// Companies of four weeks from which on it counts that none asks.
+const ENOUGH_COMPANIES: u32 = 3;
+/// Share of the estimated use that a quota must cover.
+const COVERED: f64 = 0.8;
+/// Dollars a day of a first try of a channel.
+const FIRST_TRY: f64 = 50.0;
+
+/// No plan has a price, or those that have deliver nothing.
+pub(super) fn nothing_on_sale(situation: &Situation<'_>) -> Option<Need> {
+    let core = &situation.settings;
+    let priced: Vec<Plan> = Plan::ALL.into_iter().filter(|plan| core.prices[*plan] > 0.0).collect();
+    if priced.is_empty() {
+        return Some(no_price(situation));
+    }
+    let empty: Vec<&str> =
+        priced.iter().filter(|plan| core.quotas[**plan].units() == 0.0).map(|plan| plan.id()).collect();
+    if empty.is_empty() {
+        return None;
+    }
+    let all = empty.len() == priced.len();
+    let most = situation.individuals().map(|own| (own.range(own.usage).1, own.group));
+    let (use_a_day, group) = most.max_by(|left, right| left.0.total_cmp(&right.0))?;
+    let quota = rounded_up(use_a_day);
+    let arguments: Map<String, Value> = Plan::ALL
+        .into_iter()
+        .map(|plan| {
+            let kept = core.quotas[plan].units();
+            (plan.id().to_owned(), json_number(if empty.contains(&plan.id()) { quota } else { kept }))
+        })
+        .collect();
+    let (plans, verb) = match empty.as_slice() {
+        [one] => (format!("plan {one}"), "has"),
+        more => (format!("plans {}", more.join(", ")), "have"),
+    };
+    let consequence = if all { "nobody gets anything for the price" } else { "nobody gets anything on it" };
+    Some(Need {
+        problem: Problem::NoQuota,
+        text: format!("{plans} {verb} a price and a quota of 0 units a day: {consequence}"),
+        proposal: Some(format!(
+            "{} units a day cover {group}, which uses about {} (at most {})",
+            whole(quota),
+            number(situation.estimate(group)?.usage),
+            whole(use_a_day)
+        )),
+        place: Place::Call("set_usage_quotas", Value::Object(arguments)),
+        at_risk: situation.commitments_ahead() + situation.revenue_ahead(),
+        urgent: all,
+    })
+}
+
+fn no_price(situation: &Situation<'_>) -> Need {
+    let mut budgets: Vec<&Estimates> = situation.individuals().collect();
+    budgets.sort_by(|left, right| left.budget.total_cmp(&right.budget));
+    let half = |at: usize| budgets.get(at).map(|own| (own.budget / 2.0).round().max(1.0));
+    let prices: Map<String, Value> = Plan::ALL
+        .into_iter()
+        .enumerate()
+        .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
+        .collect();
+    let told: Vec<String> =
+        budgets.iter().map(|own| format!("{} {}", own.group, money(own.budget))).collect();
+    Need {
+        problem: Problem::NoPrice,
+        text: "no plan has a price: nobody can subscribe".to_owned(),
+        proposal: Some(format!("estimated budgets a month: {}; the form proposes half", told.join(", "))),
+        place: Place::Call("set_prices", Value::Object(prices)),
+        at_risk: situation.commitments_ahead() + situation.revenue_ahead(),
+        urgent: true,
+    }
+}
+
+/// No channel is paid and nobody is there to tell others.
+pub(super) fn no_leads(situation: &Situation<'_>) -> Option<Need> {
+    let came = situation.week().map_or(0, |week| week.new_individual_leads + week.new_enterprise_leads);
+    let silent = situation.seen.subscribers + situation.seen.seats == 0;
+    if situation.ads > 0.0 || came > 0 || !silent {
+        return None;
+    }
+    let group = situation.individuals().max_by(|left, right| left.budget.total_cmp(&right.budget))?.group;
+    let each: Map<String, Value> = Channel::ALL
+        .into_iter()
+        .map(|channel| (channel.id().to_owned(), json!({ group.id(): FIRST_TRY })))
+        .collect();
+    let total = FIRST_TRY * Channel::ALL.len() as f64;
+    Some(Need {
+        problem: Problem::NoLeads,
+        text: "no leads: no ad channel is paid and no subscriber can tell others".to_owned(),
+        proposal: Some(format!(
+            "{} a day on each channel for {group} shows in a week which of them brings leads, for {}",
+            money(FIRST_TRY),
+            money(7.0 * total)
+        )),
+        place: Place::Call("set_targeted_ad_spend", json!({ "targeted_spend": each })),
+        at_risk: situation.commitments_ahead(),
+        urgent: true,
+    })
+}
+
+/// What keeps the leads of a group from a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Missing {
+    Price,
+    Quota,
+    Quality,
+    /// Price, quota and quality are each within the estimates: at this price more quality is asked for.
+    Balance,
+}
+
+/// Groups of individuals whose leads come and do not sign.
+pub(super) fn no_sales(situation: &Situation<'_>) -> Vec<Need> {
+    let on_sale = Plan::ALL
+        .into_iter()
+        .any(|plan| situation.settings.prices[plan] > 0.0 && situation.settings.quotas[plan].units() != 0.0);
+    let Some(week) = situation.group_week().filter(|_| on_sale) else { return Vec::new() };
+    let few = |own: &&Estimates| {
+        let figures = &week[own.group];
+        figures.leads >= ENOUGH_LEADS && figures.conversion().is_some_and(|share| share < FEW)
+    };
+    situation.individuals().filter(few).filter_map(|own| no_sale(situation, own, &week[own.group])).collect()
+}
+
+fn no_sale(situation: &Situation<'_>, own: &Estimates, week: &GroupWeek) -> Option<Need> {
+    let quality = situation.quality(own.group)?;
+    let offers = Offers { situation, own, quality };
+    let missing = offers.missing();
+    let signed = if week.signed == 0 { "none".to_owned() } else { whole(f64::from(week.signed)) };
+    let share = percent(week.conversion()?, 1);
+    let (told, proposal, place) = offers.remedy(missing)?;
+    let price = offers.lowest_price().min(own.budget);
+    Some(Need {
+        problem: Problem::NoSales(own.group),
+        text: format!(
+            "{}: {} came last week, {signed} signed ({share}); {told}",
+            own.group,
+            count(week.leads, "lead")
+        ),
+        proposal: Some(proposal),
+        place,
+        at_risk: f64::from(week.leads - week.signed) * AHEAD / 7.0 * price,
+        urgent: true,
+    })
+}
+
+/// What is on offer to a group, beside what is known of it.
+struct Offers<'a> {
+    situation: &'a Situation<'a>,
+    own: &'a Estimates,
+    quality: &'a DeliveredQuality,
+}
+
+impl Offers<'_> {
+    /// Plans on sale.
+    fn plans(&self) -> impl Iterator<Item = Plan> + '_ {
+        Plan::ALL.into_iter().filter(|plan| self.price(*plan) > 0.0)
+    }
+
+    fn price(&self, plan: Plan) -> f64 {
+        self.situation.settings.prices[plan]
+    }
+
+    /// Share of the estimated use of an account that the quota covers.
+    fn covered(&self, plan: Plan) -> f64 {
+        (self.situation.settings.quotas[plan].units() / self.own.account_usage().max(1e-9)).min(1.0)
+    }
+
+    fn lowest_price(&self) -> f64 {
+        self.plans().map(|plan| self.price(plan)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn affordable(&self) -> impl Iterator<Item = Plan> + '_ {
+        // Companies name a price of their own.
+        let negotiates = self.own.group.is_enterprise();
+        self.plans().filter(move |plan| negotiates || self.price(*plan) <= self.own.budget)
+    }
+
+    /// The affordable plan that delivers most, its quota left aside.
+    fn best(&self) -> Option<Plan> {
+        let quality = |plan: &Plan| self.quality.by_plan[*plan];
+        self.affordable().max_by(|left, right| quality(left).total_cmp(&quality(right)))
+    }
+
+    fn missing(&self) -> Missing {
+        match self.best() {
+            None => Missing::Price,
+            Some(plan) if self.covered(plan) < COVERED => Missing::Quota,
+            Some(plan) if self.quality.by_plan[plan] < self.own.floor => Missing::Quality,
+            Some(_) => Missing::Balance,
+        }
+    }
+
+    /// What is missing in words, what would mend it, and where.
+    fn remedy(&self, missing: Missing) -> Option<(String, String, Place)> {
+        let (own, group) = (self.own, self.own.group);
+        let error = percent(own.noise, 0);
+        match missing {
+            Missing::Price => {
+                let least = own.range(own.budget).0;
+                let price = least.floor().max(1.0);
+                let plan =
+                    self.plans().min_by(|left, right| self.price(*left).total_cmp(&self.price(*right)))?;
+                Some((
+                    format!(
+                        "price: the lowest, {} for {plan}, is above their budget of about {} (±{error})",
+                        money(self.price(plan)),
+                        money(own.budget)
+                    ),
+                    format!("{} is within even the lowest budget of that estimate", money(price)),
+                    Place::Call("set_prices", json!({ plan.id(): json_number(price) })),
+                ))
+            }
+            Missing::Quota => {
+                let plan = self.best()?;
+                let quota = rounded_up(own.range(own.account_usage()).1);
+                let quotas: Map<String, Value> = Plan::ALL
+                    .into_iter()
+                    .map(|of| {
+                        let held = self.situation.settings.quotas[of].units();
+                        (of.id().to_owned(), json_number(if of == plan { quota } else { held }))
+                    })
+                    .collect();
+                Some((
+                    format!(
+                        "quota: {} units a day on {plan} cover {} of the use{} of about {} (±{error})",
+                        whole(self.situation.settings.quotas[plan].units()),
+                        percent(self.covered(plan), 0),
+                        if group.is_enterprise() { " of a small company" } else { "" },
+                        whole(own.account_usage())
+                    ),
+                    format!("{} units a day cover even the largest use of that estimate", whole(quota)),
+                    Place::Call("set_usage_quotas", Value::Object(quotas)),
+                ))
+            }
+            Missing::Quality => {
+                let plan = self.best()?;
+                let delivered = self.quality.by_plan[plan];
+                let told = format!(
+                    "quality: the best for them, {delivered:.4} on {plan}, is below their floor of about {:.3} (±{error})",
+                    own.floor
+                );
+                let (proposal, place) = better_quality(self.situation, group, plan, delivered, own.floor)?;
+                Some((told, proposal, place))
+            }
+            Missing::Balance => {
+                let plan = self.best()?;
+                Some((
+                    format!(
+                        "{plan} delivers {:.4} for {}; their floor of about {:.3} (±{error}) rises with the price",
+                        self.quality.by_plan[plan],
+                        money(self.price(plan)),
+                        own.floor
+                    ),
+                    "a lower price or a higher quality wins them".to_owned(),
+                    Place::Group(group),
+                ))
+            }
+        }
+    }
+}
+
+/// A better model if one is good enough, otherwise development for the group.
+fn better_quality(
+    situation: &Situation<'_>,
+    group: Group,
+    plan: Plan,
+    delivered: f64,
+    floor: f64,
+) -> Option<(String, Place)> {
+    let models = &situation.terms.models;
+    let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
+    let product = delivered / now.multiplier;
+    let enough = models.iter().find(|model| model.tier > now.tier && product * model.multiplier >= floor);
+    if let Some(model) = enough {
+        return Some((
+            format!("model tier {} delivers {:.4} on {plan}", model.tier, product * model.multiplier),
+            Place::Call("set_model_tiers", json!({ plan.id(): model.tier })),
+        ));
+    }
+    const DOLLARS: f64 = 5_000.0;
+    let gain = situation.session.targeted_gain(DOLLARS) * now.multiplier;
+    let days = ((floor - delivered) / gain).ceil();
+    Some((
+        format!(
+            "development for {group} at {} a day closes the gap in {}",
+            money(DOLLARS),
+            count(days as u32, "day")
+        ),
+        Place::Call("set_targeted_dev_spend", json!({ "targeted_spend": { group.id(): DOLLARS } })),
+    ))
+}
+
+/// Groups of companies that ads bring and none of which asks for an offer.
+pub(super) fn unwanted(situation: &Situation<'_>) -> Vec<Need> {
+    let recent = &situation.groups[situation.groups.len().saturating_sub(4)..];
+    let enterprises = situation.estimates.iter().filter(|own| own.group.is_enterprise());
+    let paid = enterprises.filter(|own| situation.ads_by_group[own.group] > 0.0);
+    let unwanted = paid.filter_map(|own| {
+        let came: u32 = recent.iter().map(|week| week[own.group].leads).sum();
+        let asked: u32 = recent.iter().map(|week| week[own.group].asked).sum();
+        if came < ENOUGH_COMPANIES || asked > 0 {
+            return None;
+        }
+        let offers = Offers { situation, own, quality: situation.quality(own.group)? };
+        let ads = situation.ads_by_group[own.group];
+        let text = format!(
+            "{}: {} came in {} and none asked for an offer, while ads for them cost {} a day",
+            own.group,
+            count(came, "company"),
+            count(recent.len() as u32, "week"),
+            money(ads)
+        );
+        let (told, proposal, place) = match offers.missing() {
+            missing @ (Missing::Quota | Missing::Quality) => {
+                let (told, proposal, place) = offers.remedy(missing)?;
+                (format!("{text}; {told}"), Some(proposal), place)
+            }
+            Missing::Price | Missing::Balance => (text, None, Place::Group(own.group)),
+        };
+        Some(Need {
+            problem: Problem::Unwanted(own.group),
+            text: told,
+            proposal,
+            place,
+            at_risk: ads * AHEAD,
+            urgent: false,
+        })
+    });
+    unwanted.collect()
+}

@@ -1,0 +1,153 @@
+//! Whether the service holds up: capacity, outages, support.
+
+use serde_json::json;
+
+use super::{AHEAD, Need, Place, Problem, Situation, rounded_up};
+use crate::notation::{json_number, percent};
+use crate::report::words::{count, money, whole};
+use crate::session::{CapacityTier, WeekFigures};
+
+/// Weeks ahead in which capacity must not run out.
+const SOON: f64 = 2.0;
+/// Share of days with an outage from which on operations are too low.
+const OFTEN: f64 = 0.01;
+/// Share of the subscribers that may wait for support.
+const WAITING: f64 = 0.02;
+
+/// Usage above capacity, or soon above it.
+pub(super) fn capacity(situation: &Situation<'_>) -> Option<Need> {
+    let week = situation.week()?;
+    let tiers = &situation.terms.capacities;
+    let now = tiers.iter().find(|tier| tier.tier == situation.settings.capacity_tier)?;
+    let busiest = week.busiest_day as f64;
+    if busiest > now.units {
+        return Some(overload(situation, week, now));
+    }
+    let before = situation.weeks.len().checked_sub(2).map(|at| situation.weeks[at].busiest_day as f64)?;
+    let growth = busiest / before.max(1.0);
+    if growth <= 1.0 || before <= 0.0 {
+        return None;
+    }
+    let weeks = libm::log(now.units / busiest) / libm::log(growth);
+    let next = tiers.iter().find(|tier| tier.tier == now.tier + 1)?;
+    (weeks < SOON).then(|| Need {
+        problem: Problem::Capacity,
+        text: format!(
+            "the busiest day used {} of capacity tier {}, and usage grew by {} in a week: at that growth it is full in \
+             {weeks:.1} weeks",
+            percent(busiest / now.units, 0),
+            now.tier,
+            percent(growth - 1.0, 0)
+        ),
+        proposal: Some(costs(next, now)),
+        place: Place::Call("set_capacity_tier", json!({ "tier": next.tier })),
+        at_risk: situation.revenue_ahead(),
+        urgent: false,
+    })
+}
+
+fn overload(situation: &Situation<'_>, week: &WeekFigures, now: &CapacityTier) -> Need {
+    let busiest = week.busiest_day as f64;
+    let tiers = &situation.terms.capacities;
+    let enough = tiers.iter().find(|tier| tier.units >= busiest).or(tiers.last()).unwrap_or(now);
+    Need {
+        problem: Problem::Overload,
+        text: format!(
+            "the busiest day used {} units, {} above the {} of capacity tier {}",
+            whole(busiest),
+            percent(busiest / now.units - 1.0, 1),
+            whole(now.units),
+            now.tier
+        ),
+        proposal: Some(costs(enough, now)),
+        place: Place::Call("set_capacity_tier", json!({ "tier": enough.tier })),
+        at_risk: situation.revenue_ahead(),
+        urgent: true,
+    }
+}
+
+fn costs(tier: &CapacityTier, now: &CapacityTier) -> String {
+    format!(
+        "tier {} holds {} units for {} a day, {} more",
+        tier.tier,
+        whole(tier.units),
+        money(tier.cost),
+        money(tier.cost - now.cost)
+    )
+}
+
+/// Outages that more spending on operations would make rarer; those of an overload are the overload's.
+pub(super) fn outages(situation: &Situation<'_>) -> Option<Need> {
+    let week = situation.week().filter(|week| week.outage && week.overload_peak == 0.0)?;
+    let operations = situation.settings.operations;
+    let share = |dollars: f64| situation.session.outage_share(dollars);
+    let now = share(operations);
+    if now < OFTEN {
+        return None;
+    }
+    // The least round spend at which outages are half as frequent.
+    let more = (1..=200)
+        .map(|step| operations + 50.0 * f64::from(step))
+        .find(|dollars| share(*dollars) <= now / 2.0)?;
+    let at_risk = situation.revenue_ahead() * (now * AHEAD).min(1.0);
+    // No advice that costs more than it can save.
+    if (more - operations) * AHEAD > at_risk {
+        return None;
+    }
+    Some(Need {
+        problem: Problem::Outages,
+        text: format!(
+            "outages took {} last week; operations of {} a day leave {} of days with one",
+            count(week.downtime_minutes, "minute"),
+            money(operations),
+            percent(now, 1)
+        ),
+        proposal: Some(format!("{} a day leave {}", money(more), percent(share(more), 1))),
+        place: Place::Call("set_daily_spend", json!({ "operations": json_number(more) })),
+        at_risk,
+        urgent: true,
+    })
+}
+
+/// Subscribers who wait for support longer than a day, more than operations can help.
+pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
+    let week = situation.week()?;
+    let people = f64::from(week.individual_subscribers.max(1));
+    let opened = f64::from(week.issues_opened) / f64::from(week.days_run.max(1));
+    let waiting = f64::from(week.open_issues) - opened;
+    if waiting <= 20.0 || waiting <= WAITING * people {
+        return None;
+    }
+    let (base, per_dollar) = situation.terms.issues_solved;
+    let operations = situation.settings.operations + situation.session.settings().targeted_operations.total();
+    // Whoever waits opens no other issue: more are opened once nobody does.
+    let free = (people - f64::from(week.open_issues)).max(1.0);
+    let needed = opened * people / free + waiting / 7.0;
+    let dollars = rounded_up((needed - base) / per_dollar);
+    if dollars <= operations {
+        return None;
+    }
+    let general = dollars - (operations - situation.settings.operations);
+    let at_risk = situation.revenue_ahead() * (waiting / people).min(1.0);
+    if (dollars - operations) * AHEAD > at_risk {
+        return None;
+    }
+    Some(Need {
+        problem: Problem::Backlog,
+        text: format!(
+            "{} subscribers wait for support and {} issues a day are opened; operations of {} a day solve about {} a day",
+            whole(f64::from(week.open_issues)),
+            whole(opened),
+            money(operations),
+            whole(base + per_dollar * operations)
+        ),
+        proposal: Some(format!(
+            "{} a day solve about {}: as many as are opened when nobody waits, and those who wait within a week",
+            money(dollars),
+            whole(base + per_dollar * dollars)
+        )),
+        place: Place::Call("set_daily_spend", json!({ "operations": json_number(general) })),
+        at_risk,
+        urgent: true,
+    })
+}

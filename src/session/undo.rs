@@ -1,0 +1,133 @@
+//! Taking settings of this week back, and setting them again.
+//!
+//! Both are calls like any other: they restore old values with the tool that set them, and their lines name the call
+//! that they take back or repeat. Calls that changed nothing are passed over.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::act::Via;
+use super::changes::{Change, changes};
+use super::{JournalEntry, Session, ThisWeek};
+use crate::tools::{Refusal, Tool};
+use crate::world::settings::Settings;
+
+/// What a call does to earlier calls of its week.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Reversal {
+    /// It takes back the call of this line.
+    Undoes(u64),
+    /// It repeats what the call of this line took back.
+    Redoes(u64),
+}
+
+impl Reversal {
+    /// The reversal that the fields of a line name, if any.
+    pub(super) fn of(fields: &Map<String, Value>) -> Option<Reversal> {
+        let line = |name: &str| fields.get(name).and_then(Value::as_u64);
+        line("undoes").map(Reversal::Undoes).or_else(|| line("redoes").map(Reversal::Redoes))
+    }
+
+    /// Name and value of its field.
+    pub(super) fn field(self) -> (&'static str, u64) {
+        match self {
+            Reversal::Undoes(seq) => ("undoes", seq),
+            Reversal::Redoes(seq) => ("redoes", seq),
+        }
+    }
+}
+
+/// A call that changed settings, and the settings that reversing it restores.
+#[derive(Debug, Clone)]
+pub(super) struct Step {
+    /// Line of the call.
+    pub(super) seq: u64,
+    pub(super) tool: &'static str,
+    pub(super) restores: Settings,
+}
+
+impl ThisWeek {
+    /// Keeps what a setting call did, so that it can be reversed.
+    pub(super) fn keep(&mut self, call: Step, changed: bool, reversal: Option<Reversal>) {
+        if let Some(Reversal::Undoes(seq)) = reversal {
+            self.undo.retain(|step| step.seq < seq);
+        }
+        if !changed {
+            return;
+        }
+        match reversal {
+            Some(Reversal::Undoes(_)) => return self.redo.push(call),
+            Some(Reversal::Redoes(seq)) => self.redo.retain(|step| step.seq < seq),
+            None => self.redo.clear(),
+        }
+        self.undo.push(call);
+    }
+}
+
+/// Lines of the calls that were taken back. What redo repeated has a line of its own.
+pub fn undone_calls(journal: &[JournalEntry]) -> BTreeSet<u64> {
+    let mut undone = BTreeSet::new();
+    for entry in journal {
+        if let JournalEntry::Call { reversal: Some(Reversal::Undoes(seq)), .. } = entry {
+            undone.insert(*seq);
+        }
+    }
+    undone
+}
+
+impl Session {
+    /// Takes back the last call of this week that changed a setting. Returns what changed by it.
+    ///
+    /// # Errors
+    /// `nothing_to_undo`, `cannot_undo` where no call can restore the old value, and the refusals of the call.
+    pub fn undo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
+        let Some(step) = self.this_week.undo.last().cloned() else {
+            let message = "no setting was changed since the last week; purchases, posts and offers cannot be taken \
+                           back";
+            return Err(Refusal::new("nothing_to_undo", message));
+        };
+        self.restore(&step, via, Reversal::Undoes(step.seq))
+    }
+
+    /// Sets again what the last undo of this week took back. Returns what changed by it.
+    ///
+    /// # Errors
+    /// `nothing_to_redo`, and the refusals of the call.
+    pub fn redo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
+        let Some(step) = self.this_week.redo.last().cloned() else {
+            let message = "nothing was undone since the last setting";
+            return Err(Refusal::new("nothing_to_redo", message));
+        };
+        self.restore(&step, via, Reversal::Redoes(step.seq))
+    }
+
+    fn restore(&mut self, step: &Step, via: Via, reversal: Reversal) -> Result<Vec<Change>, Refusal> {
+        let before = self.world.settings.clone();
+        let arguments = restoring_arguments(self.tool(step.tool)?, &before, &step.restores)?;
+        self.call_recorded(step.tool, &Value::Object(arguments), via, Some(reversal))?;
+        Ok(changes(&before, &self.world.settings))
+    }
+}
+
+/// The arguments with which a tool restores settings.
+fn restoring_arguments(
+    tool: &'static dyn Tool,
+    now: &Settings,
+    restored: &Settings,
+) -> Result<Map<String, Value>, Refusal> {
+    let mut arguments = tool.current(restored);
+    if tool.spec().name == "set_prices" {
+        let held = tool.current(now);
+        arguments.retain(|plan, price| held.get(plan) != Some(price));
+        if let Some((plan, _)) = arguments.iter().find(|(_, price)| price.as_f64() == Some(0.0)) {
+            let message = format!(
+                "plan {plan} had no price before this call, and a price of 0 cannot be set; set another price instead"
+            );
+            return Err(Refusal::at(plan.clone(), "cannot_undo", message));
+        }
+    }
+    Ok(arguments)
+}

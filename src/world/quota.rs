@@ -1,0 +1,84 @@
+//! Quotas: units a day and customer, whole or with a fraction.
+
+use super::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
+
+/// From here on not every whole number of units is a number of its own.
+const TOO_MANY: f64 = 9.0e15;
+
+/// Marks canonical bytes of a quota with a fraction. No number of whole units is as large, and no quota is negative.
+const FRACTION: u64 = 1 << 63;
+
+/// A quota: at least 0.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
+pub struct Quota(f64);
+
+impl Quota {
+    /// A quota of so many units; none where that is no quota.
+    pub fn of(units: f64) -> Option<Quota> {
+        (0.0..TOO_MANY).contains(&units).then_some(Quota(units.abs()))
+    }
+
+    /// Units a day and customer.
+    pub fn units(self) -> f64 {
+        self.0
+    }
+}
+
+impl From<u32> for Quota {
+    fn from(units: u32) -> Quota {
+        Quota(f64::from(units))
+    }
+}
+
+/// Whole quotas have the bytes of whole numbers.
+impl Canonical for Quota {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        let bytes = match self.0.fract() == 0.0 {
+            true => self.0 as u64,
+            false => self.0.to_bits() | FRACTION,
+        };
+        bytes.feed(hasher);
+    }
+}
+
+impl Restore for Quota {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        let bytes: u64 = reader.read()?;
+        let units = match bytes & FRACTION {
+            0 => bytes as f64,
+            _ => f64::from_bits(bytes & !FRACTION),
+        };
+        let has_fraction = bytes & FRACTION != 0;
+        Quota::of(units).filter(|quota| (quota.0.fract() != 0.0) == has_fraction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::canonical::{bytes_of, restored};
+
+    #[test]
+    fn whole_quotas_have_the_bytes_of_whole_numbers_and_others_come_back_too() {
+        for units in [0u64, 1, 59, 60_000, 1_200_000, 8_999_999_999_999_999] {
+            let quota = Quota::of(units as f64).expect("a quota");
+            assert_eq!(bytes_of(&quota), units.to_le_bytes());
+            assert_eq!(restored(&bytes_of(&quota)), Some(quota));
+        }
+        for units in [0.5, 59.75, 1e-300, f64::from_bits(1), 4_000_000_000_000_000.5] {
+            let quota = Quota::of(units).expect("a quota");
+            assert_eq!(restored::<Quota>(&bytes_of(&quota)).map(Quota::units), Some(units));
+        }
+        assert_eq!(bytes_of(&Quota::of(-0.0).expect("a quota")), bytes_of(&Quota::default()));
+    }
+
+    #[test]
+    fn what_is_no_quota_is_none() {
+        for units in [-1.0, f64::NAN, f64::INFINITY, 9.0e15] {
+            assert_eq!(Quota::of(units), None);
+        }
+        for bytes in [u64::MAX, FRACTION, FRACTION | 2.0f64.to_bits(), 1 << 60] {
+            assert_eq!(restored::<Quota>(&bytes.to_le_bytes()), None);
+        }
+    }
+}

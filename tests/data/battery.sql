@@ -1,0 +1,454 @@
+-- Statements of the kinds that agents write, each ended by a semicolon at the end of a line. Every one is asked of a
+-- company and of a plain SQLite database with the same rows in ordinary tables; the answers must be equal cell by cell.
+
+-- # First looks at every table
+SELECT * FROM customers ORDER BY customer_id LIMIT 20;
+SELECT * FROM subscriptions ORDER BY subscription_id LIMIT 20;
+SELECT * FROM daily_usage ORDER BY day, customer_id LIMIT 20;
+SELECT * FROM ledger ORDER BY id LIMIT 20;
+SELECT * FROM service_day ORDER BY day;
+SELECT * FROM config_history ORDER BY day;
+SELECT * FROM social_media_posts ORDER BY post_id DESC LIMIT 20;
+SELECT * FROM agent_social_media_posts;
+SELECT * FROM predictions ORDER BY submit_day, horizon_days;
+SELECT * FROM enterprise_turns ORDER BY message_id LIMIT 50;
+SELECT * FROM notifications ORDER BY notification_id DESC LIMIT 30;
+SELECT * FROM research_projects ORDER BY started_day;
+SELECT * FROM macroeconomic_conditions ORDER BY day;
+SELECT * FROM ad_channel_leads ORDER BY id DESC LIMIT 20;
+SELECT * FROM group_info_levels ORDER BY group_id;
+SELECT * FROM segment_discovery ORDER BY id;
+SELECT * FROM issues ORDER BY issue_id LIMIT 20;
+SELECT * FROM ads_revenue ORDER BY day, customer_id LIMIT 20;
+SELECT * FROM config_overrides ORDER BY id;
+SELECT * FROM ledger LIMIT 5;
+SELECT * FROM customers LIMIT 5;
+SELECT * FROM issues LIMIT 5;
+SELECT * FROM predictions LIMIT 5;
+SELECT * FROM research_projects LIMIT 3;
+SELECT * FROM group_info_levels LIMIT 8;
+
+-- # How many rows
+SELECT COUNT(*) FROM customers;
+SELECT COUNT(*) AS subscriptions, COUNT(end_day) AS ended, COUNT(DISTINCT plan) AS plans FROM subscriptions;
+SELECT COUNT(*), COUNT(note), COUNT(DISTINCT category), MIN(day), MAX(day) FROM ledger;
+SELECT COUNT(*), SUM(usage_units), MIN(day), MAX(day) FROM daily_usage;
+SELECT COUNT(*), SUM(status = 'open'), SUM(status <> 'open'), AVG(days_open) FROM issues;
+SELECT COUNT(*), SUM(revenue), MIN(ads_strength), MAX(ads_strength) FROM ads_revenue;
+SELECT (SELECT COUNT(*) FROM customers) AS customers, (SELECT COUNT(*) FROM subscriptions) AS subscriptions, (SELECT COUNT(*) FROM issues) AS issues, (SELECT COUNT(*) FROM ledger) AS entries;
+SELECT COUNT(*) FROM customers, service_day WHERE created_day = service_day.day;
+SELECT 1 FROM subscriptions LIMIT 3;
+SELECT COUNT(*) FROM (SELECT * FROM issues LIMIT 100);
+SELECT TOTAL(amount), SUM(amount), AVG(amount) FROM ledger WHERE day = -1;
+
+-- # Types of cells
+SELECT typeof(customer_id), typeof(customer_type), typeof(group_id), typeof(created_day), typeof(persona_industry), typeof(persona_description), typeof(email), typeof(contract_start_day), typeof(acquisition_source), COUNT(*) FROM customers GROUP BY 1, 2, 3, 4, 5, 6, 7, 8, 9;
+SELECT typeof(plan), typeof(listed_price), typeof(promotion), typeof(effective_price), typeof(start_day), typeof(end_day), typeof(status), typeof(pending_plan), typeof(pending_price), typeof(seat_count), typeof(contract_months), typeof(contract_end_day), typeof(first_billing_done), COUNT(*) FROM subscriptions GROUP BY 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13;
+SELECT typeof(id), typeof(day), typeof(category), typeof(amount), typeof(note), COUNT(*) FROM ledger GROUP BY 1, 2, 3, 4, 5;
+SELECT typeof(issue_id), typeof(days_open), typeof(status), typeof(resolved_day), typeof(resolution_type), COUNT(*) FROM issues GROUP BY 1, 2, 3, 4, 5;
+SELECT typeof(day), typeof(customer_id), typeof(usage_units), COUNT(*) FROM daily_usage GROUP BY 1, 2, 3;
+SELECT typeof(day), typeof(customer_id), typeof(group_id), typeof(ads_strength), typeof(revenue), COUNT(*) FROM ads_revenue GROUP BY 1, 2, 3, 4, 5;
+SELECT typeof(price_A), typeof(tier_A), typeof(quota_A), typeof(quota_B), typeof(spend_operations), typeof(capacity_tier), COUNT(*) FROM config_history GROUP BY 1, 2, 3, 4, 5, 6;
+SELECT typeof(total_usage_units), typeof(p95_ms), typeof(error_rate), typeof(downtime_minutes), typeof(capacity_units) FROM service_day LIMIT 3;
+SELECT typeof(predicted_value), typeof(predicted_lower), typeof(submitted_at), typeof(metric) FROM predictions LIMIT 2;
+SELECT typeof(settings_json), typeof(offer_json) FROM config_overrides, enterprise_turns LIMIT 1;
+SELECT typeof(info_level), typeof(is_discoverable), typeof(discovered_day), typeof(last_research_day), COUNT(*) FROM group_info_levels GROUP BY 1, 2, 3, 4;
+SELECT typeof(effective_price * 2), typeof(days_open + 1), typeof(effective_price || ''), typeof(days_open / 2) FROM subscriptions JOIN issues USING (customer_id) LIMIT 1;
+SELECT typeof(SUM(seat_count)), typeof(SUM(effective_price)), typeof(AVG(seat_count)), typeof(MAX(end_day)) FROM subscriptions;
+
+-- # Texts compared with numbers and numbers with texts
+SELECT COUNT(*) FROM subscriptions WHERE effective_price = '12';
+SELECT COUNT(*) FROM subscriptions WHERE effective_price = '12.0';
+SELECT COUNT(*) FROM subscriptions WHERE effective_price = ' 12 ';
+SELECT COUNT(*) FROM subscriptions WHERE effective_price > '10' AND effective_price < '30';
+SELECT COUNT(*) FROM subscriptions WHERE '12' = effective_price;
+SELECT COUNT(*) FROM subscriptions WHERE effective_price = 'twelve';
+SELECT COUNT(*) FROM subscriptions WHERE effective_price < 'twelve';
+SELECT COUNT(*) FROM subscriptions WHERE effective_price IN ('12', '25', 55);
+SELECT COUNT(*) FROM subscriptions WHERE effective_price BETWEEN '10' AND '20';
+SELECT COUNT(*) FROM subscriptions WHERE contract_months = '1';
+SELECT COUNT(*) FROM subscriptions WHERE contract_months IN ('1', '12');
+SELECT COUNT(*) FROM subscriptions WHERE contract_months = '1.0';
+SELECT COUNT(*) FROM subscriptions WHERE seat_count >= '10';
+SELECT COUNT(*) FROM subscriptions WHERE start_day || '' = '7';
+SELECT COUNT(*) FROM subscriptions WHERE start_day = '07';
+SELECT COUNT(*) FROM subscriptions WHERE status = 1;
+SELECT COUNT(*) FROM subscriptions WHERE status > 1;
+SELECT COUNT(*) FROM subscriptions WHERE status < 1;
+SELECT COUNT(*) FROM issues WHERE days_open = '2';
+SELECT COUNT(*) FROM issues WHERE days_open >= '3' AND days_open <= '10';
+SELECT COUNT(*) FROM issues WHERE days_open + 0 = '2';
+SELECT COUNT(*) FROM issues WHERE CAST(days_open AS TEXT) = 2;
+SELECT COUNT(*) FROM issues WHERE status > 5;
+SELECT COUNT(*) FROM issues WHERE issue_id = '5';
+SELECT COUNT(*) FROM issues WHERE days_open = 2.0;
+SELECT COUNT(*) FROM ledger WHERE day = '10' AND category > 0;
+SELECT COUNT(*) FROM ledger WHERE amount = '-0.5';
+SELECT COUNT(*) FROM ledger WHERE category = 3;
+SELECT COUNT(*) FROM ledger WHERE note > 5;
+SELECT COUNT(*) FROM ledger WHERE day BETWEEN '5' AND '9';
+SELECT COUNT(*) FROM customers WHERE customer_type > 0 AND group_id > 0;
+SELECT COUNT(*) FROM customers WHERE customer_type < 9999999999;
+SELECT COUNT(*) FROM customers WHERE acquisition_source = 3 OR acquisition_source >= 0;
+SELECT COUNT(*) FROM customers WHERE persona_description > 1;
+SELECT COUNT(*) FROM daily_usage WHERE day = '10';
+SELECT COUNT(*) FROM daily_usage WHERE day >= '10' AND day < '12.5';
+SELECT COUNT(*) FROM daily_usage WHERE customer_id = '7';
+SELECT COUNT(*) FROM daily_usage WHERE day = 'ten' OR usage_units = '0';
+SELECT COUNT(*) FROM daily_usage WHERE day = 10.5 OR customer_id = 7.0;
+SELECT COUNT(*) FROM ads_revenue WHERE day = '30' OR revenue > '0.5' OR group_id = 1;
+SELECT MIN(effective_price), MAX(effective_price), MIN(status), MAX(status) FROM subscriptions;
+SELECT DISTINCT effective_price = '12', effective_price = 12, effective_price IS '12' FROM subscriptions;
+SELECT customer_id FROM subscriptions WHERE pending_price = '1' OR pending_plan = 1 OR pending_plan IS NOT NULL;
+SELECT COUNT(*) FROM subscriptions a JOIN issues b ON CAST(a.customer_id AS TEXT) = b.customer_id;
+SELECT COUNT(*) FROM config_history WHERE price_A = '12' OR quota_A = '60000' OR tier_A = '1';
+SELECT COUNT(*) FROM config_history WHERE quota_A = 60000 AND price_B > '9';
+
+-- # Money
+SELECT SUM(amount) AS cash FROM ledger;
+SELECT ROUND(SUM(amount), 2) AS cash FROM ledger WHERE day <= 28;
+SELECT category, COUNT(*) AS n, ROUND(SUM(amount), 2) AS total FROM ledger GROUP BY category ORDER BY total DESC;
+SELECT category, SUM(amount) FROM ledger GROUP BY category HAVING SUM(amount) < 0 ORDER BY 1;
+SELECT day, SUM(amount) AS net FROM ledger GROUP BY day ORDER BY day DESC LIMIT 14;
+SELECT day / 7 AS week, SUM(CASE WHEN amount > 0 THEN amount ELSE 0 END) AS income, SUM(CASE WHEN amount < 0 THEN -amount ELSE 0 END) AS costs FROM ledger GROUP BY week ORDER BY week;
+SELECT (day - 1) / 7 + 1 AS week, SUM(amount) FROM ledger WHERE day > 0 GROUP BY 1 ORDER BY 1;
+SELECT SUM(amount) FILTER (WHERE amount > 0) AS income, SUM(amount) FILTER (WHERE amount < 0) AS costs FROM ledger;
+SELECT day, SUM(amount) FILTER (WHERE category = 'subscription_payment') AS revenue, COUNT(*) FILTER (WHERE category = 'subscription_payment') AS bills FROM ledger WHERE day > 20 GROUP BY day ORDER BY day;
+SELECT category, SUM(amount) FROM ledger WHERE day > (SELECT MAX(day) FROM ledger) - 7 GROUP BY category ORDER BY category;
+SELECT day, amount, note FROM ledger WHERE category IN ('group_research', 'market_research', 'research_project') ORDER BY id;
+SELECT note, amount FROM ledger WHERE category NOT IN ('subscription_payment', 'lead_acquisition_cost') GROUP BY note ORDER BY note;
+SELECT MAX(amount), MIN(amount) FROM ledger WHERE category = 'subscription_payment';
+SELECT id, day, amount FROM ledger WHERE amount = (SELECT MAX(amount) FROM ledger WHERE category = 'subscription_payment') ORDER BY id LIMIT 3;
+SELECT CAST(SUM(amount) AS INTEGER) AS cash, printf('$%,.2f', SUM(amount)) AS shown FROM ledger;
+SELECT s.day, (SELECT SUM(l.amount) FROM ledger l WHERE l.day = s.day) AS net FROM service_day s ORDER BY s.day DESC LIMIT 30;
+SELECT s.day, (SELECT ROUND(SUM(l.amount), 4) FROM ledger l WHERE l.day <= s.day) AS cash FROM service_day s WHERE s.day IN (7, 14, 21, 28);
+SELECT day, net, SUM(net) OVER (ORDER BY day) AS cash FROM (SELECT day, SUM(amount) AS net FROM ledger GROUP BY day) ORDER BY day;
+SELECT AVG(daily) FROM (SELECT day, SUM(amount) AS daily FROM ledger WHERE day > 0 GROUP BY day);
+SELECT category, ROUND(100.0 * SUM(-amount) / (SELECT SUM(-amount) FROM ledger WHERE amount < 0), 2) AS share FROM ledger WHERE amount < 0 GROUP BY category ORDER BY share DESC, category;
+SELECT COUNT(*) FROM ledger WHERE note LIKE 'Subscription payment from customer %' AND category <> 'subscription_payment';
+SELECT CAST(replace(note, 'Subscription payment from customer ', '') AS INTEGER) AS customer_id, SUM(amount) AS paid FROM ledger WHERE category = 'subscription_payment' GROUP BY 1 ORDER BY paid DESC, 1 LIMIT 10;
+SELECT COUNT(*), SUM(l.amount) FROM ledger l JOIN subscriptions s ON l.note = 'Subscription payment from customer ' || s.customer_id WHERE l.day BETWEEN 30 AND 33;
+SELECT substr(note, 1, 12) AS head, COUNT(*) FROM ledger GROUP BY head ORDER BY 2 DESC, 1;
+
+-- # Subscriptions
+SELECT status, COUNT(*) FROM subscriptions GROUP BY status ORDER BY status;
+SELECT plan, status, COUNT(*) AS n FROM subscriptions GROUP BY plan, status ORDER BY plan, status;
+SELECT COUNT(*) FROM subscriptions WHERE status = 'subscribed' AND end_day IS NULL;
+SELECT plan, COUNT(*) AS subscribers, ROUND(AVG(effective_price), 4) AS price, SUM(seat_count) AS seats FROM subscriptions WHERE status = 'subscribed' GROUP BY plan ORDER BY plan;
+SELECT SUM(effective_price * seat_count) AS mrr FROM subscriptions WHERE status = 'subscribed';
+SELECT plan, effective_price, COUNT(*) FROM subscriptions WHERE status = 'subscribed' GROUP BY 1, 2 ORDER BY 1, 2;
+SELECT start_day, COUNT(*) AS signups FROM subscriptions WHERE status <> 'lost' GROUP BY start_day ORDER BY start_day;
+SELECT end_day, COUNT(*) FROM subscriptions WHERE status = 'cancelled' GROUP BY end_day ORDER BY end_day;
+SELECT AVG(end_day - start_day) AS tenure FROM subscriptions WHERE status = 'cancelled';
+SELECT (end_day - start_day) / 30 AS months, COUNT(*) FROM subscriptions WHERE status = 'cancelled' GROUP BY months ORDER BY months;
+SELECT billing_day_mod30, COUNT(*) FROM subscriptions WHERE status = 'subscribed' GROUP BY billing_day_mod30 ORDER BY 1;
+SELECT COUNT(*) FROM subscriptions WHERE first_billing_done AND status = 'subscribed' AND NOT (listed_price > 20);
+SELECT COUNT(*) FROM subscriptions WHERE promotion > 0 AND effective_price <> listed_price;
+SELECT ROUND(SUM(CASE WHEN status = 'subscribed' THEN 1.0 ELSE 0 END) / COUNT(*), 6) AS conversion FROM subscriptions;
+SELECT subscription_id, listed_price - promotion = effective_price AS exact FROM subscriptions WHERE status = 'subscribed' ORDER BY subscription_id LIMIT 10;
+SELECT COUNT(*) FROM subscriptions WHERE end_day IS NULL AND status IN ('cancelled', 'lost');
+SELECT COUNT(*) FROM subscriptions WHERE end_day > start_day + 29 AND end_day < start_day + 61;
+SELECT contract_end_day - start_day AS days, COUNT(*) FROM subscriptions WHERE contract_end_day IS NOT NULL GROUP BY 1 ORDER BY 1;
+SELECT status, MIN(subscription_id), MAX(customer_id) FROM subscriptions GROUP BY status ORDER BY 1;
+
+-- # Customers and their groups
+SELECT group_id, COUNT(*) FROM customers GROUP BY group_id ORDER BY group_id;
+SELECT customer_type, acquisition_source, COUNT(*) FROM customers GROUP BY 1, 2 ORDER BY 1, 2;
+SELECT created_day, COUNT(*) FROM customers WHERE group_id = 'S1' GROUP BY created_day ORDER BY created_day;
+SELECT persona_industry, COUNT(*) AS n FROM customers WHERE customer_type = 'small' GROUP BY persona_industry ORDER BY n DESC, 1 LIMIT 10;
+SELECT persona_role, persona_experience, persona_work_style, persona_tech_savvy, COUNT(*) FROM customers GROUP BY 1, 2, 3, 4 ORDER BY 5 DESC, 1, 2, 3, 4 LIMIT 20;
+SELECT company_size_descriptor, company_culture, company_decision_style, company_primary_concern, COUNT(*) FROM customers WHERE customer_type = 'large' GROUP BY 1, 2, 3, 4 ORDER BY 5 DESC, 1, 2, 3, 4 LIMIT 20;
+SELECT customer_id, persona_description FROM customers WHERE customer_type = 'large' ORDER BY customer_id LIMIT 10;
+SELECT COUNT(*) FROM customers WHERE email IS NOT NULL;
+SELECT substr(email, instr(email, '@') + 1) AS domain, COUNT(*) FROM customers WHERE email IS NOT NULL GROUP BY domain ORDER BY 2 DESC, 1 LIMIT 5;
+SELECT customer_id, email, contract_start_day FROM customers WHERE contract_start_day IS NOT NULL ORDER BY customer_id;
+SELECT COUNT(*) FROM customers WHERE persona_description LIKE '%budget%';
+SELECT COUNT(*) FROM customers WHERE persona_industry LIKE '%a%' AND persona_role NOT LIKE 'e%';
+SELECT upper(group_id), lower(customer_type), length(persona_role) FROM customers WHERE customer_id BETWEEN 2 AND 6 ORDER BY customer_id;
+SELECT group_id, acquisition_source, COUNT(*) AS n, RANK() OVER (PARTITION BY group_id ORDER BY COUNT(*) DESC) AS place FROM customers WHERE customer_id > 1 GROUP BY 1, 2 ORDER BY 1, 4, 2;
+SELECT COUNT(DISTINCT persona_industry), COUNT(DISTINCT persona_role), COUNT(DISTINCT acquisition_source) FROM customers;
+SELECT * FROM customers WHERE customer_id = 1;
+SELECT created_day / 7 AS week, SUM(customer_type = 'large') AS companies, SUM(customer_type = 'small') AS people FROM customers WHERE customer_id > 1 GROUP BY week ORDER BY week;
+
+-- # Joins
+SELECT c.group_id, s.plan, COUNT(*) FROM customers c JOIN subscriptions s ON s.customer_id = c.customer_id WHERE s.status = 'subscribed' GROUP BY 1, 2 ORDER BY 1, 2;
+SELECT c.group_id, COUNT(*) AS leads, SUM(s.status = 'subscribed') AS active, ROUND(AVG(s.status = 'subscribed'), 4) AS rate FROM customers c JOIN subscriptions s USING (customer_id) GROUP BY c.group_id ORDER BY c.group_id;
+SELECT c.acquisition_source, SUM(s.effective_price * s.seat_count) AS mrr FROM customers c JOIN subscriptions s USING (customer_id) WHERE s.status = 'subscribed' GROUP BY 1 ORDER BY 2 DESC, 1;
+SELECT c.customer_id, c.group_id, s.status, s.plan FROM customers c LEFT JOIN subscriptions s ON s.customer_id = c.customer_id WHERE s.customer_id IS NULL ORDER BY c.customer_id LIMIT 10;
+SELECT COUNT(*) FROM customers NATURAL JOIN subscriptions;
+SELECT s.plan, AVG(u.usage_units) AS usage FROM daily_usage u JOIN subscriptions s ON s.customer_id = u.customer_id WHERE u.day = 40 GROUP BY s.plan ORDER BY s.plan;
+SELECT c.group_id, u.day, SUM(u.usage_units) FROM daily_usage u JOIN customers c USING (customer_id) WHERE u.day >= 50 GROUP BY 1, 2 ORDER BY 1, 2;
+SELECT s.customer_id, COUNT(u.day) AS days, SUM(u.usage_units) AS units FROM subscriptions s LEFT JOIN daily_usage u ON u.customer_id = s.customer_id AND u.day > 45 WHERE s.status = 'subscribed' GROUP BY s.customer_id ORDER BY units DESC, 1 LIMIT 20;
+SELECT COUNT(*) FROM subscriptions s LEFT JOIN daily_usage u ON u.customer_id = s.customer_id AND u.day = 44 WHERE u.customer_id IS NULL;
+SELECT s.plan, i.status, COUNT(*) AS n, AVG(i.days_open) AS age FROM issues i JOIN subscriptions s ON s.customer_id = i.customer_id GROUP BY 1, 2 ORDER BY 1, 2;
+SELECT COUNT(*) FROM issues i JOIN subscriptions s ON s.customer_id = i.customer_id AND s.status = 'subscribed' WHERE i.status = 'open';
+SELECT a.group_id, SUM(a.revenue) AS revenue, COUNT(DISTINCT a.customer_id) AS shown FROM ads_revenue a JOIN subscriptions s USING (customer_id) GROUP BY a.group_id ORDER BY 1;
+SELECT d.day, d.total_usage_units, c.capacity_tier AS set_tier, d.capacity_tier FROM service_day d LEFT JOIN config_history c ON c.day = d.day - 1 ORDER BY d.day LIMIT 20;
+SELECT l.day, l.channel_id, l.group_id, l.leads_generated, COUNT(c.customer_id) AS came FROM ad_channel_leads l LEFT JOIN customers c ON c.created_day = l.day AND c.group_id = l.group_id AND c.acquisition_source = l.channel_id WHERE l.day BETWEEN 8 AND 12 GROUP BY l.id ORDER BY l.id;
+SELECT t.thread_type, c.group_id, COUNT(*) FROM enterprise_turns t JOIN customers c ON c.customer_id = t.customer_id GROUP BY 1, 2 ORDER BY 1, 2;
+SELECT a.customer_id, b.customer_id FROM subscriptions a JOIN subscriptions b ON a.customer_id < b.customer_id AND a.start_day = b.start_day AND a.seat_count = b.seat_count WHERE a.contract_end_day IS NOT NULL AND b.contract_end_day IS NOT NULL ORDER BY 1, 2 LIMIT 20;
+SELECT g.group_id, COUNT(c.customer_id) AS customers FROM group_info_levels g LEFT JOIN customers c ON c.group_id = g.group_id GROUP BY g.group_id ORDER BY 1;
+SELECT p.post_id, a.agent_post_id, a.content FROM social_media_posts p JOIN agent_social_media_posts a ON a.agent_post_id = p.reply_to_agent_post_id ORDER BY p.post_id;
+SELECT x.plan, y.plan, COUNT(*) FROM subscriptions x CROSS JOIN (SELECT DISTINCT plan FROM subscriptions) y WHERE x.start_day < 3 GROUP BY 1, 2 ORDER BY 1, 2;
+SELECT COUNT(*) FROM customers c FULL JOIN subscriptions s ON s.customer_id = c.customer_id;
+SELECT s.plan, c.group_id, c.persona_role, COUNT(*) FROM subscriptions s FULL OUTER JOIN customers c USING (customer_id) GROUP BY 1, 2, 3 ORDER BY 4 DESC, 1, 2, 3 LIMIT 20;
+SELECT COUNT(i.issue_id), COUNT(s.rowid) FROM issues i RIGHT OUTER JOIN subscriptions s ON s.customer_id = i.customer_id AND i.status = 'open';
+SELECT s.status, COUNT(*) FROM subscriptions s RIGHT JOIN customers c ON c.customer_id = s.customer_id GROUP BY s.status ORDER BY 1;
+SELECT service_day.day, total_usage_units, used FROM service_day JOIN (SELECT day, SUM(usage_units) AS used FROM daily_usage GROUP BY day) u ON u.day = service_day.day ORDER BY 1;
+
+-- # Correlated sub-queries
+SELECT s.customer_id, (SELECT COUNT(*) FROM issues i WHERE i.customer_id = s.customer_id) AS issues FROM subscriptions s WHERE s.status = 'subscribed' ORDER BY issues DESC, 1 LIMIT 20;
+SELECT SUM((SELECT COUNT(*) FROM issues i WHERE i.customer_id = s.customer_id)) FROM subscriptions s;
+SELECT c.group_id, AVG((SELECT COUNT(*) FROM issues i WHERE i.customer_id = c.customer_id AND i.status = 'open')) AS open_issues FROM customers c GROUP BY c.group_id ORDER BY 1;
+SELECT i.issue_id FROM issues i WHERE i.open_day = (SELECT MAX(j.open_day) FROM issues j WHERE j.customer_id = i.customer_id) AND (SELECT COUNT(*) FROM issues j WHERE j.customer_id = i.customer_id) > 1 ORDER BY 1 LIMIT 20;
+SELECT COUNT(*) FROM issues i WHERE EXISTS (SELECT 1 FROM issues j WHERE j.customer_id = i.customer_id AND j.issue_id < i.issue_id);
+SELECT COUNT(*) FROM subscriptions s WHERE EXISTS (SELECT 1 FROM issues i WHERE i.customer_id = s.customer_id AND i.status = 'open');
+SELECT COUNT(*) FROM subscriptions s WHERE NOT EXISTS (SELECT 1 FROM issues i WHERE i.customer_id = s.customer_id);
+SELECT COUNT(*) FROM customers c WHERE c.customer_type = 'large' AND NOT EXISTS (SELECT 1 FROM subscriptions s WHERE s.customer_id = c.customer_id);
+SELECT c.customer_id, (SELECT t.message_text FROM enterprise_turns t WHERE t.customer_id = c.customer_id AND t.sender = 'customer' ORDER BY t.message_id DESC LIMIT 1) AS last_words FROM customers c WHERE c.customer_type = 'large' ORDER BY 1;
+SELECT t.customer_id, t.thread_id, t.turn_number, t.sender FROM enterprise_turns t WHERE t.message_id = (SELECT MAX(x.message_id) FROM enterprise_turns x WHERE x.customer_id = t.customer_id) ORDER BY 1;
+SELECT t.thread_id, t.sender, t.day FROM enterprise_turns t WHERE t.closed = 0 AND t.turn_number = (SELECT MAX(turn_number) FROM enterprise_turns x WHERE x.thread_id = t.thread_id) AND NOT EXISTS (SELECT 1 FROM enterprise_turns x WHERE x.thread_id = t.thread_id AND x.closed = 1) ORDER BY 1, 2, 3;
+SELECT s.customer_id, s.start_day, (SELECT h.price_A FROM config_history h WHERE h.day <= s.start_day ORDER BY h.day DESC LIMIT 1) AS list_price FROM subscriptions s ORDER BY 1 LIMIT 20;
+SELECT COUNT(*) FROM subscriptions s WHERE s.listed_price < (SELECT h.price_B FROM config_history h WHERE h.day < s.start_day ORDER BY h.day DESC LIMIT 1);
+SELECT d.day, (SELECT COUNT(*) FROM customers c WHERE c.created_day = d.day) AS leads FROM service_day d ORDER BY d.day;
+SELECT d.day, (SELECT COUNT(*) FROM subscriptions s WHERE s.start_day = d.day AND s.status <> 'lost') AS signups, (SELECT COUNT(*) FROM subscriptions s WHERE s.end_day = d.day) AS ended FROM service_day d WHERE d.day % 7 = 0 ORDER BY d.day;
+SELECT d.day, (SELECT COUNT(*) FROM subscriptions s WHERE s.start_day <= d.day AND (s.end_day IS NULL OR s.end_day > d.day)) AS active FROM service_day d WHERE d.day % 28 = 0 ORDER BY d.day;
+SELECT d.day, (SELECT SUM(u.usage_units) FROM daily_usage u WHERE u.day = d.day) AS used, d.total_usage_units FROM service_day d ORDER BY d.day DESC LIMIT 20;
+SELECT s.customer_id, (SELECT SUM(u.usage_units) FROM daily_usage u WHERE u.customer_id = s.customer_id AND u.day = 44) AS used FROM subscriptions s WHERE s.status = 'subscribed' ORDER BY used DESC, 1 LIMIT 10;
+SELECT s.plan, SUM((SELECT u.usage_units FROM daily_usage u WHERE u.day = 44 AND u.customer_id = s.customer_id)) AS used FROM subscriptions s GROUP BY s.plan ORDER BY 1;
+SELECT s.customer_id, (SELECT MAX(u.usage_units) FROM daily_usage u WHERE u.customer_id = s.customer_id) AS peak FROM subscriptions s WHERE s.status = 'subscribed' AND s.start_day < 20 ORDER BY peak DESC, 1 LIMIT 10;
+SELECT s.customer_id, (SELECT SUM(a.revenue) FROM ads_revenue a WHERE a.customer_id = s.customer_id) AS earned FROM subscriptions s WHERE s.status = 'subscribed' ORDER BY earned DESC, 1 LIMIT 10;
+SELECT g.group_id, (SELECT COUNT(*) FROM customers c WHERE c.group_id = g.group_id) AS customers, (SELECT MAX(created_day) FROM customers c WHERE c.group_id = g.group_id) AS newest FROM group_info_levels g ORDER BY 1;
+SELECT l.day, l.channel_id, l.group_id, (SELECT COUNT(*) FROM customers c WHERE c.created_day = l.day AND c.acquisition_source = l.channel_id AND c.group_id = l.group_id) AS came FROM ad_channel_leads l WHERE l.spend > 0 ORDER BY l.id DESC LIMIT 40;
+SELECT p.submit_day, p.horizon_days, p.predicted_value, (SELECT SUM(l.amount) FROM ledger l WHERE l.day <= p.submit_day + p.horizon_days) AS cash FROM predictions p WHERE p.submit_day + p.horizon_days <= (SELECT MAX(day) FROM service_day) AND p.submit_day < 28 ORDER BY 1, 2;
+SELECT c.customer_id, (SELECT COUNT(*) FROM customers d WHERE d.email = c.email) AS same FROM customers c WHERE c.contract_start_day IS NOT NULL ORDER BY 1 LIMIT 5;
+SELECT plan, (SELECT COUNT(*) FROM issues i WHERE i.customer_id IN (SELECT x.customer_id FROM subscriptions x WHERE x.plan = s.plan)) AS issues FROM subscriptions s GROUP BY plan ORDER BY plan;
+SELECT COUNT(*) FROM customers c WHERE (SELECT a.spend FROM ad_channel_leads a WHERE a.day = c.created_day AND a.group_id = c.group_id AND a.channel_id = c.acquisition_source) > 100;
+
+-- # Lists and sets
+SELECT COUNT(*) FROM customers WHERE customer_id NOT IN (SELECT customer_id FROM subscriptions);
+SELECT COUNT(*) FROM subscriptions WHERE customer_id IN (SELECT customer_id FROM issues WHERE status = 'open');
+SELECT COUNT(*) FROM subscriptions WHERE (plan, status) IN (SELECT 'A', 'subscribed' UNION SELECT 'B', 'lost');
+SELECT COUNT(*) FROM daily_usage WHERE customer_id IN (SELECT customer_id FROM subscriptions WHERE plan = 'C' AND status = 'subscribed');
+SELECT COUNT(*) FROM daily_usage WHERE day IN (41, 43, 45) AND customer_id IN (2, 3, 5, 7, 11, 13);
+SELECT group_id FROM group_info_levels EXCEPT SELECT group_id FROM customers ORDER BY 1;
+SELECT group_id FROM customers INTERSECT SELECT group_id FROM group_info_levels WHERE is_discoverable ORDER BY 1;
+SELECT plan AS name FROM subscriptions UNION SELECT status FROM subscriptions UNION SELECT 'none' ORDER BY name;
+SELECT 'customers' AS tab, COUNT(*) AS n FROM customers UNION ALL SELECT 'issues', COUNT(*) FROM issues UNION ALL SELECT 'ledger', COUNT(*) FROM ledger ORDER BY n;
+SELECT day FROM service_day WHERE downtime_minutes > 0 UNION SELECT day FROM macroeconomic_conditions ORDER BY 1;
+SELECT COUNT(*) FROM (SELECT customer_id FROM issues EXCEPT SELECT customer_id FROM subscriptions WHERE status = 'subscribed');
+SELECT customer_id FROM subscriptions WHERE status = 'subscribed' AND plan = 'A' INTERSECT SELECT customer_id FROM daily_usage WHERE day = 44 AND usage_units > 150 ORDER BY 1 LIMIT 20;
+SELECT DISTINCT category FROM ledger ORDER BY category;
+SELECT DISTINCT thread_type, sender FROM enterprise_turns ORDER BY 1, 2;
+VALUES (1, 'A'), (2, 'B'), (3, 'C');
+SELECT column1 AS plan, (SELECT COUNT(*) FROM subscriptions s WHERE s.plan = column1) AS n FROM (VALUES ('A'), ('B'), ('C')) ORDER BY 1;
+SELECT COUNT(*) FROM subscriptions WHERE plan NOT IN ('A', 'B') AND status NOT IN ('lost');
+
+-- # Common table expressions
+WITH active AS (SELECT * FROM subscriptions WHERE status = 'subscribed') SELECT plan, COUNT(*) AS n, SUM(effective_price * seat_count) AS mrr FROM active GROUP BY plan ORDER BY plan;
+WITH weekly AS (SELECT day / 7 AS week, SUM(amount) AS net FROM ledger GROUP BY week), cash AS (SELECT week, net, SUM(net) OVER (ORDER BY week) AS cash FROM weekly) SELECT * FROM cash ORDER BY week;
+WITH cohort AS (SELECT customer_id, start_day / 30 AS month, end_day FROM subscriptions WHERE status IN ('subscribed', 'cancelled')) SELECT month, COUNT(*) AS started, SUM(end_day IS NULL) AS still, ROUND(1.0 * SUM(end_day IS NULL) / COUNT(*), 4) AS retained FROM cohort GROUP BY month ORDER BY month;
+WITH per_customer AS (SELECT customer_id, AVG(usage_units) AS mean FROM daily_usage GROUP BY customer_id) SELECT s.plan, COUNT(*), AVG(mean) FROM per_customer JOIN subscriptions s USING (customer_id) GROUP BY s.plan ORDER BY 1;
+WITH latest AS (SELECT customer_id, MAX(message_id) AS message_id FROM enterprise_turns GROUP BY customer_id) SELECT t.customer_id, t.sender, t.day, t.offer_json FROM latest JOIN enterprise_turns t USING (message_id) ORDER BY 1;
+WITH leads AS (SELECT created_day AS day, COUNT(*) AS leads FROM customers WHERE customer_id > 1 GROUP BY 1), spend AS (SELECT day, -SUM(amount) AS spend FROM ledger WHERE category = 'advertising' GROUP BY 1) SELECT leads.day, leads, spend, ROUND(spend / leads, 4) AS per_lead FROM leads JOIN spend USING (day) ORDER BY 1;
+WITH a(x) AS (VALUES (1), (2), (3)), b AS MATERIALIZED (SELECT x * x AS y FROM a) SELECT SUM(y) FROM b;
+WITH churned AS NOT MATERIALIZED (SELECT * FROM subscriptions WHERE status = 'cancelled') SELECT c.group_id, COUNT(*) FROM churned JOIN customers c USING (customer_id) GROUP BY 1 ORDER BY 1;
+WITH customers AS (SELECT 5 AS customer_id) SELECT * FROM customers;
+WITH x AS (SELECT * FROM issues WHERE status = 'resolved') SELECT resolved_day - open_day AS wait, COUNT(*) FROM x GROUP BY wait ORDER BY wait;
+WITH t AS (SELECT group_id, COUNT(*) AS n FROM customers GROUP BY 1) SELECT group_id, n, ROUND(100.0 * n / (SELECT SUM(n) FROM t), 3) AS share FROM t ORDER BY n DESC, 1;
+WITH bills AS (SELECT day, COUNT(*) AS n FROM ledger WHERE category = 'subscription_payment' GROUP BY day) SELECT a.day, a.n, b.n AS a_month_before FROM bills a LEFT JOIN bills b ON b.day = a.day - 30 ORDER BY a.day DESC LIMIT 20;
+
+-- # Recursive expressions
+WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 20) SELECT x, x * x FROM n;
+WITH RECURSIVE days(day) AS (SELECT 0 UNION ALL SELECT day + 1 FROM days WHERE day < 60) SELECT days.day, COUNT(s.customer_id) AS signups FROM days LEFT JOIN subscriptions s ON s.start_day = days.day AND s.status <> 'lost' GROUP BY days.day ORDER BY days.day;
+WITH RECURSIVE weeks(w) AS (VALUES (0) UNION ALL SELECT w + 1 FROM weeks WHERE w < 8) SELECT w, (SELECT COUNT(*) FROM customers WHERE created_day BETWEEN w * 7 AND w * 7 + 6) AS leads FROM weeks;
+WITH RECURSIVE fib(a, b) AS (SELECT 0, 1 UNION ALL SELECT b, a + b FROM fib WHERE b < 1000) SELECT a FROM fib;
+WITH RECURSIVE growth(week, cash) AS (SELECT 0, (SELECT SUM(amount) FROM ledger) UNION ALL SELECT week + 1, cash * 1.05 FROM growth WHERE week < 12) SELECT week, ROUND(cash, 2) FROM growth;
+WITH RECURSIVE dates(d) AS (SELECT date('2024-01-01') UNION ALL SELECT date(d, '+1 month') FROM dates WHERE d < '2024-06-01') SELECT d FROM dates;
+WITH RECURSIVE walk(message_id, customer_id, depth) AS (SELECT MIN(message_id), customer_id, 0 FROM enterprise_turns GROUP BY customer_id UNION ALL SELECT t.message_id, t.customer_id, depth + 1 FROM walk w JOIN enterprise_turns t ON t.customer_id = w.customer_id AND t.message_id = (SELECT MIN(x.message_id) FROM enterprise_turns x WHERE x.customer_id = w.customer_id AND x.message_id > w.message_id)) SELECT customer_id, MAX(depth) AS turns FROM walk GROUP BY customer_id ORDER BY 1;
+WITH RECURSIVE split(rest, part) AS (SELECT 'a,b,c,', '' UNION ALL SELECT substr(rest, instr(rest, ',') + 1), substr(rest, 1, instr(rest, ',') - 1) FROM split WHERE rest <> '') SELECT part FROM split WHERE part <> '';
+
+-- # Windows
+SELECT day, p95_ms, AVG(p95_ms) OVER (ORDER BY day ROWS BETWEEN 6 PRECEDING AND CURRENT ROW) AS week FROM service_day ORDER BY day;
+SELECT day, total_usage_units, total_usage_units - LAG(total_usage_units) OVER (ORDER BY day) AS change FROM service_day ORDER BY day;
+SELECT day, total_usage_units, LEAD(total_usage_units, 7, 0) OVER (ORDER BY day) AS in_a_week FROM service_day ORDER BY day;
+SELECT category, day, SUM(amount) AS net, SUM(SUM(amount)) OVER (PARTITION BY category ORDER BY day) AS so_far FROM ledger WHERE category IN ('compute', 'capacity', 'advertising') GROUP BY category, day ORDER BY category, day;
+SELECT plan, n, ROW_NUMBER() OVER (ORDER BY n DESC, plan) AS place FROM (SELECT plan, COUNT(*) AS n FROM subscriptions GROUP BY plan) ORDER BY place;
+SELECT group_id, n, RANK() OVER (ORDER BY n DESC) AS place, DENSE_RANK() OVER (ORDER BY n DESC) AS dense FROM (SELECT group_id, COUNT(*) AS n FROM customers GROUP BY group_id) ORDER BY place, group_id;
+SELECT customer_id, effective_price, NTILE(4) OVER (ORDER BY effective_price, customer_id) AS quarter FROM subscriptions WHERE status = 'subscribed' ORDER BY customer_id LIMIT 30;
+SELECT day, p95_ms, PERCENT_RANK() OVER (ORDER BY p95_ms) AS share, CUME_DIST() OVER (ORDER BY p95_ms) AS below FROM service_day ORDER BY day LIMIT 20;
+SELECT thread_id, turn_number, sender, FIRST_VALUE(offer_json) OVER w AS first_offer, LAST_VALUE(sender) OVER w AS newest FROM enterprise_turns WINDOW w AS (PARTITION BY thread_id ORDER BY turn_number, message_id) ORDER BY thread_id, turn_number, message_id LIMIT 60;
+SELECT * FROM (SELECT customer_id, issue_id, open_day, ROW_NUMBER() OVER (PARTITION BY customer_id ORDER BY open_day DESC, issue_id DESC) AS r FROM issues) WHERE r = 1 ORDER BY customer_id LIMIT 20;
+SELECT day, COUNT(*) AS leads, SUM(COUNT(*)) OVER (ORDER BY day RANGE BETWEEN 6 PRECEDING AND CURRENT ROW) AS week FROM (SELECT created_day AS day FROM customers) GROUP BY day ORDER BY day;
+SELECT day, pmi_value, pmi_value - FIRST_VALUE(pmi_value) OVER (ORDER BY day) AS since_start, NTH_VALUE(pmi_value, 2) OVER (ORDER BY day) AS second FROM macroeconomic_conditions ORDER BY day;
+SELECT status, COUNT(*) AS n, ROUND(100.0 * COUNT(*) / SUM(COUNT(*)) OVER (), 2) AS share FROM subscriptions GROUP BY status ORDER BY status;
+SELECT day, MAX(downtime_minutes) OVER (ORDER BY day ROWS UNBOUNDED PRECEDING) AS worst, COUNT(*) FILTER (WHERE downtime_minutes > 0) OVER (ORDER BY day) AS outages FROM service_day ORDER BY day;
+SELECT id, day, amount, SUM(amount) OVER (ORDER BY id) AS cash FROM ledger WHERE day < 3 ORDER BY id;
+SELECT plan, start_day, COUNT(*) OVER (PARTITION BY plan ORDER BY start_day GROUPS BETWEEN 1 PRECEDING AND CURRENT ROW) AS n FROM subscriptions WHERE status = 'subscribed' AND start_day < 12 ORDER BY 1, 2, 3;
+
+-- # Mathematics
+SELECT ceil(1.2), ceiling(-1.2), floor(1.8), floor(-1.8), trunc(2.9), trunc(-2.9), round(2.5), round(-2.567, 2);
+SELECT sqrt(2), pow(2, 10), power(2, 0.5), exp(1), ln(10), log(10), log(2, 1024), log10(0.001), log2(10), pi();
+SELECT sin(1), cos(1), tan(1), asin(0.5), acos(0.5), atan(1), atan2(1, 2), sinh(1), cosh(1), tanh(1), asinh(1), acosh(2), atanh(0.5), degrees(pi()), radians(180);
+SELECT sign(-5), sign(0), sign(2.5), sign('x'), abs(-3), abs(-2.5), mod(7, 3), mod(-7.5, 2), 7 % 3, -7 % 3, 7 / 2, 7 / 2.0;
+SELECT sqrt(-1), ln(0), log(-1), acos(2), floor('x'), ceil(NULL), pow('2', '3'), typeof(floor(2.5)), typeof(ceil(3)), typeof(trunc('4'));
+SELECT ROUND(SQRT(AVG(p95_ms * p95_ms) - AVG(p95_ms) * AVG(p95_ms)), 6) AS deviation FROM service_day;
+SELECT ROUND(SQRT(SUM((x - m) * (x - m)) / COUNT(*)), 6) AS deviation FROM (SELECT usage_units AS x, (SELECT AVG(usage_units) FROM daily_usage WHERE day = 44) AS m FROM daily_usage WHERE day = 44);
+SELECT FLOOR(day / 7.0) AS week, CEIL(AVG(total_usage_units)) AS usage, ROUND(EXP(AVG(LN(p95_ms))), 6) AS mean FROM service_day GROUP BY week ORDER BY week;
+SELECT plan, ROUND(LOG10(SUM(seat_count)), 6), ROUND(LN(COUNT(*)), 6) FROM subscriptions GROUP BY plan ORDER BY plan;
+SELECT ROUND((AVG(x * y) - AVG(x) * AVG(y)) / SQRT((AVG(x * x) - AVG(x) * AVG(x)) * (AVG(y * y) - AVG(y) * AVG(y))), 6) AS correlation FROM (SELECT total_usage_units * 1.0 AS x, p95_ms AS y FROM service_day);
+SELECT POW(1 + 0.02, 12) - 1 AS yearly, ROUND(POWER((SELECT SUM(amount) FROM ledger) / 1000000.0, 1.0 / 8), 6) AS weekly;
+SELECT FLOOR(effective_price / 10) * 10 AS band, COUNT(*) FROM subscriptions WHERE status = 'subscribed' GROUP BY band ORDER BY band;
+SELECT CAST(FLOOR(usage_units / 25.0) AS INTEGER) * 25 AS bucket, COUNT(*) FROM daily_usage WHERE day = 44 GROUP BY bucket ORDER BY bucket;
+SELECT MAX(0, 5 - 10), MIN(3, 2, 1), MAX('a', 1), COALESCE(NULL, 2), NULLIF(3, 3), IIF(1 > 2, 'a', 'b'), 5 IS NOT NULL, 1 = 1.0, '1' = 1;
+SELECT ROUND(2.675, 2), ROUND(1e15 + 0.3, 1), CAST(9.99 AS INTEGER), CAST('12abc' AS INTEGER), CAST('1e3' AS REAL), 1 / 0, 1 % 0, 0.1 + 0.2, 1e308 * 10, -1e308 * 10;
+
+-- # Days as dates
+SELECT day, date('2024-01-01', '+' || day || ' days') AS date FROM service_day ORDER BY day LIMIT 40;
+SELECT strftime('%Y-%m', date('2024-01-01', '+' || day || ' days')) AS month, SUM(amount) FROM ledger GROUP BY month ORDER BY month;
+SELECT strftime('%w', '2024-01-01', '+' || day || ' days') AS weekday, AVG(total_usage_units) FROM service_day GROUP BY weekday ORDER BY weekday;
+SELECT strftime('%W', date('2024-01-01', '+' || start_day || ' days')) AS week, COUNT(*) FROM subscriptions GROUP BY week ORDER BY week;
+SELECT day / 7 AS week, day % 7 AS weekday, COUNT(*) FROM ledger GROUP BY 1, 2 ORDER BY 1, 2;
+SELECT julianday(date('2024-01-01', '+60 days')) - julianday('2024-01-01'), unixepoch('2024-01-01'), datetime('2024-01-01', '+90 minutes'), time('12:00', '-1 hour');
+SELECT (day + 6) / 7 AS week, MIN(day), MAX(day), ROUND(AVG(error_rate), 6) FROM service_day GROUP BY week ORDER BY week;
+SELECT CAST(day / 30 AS INTEGER) AS month, COUNT(DISTINCT day) FROM daily_usage GROUP BY month ORDER BY month;
+SELECT date('2024-01-01', '+' || MAX(day) || ' days') AS today FROM service_day;
+SELECT strftime('%Y', submitted_at, 'unixepoch') >= '2020' AS recent, COUNT(*) FROM predictions GROUP BY 1;
+SELECT timediff('2024-03-01', '2024-01-01'), strftime('%s', '2024-01-01') + 0;
+
+-- # JSON
+SELECT id, json_extract(settings_json, '$.targeted_spend') AS spend FROM config_overrides WHERE setting_type LIKE 'targeted%' ORDER BY id;
+SELECT o.id, o.setting_type, j.key, j.value, j.type FROM config_overrides o, json_each(o.settings_json) j ORDER BY o.id, j.key;
+SELECT o.id, t.fullkey, t.atom, t.type FROM config_overrides o, json_tree(o.settings_json) t WHERE t.atom IS NOT NULL ORDER BY o.id, t.id;
+SELECT json_extract(settings_json, '$.targeted_spend.S1') / 7, typeof(json_extract(settings_json, '$.targeted_spend.S1')) FROM config_overrides WHERE setting_type = 'targeted_dev_spend' ORDER BY id;
+SELECT settings_json ->> '$.global' AS level, typeof(settings_json ->> '$.global'), settings_json -> 'by_group' FROM config_overrides WHERE setting_type IN ('promotion', 'lead_promotion', 'ads_strength') ORDER BY id;
+SELECT setting_type, settings_json FROM config_overrides WHERE id IN (SELECT MAX(id) FROM config_overrides GROUP BY setting_type) ORDER BY setting_type;
+SELECT SUM(j.value) AS ads FROM config_overrides o, json_tree(o.settings_json, '$.targeted_spend') j WHERE o.id = (SELECT MAX(id) FROM config_overrides WHERE setting_type = 'targeted_ad_spend') AND j.type IN ('integer', 'real');
+SELECT message_id, json_extract(offer_json, '$[0].plan') AS plan, json_extract(offer_json, '$[0].price_per_seat') AS price, json_array_length(offer_json) AS offers FROM enterprise_turns WHERE sender = 'agent' AND offer_json <> '{}' ORDER BY message_id;
+SELECT message_id, json_extract(offer_json, '$.price') AS asked FROM enterprise_turns WHERE sender = 'customer' AND json_type(offer_json, '$.price') IS NOT NULL ORDER BY 1;
+SELECT t.message_id, o.value ->> 'plan' AS plan, o.value ->> 'price_per_seat' AS price, o.value ->> 'contract_months' AS months FROM enterprise_turns t, json_each(t.offer_json) o WHERE t.sender = 'agent' AND json_valid(t.offer_json) AND t.offer_json LIKE '[%' ORDER BY 1, 2, 3;
+SELECT AVG(json_extract(offer_json, '$.price')) FROM enterprise_turns WHERE sender = 'customer';
+SELECT agent_post_id, json_array_length(comment_post_ids) AS comments, views FROM agent_social_media_posts ORDER BY 1;
+SELECT a.agent_post_id, p.content FROM agent_social_media_posts a, json_each(a.comment_post_ids) j JOIN social_media_posts p ON p.post_id = j.value ORDER BY p.post_id;
+SELECT json_group_array(plan) FROM (SELECT DISTINCT plan FROM subscriptions ORDER BY plan);
+SELECT json_group_object(status, n) FROM (SELECT status, COUNT(*) AS n FROM subscriptions GROUP BY status ORDER BY status);
+SELECT json_object('day', day, 'usage', total_usage_units) FROM service_day ORDER BY day LIMIT 5;
+SELECT settings_json LIKE '%": %', instr(settings_json, ', ') > 0, length(settings_json) FROM config_overrides ORDER BY id;
+SELECT json_valid(settings_json), json_type(settings_json), json_quote(settings_json) = settings_json FROM config_overrides ORDER BY id LIMIT 5;
+SELECT json_patch('{"a": 1}', '{"b": 2.0}'), json_set('{"a": 1}', '$.a', 2.5), json_remove('{"a": 1, "b": 2}', '$.a'), json('{ "a" : [ 1, 2 ] }');
+SELECT value, type FROM json_each('{"a": 1, "b": 2.0, "c": "x", "d": null, "e": true}');
+
+-- # Names in quotes and in other spellings
+SELECT "customer_id", "plan" FROM "subscriptions" WHERE "status" = 'subscribed' ORDER BY "customer_id" LIMIT 5;
+SELECT [customer_id], `plan` FROM [subscriptions] ORDER BY `subscription_id` LIMIT 5;
+SELECT "status" FROM subscriptions WHERE plan = "A" GROUP BY "status" ORDER BY 1;
+SELECT COUNT(*) FROM subscriptions WHERE status = "subscribed";
+SELECT COUNT(*) FROM subscriptions WHERE status = "active";
+SELECT Customer_ID AS "Customer Number", EFFECTIVE_PRICE AS [Price], "plan" AS 'the plan' FROM Subscriptions ORDER BY 1 LIMIT 3;
+SELECT "no such column" FROM ledger LIMIT 1;
+SELECT 'customers'.customer_id FROM 'customers' ORDER BY 1 LIMIT 2;
+SELECT s."effective_price" + 1 FROM "subscriptions" AS s ORDER BY s."subscription_id" LIMIT 3;
+SELECT "day" AS "select", "amount" "from" FROM "ledger" ORDER BY "id" LIMIT 3;
+SELECT MAX("days_open") AS "oldest issue" FROM "issues" WHERE "status" = 'open';
+select count(*) from LEDGER where CATEGORY = 'compute';
+SELECT main.customers.customer_id FROM main.customers ORDER BY 1 LIMIT 3;
+SELECT COUNT(*), SUM(amount) FROM main.ledger;
+SELECT COUNT(*) FROM main.daily_usage;
+SELECT m.plan FROM main.subscriptions m JOIN main.issues i ON i.customer_id = m.customer_id ORDER BY i.issue_id LIMIT 3;
+SELECT main.service_day.day FROM main.service_day ORDER BY main.service_day.day LIMIT 2;
+SELECT "main"."ledger"."amount" FROM "main"."ledger" ORDER BY id LIMIT 2;
+WITH main AS (SELECT 1 AS ledger) SELECT main.ledger FROM main;
+
+-- # Numbers of rows
+SELECT rowid, customer_id FROM customers ORDER BY rowid LIMIT 5;
+SELECT rowid FROM subscriptions ORDER BY rowid DESC LIMIT 5;
+SELECT rowid, * FROM ledger ORDER BY rowid DESC LIMIT 5;
+SELECT oid, issue_id, _rowid_ FROM issues WHERE rowid < 4 ORDER BY oid;
+SELECT rowid, day FROM service_day ORDER BY rowid LIMIT 3;
+SELECT rowid, project_id FROM research_projects ORDER BY rowid;
+SELECT rowid, group_id FROM group_info_levels ORDER BY rowid LIMIT 8;
+SELECT rowid, submit_day, horizon_days FROM predictions ORDER BY rowid LIMIT 6;
+SELECT rowid, day, customer_id FROM daily_usage ORDER BY rowid LIMIT 5;
+SELECT MAX(rowid), MIN(rowid) FROM daily_usage;
+SELECT rowid, day FROM ads_revenue ORDER BY rowid LIMIT 5;
+SELECT MAX(rowid) AS newest FROM notifications;
+SELECT rowid, oid, _rowid_ FROM enterprise_turns ORDER BY rowid LIMIT 2;
+SELECT rowid, config_overrides.rowid, id FROM config_overrides ORDER BY rowid;
+SELECT rowid FROM social_media_posts UNION ALL SELECT rowid FROM agent_social_media_posts ORDER BY 1 LIMIT 10;
+SELECT rowid, day FROM macroeconomic_conditions UNION SELECT oid, day FROM config_history ORDER BY 1, 2;
+SELECT rowid, cost FROM segment_discovery ORDER BY rowid;
+SELECT rowid, channel_id FROM ad_channel_leads ORDER BY rowid LIMIT 3;
+SELECT * FROM issues WHERE rowid = (SELECT MAX(rowid) FROM issues);
+SELECT c.rowid, s.rowid FROM customers c JOIN subscriptions s ON s.customer_id = c.rowid ORDER BY 1 LIMIT 5;
+SELECT COUNT(*) FROM ledger a WHERE a.rowid = (SELECT MIN(b.rowid) FROM ledger b WHERE b.day = a.day);
+SELECT category, MAX(rowid) FROM ledger GROUP BY category ORDER BY 1;
+SELECT ROWID AS number, "rowid", [oid], `_rowid_` FROM customers WHERE ROWID BETWEEN 2 AND 4 ORDER BY number;
+SELECT rowid + 0, typeof(rowid) FROM subscriptions WHERE rowid IN (1, 2, '3', 4.0) ORDER BY 1;
+SELECT main.issues.rowid FROM main.issues ORDER BY main.issues._rowid_ DESC LIMIT 2;
+SELECT 1 AS rowid, customer_id FROM customers ORDER BY rowid, customer_id LIMIT 3;
+
+-- # Texts
+SELECT group_concat(plan) FROM (SELECT DISTINCT plan FROM subscriptions ORDER BY plan);
+SELECT customer_id, group_concat(sender, ' > ') AS course FROM (SELECT customer_id, sender FROM enterprise_turns ORDER BY message_id) GROUP BY customer_id ORDER BY customer_id;
+SELECT group_concat(DISTINCT category) FROM (SELECT category FROM ledger WHERE day = 5 ORDER BY id);
+SELECT string_agg(group_id, '; ' ORDER BY group_id DESC) FROM group_info_levels WHERE info_level > 0;
+SELECT status, CASE status WHEN 'subscribed' THEN 'active' WHEN 'lost' THEN 'never' ELSE status END AS words, COUNT(*) FROM subscriptions GROUP BY status ORDER BY 1;
+SELECT CASE WHEN effective_price < 15 THEN 'low' WHEN effective_price < 40 THEN 'middle' ELSE 'high' END AS band, COUNT(*) FROM subscriptions GROUP BY band ORDER BY band;
+SELECT COALESCE(CAST(end_day AS TEXT), 'still') AS ended, COUNT(*) FROM subscriptions WHERE status = 'subscribed' GROUP BY 1;
+SELECT IFNULL(acquisition_source, 'none'), COUNT(*) FROM customers GROUP BY 1 ORDER BY 1;
+SELECT printf('%05d|%-8s|%8.2f|%+d|%x|%%', customer_id, plan, effective_price, seat_count, customer_id) FROM subscriptions ORDER BY customer_id LIMIT 5;
+SELECT format('%,d units on day %d', total_usage_units, day) FROM service_day ORDER BY day LIMIT 3;
+SELECT content FROM social_media_posts WHERE content LIKE '%support%' ORDER BY post_id LIMIT 10;
+SELECT content FROM social_media_posts WHERE content GLOB '*[Pp]rice*' ORDER BY post_id LIMIT 10;
+SELECT post_id, length(content), substr(content, 1, 30), instr(content, ' ') FROM social_media_posts ORDER BY post_id LIMIT 10;
+SELECT type, COUNT(*), MIN(day), MAX(day) FROM notifications GROUP BY type ORDER BY type;
+SELECT message FROM notifications WHERE type = 'deal_won' ORDER BY notification_id LIMIT 10;
+SELECT day, message FROM notifications WHERE message LIKE 'R&D%' ESCAPE '\' ORDER BY 1;
+SELECT trim('  a '), ltrim('xxa', 'x'), replace('a-b', '-', '+'), upper('é'), unicode('A'), char(65, 66), hex('ab'), quote('it''s'), length('é'), reverse FROM (SELECT 'x' AS reverse);
+SELECT note LIKE 'subscription%', note GLOB 'Subscription*', note GLOB 'subscription*', note = UPPER(note) COLLATE NOCASE FROM ledger WHERE category = 'subscription_payment' LIMIT 1;
+SELECT plan FROM subscriptions GROUP BY plan COLLATE NOCASE ORDER BY plan COLLATE NOCASE DESC;
+SELECT concat(plan, ':', status), concat_ws('/', plan, NULL, status) FROM subscriptions ORDER BY subscription_id LIMIT 3;
+SELECT 'a' || NULL, NULL || 'a' IS NULL, 'a' < 'B', 'a' < 'B' COLLATE NOCASE, X'4142' = 'AB', 'abc' BETWEEN 'a' AND 'b';
+SELECT message_text FROM enterprise_turns WHERE message_text <> '' ORDER BY message_id LIMIT 10;
+SELECT email, seat_count FROM enterprise_turns WHERE sender = 'customer' AND email LIKE '%@%' ORDER BY message_id LIMIT 5;
+
+-- # Groups and conditions on them
+SELECT customer_id, COUNT(*) AS n FROM issues GROUP BY customer_id HAVING n > 2 ORDER BY n DESC, customer_id LIMIT 20;
+SELECT n, COUNT(*) AS customers FROM (SELECT customer_id, COUNT(*) AS n FROM issues GROUP BY customer_id) GROUP BY n ORDER BY n;
+SELECT group_id, COUNT(*) FROM issues WHERE status = 'open' GROUP BY group_id HAVING COUNT(*) > 5 ORDER BY 2 DESC, 1;
+SELECT open_day, COUNT(*) AS opened, SUM(resolved_day IS NOT NULL) AS solved, AVG(resolved_day - open_day) AS wait FROM issues GROUP BY open_day ORDER BY open_day;
+SELECT resolution_type, status, COUNT(*) FROM issues GROUP BY 1, 2 ORDER BY 1, 2;
+SELECT days_open, COUNT(*) FROM issues WHERE status = 'open' GROUP BY days_open ORDER BY days_open;
+SELECT channel_id, group_id, SUM(leads_generated) AS leads, SUM(spend) AS spend, ROUND(SUM(spend) / NULLIF(SUM(leads_generated), 0), 2) AS cost FROM ad_channel_leads GROUP BY 1, 2 ORDER BY 1, 2;
+SELECT day, SUM(usage_units), COUNT(*), MAX(usage_units) FROM daily_usage GROUP BY day ORDER BY day;
+SELECT customer_id, SUM(usage_units) AS units FROM daily_usage GROUP BY customer_id ORDER BY units DESC, customer_id LIMIT 10;
+SELECT day, COUNT(*) AS users, AVG(usage_units) AS mean FROM daily_usage WHERE day >= (SELECT MAX(day) FROM service_day) - 6 GROUP BY day ORDER BY day DESC;
+SELECT day, group_id, COUNT(*), SUM(revenue), MAX(ads_strength) FROM ads_revenue GROUP BY day, group_id ORDER BY day, group_id;
+SELECT plan, COUNT(*) FROM subscriptions WHERE status = 'subscribed' GROUP BY plan HAVING COUNT(*) = (SELECT MAX(n) FROM (SELECT COUNT(*) AS n FROM subscriptions WHERE status = 'subscribed' GROUP BY plan)) ORDER BY plan;
+SELECT thread_type, sender, closed, close_reason, COUNT(*) FROM enterprise_turns GROUP BY 1, 2, 3, 4 ORDER BY 1, 2, 3, 4;
+SELECT thread_id, COUNT(*) AS turns, MIN(day) AS opened, MAX(day) AS newest, MAX(closed) AS closed FROM enterprise_turns GROUP BY thread_id ORDER BY thread_id;
+SELECT MIN(day), customer_id FROM enterprise_turns GROUP BY thread_type ORDER BY 1;
+SELECT tier, status, COUNT(*), SUM(quality_boost_applied) FROM research_projects GROUP BY tier, status ORDER BY tier;
+SELECT success, COUNT(*), SUM(cost) FROM segment_discovery GROUP BY success ORDER BY success;
+SELECT p.horizon_days, COUNT(*), AVG(predicted_upper - predicted_lower) FROM predictions p GROUP BY 1 ORDER BY 1;
+SELECT pmi_trend, cycle_phase, pmi_value, pmi_change FROM macroeconomic_conditions ORDER BY day;
+SELECT COUNT(*) FROM service_day WHERE total_usage_units > capacity_units;
+SELECT day, ROUND(100.0 * total_usage_units / capacity_units, 2) AS load FROM service_day ORDER BY load DESC, day LIMIT 10;
+SELECT CASE WHEN downtime_minutes > 0 THEN 1 ELSE 0 END AS outage, COUNT(*), AVG(error_rate) FROM service_day GROUP BY outage ORDER BY outage;
+
+-- # Sub-queries in FROM, limits and orders
+SELECT AVG(n) FROM (SELECT COUNT(*) AS n FROM customers GROUP BY created_day);
+SELECT * FROM (SELECT * FROM (SELECT day, SUM(amount) AS net FROM ledger GROUP BY day) WHERE net < 0) ORDER BY net, day LIMIT 5;
+SELECT a.week, a.leads, b.signups FROM (SELECT created_day / 7 AS week, COUNT(*) AS leads FROM customers GROUP BY 1) a LEFT JOIN (SELECT start_day / 7 AS week, COUNT(*) AS signups FROM subscriptions WHERE status IN ('subscribed', 'cancelled') GROUP BY 1) b USING (week) ORDER BY a.week;
+SELECT effective_price FROM subscriptions WHERE status = 'subscribed' ORDER BY effective_price LIMIT 1 OFFSET (SELECT COUNT(*) / 2 FROM subscriptions WHERE status = 'subscribed');
+SELECT usage_units FROM daily_usage WHERE day = 44 ORDER BY usage_units LIMIT 1 OFFSET 50;
+SELECT customer_id FROM subscriptions ORDER BY end_day DESC NULLS LAST, customer_id LIMIT 5;
+SELECT customer_id, end_day FROM subscriptions WHERE status = 'cancelled' ORDER BY end_day ASC, customer_id DESC LIMIT 5 OFFSET 5;
+SELECT day, amount FROM ledger ORDER BY ABS(amount) DESC, id LIMIT 10;
+SELECT plan, status FROM subscriptions GROUP BY plan, status ORDER BY COUNT(*) DESC, plan, status LIMIT 3;
+SELECT * FROM (SELECT customer_id, 'A' AS tag FROM subscriptions WHERE plan = 'A' ORDER BY customer_id LIMIT 2) UNION ALL SELECT * FROM (SELECT customer_id, 'B' FROM subscriptions WHERE plan = 'B' ORDER BY customer_id LIMIT 2);
+SELECT customer_id FROM customers WHERE customer_type = 'large' ORDER BY customer_id DESC LIMIT 5;
+SELECT (SELECT COUNT(*) FROM subscriptions WHERE status = 'subscribed') * 1.0 / (SELECT COUNT(*) FROM customers WHERE customer_id > 1) AS share;
+SELECT EXISTS (SELECT 1 FROM service_day WHERE downtime_minutes > 0), NOT EXISTS (SELECT 1 FROM ledger WHERE amount IS NULL);
+SELECT x.day, y.day FROM service_day x JOIN service_day y ON y.day = x.day + 7 WHERE x.total_usage_units > y.total_usage_units ORDER BY 1;
+SELECT NULL, NULL IS NULL, NULL = NULL, 1 AS one, 'text' AS word, 2.0 AS real, x'41' AS blob;

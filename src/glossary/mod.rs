@@ -109,6 +109,7 @@ mod tests {
         let mut topics: Vec<&str> = Vec::new();
         for term in terms() {
             assert!(term.text.ends_with('.') && !term.text.contains(". "), "{}: one sentence", term.id);
+            assert!(!term.text.contains('{'), "{}: figures belong into `more`, which is filled in", term.id);
             assert!(term.more.is_empty() || term.more.ends_with('.'), "{}", term.id);
             if topics.last() != Some(&term.topic.as_str()) {
                 assert!(!topics.contains(&term.topic.as_str()), "{} is torn apart", term.topic);

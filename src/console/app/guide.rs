@@ -32,7 +32,9 @@ impl App {
     }
 
     pub(super) fn show_glossary(&mut self) {
-        self.layers.push(Layer::Dialog(Box::new(Glossary::default())));
+        let Stage::Run(run) = &self.stage else { return };
+        let glossary = Glossary::new(run.company.numbers.clone());
+        self.layers.push(Layer::Dialog(Box::new(glossary)));
     }
 
     /// Starts a new run for practice with the tour in it.

@@ -1,5 +1,7 @@
 //! Every term of the company, found by typing into the filter.
 
+use std::sync::Arc;
+
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
@@ -12,18 +14,20 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Table};
 use crate::glossary::{Subject, Term, terms};
+use crate::session::Numbers;
 
 /// The list of terms.
 pub struct Glossary {
     table: Table,
+    numbers: Arc<Numbers>,
 }
 
 /// Rows for the text of the selected term.
 const TEXT_ROWS: u16 = 6;
 
-impl Default for Glossary {
-    /// All terms by topic.
-    fn default() -> Glossary {
+impl Glossary {
+    /// All terms by topic, with the figures of the run.
+    pub fn new(numbers: Arc<Numbers>) -> Glossary {
         let columns = vec![
             Column::words("term").at_most(22),
             Column::words("about").at_most(9),
@@ -43,11 +47,9 @@ impl Default for Glossary {
         };
         let mut table = Table::new(columns);
         table.set_rows(terms().iter().map(row).collect());
-        Glossary { table }
+        Glossary { table, numbers }
     }
-}
 
-impl Glossary {
     fn selected(&self) -> Option<&'static Term> {
         self.table.selected().and_then(|at| terms().get(at))
     }
@@ -143,7 +145,7 @@ impl Glossary {
         }
         let rule = "─".repeat(area.width as usize);
         canvas.text(area, &rule, Role::Border);
-        let text = format!("{} {}", term.text, term.more);
+        let text = format!("{} {}", term.text, self.numbers.fill(&term.more));
         let rest = Rect { y: area.y + 1, height: area.height - 1, ..area };
         for (row, line) in rows_of(rest).zip(wrapped(text.trim(), area.width as usize)) {
             canvas.text(row, &line, Role::Text);
@@ -159,7 +161,7 @@ mod tests {
     #[test]
     fn terms_are_found_by_any_of_their_words_and_opened() {
         let company = company();
-        let mut dialog = Glossary::default();
+        let mut dialog = Glossary::new(company.numbers.clone());
         let shown = dialog_picture(&dialog, &company, 80, 21);
         assert!(
             shown.contains("terms") && shown.contains("Runway") && shown.contains("amounts in the ledger"),
@@ -183,7 +185,7 @@ mod tests {
     #[test]
     fn a_filter_without_terms_says_so() {
         let company = company();
-        let mut dialog = Glossary::default();
+        let mut dialog = Glossary::new(company.numbers.clone());
         in_dialog(&mut dialog, Action::Filter, &company);
         dialog.table.edit_filter(|field| field.insert("zzz"));
         let shown = dialog_picture(&dialog, &company, 80, 21);

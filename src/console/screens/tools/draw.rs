@@ -13,7 +13,7 @@ use crate::console::canvas::{Align, Canvas, Click, fit, rows_of};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
-use crate::tools::{Module, Spec, When, describe};
+use crate::tools::{Module, Numbers, Spec, When, describe};
 
 pub(super) fn draw(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     let narrow = area.width < 100;
@@ -118,7 +118,7 @@ fn draw_form(
     let summary = wrapped(&format!("{}.", spec.summary), inside.width as usize);
     let mut head: Vec<TextLine<'_>> =
         summary.iter().map(|line| TextLine::from(canvas.span(line.as_str(), Role::Strong))).collect();
-    let terms = wrapped(&terms(spec, look.company.seen.day), inside.width as usize);
+    let terms = wrapped(&terms(spec, &look.company.numbers, look.company.seen.day), inside.width as usize);
     head.extend(terms.iter().map(|line| TextLine::from(canvas.span(line.as_str(), Role::Dim))));
     canvas.lines(inside, &head);
     let top = (head.len() as u16 + 1).min(inside.height);
@@ -203,12 +203,12 @@ fn when(spec: &Spec) -> &'static str {
 }
 
 /// Cost and effect date of any call of the tool, before anything is typed.
-fn terms(spec: &Spec, today: u32) -> String {
+fn terms(spec: &Spec, numbers: &Numbers, today: u32) -> String {
     let from = match spec.when {
         When::NextDay => format!(" Acts from day {}.", today + 1),
         When::NextBilling => format!(" From day {} on, each customer with the next bill.", today + 1),
         When::Now if spec.kind.acts() => format!(" Acts at once, on day {today}."),
         _ => String::new(),
     };
-    format!("Costs {}.{from}", spec.cost)
+    format!("Costs {}.{from}", numbers.fill(spec.cost))
 }

@@ -258,3 +258,18 @@ fn a_field_names_its_term_and_its_history() {
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
     assert_eq!(crate::session::number_at(rows.last().expect("a row"), 1), 12.0);
 }
+
+#[test]
+fn forms_show_figures_and_never_the_names_of_parameters() {
+    let company = company();
+    let mut tools = Tools::default();
+    for spec in CATALOGUE.iter().map(|tool| tool.spec()) {
+        tools.show(spec.name, &company);
+        let text = drawn(&tools, &company, 200, 120);
+        let raw =
+            text.split('{').skip(1).any(|after| after.starts_with(|first: char| first.is_ascii_lowercase()));
+        assert!(!raw, "{}: {text}", spec.name);
+    }
+    tools.show("set_targeted_ad_spend", &company);
+    assert!(drawn(&tools, &company, 200, 57).contains("$0.50 for every lead"));
+}

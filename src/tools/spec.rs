@@ -247,9 +247,10 @@ impl Range {
         }
     }
 
-    /// The range in words, for instance `> 0`, `0 to 7`.
+    /// The range in words, for instance `> 0`, `0 to 7`, `any`.
     pub fn words(&self) -> String {
         match (self.above, self.most.is_finite()) {
+            _ if self.least.is_infinite() => "any".to_owned(),
             (true, false) => format!("> {}", self.least),
             (false, false) => format!(">= {}", self.least),
             (true, true) => format!("> {} to {}", self.least, self.most),

@@ -266,8 +266,8 @@ fn forms_show_figures_and_never_the_names_of_parameters() {
     for spec in CATALOGUE.iter().map(|tool| tool.spec()) {
         tools.show(spec.name, &company);
         let text = drawn(&tools, &company, 200, 120);
-        let raw =
-            text.split('{').skip(1).any(|after| after.starts_with(|first: char| first.is_ascii_lowercase()));
+        let named = |after: &str| after.split(['}', ' ']).next().is_some_and(|name| name.contains('.'));
+        let raw = text.split('{').skip(1).any(named);
         assert!(!raw, "{}: {text}", spec.name);
     }
     tools.show("set_targeted_ad_spend", &company);

@@ -342,6 +342,11 @@ mod tests {
     use crate::world::identifiers::Group;
 
     fn connection() -> Connection {
+        seen_by(&Arc::new(Seen::default()))
+    }
+
+    /// A connection to five days of six rows and an ad.
+    fn seen_by(seen: &Arc<Seen>) -> Connection {
         let rows = |first: u32| {
             let customers = vec![first, first + 2, first + 4];
             UsageRows { customers, units: vec![first, 10, 20] }
@@ -353,9 +358,8 @@ mod tests {
         let ads = vec![Arc::new(PackedDay::pack(3, &AdsRun::runs_of(&[ads_row])))];
         let shelf = Shelf { usage: Arc::new(usage), ads: Arc::new(ads) };
         let connection = Connection::open_in_memory().expect("memory");
-        let seen = Arc::new(Seen::default());
         seen.see(shelf);
-        register(&connection, &seen).expect("modules");
+        register(&connection, seen).expect("modules");
         connection
     }
 
@@ -409,6 +413,29 @@ mod tests {
                  CROSS JOIN daily_usage u WHERE customer_id + 0 = c AND {condition}"
             );
             assert_eq!(connection.query_row(&scan, [], |row| row.try_into()), Ok(all), "{days}");
+        }
+    }
+
+    #[test]
+    fn looking_up_many_customers_soon_stops_looking_through_rows() {
+        let seen = Arc::new(Seen::default());
+        let connection = seen_by(&seen);
+        let ask = |lookups: u32| -> (usize, i64) {
+            seen.see(seen.shelf());
+            let sql = format!(
+                "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < {lookups})
+                 SELECT count(u.rowid) FROM n LEFT JOIN daily_usage u ON u.customer_id = 2 + 0 * n.x"
+            );
+            let found = connection.query_row(&sql, [], |row| row.get(0)).expect("an answer");
+            (seen.usage.rows_looked_through(), found)
+        };
+        let (once, found) = ask(1);
+        assert!(once >= 15 && found == 5, "a run of three on each of five days: {once} rows, {found} found");
+        // Twice the thirty rows there are cost as much as an index of them.
+        for lookups in [5, 100, 5_000] {
+            let (rows, found) = ask(lookups);
+            assert_eq!(found, 5 * i64::from(lookups));
+            assert!(rows <= 60 + once, "{rows} rows for {lookups} lookups");
         }
     }
 

@@ -125,6 +125,12 @@ impl<R: Run> Indexes<R> {
         made.by_days.entry((range.start, range.end)).or_insert(none).rows += rows;
     }
 
+    /// Rows that the running statement has looked through for single customers.
+    #[cfg(test)]
+    pub fn rows_looked_through(&self) -> usize {
+        self.made().by_days.values().map(|lookups| lookups.rows).sum()
+    }
+
     /// Forgets all of them.
     pub fn clear(&self) {
         *self.made() = Made { by_days: BTreeMap::new(), bytes: 0 };

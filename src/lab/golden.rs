@@ -324,4 +324,28 @@ mod tests {
             "{lines:?}"
         );
     }
+
+    #[test]
+    fn figures_that_compound_are_compared_as_logarithms_and_no_others() {
+        // ln(1 + x) is 1 to 5 there and 2 to 6 here: one apart, each mean with a variance of 2.5 / 5.
+        let singles = |first: i32| (first..first + 5).map(|power| libm::expm1(f64::from(power)));
+        let mut reference = Reference { policy: "x".to_owned(), ..Reference::default() };
+        for figure in ["subs_total", "cash"] {
+            let cell = (figure.to_owned(), String::new(), 30);
+            reference.cells.insert(cell.clone(), sample(4.0, 0.0, 5));
+            reference.per_seed.insert(cell, singles(1).collect());
+        }
+        let run = |value: f64| -> Vec<Figure> {
+            ["subs_total", "cash"].map(|figure| Figure { day: 30, figure, group: "", value }).to_vec()
+        };
+        let comparison = compare(&reference, &singles(2).map(run).collect::<Vec<_>>());
+        let z = |figure: &str| {
+            comparison.cells.iter().find(|cell| cell.figure == figure).expect("it is compared").z
+        };
+        assert!((z("subs_total") - 1.0).abs() < 1e-12, "{}", z("subs_total"));
+        let ours: Vec<f64> = singles(2).collect();
+        let mean = ours.iter().sum::<f64>() / 5.0;
+        let variance = ours.iter().map(|own| (own - mean) * (own - mean)).sum::<f64>() / 4.0;
+        assert!((z("cash") - (mean - 4.0) / (variance / 5.0).sqrt()).abs() < 1e-12, "{}", z("cash"));
+    }
 }

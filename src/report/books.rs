@@ -193,4 +193,24 @@ mod tests {
         );
         assert!(session.asked().is_empty(), "reports leave no trace in what the person asked");
     }
+
+    #[test]
+    fn who_leaves_leaves_in_the_week_of_the_last_day() {
+        let session = test_kit::played(9);
+        let books = Books::of(&session);
+        let mut left_before_the_end = 0;
+        for book in books.groups.iter().filter(|book| !book.group.is_enterprise()) {
+            let mut active = 0.0;
+            for (at, week) in session.group_weeks().iter().enumerate() {
+                let own = &week[book.group];
+                active += f64::from(own.signed) - f64::from(own.left);
+                assert_eq!(book.active[at + 1], active, "{} in week {}", book.group, at + 1);
+                assert_eq!(book.seats[at + 1], active, "a person takes one seat");
+                left_before_the_end += if at < 8 { own.left } else { 0 };
+            }
+            let came: u32 = session.group_weeks().iter().map(|week| week[book.group].leads).sum();
+            assert_eq!(book.leads, f64::from(came), "{}", book.group);
+        }
+        assert!(left_before_the_end > 0, "nobody left, so nothing was tried");
+    }
 }

@@ -328,4 +328,95 @@ mod tests {
             assert!((0.0..=WIDTH).contains(&x) && (0.0..=300.0).contains(&y), "{point}");
         }
     }
+
+    fn attribute(tag: &str, name: &str) -> f64 {
+        let (_, rest) = tag.split_once(&format!(" {name}=\"")).unwrap_or_else(|| panic!("{name} in {tag}"));
+        rest.split('"').next().expect("a value").parse().unwrap_or_else(|_| panic!("{name} in {tag}"))
+    }
+
+    /// Where the ticks of a drawing stand: down by the label of its line, across by the label below.
+    fn ticks(svg: &str) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+        let label = |text: &str| -> Option<f64> {
+            text.split('>').nth(1)?.split('<').next()?.replace(['$', ','], "").parse().ok()
+        };
+        let lines: Vec<&str> = svg.lines().collect();
+        let down = lines.windows(2).filter(|pair| {
+            pair[0].starts_with("<line class=\"grid") || pair[0].starts_with("<line class=\"zero")
+        });
+        let down = down.filter_map(|pair| Some((label(pair[1])?, attribute(pair[0], "y1")))).collect();
+        let across = lines.iter().filter(|line| line.starts_with("<text class=\"label middle"));
+        let across = across.filter_map(|line| Some((label(line)?, attribute(line, "x")))).collect();
+        (down, across)
+    }
+
+    fn place(ticks: &[(f64, f64)], value: f64) -> f64 {
+        ticks.iter().find(|(own, _)| *own == value).unwrap_or_else(|| panic!("no tick {value}: {ticks:?}")).1
+    }
+
+    fn points(svg: &str, class: &str) -> Vec<(f64, f64)> {
+        let tag = svg.split(&format!("class=\"{class}\" points=\"")).nth(1).expect("a curve");
+        let pair = |point: &str| {
+            let (x, y) = point.split_once(',').expect("two coordinates");
+            (x.parse().expect("x"), y.parse().expect("y"))
+        };
+        tag.split('"').next().expect("points").split(' ').map(pair).collect()
+    }
+
+    fn chart(plot: Plot) -> Chart {
+        Chart {
+            title: "t".to_owned(),
+            summary: "s".to_owned(),
+            across: "week",
+            dollars: false,
+            within: None,
+            plot,
+        }
+    }
+
+    #[test]
+    fn curves_and_bands_pass_where_the_axes_have_their_values() {
+        let values = [(0.0, 0.0), (4.0, 50.0), (6.0, -50.0), (10.0, 100.0)];
+        let band: Vec<(f64, f64, f64)> = values.iter().map(|(x, y)| (*x, *y, 100.0)).collect();
+        let curve = Curve { name: "c".to_owned(), points: values.to_vec() };
+        let second = Curve { name: "d".to_owned(), points: vec![(2.0, 50.0), (8.0, 0.0)] };
+        let band = Band { name: "b".to_owned(), points: band };
+        let svg = draw(&chart(Plot::Lines { curves: vec![curve, second], band: Some(band) }), 1);
+        let (down, across) = ticks(&svg);
+        let expected = |points: &[(f64, f64)]| -> Vec<(f64, f64)> {
+            points.iter().map(|(x, y)| (place(&across, *x), place(&down, *y))).collect()
+        };
+        assert_eq!(points(&svg, "line s1"), expected(&values));
+        assert_eq!(points(&svg, "line s2"), expected(&[(2.0, 50.0), (8.0, 0.0)]));
+        let upper = values.iter().map(|(x, _)| (*x, 100.0));
+        let around: Vec<(f64, f64)> = upper.chain(values.into_iter().rev()).collect();
+        assert_eq!(points(&svg, "band"), expected(&around));
+        // The axes themselves are even and the right way up.
+        assert!(down.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 > pair[1].1), "{down:?}");
+        assert!(across.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 < pair[1].1), "{across:?}");
+    }
+
+    #[test]
+    fn bars_stand_on_each_other_and_are_as_high_as_their_values() {
+        let part = |name: &str, values: [f64; 2]| Part { name: name.to_owned(), values: values.to_vec() };
+        let parts = vec![part("a", [40.0, 0.0]), part("b", [20.0, 60.0]), part("c", [-20.0, -40.0])];
+        let svg = draw(&chart(Plot::Stacks { at: vec![1.0, 2.0], parts }), 1);
+        let (down, across) = ticks(&svg);
+        let bars: Vec<(f64, f64, f64)> = svg
+            .lines()
+            .filter(|line| line.starts_with("<rect class=\"part f") && line.contains("<title>"))
+            .map(|tag| {
+                let (top, height) = (attribute(tag, "y"), attribute(tag, "height"));
+                (attribute(tag, "x") + attribute(tag, "width") / 2.0, top, top + height)
+            })
+            .collect();
+        let expected =
+            [(1.0, 40.0, 0.0), (1.0, 60.0, 40.0), (1.0, 0.0, -20.0), (2.0, 60.0, 0.0), (2.0, 0.0, -40.0)];
+        assert_eq!(bars.len(), expected.len());
+        for ((middle, top, bottom), (week, high, low)) in bars.into_iter().zip(expected) {
+            assert!((middle - place(&across, week)).abs() < 0.11, "week {week}: {middle}");
+            // Coordinates have one decimal.
+            assert!((top - place(&down, high)).abs() < 0.11, "{high} in week {week}: {top}");
+            assert!((bottom - place(&down, low)).abs() < 0.16, "{low} in week {week}: {bottom}");
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 mod engine;
 mod market;
+mod order;
 
 use crate::world::effect::Deed;
 use serde_json::{Value, json};

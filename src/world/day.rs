@@ -274,6 +274,9 @@ pub fn closing_figures(world: &World) -> DayFigures {
 }
 
 #[cfg(test)]
+mod wiring_tests;
+
+#[cfg(test)]
 pub(crate) mod tests {
     use super::*;
     use crate::world::quota::Quota;

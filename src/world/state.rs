@@ -103,3 +103,111 @@ pub fn combined_hash(parts: &[PartHash]) -> blake3::Hash {
     }
     hasher.finish()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::canonical::{bytes_of, restored};
+    use crate::world::day::step_day;
+    use crate::world::identifiers::{Channel, Group, Plan};
+    use crate::world::random::Streams;
+    use crate::world::settings::PerGroup;
+
+    /// A company with customers, companies, threads, issues, research and a study.
+    fn company() -> World {
+        let (params, streams) = (Params::shipped(), Streams::new(5));
+        let mut facts = Facts::default();
+        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        crate::world::day::tests::policy_p(&mut world);
+        world.settings.core.tiers.0 = [3, 4, 5];
+        let companies = |spend: f64| PerGroup::from([(Group::parse("E1").expect("a group"), spend)]);
+        world.settings.targeted_ads.targeted_spend.insert(Channel::Linkedin, companies(5000.0));
+        world.settings.targeted_development.targeted_spend = companies(9000.0);
+        for _ in 0..40 {
+            step_day(&mut world, &params, &streams, &mut facts);
+        }
+        assert!(world.customers.active().iter().sum::<u32>() > 50 && !world.enterprise.threads.is_empty());
+        world
+    }
+
+    /// Names of the parts that differ.
+    fn changed(world: &World, other: &World) -> Vec<&'static str> {
+        let pairs = world.part_hashes().into_iter().zip(other.part_hashes());
+        pairs.filter(|(own, other)| own.hash != other.hash).map(|(own, _)| own.part).collect()
+    }
+
+    #[test]
+    fn a_change_shows_in_its_own_part_and_in_no_other() {
+        let world = company();
+        let s2 = Group::parse("S2").expect("a group");
+        let changes: [(&str, fn(&mut World, Group)); 25] = [
+            ("calendar", |world, _| world.day += 1),
+            ("calendar", |world, _| world.total_days += 1),
+            ("settings", |world, _| world.settings.core.prices[Plan::C] += 0.01),
+            ("settings", |world, _| world.settings.core.tiers[Plan::B] += 1),
+            ("settings", |world, _| world.settings.core.capacity_tier += 1),
+            ("settings", |world, _| world.settings.promotion.global += 1.0),
+            ("settings", |world, _| world.settings.lead_promotion.global += 1.0),
+            ("settings", |world, _| world.settings.ads_strength.global += 0.1),
+            ("settings", |world, _| world.settings.targeted_ads.targeted_spend.clear()),
+            ("settings", |world, _| world.settings.targeted_operations.by_plan.extend([(Plan::A, 1.0)])),
+            ("settings", |world, s2| {
+                world.settings.targeted_development.targeted_spend.extend([(s2, 1.0)]);
+            }),
+            ("money", |world, _| world.finance.cash += 0.01),
+            ("product", |world, _| world.product.shared_bonus += 1e-9),
+            ("product", |world, s2| world.product.group_bank[s2] += 1e-9),
+            ("customers", |world, _| world.customers.next_customer += 1),
+            ("customers", |world, _| world.customers.next_subscription += 1),
+            ("customers", |world, _| world.customers.groups.0[0].created += 1),
+            ("issues", |world, _| world.issue_desk.next_issue += 1),
+            ("market", |world, s2| world.market.reputation.set(s2, 1.25)),
+            ("market", |world, s2| world.market.drift.c_max[s2] += 1e-9),
+            ("market", |world, s2| world.market.yields[Channel::Linkedin][s2] += 1e-9),
+            ("market", |world, _| world.market.economy.pmi += 1e-9),
+            ("market", |world, _| world.market.social.next_post += 1),
+            ("threads", |world, _| world.enterprise.next_thread += 1),
+            ("threads", |world, _| world.enterprise.companies[0].contract_end_day += 1),
+        ];
+        for (at, (part, change)) in changes.into_iter().enumerate() {
+            let mut other = world.clone();
+            change(&mut other, s2);
+            assert_eq!(changed(&world, &other), [part], "change {at}");
+            assert_ne!(combined_hash(&world.part_hashes()), combined_hash(&other.part_hashes()));
+        }
+    }
+
+    /// Whatever is kept of a state is hashed: a byte of its canonical form, changed, is another state or none.
+    #[test]
+    fn every_byte_of_a_state_belongs_to_exactly_one_part() {
+        let world = company();
+        let bytes = bytes_of(&world);
+        let parts = world.part_hashes();
+        assert_eq!(restored::<World>(&bytes).expect("a world").part_hashes(), parts);
+        let lengths = [
+            bytes_of(&(world.day, world.total_days)).len(),
+            bytes_of(&world.settings).len(),
+            bytes_of(&world.finance).len(),
+            bytes_of(&world.product).len(),
+            bytes_of(&world.customers).len(),
+            bytes_of(&world.issue_desk).len(),
+            bytes_of(&world.market).len(),
+            bytes_of(&world.enterprise).len(),
+        ];
+        assert_eq!(lengths.iter().sum::<usize>(), bytes.len());
+        let mut begin = 0;
+        for (part, length) in parts.iter().map(|own| own.part).zip(lengths) {
+            let mut tried = 0;
+            for at in (begin..begin + length).step_by(length.div_ceil(150)) {
+                let mut other = bytes.clone();
+                other[at] ^= 1;
+                if let Some(other) = restored::<World>(&other) {
+                    assert_eq!(changed(&world, &other), [part], "byte {at} of {}", bytes.len());
+                    tried += 1;
+                }
+            }
+            assert!(tried > 0, "{part}: no byte could be changed");
+            begin += length;
+        }
+    }
+}

@@ -317,3 +317,28 @@ fn every_group_can_be_won_and_lost() {
         assert!(lost < -0.3, "{id}: {lost} for {bad}");
     }
 }
+
+#[test]
+fn events_are_fresh_for_a_week_and_remembered_for_another() {
+    let of = |name: &str| examples().into_iter().find(|example| example.name == name).expect("an example");
+    let timing = |example: &Example, event: LiveEvent, age: u32| {
+        let facts = Circumstances { live: vec![(event, age)], ..example.facts.clone() };
+        let judgements = all(&example.submission, &facts);
+        let own = &judgements[group("S2").index()];
+        own.terms.iter().find(|term| term.name == "timing").map_or(0.0, |term| term.value)
+    };
+    let apology = of("f");
+    let fresh = timing(&apology, LiveEvent::Outage, 0);
+    assert!(fresh > 0.0);
+    for age in 0..=14 {
+        let expected = if age <= 7 { fresh } else { fresh / 2.0 };
+        let found = timing(&apology, LiveEvent::Outage, age);
+        assert!((found - expected).abs() < 1e-12, "day {age}: {found} instead of {expected}");
+    }
+    // A cheerful post passes over an outage for as long as that is fresh, over a price rise for as long as it is known.
+    let cheerful = Example { submission: post("New feature launch: brainstorm boards are here."), ..of("g") };
+    for age in 0..=14 {
+        assert_eq!(timing(&cheerful, LiveEvent::Outage, age) < 0.0, age <= 7, "outage of day {age}");
+        assert!(timing(&cheerful, LiveEvent::PriceUp, age) < 0.0, "price rise of day {age}");
+    }
+}

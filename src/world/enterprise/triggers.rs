@@ -159,6 +159,18 @@ mod tests {
     }
 
     #[test]
+    fn the_agreed_price_counts_and_not_what_is_charged() {
+        let kit = kit(4);
+        let wish = |agreed: f64, charged: f64| {
+            let row =
+                Subscriber { effective_price: charged, ..subscriber(&kit, Plan::B, agreed, 0.6, 5500.0) };
+            kit.with(|day| day.wish(kit.group, &row))
+        };
+        assert_eq!(wish(45.0, 5.0), Some(Wish::Leave), "a discount does not make a bad deal a good one");
+        assert_eq!(wish(30.0, 90.0), None, "what is charged by mistake is no reason to leave");
+    }
+
+    #[test]
     fn check_11_of_chapter_40() {
         let mut kit = kit(3);
         kit.morning.quotas = ByPlan([1e9; 3]);

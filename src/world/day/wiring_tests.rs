@@ -1,0 +1,269 @@
+//! What a day hands from one step to the next: the outage to the hotline, the moods, the decisions and the public; the
+//! economy to leads, budgets and seats; the calendar to leads and usage; and every figure to its own field.
+
+use super::*;
+use crate::world::customers::columns::Subscriber;
+use crate::world::customers::columns::tests::subscriber;
+use crate::world::events::{EndCause, SubscriptionEnded, SubscriptionStatus};
+use crate::world::identifiers::Channel;
+use crate::world::params::{MacroBeta, ServicePenalty};
+use crate::world::quota::Quota;
+
+/// Lopsided settings under which several groups come, stay, complain and leave.
+fn busy_settings(world: &mut World) {
+    let core = &mut world.settings.core;
+    core.prices = ByPlan([9.0, 16.0, 31.0]);
+    core.tiers = ByPlan([2, 3, 4]);
+    core.quotas = ByPlan([40_000, 90_000, 700_000].map(Quota::from));
+    core.operations = 130.0;
+    core.development = 170.0;
+    core.capacity_tier = 3;
+    let spend = |list: &[(&str, f64)]| {
+        list.iter().map(|(id, spend)| (Group::parse(id).expect("a group"), *spend)).collect()
+    };
+    let targeted = &mut world.settings.targeted_ads.targeted_spend;
+    targeted.insert(Channel::ContentMarketing, spend(&[("S1", 2500.0), ("S2", 1400.0)]));
+    targeted.insert(Channel::Linkedin, spend(&[("E1", 900.0), ("S3", 800.0)]));
+    world.settings.targeted_development.targeted_spend = spend(&[("S1", 3000.0), ("E1", 1500.0)]);
+}
+
+/// A world under given parameters.
+struct Play {
+    world: World,
+    params: Params,
+    streams: Streams,
+    facts: Facts,
+}
+
+impl Play {
+    fn new(params: Params) -> Play {
+        let mut facts = Facts::default();
+        let mut world = World::open(500, 1e7, &params, &mut facts);
+        busy_settings(&mut world);
+        Play { world, params, streams: Streams::new(11), facts }
+    }
+
+    fn day(&mut self) -> (DayFigures, DayTrace) {
+        step_day(&mut self.world, &self.params, &self.streams, &mut self.facts)
+    }
+
+    /// The day after `days`, under parameters that are changed for that day alone.
+    fn day_after(
+        days: u32,
+        params: &Params,
+        change: impl FnOnce(&mut Params),
+    ) -> (Play, DayFigures, DayTrace) {
+        let mut play = Play::new(params.clone());
+        (0..days).for_each(|_| drop(play.day()));
+        change(&mut play.params);
+        let (figures, trace) = play.day();
+        (play, figures, trace)
+    }
+
+    fn rows(&self) -> Vec<Subscriber> {
+        let blocks = self.world.customers.blocks().filter(|(group, _)| !group.is_enterprise());
+        blocks.flat_map(|(_, block)| (0..block.len()).map(|at| block.row(at)).collect::<Vec<_>>()).collect()
+    }
+}
+
+fn mean(rows: &[Subscriber], value: impl Fn(&Subscriber) -> f64) -> f64 {
+    rows.iter().map(value).sum::<f64>() / rows.len() as f64
+}
+
+/// An outage today, certainly or certainly not.
+fn outage(params: &mut Params, certain: bool) {
+    let chance = if certain { 1.0 } else { 0.0 };
+    params.operations.base_outage_prob = chance;
+    params.operations.ops_outage_min_prob = chance;
+}
+
+#[test]
+fn an_outage_reaches_the_hotline_the_moods_and_the_public() {
+    let params = Params::shipped();
+    let of = |certain| Play::day_after(40, &params, |params| outage(params, certain));
+    let ((quiet, calm, _), (broken, down, _)) = (of(false), of(true));
+    assert!(!calm.outage && calm.downtime_minutes == 0 && down.outage && down.downtime_minutes > 0);
+    assert_eq!(calm.total_usage, down.total_usage, "all else is equal");
+
+    // Whoever calls anyway calls then too, and many more do.
+    let callers =
+        |play: &Play| -> Vec<u32> { play.facts.issues_opened.iter().map(|issue| issue.customer).collect() };
+    let (few, many) = (callers(&quiet), callers(&broken));
+    assert!(few.iter().all(|customer| many.contains(customer)) && many.len() > 2 * few.len());
+
+    // Whoever was there is less content; nobody gains by it.
+    let there = |play: &Play| -> Vec<Subscriber> {
+        play.rows().into_iter().filter(|row| row.start_day < 41).collect()
+    };
+    let (before, after) = (there(&quiet), there(&broken));
+    assert_eq!(before.len(), after.len());
+    let pairs = || before.iter().zip(&after);
+    assert!(pairs().all(|(calm, down)| down.satisfaction <= calm.satisfaction));
+    let fell = pairs().filter(|(calm, down)| down.satisfaction < calm.satisfaction).count();
+    assert!(fell * 10 > before.len() * 9, "{fell} of {} are less content", before.len());
+
+    // Help on a day without service pleases nobody.
+    let solved = quiet.facts.issues_resolved.clone();
+    assert!(!solved.is_empty() && solved == broken.facts.issues_resolved);
+    assert!(mean(&before, |row| row.relationship) > mean(&after, |row| row.relationship));
+
+    // The public remembers.
+    let remembered = |play: &Play| play.world.market.social.chronicle.today().outage;
+    assert!(!remembered(&quiet) && remembered(&broken));
+    let s1 = Group::at(0).expect("S1");
+    let reputation = |play: &Play| play.world.market.reputation.of(s1);
+    assert!(reputation(&broken) < reputation(&quiet));
+}
+
+#[test]
+fn an_outage_drives_people_off_only_where_decisions_feel_it() {
+    let left = |penalty, certain| -> u32 {
+        let mut params = Params::shipped();
+        params.fidelity.service_penalty = penalty;
+        // A penalty that nobody overlooks.
+        params.quality.service_outage_weight = 0.5;
+        let (play, figures, _) = Play::day_after(44, &params, |params| outage(params, certain));
+        let ended = play.facts.endings.iter().filter(|ending| !ending.group.is_enterprise());
+        assert_eq!(ended.count() as u32, figures.cancellations);
+        figures.cancellations
+    };
+    let (calm, felt) = (left(ServicePenalty::Everywhere, false), left(ServicePenalty::Everywhere, true));
+    assert!(felt > calm + 5, "{felt} leave on the day of the outage, {calm} otherwise");
+    assert_eq!(left(ServicePenalty::Satisfaction, false), left(ServicePenalty::Satisfaction, true));
+}
+
+#[test]
+fn every_day_has_its_own_calendar() {
+    let mut params = Params::shipped();
+    for (at, factor) in params.calendar.weekly.iter_mut().enumerate() {
+        *factor = 1.0 + 0.1 * at as f64;
+    }
+    for (at, factor) in params.calendar.monthly.iter_mut().enumerate() {
+        *factor = 2.0 + 0.01 * at as f64;
+    }
+    let calendar = params.calendar.clone();
+    let mut play = Play::new(params);
+    let s1 = Group::at(0).expect("S1");
+    for day in 1..=64usize {
+        let (_, trace) = play.day();
+        let expected = calendar.weekly[day % 7] * calendar.monthly[day % 30];
+        assert_eq!(trace.leads[s1].calendar, expected, "leads of day {day}");
+    }
+    // Usage follows the week and not the month.
+    let day_65 = |monthly: f64, weekly: f64| {
+        let change = |params: &mut Params| {
+            params.calendar.monthly[65 % 30] *= monthly;
+            params.calendar.weekly[65 % 7] *= weekly;
+        };
+        Play::day_after(64, &Params::shipped(), change).1.total_usage as f64
+    };
+    assert_eq!(day_65(1.0, 1.0), day_65(3.0, 1.0));
+    let half = day_65(1.0, 0.5) / day_65(1.0, 1.0);
+    assert!((0.49..0.6).contains(&half), "some are limited by their quota: {half}");
+}
+
+/// Nobody reacts to the economy, which stands at half of neutral, but for these.
+fn reacting(change: impl Fn(&mut MacroBeta)) -> Params {
+    let mut params = Params::shipped();
+    let law = &mut params.economy;
+    (law.macro_pmi_initial, law.macro_pmi_long_run_mean) = (25.0, 25.0);
+    (law.macro_pmi_cycle_amplitude, law.macro_pmi_daily_volatility) = (0.0, 0.0);
+    law.macro_pmi_floor = 0.0;
+    for group in params.group.iter_mut() {
+        group.macro_beta = MacroBeta {
+            lead_generation: None,
+            willingness_to_pay: None,
+            deal_velocity: None,
+            seat_count: None,
+        };
+        change(&mut group.macro_beta);
+    }
+    params
+}
+
+/// A subscriber of 500 seats whom nobody negotiates with.
+fn seat_500_people(world: &mut World) -> Group {
+    let group = Group::parse("E1").expect("a group");
+    let customer = world.customers.next_customer;
+    world.customers.next_customer += 1;
+    world.customers.groups[group].created += 1;
+    let row = Subscriber { customer, seats: 500.0, ..subscriber(1) };
+    world.customers.groups[group].activate(row);
+    group
+}
+
+/// What the economy acts on: the factor of leads, how many gave up for lack of a plan worth its price, seats.
+fn effects(params: Params) -> (f64, usize, f64) {
+    let mut play = Play::new(params);
+    let group = seat_500_people(&mut play.world);
+    let (mut factor, mut gave_up) = (0.0, 0);
+    // Seats drift on day 90, with the economy of the day before.
+    for _ in 0..90 {
+        factor = play.day().1.leads[Group::at(0).expect("S1")].economy;
+        let price = |ending: &&SubscriptionEnded| matches!(ending.cause, EndCause::Price | EndCause::Quality);
+        gave_up += play.facts.endings.iter().filter(price).count();
+    }
+    let row = play.world.customers.groups[group].row(1);
+    (factor, gave_up, row.expect("nobody ended it").seats)
+}
+
+#[test]
+fn the_economy_moves_what_each_of_its_dimensions_is_for() {
+    let (factor, few, seats) = effects(reacting(|_| {}));
+    assert_eq!(factor, 1.0);
+    let leads = effects(reacting(|beta| beta.lead_generation = Some(1.0)));
+    assert_eq!((leads.0, leads.2), (0.5, seats), "half of neutral, a sensitivity of one");
+    let budgets = effects(reacting(|beta| beta.willingness_to_pay = Some(1.0)));
+    assert_eq!((budgets.0, budgets.2), (1.0, seats));
+    assert!(budgets.1 > few + 20, "{} give up with half the budget, {few} otherwise", budgets.1);
+    let offices = effects(reacting(|beta| beta.seat_count = Some(1.0)));
+    assert_eq!((offices.0, offices.1), (1.0, few));
+    assert!(offices.2 != seats, "{seats} seats in either economy");
+}
+
+#[test]
+fn every_figure_of_a_day_stands_in_its_own_field() {
+    let mut play = Play::new(Params::shipped());
+    let mut sums = DayFigures::default();
+    for day in 1..=95 {
+        if day == 50 {
+            // Some find another plan better now.
+            play.world.settings.core.prices = ByPlan([15.0, 13.0, 22.0]);
+        }
+        if day == 70 {
+            play.world.settings.core.prices = ByPlan([5.0, 20.0, 45.0]);
+        }
+        let cash = play.world.finance.cash;
+        let (figures, _) = play.day();
+        let facts = &play.facts;
+        let service = facts.service.expect("a day of service");
+        assert_eq!(figures.day, day);
+        assert_eq!((figures.total_usage, figures.overload), (service.total_usage, service.overload));
+        assert_eq!((figures.outage, figures.downtime_minutes), (service.outage, service.downtime_minutes));
+        assert_eq!((figures.p95_ms, figures.error_rate), (service.p95_ms, service.error_rate));
+        assert_eq!(figures.usage.iter().flat_map(|plans| plans.0).sum::<u64>(), figures.total_usage);
+        let company = |group: Group| group.is_enterprise();
+        assert_eq!(figures.new_leads as usize, facts.arrivals.len());
+        let people = facts.arrivals.iter().filter(|arrival| !company(arrival.group)).count();
+        assert_eq!(figures.new_individual_leads as usize, people);
+        let opened = |status| facts.openings.iter().filter(move |opened| opened.status == status).count();
+        assert_eq!(figures.new_individual_subscribers as usize, opened(SubscriptionStatus::Subscribed));
+        assert_eq!(figures.new_enterprise_leads as usize, opened(SubscriptionStatus::Lead));
+        let left = facts.endings.iter().filter(|ending| !company(ending.group)).count();
+        assert_eq!(figures.cancellations as usize, left);
+        let paid: f64 = facts.payments.iter().map(|payment| payment.amount).sum();
+        assert!((figures.payments_received - paid).abs() < 1e-6);
+        let costs: f64 = facts.ledger.iter().map(|entry| entry.amount).filter(|amount| *amount < 0.0).sum();
+        assert!((figures.total_costs + costs).abs() < 1e-6);
+        let leads = play.params.leads.lead_acquisition_cost * f64::from(figures.new_leads);
+        assert!((figures.cash - (cash + paid + costs - leads)).abs() < 1e-6, "nothing else moves cash");
+        let people = play.rows();
+        assert_eq!(figures.individual_subscribers as usize, people.len());
+        sums.new_enterprise_leads += figures.new_enterprise_leads;
+        sums.cancellations += figures.cancellations;
+        (sums.upgrades, sums.downgrades) =
+            (sums.upgrades + figures.upgrades, sums.downgrades + figures.downgrades);
+    }
+    let told = [sums.new_enterprise_leads, sums.cancellations, sums.upgrades, sums.downgrades];
+    assert!(told.iter().all(|sum| *sum > 3), "too little happened to tell fields apart: {told:?}");
+}

@@ -334,8 +334,11 @@ mod tests {
         rest.split('"').next().expect("a value").parse().unwrap_or_else(|_| panic!("{name} in {tag}"))
     }
 
-    /// Where the ticks of a drawing stand: down by the label of its line, across by the label below.
-    fn ticks(svg: &str) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+    /// Value and coordinate of the ticks of an axis.
+    type Ticks = Vec<(f64, f64)>;
+
+    /// The ticks of a drawing, down and across.
+    fn ticks(svg: &str) -> (Ticks, Ticks) {
         let label = |text: &str| -> Option<f64> {
             text.split('>').nth(1)?.split('<').next()?.replace(['$', ','], "").parse().ok()
         };

@@ -130,6 +130,9 @@ mod tests {
         world
     }
 
+    /// A change of one field; some take a group.
+    type Change = fn(&mut World, Group);
+
     /// Names of the parts that differ.
     fn changed(world: &World, other: &World) -> Vec<&'static str> {
         let pairs = world.part_hashes().into_iter().zip(other.part_hashes());
@@ -140,7 +143,7 @@ mod tests {
     fn a_change_shows_in_its_own_part_and_in_no_other() {
         let world = company();
         let s2 = Group::parse("S2").expect("a group");
-        let changes: [(&str, fn(&mut World, Group)); 25] = [
+        let changes: [(&str, Change); 25] = [
             ("calendar", |world, _| world.day += 1),
             ("calendar", |world, _| world.total_days += 1),
             ("settings", |world, _| world.settings.core.prices[Plan::C] += 0.01),

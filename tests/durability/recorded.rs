@@ -1,8 +1,8 @@
 //! Runs that other builds recorded are played again to the same states.
 //!
 //! `tests/data/recorded` holds a run recorded by a development build and one recorded by a release build, which are
-//! both verified by whatever build runs the tests. They also pin the mechanics: whoever changes what decisions lead
-//! to raises `world::MECHANICS` and records them anew.
+//! both verified by whatever build runs the tests, and one of a company that uses every lever there is. They also pin
+//! the mechanics: whoever changes what decisions lead to raises `world::MECHANICS` and records them anew.
 
 use std::fs;
 use std::path::Path;
@@ -28,6 +28,35 @@ fn runs_of_other_builds_reach_the_same_states() {
         hashes.push(found.state_hash);
     }
     assert_eq!(hashes[0], hashes[1], "the same decisions were recorded by both builds");
+}
+
+#[test]
+fn a_recorded_run_with_every_lever_reaches_the_same_states() {
+    let place = runs();
+    let folder = copy(&recorded("everything"), place.path());
+    let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((found.day, found.states), (119, 17));
+    // What is not in it would be tried by nobody.
+    let mut session = Session::open(&folder, Access::Read, true).expect("it opens");
+    for (least, sql) in [
+        (20, "SELECT count(*) FROM service_day WHERE downtime_minutes > 0"),
+        (20, "SELECT count(*) FROM enterprise_turns WHERE close_reason = 'accepted'"),
+        (100, "SELECT count(*) FROM ads_revenue WHERE revenue > 0"),
+        (1, "SELECT count(*) FROM config_overrides WHERE tool_name = 'set_promotion'"),
+        (1, "SELECT count(*) FROM config_overrides WHERE tool_name = 'set_lead_promotion'"),
+        (1, "SELECT count(*) FROM config_overrides WHERE settings_json LIKE '%\"by_plan\": {\"B\"%'"),
+        (
+            1,
+            "SELECT count(*) FROM config_overrides WHERE settings_json LIKE '%\"by_group_plan\": {\"S2\": {\"A\"%'",
+        ),
+        (1, "SELECT count(*) FROM research_projects WHERE completed_day IS NOT NULL"),
+        (1, "SELECT count(*) FROM agent_social_media_posts WHERE views > 0"),
+        (1, "SELECT count(*) FROM segment_discovery"),
+    ] {
+        let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+        let count = novamind::session::number_at(&rows.rows[0], 0);
+        assert!(count >= f64::from(least), "{sql}: {count}");
+    }
 }
 
 #[test]

@@ -54,7 +54,9 @@ impl Play {
         change: impl FnOnce(&mut Params),
     ) -> (Play, DayFigures, DayTrace) {
         let mut play = Play::new(params.clone());
-        (0..days).for_each(|_| drop(play.day()));
+        for _ in 0..days {
+            play.day();
+        }
         change(&mut play.params);
         let (figures, trace) = play.day();
         (play, figures, trace)

@@ -49,7 +49,7 @@ fn a_recorded_run_with_every_lever_reaches_the_same_states() {
             1,
             "SELECT count(*) FROM config_overrides WHERE settings_json LIKE '%\"by_group_plan\": {\"S2\": {\"A\"%'",
         ),
-        (1, "SELECT count(*) FROM research_projects WHERE completed_day IS NOT NULL"),
+        (1, "SELECT count(*) FROM research_projects WHERE status = 'completed'"),
         (1, "SELECT count(*) FROM agent_social_media_posts WHERE views > 0"),
         (1, "SELECT count(*) FROM segment_discovery"),
     ] {

@@ -73,60 +73,76 @@ pub fn survival_days(ended: Option<Ended>, day: u32, last_day: u32) -> u32 {
     }
 }
 
-/// Ads of one group.
+/// Leads that a channel must have brought before it is called the best.
+pub const ENOUGH_LEADS: f64 = 3.0;
+
+/// The channel that brought a group most leads per dollar.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct GroupAds {
-    /// Group.
-    pub group: String,
-    /// Channel with the most leads per dollar.
-    pub best: String,
-    /// Its leads per 1,000 dollars.
+pub struct BestChannel {
+    /// Its name.
+    pub channel: String,
+    /// Leads per thousand dollars.
     pub leads_per_thousand: f64,
     /// Share of the group's ad spend on it.
     pub share: f64,
+}
+
+/// Ads for one group.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GroupAds {
+    /// The group.
+    pub group: String,
     /// Channels that were paid for.
     pub tried: usize,
     /// Dollars spent on the group.
     pub spend: f64,
+    /// The best of the channels that were paid for; none if only one was, or if it brought fewer than three leads.
+    pub best: Option<BestChannel>,
 }
 
 /// Ad spend on the best channels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChannelSkill {
-    /// Share of all ad spend that went to the best channel of its group.
-    pub share: f64,
-    /// Groups, the dearest first.
+    /// Share of the ad spend on groups with a best channel that went to that channel; none if no group has one.
+    pub share: Option<f64>,
+    /// Groups, the largest spend first.
     pub groups: Vec<GroupAds>,
 }
 
 /// Share of ad spend on the best channel of each group, best by the leads per dollar that were measured. Only what was
-/// paid for can be measured: with one channel tried the share says nothing, so the number tried stands beside it.
+/// paid for can be measured, so a group counts if two channels or more were paid and the best brought enough leads.
 pub fn best_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
     let names: BTreeSet<&str> =
         rows.iter().filter(|row| row.spend > 0.0).map(|row| row.group.as_str()).collect();
-    let mut groups: Vec<GroupAds> = Vec::new();
-    for group in names {
-        let paid = || rows.iter().filter(|row| row.group == group && row.spend > 0.0);
-        let yield_of = |row: &ChannelRow| row.leads / row.spend;
-        let best = paid().max_by(|left, right| {
-            // Of equal ones the dearer, then the first in the alphabet.
-            let by_spend = left.spend.total_cmp(&right.spend);
-            yield_of(left).total_cmp(&yield_of(right)).then(by_spend).then(right.channel.cmp(&left.channel))
-        })?;
-        let spend: f64 = paid().map(|row| row.spend).sum();
-        groups.push(GroupAds {
-            group: group.to_owned(),
-            best: best.channel.clone(),
-            leads_per_thousand: yield_of(best) * 1000.0,
-            share: best.spend / spend,
-            tried: paid().count(),
-            spend,
-        });
-    }
+    let mut groups: Vec<GroupAds> = names
+        .into_iter()
+        .map(|group| {
+            let paid: Vec<&ChannelRow> =
+                rows.iter().filter(|row| row.group == group && row.spend > 0.0).collect();
+            let spend = paid.iter().map(|row| row.spend).sum();
+            GroupAds { group: group.to_owned(), tried: paid.len(), spend, best: best_of(&paid, spend) }
+        })
+        .collect();
     groups.sort_by(|left, right| right.spend.total_cmp(&left.spend).then(left.group.cmp(&right.group)));
-    let spend: f64 = groups.iter().map(|group| group.spend).sum();
-    let on_best: f64 = groups.iter().map(|group| group.share * group.spend).sum();
-    (spend > 0.0).then(|| ChannelSkill { share: on_best / spend, groups })
+    let told = || groups.iter().filter_map(|group| Some((group.spend, group.best.as_ref()?)));
+    let spend: f64 = told().map(|(spend, _)| spend).sum();
+    let on_best: f64 = told().map(|(spend, best)| best.share * spend).sum();
+    let share = (spend > 0.0).then(|| on_best / spend);
+    (!groups.is_empty()).then_some(ChannelSkill { share, groups })
+}
+
+fn best_of(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
+    let yield_of = |row: &ChannelRow| row.leads / row.spend;
+    let best = paid.iter().max_by(|left, right| {
+        // Of equal ones the larger spend, then the first in the alphabet.
+        let by_spend = left.spend.total_cmp(&right.spend);
+        yield_of(left).total_cmp(&yield_of(right)).then(by_spend).then(right.channel.cmp(&left.channel))
+    })?;
+    (paid.len() > 1 && best.leads >= ENOUGH_LEADS).then(|| BestChannel {
+        channel: best.channel.clone(),
+        leads_per_thousand: yield_of(best) * 1000.0,
+        share: best.spend / spend,
+    })
 }
 
 /// Targeted share of development spend over the days that ran; none if nothing was spent.
@@ -270,11 +286,17 @@ mod tests {
             ads("E1", "search_ads", 1.0, 50.0),
         ];
         let skill = best_channel_share(&rows).expect("money was spent");
-        assert_eq!(skill.share, (300.0 + 50.0) / 500.0);
+        assert_eq!(skill.share, Some(300.0 / 400.0), "one lead tells nothing of E1's channels");
         let first = &skill.groups[0];
-        assert_eq!((first.group.as_str(), first.best.as_str()), ("S1", "content_marketing"));
-        assert_eq!((first.share, first.tried, first.leads_per_thousand), (0.75, 2, 100.0));
-        assert_eq!(skill.groups[1].best, "search_ads");
+        let best = first.best.as_ref().expect("two channels and thirty leads");
+        assert_eq!((first.group.as_str(), first.tried), ("S1", 2));
+        assert_eq!(
+            (best.channel.as_str(), best.share, best.leads_per_thousand),
+            ("content_marketing", 0.75, 100.0)
+        );
+        assert_eq!((skill.groups[1].tried, &skill.groups[1].best), (2, &None));
+        let alone = best_channel_share(&[ads("S1", "linkedin", 40.0, 10.0)]).expect("money was spent");
+        assert_eq!((alone.share, alone.groups[0].tried), (None, 1), "nothing to compare with");
         assert_eq!(best_channel_share(&[ads("S1", "linkedin", 4.0, 0.0)]), None);
     }
 

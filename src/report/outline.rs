@@ -2,7 +2,7 @@
 
 mod charts;
 
-use super::measures::{Measures, PLANNING_WORDS};
+use super::measures::{ENOUGH_LEADS, Measures, PLANNING_WORDS};
 use super::page::{Bar, Block, Fact, Page, Table};
 use super::ranking::{Whose, published_targeted_shares};
 use super::story::{Ruin, Story};
@@ -253,9 +253,13 @@ fn behaviour(measures: &Measures) -> Vec<Block> {
     let planning = &measures.planning;
     blocks.push(Block::Facts(vec![
         Fact::new(
-            "Ads on the best channel",
-            measures.channels.as_ref().map_or_else(none, |skill| percent(skill.share, 0)),
-            "a random choice gives 20%",
+            "Ads on the best channel measured",
+            measures
+                .channels
+                .as_ref()
+                .and_then(|skill| skill.share)
+                .map_or_else(none, |share| percent(share, 0)),
+            format!("of groups with two paid channels and a best of {ENOUGH_LEADS} leads or more"),
         ),
         Fact::new(
             "Targeted development",
@@ -275,13 +279,14 @@ fn behaviour(measures: &Measures) -> Vec<Block> {
     ]));
     if let Some(skill) = &measures.channels {
         let row = |ads: &super::measures::GroupAds| {
+            let best = ads.best.as_ref();
             vec![
                 ads.group.clone(),
                 money(ads.spend),
                 ads.tried.to_string(),
-                ads.best.replace('_', " "),
-                number((ads.leads_per_thousand * 10.0).round() / 10.0),
-                percent(ads.share, 0),
+                best.map_or_else(none, |best| best.channel.replace('_', " ")),
+                best.map_or_else(none, |best| number((best.leads_per_thousand * 10.0).round() / 10.0)),
+                best.map_or_else(none, |best| percent(best.share, 0)),
             ]
         };
         blocks.push(Block::Table(Table {
@@ -296,9 +301,10 @@ fn behaviour(measures: &Measures) -> Vec<Block> {
             rows: skill.groups.iter().map(row).collect(),
         }));
         blocks.push(Block::Note(
-            "Best is measured by leads per dollar among the channels that were paid for; with one channel tried the share \
-             says nothing."
-                .to_owned(),
+            format!(
+                "The best channel is the one with most leads per dollar among those that were paid for; none is named if \
+                 only one was, or if it brought fewer than {ENOUGH_LEADS} leads."
+            ),
         ));
     }
     if !measures.tools.tools.is_empty() {

@@ -19,7 +19,7 @@ use crate::console::widgets::{Axis, Line, chart};
 use crate::console::worker::Recorded;
 use crate::notation::{dollars, grouped, percent};
 use crate::report::Story;
-use crate::report::measures::{ChannelSkill, Measures};
+use crate::report::measures::{ChannelSkill, ENOUGH_LEADS, Measures};
 use crate::report::ranking::{Standing, Whose, published_targeted_shares, standing};
 use crate::session::{Ended, ForecastScore, Goal};
 
@@ -310,13 +310,17 @@ fn calibration(scores: &[ForecastScore], room: usize) -> String {
 }
 
 fn best_channel(skill: &ChannelSkill) -> String {
-    let mut text = percent(skill.share, 0);
-    if skill.groups.iter().all(|group| group.tried == 1) {
-        text += ", but no group had more than one channel";
-    } else if let Some(group) = skill.groups.first() {
-        text += &format!(" · {}: {} of {} tried", group.group, group.best.replace('_', " "), group.tried);
+    let first = skill.groups.iter().find_map(|group| Some((group, group.best.as_ref()?)));
+    match (skill.share, first) {
+        (Some(share), Some((group, best))) => {
+            let channel = best.channel.replace('_', " ");
+            format!("{} · {}: {channel} of {} tried", percent(share, 0), group.group, group.tried)
+        }
+        _ if skill.groups.iter().all(|group| group.tried == 1) => {
+            "– · no group had more than one channel".to_owned()
+        }
+        _ => format!("– · no channel brought {ENOUGH_LEADS} leads"),
     }
-    text
 }
 
 /// Calls a week and the most used tools, as many as have room.

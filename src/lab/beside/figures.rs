@@ -118,8 +118,8 @@ pub const FIGURES: &[Figure] = &[
         "ad spend on the best channel, as measured",
         "",
         "share",
-        |run| run.logbook.measures.channels.as_ref().map(|skill| skill.share),
-        chance,
+        |run| run.logbook.measures.channels.as_ref().and_then(|skill| skill.share),
+        nothing,
     ),
     figure("ad spend on the truly best channel", "", "share", |run| run.truly_best_share, chance),
     figure(
@@ -178,9 +178,11 @@ pub(super) fn by_group(runs: &[Compared]) -> Vec<Row> {
         unit: "share",
         values: by_run
             .iter()
-            .map(|own| own.iter().find(|ads| ads.group == group).map(|ads| ads.share))
+            .map(|own| {
+                own.iter().find(|ads| ads.group == group).and_then(|ads| Some(ads.best.as_ref()?.share))
+            })
             .collect(),
-        published: chance(),
+        published: None,
     };
     groups.into_iter().map(row).collect()
 }

@@ -41,7 +41,7 @@ impl Desk {
             "rank": story.standing.rank,
             "survival_days": measures.survival_days,
             "cash": measures.cash,
-            "best_channel_share": measures.channels.as_ref().map(|skill| skill.share),
+            "best_channel_share": measures.channels.as_ref().and_then(|skill| skill.share),
             "targeted_development_share": measures.targeted_development,
             "forecasts": measures.forecasts,
             "calls_per_week": measures.tools.per_week,

@@ -10,6 +10,7 @@ use crate::console::screens::Figure;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{dollars, grouped};
+use crate::report::measures::ENOUGH_LEADS;
 use crate::world::identifiers::Channel;
 
 /// Place on the map.
@@ -38,8 +39,6 @@ impl Place {
     }
 }
 
-/// Leads below which a channel is not called the best.
-const ENOUGH: f64 = 3.0;
 /// Rows that the map wants inside its pane.
 pub const HEIGHT: u16 = Channel::ALL.len() as u16 + 2;
 const NAMES: u16 = 18;
@@ -69,7 +68,7 @@ pub fn draw(
         let best = Channel::ALL
             .iter()
             .map(|channel| market.measured(*channel, *group))
-            .filter(|measured| measured.leads >= ENOUGH)
+            .filter(|measured| measured.leads >= ENOUGH_LEADS)
             .filter_map(|measured| measured.per_thousand())
             .fold(0.0, f64::max);
         for (line, channel) in Channel::ALL.iter().enumerate() {

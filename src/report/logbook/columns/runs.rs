@@ -118,8 +118,9 @@ pub const RUNS: &[RunColumn] = &[
     column(
         "best_channel_share",
         "share",
-        "share of ad spend on the channel of each group that brought most leads per dollar; chance: 0.2",
-        |run| maybe(run.measures.channels.as_ref().map(|skill| skill.share)),
+        "share of ad spend on the channel that brought most leads per dollar, over the groups with two paid channels and three \
+         leads or more on the best",
+        |run| maybe(run.measures.channels.as_ref().and_then(|skill| skill.share)),
     ),
     column(
         "targeted_development_share",

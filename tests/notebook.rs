@@ -158,3 +158,32 @@ fn documents_come_from_the_run() {
     let overview = call(&mut session, "get_market_overview", json!({}));
     assert_eq!(overview["macroeconomic"], Value::Null);
 }
+
+#[test]
+fn the_dashboard_is_that_of_the_last_week_until_the_next() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let new = NewRun { days: Some(60), storage: Storage::Runs(runs.path().to_owned()), ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let set = |session: &mut Session, price: f64| {
+        session.call("set_prices", &json!({ "A": price }), Via::Script).expect("prices");
+    };
+    set(&mut session, 12.0);
+    assert!(session.dashboard().contains("Prices: A $12"), "before the first week it is fresh");
+    let forecasts = session.naive_forecasts();
+    let told = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").dashboard;
+    set(&mut session, 13.0);
+    assert!(told.contains("Prices: A $12"), "{told}");
+    assert_eq!((session.dashboard(), session.observe().dashboard), (told.clone(), told.clone()));
+    session.save().expect("saved");
+    let folder = session.folder().expect("a folder").to_owned();
+    drop(session);
+    // From the snapshot, and without it.
+    for _ in 0..2 {
+        let again = Session::open(&folder, Access::Read, true).expect("it opens");
+        assert_eq!(again.dashboard(), told);
+        std::fs::remove_file(folder.join("snapshot.bin")).ok();
+    }
+    let mut again = Session::open(&folder, Access::Write, true).expect("it opens");
+    let next = again.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").dashboard;
+    assert!(next.contains("Prices: A $13"), "{next}");
+}

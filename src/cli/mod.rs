@@ -74,6 +74,28 @@ enum Command {
     Completions(completions::Options),
 }
 
+impl Command {
+    /// The word for it.
+    fn name(&self) -> &'static str {
+        match self {
+            Command::Play(_) => "play",
+            Command::Run(_) => "run",
+            Command::Runs(_) => "runs",
+            Command::Replay(_) => "replay",
+            Command::Report(_) => "report",
+            Command::Query(_) => "query",
+            Command::Tools(_) => "tools",
+            Command::Tables(_) => "tables",
+            Command::Keys(_) => "keys",
+            Command::Pictures(_) => "pictures",
+            Command::Scenario(_) => "scenario",
+            Command::Lab(_) => "lab",
+            Command::Bench(_) => "bench",
+            Command::Completions(_) => "completions",
+        }
+    }
+}
+
 /// What every command may need.
 pub struct Context {
     /// Configuration of this person.
@@ -82,9 +104,26 @@ pub struct Context {
     runs: Option<PathBuf>,
     /// Whose runs these are, if anybody's in particular.
     pub participant: Option<String>,
+    /// The folder of runs was named on the command line.
+    names_runs: bool,
 }
 
 impl Context {
+    /// The command that goes on with the newest run of this folder.
+    pub fn again(&self) -> String {
+        let mut words = vec!["novamind".to_owned()];
+        if let Some(folder) = self.runs.as_ref().filter(|_| self.names_runs) {
+            let folder = folder.display().to_string();
+            // As a shell has to be told.
+            let plain = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
+            let quoted = if folder.chars().all(plain) { folder } else { format!("'{folder}'") };
+            words.push(format!("--runs-dir {quoted}"));
+        }
+        words.extend(self.participant.as_ref().map(|label| format!("--as {label}")));
+        words.push("--run latest".to_owned());
+        words.join(" ")
+    }
+
     /// Folder of the runs.
     ///
     /// # Errors
@@ -105,8 +144,19 @@ impl Context {
 /// # Errors
 /// What went wrong, with the exit code that says so.
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    if let Some(command) = &arguments.command
+        && arguments.play != play::Options::default()
+    {
+        return Err(Failure::usage(format!(
+            "options of `play` before a command do not count: write them behind it, as in `novamind play --new --seed 1`; \
+             before `{}` only --runs-dir and --as may stand",
+            command.name()
+        )));
+    }
+    let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);
     let context = Context {
         configuration: Configuration::of_user(),
+        names_runs: arguments.runs_dir.is_some() && arguments.runs_dir != from_environment,
         runs: arguments.runs_dir.or_else(Configuration::runs_folder),
         participant: arguments.whose.filter(|label| !label.is_empty()),
     };

@@ -75,6 +75,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         glyphs: if options.ascii { Glyphs::Ascii } else { Glyphs::Braille },
         configuration: context.configuration.clone(),
         runs,
+        again: context.again(),
     };
     let places = places(options, &settings.keys)?;
     let mut console = Rehearsal::new(settings, options.size);

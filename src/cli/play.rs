@@ -10,12 +10,15 @@ use crate::console::app::Settings;
 use crate::console::effect::Effect;
 use crate::console::glyphs::Glyphs;
 use crate::console::keys::Keys;
+use crate::console::preferences::Preferences;
 use crate::console::theme::Theme;
 use crate::console::worker::Recorded;
-use crate::session::{Access, Goal, Library, Mode, NewRun, RunError, Session, Storage, find_run};
+use crate::session::{
+    Access, Configuration, Goal, Library, Mode, NewRun, RunError, Session, Storage, find_run,
+};
 
 /// Options of `play`.
-#[derive(Debug, Args, Clone, Default)]
+#[derive(Debug, Args, Clone, Default, PartialEq)]
 pub struct Options {
     /// Open a run; `latest` is the newest unfinished one.
     #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set"])]
@@ -39,7 +42,7 @@ pub struct Options {
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
     /// Mode of the new run [default: sandbox].
-    #[arg(long, value_name = "baseline|sandbox|lesson|debug", value_parser = parse_mode)]
+    #[arg(long, value_name = "baseline|sandbox|debug", value_parser = parse_mode)]
     mode: Option<Mode>,
     /// Who plays.
     #[arg(long, value_name = "LABEL")]
@@ -71,7 +74,11 @@ pub struct Options {
 }
 
 fn parse_mode(text: &str) -> Result<Mode, String> {
-    Mode::parse(text).ok_or_else(|| format!("{text} is no mode; there are baseline, sandbox, lesson, debug"))
+    let mode = Mode::parse(text).filter(|mode| Mode::OFFERED.contains(mode));
+    mode.ok_or_else(|| {
+        let offered = Mode::OFFERED.map(Mode::id).join(", ");
+        format!("{text} is no mode of a new run; there are {offered}")
+    })
 }
 
 impl Options {
@@ -158,18 +165,35 @@ fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
     show_console(options, start, context)
 }
 
+/// The theme that was asked for; else none where the terminal wants no colours, else the one that was chosen by key.
+fn theme(
+    options: &Options,
+    no_colour: bool,
+    chosen: &Preferences,
+    configuration: &Configuration,
+) -> Result<Theme, Failure> {
+    let asked = options.theme.as_deref().or(no_colour.then_some("mono"));
+    let remembered = chosen.theme.as_deref().filter(|_| asked.is_none());
+    // A theme that has gone since is no reason not to play.
+    if let Some(theme) = remembered.and_then(|name| Theme::find(name, configuration).ok()) {
+        return Ok(theme);
+    }
+    Theme::find(asked.unwrap_or("dark"), configuration).map_err(Failure::usage)
+}
+
 /// Opens the console with something to begin with.
 pub fn show_console(options: &Options, start: Option<Effect>, context: &Context) -> Result<(), Failure> {
     let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    let name = options.theme.as_deref().unwrap_or(if no_colour { "mono" } else { "dark" });
-    let theme = Theme::find(name, &context.configuration).map_err(Failure::usage)?;
+    let chosen = Preferences::of(&context.configuration);
+    let theme = theme(options, no_colour, &chosen, &context.configuration)?;
     let keys = Keys::of_user(&context.configuration).map_err(Failure::unreadable)?;
     let settings = Settings {
         theme,
         keys,
-        glyphs: if options.ascii { Glyphs::Ascii } else { Glyphs::Braille },
+        glyphs: if options.ascii { Glyphs::Ascii } else { chosen.marker.unwrap_or(Glyphs::Braille) },
         configuration: context.configuration.clone(),
         runs: context.runs()?,
+        again: context.again(),
     };
     let (code, farewell) = crate::console::play(settings, start)
         .map_err(|error| Failure::failed(format!("the terminal: {error}")))?;

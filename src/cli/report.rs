@@ -99,6 +99,7 @@ mod tests {
             configuration: Configuration::shipped(),
             runs: Some(runs.path().to_owned()),
             participant: None,
+            names_runs: true,
         };
         let written = |format: Format, name: &str| {
             let path = runs.path().join(name);

@@ -43,8 +43,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             let params = configuration.parameters(&scenario, &[], true)?;
             let table = toml::to_string(&params)
                 .map_err(|error| Failure::failed(format!("the parameters cannot be written: {error}")))?;
-            let days = scenario.days.unwrap_or(params.run.total_days);
-            let cash = scenario.cash.unwrap_or(params.initial.initial_cash);
+            let (days, cash) = scenario.terms(&params);
             print(&format!(
                 "# {}: {}\n# {days} days, {} at the start; digest {}\n\n{table}",
                 scenario.title,

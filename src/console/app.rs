@@ -27,6 +27,7 @@ use super::effect::Effect;
 use super::glyphs::Glyphs;
 use super::keys::{Chord, Keys};
 use super::message::Message;
+use super::preferences::Preferences;
 use super::readings::Reading;
 use super::screens::menu::Menu;
 use super::screens::{Look, Screen, ScreenId};
@@ -54,6 +55,8 @@ pub enum Order {
     Write(Vec<(PathBuf, Vec<u8>)>),
     /// Save a query: its name, its title, the statement.
     SaveQuery(Configuration, [String; 3]),
+    /// Start with this look the next time, too.
+    Remember(Configuration, Preferences),
     /// List the runs.
     ListRuns,
     /// Draw everything again.
@@ -132,6 +135,8 @@ pub struct Run {
     pub explained: bool,
     /// The run is a recorded one that is played again.
     pub viewer: Option<Viewer>,
+    /// Why the database is behind, while it is.
+    pub behind: Option<String>,
 }
 
 impl Run {
@@ -159,6 +164,8 @@ pub struct App {
     /// Named queries.
     library: Library,
     runs: PathBuf,
+    /// The command that goes on with the newest run.
+    again: String,
     /// Where the person is.
     pub stage: Stage,
     /// Dialogs, the topmost last.
@@ -210,6 +217,8 @@ pub struct Settings {
     pub configuration: Configuration,
     /// Folder of the runs.
     pub runs: PathBuf,
+    /// The command that goes on with the newest run.
+    pub again: String,
 }
 
 impl App {
@@ -226,6 +235,7 @@ impl App {
             themes: Theme::all(&settings.configuration),
             configuration: settings.configuration,
             runs: settings.runs,
+            again: settings.again,
             stage: Stage::Menu(menu),
             layers: Vec::new(),
             note: None,
@@ -345,8 +355,10 @@ impl App {
         };
         let farewell = self.run().filter(|run| run.viewer.is_none()).map(|run| {
             let company = &run.company.seen;
-            let end =
-                if company.ended.is_some() { "It is over." } else { "`novamind --run latest` continues." };
+            let end = match company.ended {
+                Some(_) => "It is over.".to_owned(),
+                None => format!("`{}` continues.", self.again),
+            };
             format!("Run {} is saved at day {}. {end}", company.run, company.day)
         });
         let text = match problem {

@@ -37,6 +37,8 @@ pub struct Canvas<'a> {
     pub page: u16,
     /// The focused pane has the whole screen; the others are not drawn.
     pub zoomed: bool,
+    /// What is drawn comes from a database that is behind: every pane says so.
+    pub stale: bool,
     /// What curves are drawn with.
     pub marker: Marker,
 }
@@ -60,6 +62,7 @@ impl<'a> Canvas<'a> {
             cursor: None,
             page: 10,
             zoomed: false,
+            stale: false,
             marker: Marker::Braille,
         }
     }
@@ -130,8 +133,13 @@ impl<'a> Canvas<'a> {
             block = block.title(Line::from(self.span(text, Role::Title)));
         }
         let left = title.width() + 3;
+        let note = match (self.stale, note) {
+            (false, note) => note.to_owned(),
+            (true, "") => "stale".to_owned(),
+            (true, note) => format!("stale · {note}"),
+        };
         if !note.is_empty() && room > left + 4 {
-            let text = format!(" {} ", fit(note, room - left - 2));
+            let text = format!(" {} ", fit(&note, room - left - 2));
             block = block.title(Line::from(self.span(text, Role::Dim)).right_aligned());
         }
         let inside = block.inner(area);

@@ -90,9 +90,13 @@ fn draw_continuations(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
 }
 
 fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
-    draw_top(canvas, Rect { height: 1, ..area }, &run.company);
+    draw_top(app, canvas, Rect { height: 1, ..area }, &run.company);
     draw_tabs(app, run, canvas, Rect { y: area.y + 1, height: 1, ..area });
-    let body = Rect { y: area.y + 2, height: area.height - 3, ..area };
+    let banner = u16::from(run.behind.is_some());
+    if run.behind.is_some() {
+        draw_behind(canvas, Rect { y: area.y + 2, height: 1, ..area }, run);
+    }
+    let body = Rect { y: area.y + 2 + banner, height: area.height - 3 - banner, ..area };
     let tour = run.tour.as_ref().map(|tour| (tour, tour.height(&app.keys, area.width)));
     let strip = u16::from(run.viewer.is_some());
     let below = tour.as_ref().map_or(0, |(_, height)| *height) + strip;
@@ -101,7 +105,9 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     canvas.zoomed = run.zoomed;
     let beside = run.viewer.as_ref().filter(|_| !run.zoomed).map_or(0, |viewer| viewer.columns(body));
     let screen = Rect { width: body.width - beside, ..body };
+    canvas.stale = is_stale(run);
     run.screens.get(run.here).draw(canvas, screen, &look);
+    canvas.stale = false;
     if let Some(viewer) = &run.viewer {
         // A list beside the screen is not what paging goes by.
         let page = canvas.page;
@@ -126,10 +132,26 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     }
 }
 
-fn draw_top(canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
+/// Whether the screen shows what the database told before it fell behind.
+fn is_stale(run: &Run) -> bool {
+    run.behind.is_some() && (run.here == ScreenId::Sql || !run.screens.get(run.here).readings().is_empty())
+}
+
+/// The line that stays as long as the database is behind.
+fn draw_behind(canvas: &mut Canvas<'_>, row: Rect, run: &Run) {
+    let here = if is_stale(run) { "panes marked stale show older figures; " } else { "" };
+    let problem = run.behind.as_deref().unwrap_or_default();
+    let text = format!(" ! The database is behind: {here}tried again every few seconds. {problem}");
+    canvas.clear(row, Role::Bad);
+    canvas.text(row, &text, Role::Bad);
+}
+
+fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
     let seen = &company.seen;
     let change = seen.cash_change;
     let runway = match seen.weeks_of_cash() {
+        // No sign of ASCII stands for it: one that looks like it is a number.
+        None if app.glyphs == Glyphs::Ascii => "endless".to_owned(),
         None => "∞".to_owned(),
         Some(weeks) => format!("{weeks} wk"),
     };

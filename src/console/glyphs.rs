@@ -1,9 +1,11 @@
 //! What frames are drawn with.
 
 use ratatui::symbols::Marker;
+use serde::{Deserialize, Serialize};
 
 /// What a frame is drawn with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Glyphs {
     /// Curves of braille dots.
     Braille,

@@ -17,7 +17,7 @@ pub enum Message {
     Input(Event),
     /// From the threads behind the screen.
     News(News),
-    /// A signal asks the program to end.
+    /// A signal asks the program to end, to stop for a while, or to go on.
     Signal(i32),
 }
 
@@ -78,6 +78,10 @@ pub enum News {
     Answered(u64, Result<Rows, Refusal>, Duration),
     /// A screen's question was answered; the number counts the changes of the run before it was asked.
     Read(Reading, u64, Result<Rows, Refusal>),
+    /// The database cannot be written: what it tells is older than the company. It is tried again.
+    DatabaseBehind(String),
+    /// The database holds everything again; with a handle that stops the person's queries.
+    DatabaseWhole(Option<Interrupt>),
     /// The notes were kept.
     MemoKept(Result<(), Refusal>, Arc<Company>),
     /// A query was saved: a sentence and all queries, or what went wrong.

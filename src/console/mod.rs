@@ -20,6 +20,7 @@ pub mod manual;
 pub mod message;
 pub mod photograph;
 pub mod posts;
+pub mod preferences;
 pub mod readings;
 pub mod rehearsal;
 pub mod screens;
@@ -50,12 +51,12 @@ use worker::{Job, Workers};
 pub fn play(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option<String>)> {
     let (sender, messages) = channel();
     let workers = Workers::start(sender.clone(), settings.configuration.clone());
-    let runs = settings.runs.clone();
+    let (runs, again) = (settings.runs.clone(), settings.again.clone());
     let mut app = App::new(settings);
     if let Some(effect) = start {
         app.start_with(effect);
     }
-    let screen = Screen::take()?;
+    let screen = Screen::take(again)?;
     listen(sender.clone());
     let mut console = Console { app, workers, screen, messages, sender, runs };
     let end = console.run();
@@ -82,18 +83,25 @@ impl Console {
             }
             self.screen.draw(&mut self.app)?;
             let Ok(message) = self.messages.recv() else { return Ok((1, None)) };
-            self.hear(message);
+            self.hear(message)?;
             // Everything that has arrived meanwhile is drawn once.
             while let Ok(message) = self.messages.try_recv() {
-                self.hear(message);
+                self.hear(message)?;
             }
         }
     }
 
-    fn hear(&mut self, message: Message) {
+    fn hear(&mut self, message: Message) -> io::Result<()> {
         #[cfg(debug_assertions)]
         fail_on_purpose(&message);
-        self.app.update(message);
+        match message {
+            #[cfg(unix)]
+            Message::Signal(signal_hook::consts::SIGTSTP) => self.screen.suspend(self.app.mouse)?,
+            #[cfg(unix)]
+            Message::Signal(signal_hook::consts::SIGCONT) => self.screen.resume(self.app.mouse)?,
+            message => self.app.update(message),
+        }
+        Ok(())
     }
 
     fn carry_out(&mut self) -> io::Result<Option<(u8, Option<String>)>> {
@@ -110,6 +118,9 @@ impl Console {
                 Order::Write(files) => files::write_behind(files, self.sender.clone()),
                 Order::SaveQuery(configuration, query) => {
                     files::save_query_behind(configuration, query, self.sender.clone());
+                }
+                Order::Remember(configuration, chosen) => {
+                    files::remember_behind(configuration, chosen, self.sender.clone());
                 }
                 Order::ListRuns => self.workers.send(Job::List(self.runs.clone())),
                 Order::Redraw => self.screen.clear()?,
@@ -151,8 +162,9 @@ fn listen(sender: Sender<Message>) {
     });
     #[cfg(unix)]
     std::thread::spawn(move || {
-        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-        let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]) else { return };
+        use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
+        let all = [SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT];
+        let Ok(mut signals) = signal_hook::iterator::Signals::new(all) else { return };
         for signal in signals.forever() {
             if sender.send(Message::Signal(signal)).is_err() {
                 return;

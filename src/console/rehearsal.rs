@@ -163,7 +163,9 @@ impl Rehearsal {
     }
 
     fn count(&mut self, message: &Message) {
-        let unasked = |news: &News| matches!(news, News::Day(..) | News::WentOn(_));
+        let unasked = |news: &News| {
+            matches!(news, News::Day(..) | News::WentOn(_) | News::DatabaseBehind(_) | News::DatabaseWhole(_))
+        };
         let answers = matches!(message, Message::News(news) if !unasked(news));
         self.waiting -= u32::from(answers).min(self.waiting);
     }
@@ -196,7 +198,7 @@ impl Rehearsal {
                 }
                 Order::Copy(text) => self.copied.push(text),
                 Order::Exit(code, text) => self.left = Some((code, text)),
-                Order::CancelQuery | Order::Redraw | Order::Mouse(_) => {}
+                Order::CancelQuery | Order::Redraw | Order::Mouse(_) | Order::Remember(..) => {}
             }
         }
     }

@@ -141,6 +141,7 @@ mod tests {
             glyphs: Glyphs::Braille,
             configuration,
             runs: runs.to_owned(),
+            again: String::new(),
         }
     }
 

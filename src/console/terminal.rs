@@ -32,15 +32,12 @@ pub fn remember_run(folder: Option<String>) {
 }
 
 impl Screen {
-    /// Takes the terminal.
+    /// Takes the terminal. A failure of the program names the command that goes on with the newest run.
     ///
     /// # Errors
     /// It does not let itself be taken.
-    pub fn take() -> io::Result<Screen> {
-        enable_raw_mode()?;
-        let mut out = io::stdout();
-        let taken = execute!(out, EnterAlternateScreen, EnableBracketedPaste, EnableMouseCapture)
-            .and_then(|()| Terminal::new(CrosstermBackend::new(out)));
+    pub fn take(again: String) -> io::Result<Screen> {
+        let taken = prepare().and_then(|()| Terminal::new(CrosstermBackend::new(io::stdout())));
         let terminal = taken.inspect_err(|_| restore())?;
         let usual = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
@@ -50,13 +47,35 @@ impl Screen {
                 usual(panic);
                 let saved = SAVED_AT.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
                 if let Some(folder) = &*saved {
-                    eprintln!(
-                        "novamind: everything confirmed is safe in {folder}; `novamind --run latest` continues"
-                    );
+                    eprintln!("novamind: everything confirmed is safe in {folder}; `{again}` continues");
                 }
             }
         }));
         Ok(Screen { terminal })
+    }
+
+    /// Gives the terminal back and stops the program until it is continued; then takes the terminal again.
+    ///
+    /// # Errors
+    /// The terminal does not let itself be taken.
+    #[cfg(unix)]
+    pub fn suspend(&mut self, mouse: bool) -> io::Result<()> {
+        restore();
+        signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP)?;
+        self.resume(mouse)
+    }
+
+    /// Takes the terminal again after the program was stopped: whoever stopped it may have changed the terminal.
+    ///
+    /// # Errors
+    /// It does not let itself be taken.
+    #[cfg(unix)]
+    pub fn resume(&mut self, mouse: bool) -> io::Result<()> {
+        // Raw mode that is believed to be on is not turned on again.
+        let _ = disable_raw_mode();
+        prepare()?;
+        self.mouse(mouse);
+        self.clear()
     }
 
     /// Draws a frame.
@@ -110,6 +129,12 @@ impl Drop for Screen {
     fn drop(&mut self) {
         restore();
     }
+}
+
+/// Raw mode, the alternate screen, pasted text as a whole, the mouse.
+fn prepare() -> io::Result<()> {
+    enable_raw_mode()?;
+    execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste, EnableMouseCapture)
 }
 
 /// Gives the terminal back. May be called more than once.

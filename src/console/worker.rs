@@ -4,6 +4,7 @@
 //! carries the input. A query waits for the session's thread, so that it sees everything that was confirmed,
 //! unless a week is running: then it sees the state before it.
 
+mod mending;
 mod player;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -23,7 +24,7 @@ use crate::database::query::Limits;
 use crate::report::{Story, as_html, as_markdown};
 use crate::session::{
     Access, Configuration, Desk, Forecasts, Goal, Interrupt, Mode, NewRun, Playback, Refusal, Rows, RunError,
-    Session, Via, delete_run, end_run, find_run, find_run_to_read, list_runs, run_course,
+    Session, Ticket, Via, delete_run, end_run, find_run, find_run_to_read, list_runs, run_course,
 };
 
 /// Work for the session's thread.
@@ -96,14 +97,14 @@ pub struct Question {
 }
 
 enum Asker {
-    Person(u64),
+    Person(u64, Option<Ticket>),
     Screen(Reading, u64),
 }
 
 impl Question {
-    /// A question of the person, with its number.
-    pub fn of_person(sql: String, number: u64) -> Question {
-        Question { sql, asker: Asker::Person(number) }
+    /// A question of the person, with its number and with the ticket by which it can be stopped.
+    pub fn of_person(sql: String, number: u64, ticket: Option<Ticket>) -> Question {
+        Question { sql, asker: Asker::Person(number, ticket) }
     }
 
     /// A question of a screen, with the number of changes of the run before it.
@@ -128,7 +129,7 @@ enum DeskJob {
 impl Desks {
     fn ask(&self, question: Question) {
         let desk = match question.asker {
-            Asker::Person(_) => &self.person,
+            Asker::Person(..) => &self.person,
             Asker::Screen(..) => &self.screens,
         };
         // The threads end with the program.
@@ -158,6 +159,7 @@ impl Workers {
                 company: None,
                 due: None,
                 looked: Instant::now(),
+                mending: None,
                 news,
                 desks: for_session,
                 configuration,
@@ -212,6 +214,8 @@ struct SessionThread {
     due: Option<Instant>,
     /// When somebody else's lines were looked for.
     looked: Instant,
+    /// The database could not be written: when it is tried again.
+    mending: Option<Instant>,
     news: Sender<Message>,
     desks: Desks,
     configuration: Configuration,
@@ -294,7 +298,7 @@ impl SessionThread {
             Job::Rescue(runs, id) => self.rescue(&runs, &id),
             Job::Close | Job::End => {
                 let problem = self.open.as_mut().and_then(|open| open.session().save().err());
-                (self.open, self.company, self.due) = (None, None, None);
+                (self.open, self.company, self.due, self.mending) = (None, None, None, None);
                 self.say(News::Closed(problem.map(|error| error.to_string())));
             }
             other => {
@@ -304,6 +308,7 @@ impl SessionThread {
                     if let Some(news) = news {
                         self.say(news);
                     }
+                    self.look_after_database();
                 }
             }
         }
@@ -331,6 +336,7 @@ impl SessionThread {
             }
         };
         let interrupt = self.hand_desks(&session);
+        self.mending = None;
         let mut company = Company::of(&session);
         company.remarks.extend(remark);
         let company = Arc::new(company);
@@ -392,7 +398,7 @@ impl SessionThread {
                 Some(News::Advanced(week.map(Box::new), company(session)))
             }
             Job::Ask(question) => {
-                // A database that cannot be written answers with what it has; the desk says so if it cannot.
+                // A database that cannot be written answers with what it has; the screen says that it is behind.
                 let _ = session.wait_for_database();
                 desks.ask(question);
                 None
@@ -455,13 +461,16 @@ fn answer(
     jobs: &Sender<Job>,
 ) {
     let started = Instant::now();
-    let rows = match desk {
-        Some((desk, limits)) => desk.ask(&question.sql, *limits).map_err(Refusal::from),
-        None => Err(Refusal::new("sql_error", "no run is open")),
+    let rows = match (desk, &question.asker) {
+        (Some((desk, limits)), Asker::Person(_, Some(ticket))) => {
+            desk.ask_as(*ticket, &question.sql, *limits).map_err(Refusal::from)
+        }
+        (Some((desk, limits)), _) => desk.ask(&question.sql, *limits).map_err(Refusal::from),
+        (None, _) => Err(Refusal::new("sql_error", "no run is open")),
     };
     let took = started.elapsed();
     let report = match question.asker {
-        Asker::Person(number) => {
+        Asker::Person(number, _) => {
             let noted = rows.clone();
             let _ = jobs.send(Job::NoteQuery(question.sql, noted, took));
             News::Answered(number, rows, took)

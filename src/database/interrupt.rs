@@ -1,7 +1,7 @@
 //! Stopping queries: on request, when their time is over, or when they need too much of the machine.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use super::memory::bytes_in_use;
@@ -17,9 +17,19 @@ const MOST_MEMORY: u64 = 512 << 20;
 #[derive(Debug, Clone)]
 pub struct Interrupt(Arc<Clockwork>);
 
+/// Names a query from the moment somebody asks for it. Whoever asks on another thread draws it first: a stop that comes
+/// before the query begins then reaches it all the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Ticket(u64);
+
 #[derive(Debug)]
 struct Clockwork {
-    stopped: AtomicBool,
+    /// Tickets that were drawn.
+    drawn: AtomicU64,
+    /// The newest ticket that is stopped; every older one is too.
+    stopped: AtomicU64,
+    /// Ticket of the query that runs, or ran last.
+    running: AtomicU64,
     started: Instant,
     /// Milliseconds after `started` at which the running query has to end.
     deadline: AtomicU64,
@@ -44,7 +54,9 @@ pub(super) enum Cause {
 impl Interrupt {
     pub(super) fn new() -> Interrupt {
         Interrupt(Arc::new(Clockwork {
-            stopped: AtomicBool::new(false),
+            drawn: AtomicU64::new(0),
+            stopped: AtomicU64::new(0),
+            running: AtomicU64::new(0),
             started: Instant::now(),
             deadline: AtomicU64::new(u64::MAX),
             looks: AtomicU64::new(u64::MAX),
@@ -53,14 +65,19 @@ impl Interrupt {
         }))
     }
 
-    /// Stops the query that is running, if one is.
+    /// A ticket for a query that will be asked.
+    pub fn ticket(&self) -> Ticket {
+        Ticket(self.0.drawn.fetch_add(1, Ordering::Relaxed) + 1)
+    }
+
+    /// Stops every query whose ticket was drawn before, whether it runs already or not.
     pub fn stop(&self) {
-        self.0.stopped.store(true, Ordering::Relaxed);
+        self.0.stopped.fetch_max(self.0.drawn.load(Ordering::Relaxed), Ordering::Relaxed);
     }
 
     /// Begins a query, or a script, with this much time and so many steps.
-    pub(super) fn begin(&self, time: Duration, steps: Option<u64>) {
-        self.0.stopped.store(false, Ordering::Relaxed);
+    pub(super) fn begin(&self, ticket: Ticket, time: Duration, steps: Option<u64>) {
+        self.0.running.store(ticket.0, Ordering::Relaxed);
         self.0.memory.store(bytes_in_use().saturating_add(MOST_MEMORY), Ordering::Relaxed);
         self.0.cause.store(0, Ordering::Relaxed);
         self.go_on(time, steps);
@@ -77,10 +94,15 @@ impl Interrupt {
     /// Why the query was stopped.
     pub(super) fn cause(&self) -> Cause {
         match self.0.cause.load(Ordering::Relaxed) {
-            _ if self.0.stopped.load(Ordering::Relaxed) => Cause::Request,
+            _ if self.is_stopped() => Cause::Request,
             1 => Cause::Memory,
             _ => Cause::Time,
         }
+    }
+
+    /// Whether somebody asked the running query to end, before it began or since.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.0.stopped.load(Ordering::Relaxed) >= self.0.running.load(Ordering::Relaxed)
     }
 
     /// Whether the running query has to end now.
@@ -93,7 +115,7 @@ impl Interrupt {
         let looks = own.looks.load(Ordering::Relaxed);
         own.looks.store(looks.saturating_sub(1), Ordering::Relaxed);
         looks == 0
-            || own.stopped.load(Ordering::Relaxed)
+            || self.is_stopped()
             || own.started.elapsed().as_millis() as u64 > own.deadline.load(Ordering::Relaxed)
     }
 }

@@ -28,10 +28,11 @@ mod tokens;
 mod tests;
 
 pub use catalogue::{Column, Table, table, tables};
-pub use interrupt::Interrupt;
+pub use interrupt::{Interrupt, Ticket};
 pub use location::Location;
 pub use projector::{
-    Position, ProjectionError, Projector, desk_of, file_digest, has_layout_of_now, is_consistent, position_of,
+    Position, ProjectionError, Projector, desk_of, file_digest, has_layout_of_now, is_consistent, owner_of,
+    position_of,
 };
 pub use query::{Cell, Desk, QueryError, Rows, ScriptError, number_at, text_at};
 pub use rows::{Entry, ForecastRow};

@@ -70,16 +70,32 @@ pub struct Projector {
     pub(super) shelf: SharedShelf,
     gate: Arc<RwLock<()>>,
     spare: Spare,
+    failed: Failed,
+}
+
+/// What kept the database from being written, once something did.
+#[derive(Clone, Default)]
+struct Failed(Arc<Mutex<Option<ProjectionError>>>);
+
+impl Failed {
+    fn get(&self) -> Option<ProjectionError> {
+        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+    }
+
+    fn set(&self, error: ProjectionError) {
+        *self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(error);
+    }
 }
 
 impl Projector {
     /// Starts a projector on a database. If there is one whose position `known` accepts, it is continued from
-    /// there; otherwise it is made anew.
+    /// there; otherwise it is made anew, with the number of the run that owns it.
     ///
     /// # Errors
     /// The database can neither be read nor made.
     pub fn start(
         location: Location,
+        owner: u32,
         params: Arc<Params>,
         known: impl Fn(&Position) -> bool,
     ) -> Result<(Projector, Option<Position>), ProjectionError> {
@@ -87,23 +103,25 @@ impl Projector {
         let opened = open_existing(&location, &shelf, known);
         let (mut connection, position, issue_clock) = match opened {
             Some(opened) => opened,
-            None => (make_anew(&location, &params).map_err(told)?, None, 0),
+            None => (make_anew(&location, owner, &params).map_err(told)?, None, 0),
         };
         let gate = Arc::new(RwLock::new(()));
         let (jobs, queue) = sync_channel(QUEUE);
         let spare = Spare::default();
-        let writer_spare = spare.clone();
+        let failed = Failed::default();
+        let (writer_spare, writer_failed) = (spare.clone(), failed.clone());
         let (writer_gate, writer_shelf) = (gate.clone(), shelf.clone());
         let thread = std::thread::Builder::new()
             .name("projection".to_owned())
             .spawn(move || {
                 let rows = RowWriter::new(params, writer_shelf, issue_clock);
                 let connection = &mut connection;
-                let (gate, spare) = (writer_gate, writer_spare);
-                Worker { connection, rows, gate, spare, failed: None }.run(&queue);
+                let (gate, spare, failed) = (writer_gate, writer_spare, writer_failed);
+                Worker { connection, rows, gate, spare, failed }.run(&queue);
             })
             .map_err(|error| ProjectionError(error.to_string()))?;
-        let projector = Projector { jobs: Some(jobs), thread: Some(thread), location, shelf, gate, spare };
+        let projector =
+            Projector { jobs: Some(jobs), thread: Some(thread), location, shelf, gate, spare, failed };
         Ok((projector, position))
     }
 
@@ -141,12 +159,29 @@ impl Projector {
         answer.recv().unwrap_or_else(|_| Err(ProjectionError("the writer has stopped".to_owned())))
     }
 
+    /// What kept the database from being written, as far as the writer has come.
+    pub fn failure(&self) -> Option<ProjectionError> {
+        self.failed.get()
+    }
+
     /// A desk for guarded queries; any number of them may work at the same time as the writer.
     ///
     /// # Errors
     /// The database cannot be opened for reading.
     pub fn desk(&self) -> Result<Desk, ProjectionError> {
         Desk::open(&self.location, &self.shelf, self.gate.clone()).map_err(told)
+    }
+
+    /// Leaves the database this many pages beside those it has, as a full disk does.
+    #[cfg(test)]
+    pub fn bound_pages(&self, more: Option<u32>) {
+        self.send(Job::Then(Box::new(move |connection| {
+            let pages: u32 = connection.query_row("PRAGMA page_count", [], |row| row.get(0)).expect("pages");
+            let most = more.map_or(u32::MAX - 1, |more| pages + more);
+            connection
+                .query_row(&format!("PRAGMA max_page_count = {most}"), [], |_| Ok(()))
+                .expect("a bound");
+        })));
     }
 
     fn send(&self, job: Job) {
@@ -175,7 +210,7 @@ struct Worker<'a> {
     rows: RowWriter,
     gate: Arc<RwLock<()>>,
     spare: Spare,
-    failed: Option<ProjectionError>,
+    failed: Failed,
 }
 
 /// Emptied facts that are written and that nobody reads any more.
@@ -211,12 +246,12 @@ impl Worker<'_> {
             let Ok(job) = queue.recv() else { return };
             match job {
                 Job::Wait(done) => {
-                    let _ = done.send(self.failed.clone().map_or(Ok(()), Err));
+                    let _ = done.send(self.failed.get().map_or(Ok(()), Err));
                 }
                 Job::Then(errand) => errand(self.connection),
                 Job::Commit(position) => self.try_to(|worker| worker.transact(&mut pending, &position)),
                 // After a failure nothing is written any more, so nothing is kept.
-                Job::Write(entry) if self.failed.is_none() => pending.push(*entry),
+                Job::Write(entry) if self.failed.get().is_none() => pending.push(*entry),
                 Job::Write(_) => pending.clear(),
             }
         }
@@ -224,10 +259,10 @@ impl Worker<'_> {
 
     /// Works unless something failed before: a database with a gap is worse than one that stops.
     fn try_to(&mut self, work: impl FnOnce(&mut Self) -> rusqlite::Result<()>) {
-        if self.failed.is_none()
+        if self.failed.get().is_none()
             && let Err(error) = work(self)
         {
-            self.failed = Some(told(error));
+            self.failed.set(told(error));
         }
     }
 
@@ -329,6 +364,14 @@ pub fn position_of(location: &Location) -> Option<Position> {
     stored_position(&location.open_reader().ok()?).ok()?
 }
 
+/// Number of the run that owns the database at a location; none where nobody is named.
+pub fn owner_of(location: &Location) -> Option<u32> {
+    location.path().filter(|path| path.exists())?;
+    let connection = location.open_reader().ok()?;
+    let owner: i32 = connection.query_row("PRAGMA application_id", [], |row| row.get(0)).ok()?;
+    (owner != 0).then_some(owner as u32)
+}
+
 fn load_shelf(connection: &Connection) -> Option<Shelf> {
     Some(Shelf {
         usage: Arc::new(load::<UsageRows>(connection, "usage_blocks")?),
@@ -355,7 +398,7 @@ fn load<R: Run>(connection: &Connection, table: &str) -> Option<Vec<Arc<PackedDa
         .collect()
 }
 
-fn make_anew(location: &Location, params: &Params) -> rusqlite::Result<Connection> {
+fn make_anew(location: &Location, owner: u32, params: &Params) -> rusqlite::Result<Connection> {
     if let Some(path) = location.path() {
         for suffix in ["", "-wal", "-shm", "-journal"] {
             let mut file = path.as_os_str().to_owned();
@@ -366,5 +409,7 @@ fn make_anew(location: &Location, params: &Params) -> rusqlite::Result<Connectio
     }
     let mut connection = location.open_writer()?;
     create(&mut connection, params)?;
+    // Two's complement: the pragma takes a signed number.
+    connection.pragma_update(None, "application_id", owner as i32)?;
     Ok(connection)
 }

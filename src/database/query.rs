@@ -19,7 +19,7 @@ use super::guard::{
     Guard, InnerViews, Objection, Objections, is_hidden_table, is_inside, is_of_engine, limit,
 };
 use super::help::{explain_error, hints};
-use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS};
+use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS, Ticket};
 use super::location::Location;
 use super::plan;
 use super::released::{Reading, Released, without_explain};
@@ -173,10 +173,18 @@ impl Desk {
     /// # Errors
     /// The codes of chapter 50, query.
     pub fn ask(&self, sql: &str, limits: Limits) -> Result<Rows, QueryError> {
+        self.ask_as(self.interrupt.ticket(), sql, limits)
+    }
+
+    /// Answers one statement under a ticket that was drawn when it was asked for.
+    ///
+    /// # Errors
+    /// The codes of chapter 50, query.
+    pub fn ask_as(&self, ticket: Ticket, sql: &str, limits: Limits) -> Result<Rows, QueryError> {
         if sql.trim().is_empty() {
             return Err(refusal("sql_empty", "no SQL was given"));
         }
-        self.look(sql, limits)?;
+        self.look(ticket, sql, limits)?;
         let answer = self.run(sql, limits).map_err(|fault| self.told(sql, fault, limits));
         self.look_away()?;
         answer
@@ -196,7 +204,7 @@ impl Desk {
     ) -> Result<(), ScriptError> {
         let end = Instant::now() + time;
         let at = |statement: usize| move |error: QueryError| ScriptError { statement, error };
-        self.look(sql, limits).map_err(at(1))?;
+        self.look(self.interrupt.ticket(), sql, limits).map_err(at(1))?;
         let mut statements = self.released.statements(sql);
         let mut done = Ok(());
         for number in 1.. {
@@ -221,10 +229,13 @@ impl Desk {
     }
 
     /// Fixes what the query sees: rows and blocks of the same commit, whatever is written meanwhile.
-    fn look(&self, sql: &str, limits: Limits) -> Result<(), QueryError> {
+    fn look(&self, ticket: Ticket, sql: &str, limits: Limits) -> Result<(), QueryError> {
         self.objections.clear();
         self.released.objections().clear();
-        self.interrupt.begin(limits.time, limits.steps);
+        self.interrupt.begin(ticket, limits.time, limits.steps);
+        if self.interrupt.is_stopped() {
+            return Err(refusal("sql_timeout", CANCELLED));
+        }
         let _open = self.gate.read().unwrap_or_else(|poisoned| poisoned.into_inner());
         self.as_desk("BEGIN; SELECT seq FROM projection")
             .map_err(|error| self.told(sql, Fault::Sqlite(error), limits))?;
@@ -332,7 +343,7 @@ impl Desk {
         if error.sqlite_error_code() == Some(rusqlite::ErrorCode::OperationInterrupted) {
             let seconds = limits.time.as_secs();
             let message = match self.interrupt.cause() {
-                Cause::Request => "the query was cancelled".to_owned(),
+                Cause::Request => CANCELLED.to_owned(),
                 Cause::Memory => "the query needs too much memory; ask for less at a time".to_owned(),
                 Cause::Time => format!("the query ran longer than {seconds} s; ask for less at a time"),
             };
@@ -396,6 +407,8 @@ impl From<rusqlite::Error> for Fault {
         Fault::Sqlite(error)
     }
 }
+
+const CANCELLED: &str = "the query was cancelled";
 
 const SCHEMA_WORDS: &str = "schema statements are not allowed; the table browser describes all tables";
 

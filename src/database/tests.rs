@@ -46,7 +46,8 @@ impl Company {
         let params = Arc::new(Params::shipped());
         let mut facts = Facts::default();
         let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
-        let (projector, found) = Projector::start(location, params.clone(), |_| false).expect("a database");
+        let (projector, found) =
+            Projector::start(location, 1, params.clone(), |_| false).expect("a database");
         assert_eq!(found, None);
         projector.write(entry(facts));
         projector.commit(position(0));
@@ -397,13 +398,29 @@ fn results_are_capped_and_slow_queries_end() {
         .expect_err("too slow");
     assert_eq!(error.code, "sql_timeout");
     let interrupt = desk.interrupt();
+    let ticket = interrupt.ticket();
     let stopper = std::thread::spawn(move || {
         std::thread::sleep(Duration::from_millis(50));
         interrupt.stop();
     });
-    let error = desk.ask(endless, LIMITS).expect_err("cancelled");
+    let error = desk.ask_as(ticket, endless, LIMITS).expect_err("cancelled");
     assert_eq!((error.code, error.message.as_str()), ("sql_timeout", "the query was cancelled"));
     stopper.join().expect("the stopper ends");
+    rows(&desk, "SELECT 1");
+}
+
+#[test]
+fn a_stop_reaches_a_query_that_has_not_begun_and_none_that_is_asked_later() {
+    let mut company = Company::open(Location::memory());
+    let desk = company.weeks(1);
+    let interrupt = desk.interrupt();
+    let endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n";
+    let ticket = interrupt.ticket();
+    interrupt.stop();
+    for sql in [endless, "SELECT 1"] {
+        let error = desk.ask_as(ticket, sql, LIMITS).expect_err("stopped before it began");
+        assert_eq!((error.code, error.message.as_str()), ("sql_timeout", "the query was cancelled"));
+    }
     rows(&desk, "SELECT 1");
 }
 
@@ -505,7 +522,7 @@ fn a_database_of_another_layout_is_made_anew() {
     assert!(!super::has_layout_of_now(&location));
     assert!(super::desk_of(&location).is_err());
     let (projector, found) =
-        Projector::start(location.clone(), Arc::new(Params::shipped()), |_| true).expect("it opens");
+        Projector::start(location.clone(), 1, Arc::new(Params::shipped()), |_| true).expect("it opens");
     assert_eq!(found, None);
     drop(projector);
     assert!(super::has_layout_of_now(&location));
@@ -521,17 +538,18 @@ fn a_database_is_continued_where_it_stands_or_made_anew() {
     drop(company);
     let params = Arc::new(Params::shipped());
     let known = |found: &Position| *found == position(42);
-    let (projector, found) = Projector::start(location.clone(), params.clone(), known).expect("it opens");
+    let (projector, found) = Projector::start(location.clone(), 1, params.clone(), known).expect("it opens");
     assert_eq!(found, Some(position(42)));
     assert_eq!(rows(&projector.desk().expect("a desk"), usage), before);
     drop(projector);
-    let (projector, found) = Projector::start(location.clone(), params.clone(), |_| false).expect("it opens");
+    let (projector, found) =
+        Projector::start(location.clone(), 1, params.clone(), |_| false).expect("it opens");
     assert_eq!(found, None);
     assert_eq!(one(&projector.desk().expect("a desk"), "SELECT count(*) FROM ledger"), 0.0);
     drop(projector);
     std::fs::write(folder.path().join("world.db"), b"not a database at all, but long enough to look")
         .expect("a file");
-    let (projector, found) = Projector::start(location, params, |_| true).expect("it is made anew");
+    let (projector, found) = Projector::start(location, 1, params, |_| true).expect("it is made anew");
     assert_eq!(found, None);
     drop(projector);
 }

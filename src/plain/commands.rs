@@ -101,8 +101,10 @@ impl Desk {
 
     fn query(&mut self, sql: &str) -> Answer {
         let answer = self.session.interrupt().and_then(|interrupt| {
+            // What is stopped from here on is this query, though it has not begun.
+            let ticket = interrupt.ticket();
             self.watch.enter_query(interrupt);
-            self.session.query(sql)
+            self.session.query_as(ticket, sql)
         });
         self.watch.enter(Phase::Working, String::new());
         match answer {

@@ -64,7 +64,10 @@ fn extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32
     if weeks.len() >= 3 {
         let by_change =
             |left: &&WeekFigures, right: &&WeekFigures| left.cash_change.total_cmp(&right.cash_change);
-        if let Some(best) = weeks.iter().max_by(by_change) {
+        // A week that the end has cut short lost less than a whole one: that does not make it the best.
+        let whole = weeks.iter().map(|week| week.days_run).max();
+        let complete = weeks.iter().filter(|week| Some(week.days_run) == whole);
+        if let Some(best) = complete.max_by(by_change) {
             add(best.day, format!("the best week for cash: {}", signed_dollars(best.cash_change)));
         }
         if let Some(worst) = weeks.iter().min_by(by_change) {
@@ -99,6 +102,7 @@ mod tests {
     fn week(day: u32, subscribers: u32, seats: u32, cash_change: f64) -> WeekFigures {
         WeekFigures {
             day,
+            days_run: 7,
             individual_subscribers: subscribers,
             enterprise_seats: seats,
             cash_change,
@@ -134,5 +138,14 @@ mod tests {
             ]
         );
         assert!(highlights(&[], &[100.0], &[], None).is_empty());
+    }
+
+    #[test]
+    fn the_partial_week_of_a_bankruptcy_is_never_the_best() {
+        let cut_short = WeekFigures { days_run: 2, ..week(23, 0, 0, -10.0) };
+        let weeks = [week(7, 0, 0, -50.0), week(14, 0, 0, -40.0), week(21, 0, 0, -60.0), cut_short];
+        let told = highlights(&weeks, &[100.0; 24], &[], Some(Ended::Bankruptcy));
+        let best = told.iter().find(|one| one.text.contains("the best week")).expect("it is told");
+        assert_eq!((best.day, best.text.as_str()), (14, "the best week for cash: -$40"));
     }
 }

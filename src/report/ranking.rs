@@ -82,10 +82,12 @@ pub struct Place {
 /// All results, the best first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Standing {
-    /// Results; this run's is among them once it has a score.
+    /// Results; this run's is among them once it has a score that can be compared.
     pub places: Vec<Place>,
     /// Place of this run, from 1.
     pub rank: Option<usize>,
+    /// The run has a score, whether it can be compared or not.
+    pub has_score: bool,
     /// What differs between this run and the published ones.
     pub caveat: Option<String>,
     /// Where the published results come from.
@@ -104,6 +106,9 @@ impl Standing {
     pub fn in_words(&self) -> String {
         match self.rank {
             Some(rank) => format!("rank {rank} of {} beside the published results", self.places.len()),
+            None if self.has_score => {
+                "not ranked: the published results are of another length, start or scenario".to_owned()
+            }
             None => "the published results".to_owned(),
         }
     }
@@ -115,10 +120,22 @@ pub fn standing(score: Option<f64>, seen: &Observation, start_cash: f64) -> Stan
     let mut places: Vec<Place> =
         published().agent.iter().map(|agent| place(&agent.name, agent.best_cash, Whose::Agent)).collect();
     places.push(place("Rule-based baseline", published().rule_based_baseline, Whose::Baseline));
-    places.extend(score.map(|score| place("You", score, Whose::Own)));
+    let is_comparable = is_comparable(seen.last_day, start_cash, &seen.scenario);
+    let ranked = score.filter(|_| is_comparable);
+    places.extend(ranked.map(|score| place("You", score, Whose::Own)));
     places.sort_by(|left, right| right.cash.total_cmp(&left.cash));
-    let rank = score.map(|score| 1 + places.iter().filter(|place| place.cash > score).count());
-    Standing { places, rank, caveat: caveat(seen, start_cash), source: published().source.clone() }
+    let rank = ranked.map(|score| 1 + places.iter().filter(|place| place.cash > score).count());
+    let has_score = score.is_some();
+    Standing { places, rank, has_score, caveat: caveat(seen, start_cash), source: published().source.clone() }
+}
+
+/// Scenarios with the rules by which the published results were made.
+const COMPARABLE: [&str; 2] = ["default", "paper"];
+
+/// Whether a run is as long, begins as rich and plays by the same rules as the published ones: then it can be ranked
+/// among them, of another seed too.
+pub fn is_comparable(days: u32, start_cash: f64, scenario: &str) -> bool {
+    days == PUBLISHED_RUN.1 && start_cash == published().start_cash && COMPARABLE.contains(&scenario)
 }
 
 /// Range of the published targeted shares of development spend: the lowest, the highest.
@@ -139,7 +156,7 @@ fn caveat(seen: &Observation, start_cash: f64) -> Option<String> {
     if start_cash != published().start_cash {
         other.push(format!("{} at the start", dollar_tick(start_cash)));
     }
-    if !["default", "paper"].contains(&seen.scenario.as_str()) {
+    if !COMPARABLE.contains(&seen.scenario.as_str()) {
         other.push(format!("scenario {}", seen.scenario));
     }
     let start = dollar_tick(published().start_cash);
@@ -157,6 +174,7 @@ mod tests {
     fn a_score_stands_among_the_published_ones() {
         let mut seen = test_kit::played(0).observe();
         (seen.seed, seen.last_day) = (42, 500);
+        assert_eq!(seen.scenario, "default");
         let good = standing(Some(14_208_331.0), &seen, 1_000_000.0);
         assert_eq!((good.rank, good.caveat.clone()), (Some(2), None));
         assert_eq!(good.in_words(), "rank 2 of 18 beside the published results");
@@ -166,7 +184,27 @@ mod tests {
         assert_eq!(ruined.rank, Some(14), "four published agents have nothing either");
         assert_eq!(ruined.places.last().map(|place| place.whose), Some(Whose::Own));
         assert_eq!(standing(None, &seen, 1_000_000.0).rank, None);
+        seen.seed = 7;
+        assert_eq!(standing(Some(0.0), &seen, 1_000_000.0).rank, Some(14), "other luck is no other game");
         assert!(published_targeted_shares().0 < published_targeted_shares().1);
+    }
+
+    #[test]
+    fn a_run_of_other_terms_is_not_ranked() {
+        let mut seen = test_kit::played(0).observe();
+        seen.last_day = 500;
+        for (days, cash, scenario, ranked) in [
+            (500, 1_000_000.0, "paper", true),
+            (28, 1_000_000.0, "default", false),
+            (500, 2_000_000.0, "default", false),
+            (500, 1_000_000.0, "competitor-off", false),
+        ] {
+            (seen.last_day, seen.scenario) = (days, scenario.to_owned());
+            let standing = standing(Some(2e6), &seen, cash);
+            assert_eq!(standing.rank.is_some(), ranked, "{days} {cash} {scenario}");
+            assert_eq!(standing.places.iter().any(|place| place.whose == Whose::Own), ranked);
+            assert_eq!(standing.in_words().starts_with("not ranked"), !ranked);
+        }
     }
 
     #[test]

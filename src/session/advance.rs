@@ -230,6 +230,7 @@ impl Session {
         self.this_week.settings = self.world.settings.clone();
         self.this_week.undo.clear();
         self.this_week.redo.clear();
+        self.last_dashboard = Some(self.build_dashboard(figures.open_issues));
         figures
     }
 

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::Session;
 use crate::database::query::Limits;
-use crate::database::{Cell, Desk, Interrupt, Location, QueryError, Rows, desk_of};
+use crate::database::{Cell, Desk, Interrupt, Location, QueryError, Rows, Ticket, desk_of};
 use crate::notation::json_number;
 use crate::tools::Refusal;
 
@@ -17,9 +17,23 @@ impl Session {
     /// # Errors
     /// The `sql_` codes of chapter 50.
     pub fn query(&mut self, sql: &str) -> Result<Rows, Refusal> {
+        match self.interrupt() {
+            Ok(interrupt) => self.query_as(interrupt.ticket(), sql),
+            Err(refusal) => {
+                self.note_query(sql, Err(&refusal), Duration::ZERO);
+                Err(refusal)
+            }
+        }
+    }
+
+    /// The same under a ticket of [`Session::interrupt`] that was drawn when the statement was asked for.
+    ///
+    /// # Errors
+    /// The `sql_` codes of chapter 50.
+    pub fn query_as(&mut self, ticket: Ticket, sql: &str) -> Result<Rows, Refusal> {
         let started = Instant::now();
         let limits = limits(self);
-        let answer = self.desk().and_then(|desk| desk.ask(sql, limits).map_err(Refusal::from));
+        let answer = self.desk().and_then(|desk| desk.ask_as(ticket, sql, limits).map_err(Refusal::from));
         self.note_query(sql, answer.as_ref(), started.elapsed());
         answer
     }
@@ -93,7 +107,10 @@ impl Session {
     }
 
     pub(super) fn desk(&mut self) -> Result<&Desk, Refusal> {
-        self.wait_for_database()?;
+        if let Err(problem) = self.wait_for_database() {
+            // There may be room again.
+            self.mend_database().map_err(|_| problem)?;
+        }
         if self.desk.is_none() {
             self.desk = Some(self.open_desk()?);
         }

@@ -149,6 +149,14 @@ impl Configuration {
         }
     }
 
+    /// Days and starting cash of a scenario; `own` as in [`Configuration::parameters`].
+    ///
+    /// # Errors
+    /// The first wrong value, with its place.
+    pub fn terms(&self, scenario: &Scenario, own: bool) -> Result<(u32, f64), RunError> {
+        Ok(scenario.terms(&self.parameters(scenario, &[], own)?))
+    }
+
     /// The parameters of a scenario with single overrides on top, each `(table.key, value as TOML)`.
     ///
     /// `own` allows this person's files in the folder `world`; baseline runs take the shipped parameters only.
@@ -180,6 +188,11 @@ impl Scenario {
     fn as_overrides(&self) -> Source {
         let text = toml::to_string(&self.world).expect("a table that was read can be written");
         Source { name: self.source.name.clone(), text }
+    }
+
+    /// Days and starting cash, with the parameters it leads to.
+    pub(crate) fn terms(&self, params: &Params) -> (u32, f64) {
+        (self.days.unwrap_or(params.run.total_days), self.cash.unwrap_or(params.initial.initial_cash))
     }
 
     /// An error in the overrides, at its line in the scenario's file.

@@ -127,7 +127,7 @@ impl Session {
             }
         };
         trajectory.append("start", 0, start_fields(&manifest), Durability::Synced)?;
-        let projector = start_projector(new.projection, folder.as_deref(), &params)?;
+        let projector = start_projector(new.projection, folder.as_deref(), manifest.number(), &params)?;
         let session = Session::assemble(
             manifest,
             folder,
@@ -185,6 +185,7 @@ impl Session {
             asked: Vec::new(),
             office: Office::default(),
             calculated: Vec::new(),
+            last_dashboard: None,
             called: Vec::new(),
             memo_in_memory: String::new(),
             facts_chain: FactsChain::default(),
@@ -205,13 +206,14 @@ impl Session {
 fn start_projector(
     wanted: bool,
     folder: Option<&Path>,
+    owner: u32,
     params: &Arc<Params>,
 ) -> Result<Option<Projector>, RunError> {
     if !wanted {
         return Ok(None);
     }
     let location = folder.map_or_else(Location::memory, |folder| Location::File(folder.join("world.db")));
-    let (projector, _) = Projector::start(location, params.clone(), |_| false)?;
+    let (projector, _) = Projector::start(location, owner, params.clone(), |_| false)?;
     Ok(Some(projector))
 }
 
@@ -243,9 +245,10 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         return Err(RunError::NotPossible(message));
     }
     let params = configuration.parameters(&scenario, &new.overrides, new.mode != Mode::Baseline)?;
-    let days = new.days.or(scenario.days).unwrap_or(params.run.total_days);
+    let (days, cash) = scenario.terms(&params);
+    let days = new.days.unwrap_or(days);
     check_days(days).map_err(RunError::NotPossible)?;
-    let cash = new.cash.or(scenario.cash).unwrap_or(params.initial.initial_cash);
+    let cash = new.cash.unwrap_or(cash);
     check_cash(cash).map_err(RunError::NotPossible)?;
     let seed = new.seed.unwrap_or(params.run.seed);
     if seed > i64::MAX as u64 {

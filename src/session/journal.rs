@@ -3,11 +3,10 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
-use super::error::RunError;
 use super::trajectory::Durability;
 use super::undo::Reversal;
 use super::{Filed, Session, WeekFigures, filed_forecasts};
-use crate::tools::{Forecast, Refusal};
+use crate::tools::Forecast;
 
 /// A confirmed action or week.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -87,39 +86,6 @@ impl Session {
         let count = f64::from(score.scored.max(1));
         (score.mean_error, score.mean_sharpness) = (score.mean_error / count, score.mean_sharpness / count);
         score
-    }
-
-    /// The notes kept with the run.
-    ///
-    /// # Errors
-    /// The file exists and cannot be read.
-    pub fn memo(&self) -> Result<String, RunError> {
-        let Some(folder) = &self.folder else { return Ok(self.memo_in_memory.clone()) };
-        let path = folder.join("memo.md");
-        match std::fs::read(&path) {
-            Ok(bytes) => Ok(String::from_utf8_lossy(&bytes).into_owned()),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
-            Err(error) => Err(RunError::Io { path, error }),
-        }
-    }
-
-    /// Keeps notes with the run, and records that they changed.
-    ///
-    /// # Errors
-    /// `not_saved`, `read_only`.
-    pub fn set_memo(&mut self, text: &str) -> Result<(), Refusal> {
-        if self.trajectory.is_none() {
-            return Err(Refusal::new("read_only", "this run is open to read only"));
-        }
-        match &self.folder {
-            None => self.memo_in_memory = text.to_owned(),
-            Some(folder) => super::manifest::write_whole(&folder.join("memo.md"), text.as_bytes())
-                .map_err(|error| Refusal::new("not_saved", error.to_string()))?,
-        }
-        let fields =
-            json!({ "digest": blake3::hash(text.as_bytes()).to_hex().as_str(), "length": text.len() });
-        self.note("memo", fields.as_object().cloned().unwrap_or_default());
-        Ok(())
     }
 
     /// Records what the person looked at, and for how long.

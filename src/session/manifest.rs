@@ -95,6 +95,11 @@ struct Start {
 }
 
 impl Manifest {
+    /// The name of the run as a number; 0 for a name that is none.
+    pub(super) fn number(&self) -> u32 {
+        u32::from_str_radix(&self.id, 16).unwrap_or(0)
+    }
+
     /// Reads the manifest of a run's folder.
     ///
     /// # Errors

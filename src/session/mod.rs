@@ -26,6 +26,8 @@ mod groups;
 mod journal;
 pub mod library;
 mod manifest;
+mod memo;
+mod mend;
 mod mode;
 mod notices;
 mod observe;
@@ -94,7 +96,7 @@ pub use verify::{Verification, verify};
 pub use week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, week_of};
 pub use xray::Xray;
 
-pub use crate::database::{Cell, Desk, Interrupt, QueryError, Rows, number_at, text_at};
+pub use crate::database::{Cell, Desk, Interrupt, QueryError, Rows, Ticket, number_at, text_at};
 pub use crate::tools::{Numbers, PublicPost, Refusal};
 pub use crate::voice::judge::Judgement;
 pub use crate::world::events::Category;
@@ -191,6 +193,8 @@ pub struct Session {
     office: Office,
     /// What the calculations said before the last week.
     calculated: Vec<Calculated>,
+    /// The dashboard as it was when the last days had run; none before the first.
+    last_dashboard: Option<String>,
     /// Money that calls moved since the last day.
     called: Vec<LedgerEntry>,
     /// Notes of a run without a folder.

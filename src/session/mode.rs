@@ -19,8 +19,11 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// All modes.
+    /// Every mode that a run can have.
     pub const ALL: [Mode; 4] = [Mode::Baseline, Mode::Sandbox, Mode::Lesson, Mode::Debug];
+
+    /// The modes of new runs. There are no lessons yet; runs that were recorded as one are read and played on.
+    pub const OFFERED: [Mode; 3] = [Mode::Baseline, Mode::Sandbox, Mode::Debug];
 
     /// Word as options and manifests write it.
     pub fn id(self) -> &'static str {
@@ -42,7 +45,7 @@ impl Mode {
         match self {
             Mode::Baseline => "a human baseline session: exactly what agents have, complete record",
             Mode::Sandbox => "trying things out",
-            Mode::Lesson => "a lesson with goals and hints",
+            Mode::Lesson => "learning",
             Mode::Debug => "work on the mechanics: hidden state, single days, other parameters",
         }
     }

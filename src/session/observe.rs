@@ -136,14 +136,20 @@ impl Session {
         }
     }
 
-    /// The weekly dashboard as text.
+    /// The weekly dashboard as text: as it was when the last days had run, whatever was set since. Before the first days
+    /// it is built of what is.
     pub fn dashboard(&self) -> String {
+        self.last_dashboard.clone().unwrap_or_else(|| self.build_dashboard(self.open_issues()))
+    }
+
+    /// The dashboard of the company as it is.
+    pub(super) fn build_dashboard(&self, open_issues: u32) -> String {
         let closing = closing_figures(self.world());
         let stocks = WeekFigures {
             cash: closing.cash,
             individual_subscribers: closing.individual_subscribers,
             enterprise_seats: closing.enterprise_seats,
-            open_issues: self.open_issues(),
+            open_issues,
             ..WeekFigures::default()
         };
         let waiting = self.waiting();

@@ -39,7 +39,7 @@ impl Session {
             Access::Read => None,
         };
         let path = folder.join("trajectory.jsonl");
-        let mut witnesses = Witnesses::of(folder, &manifest.id);
+        let mut witnesses = Witnesses::of(folder, &manifest);
         let trajectory = Trajectory::read(&path)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;
         witnesses.check(&path, &trajectory)?;
@@ -47,7 +47,7 @@ impl Session {
             false => None,
             true => {
                 let sound = access == Access::Write && witnesses.vouch_for_database(folder);
-                Some(open_projector(folder, access, &params, &trajectory, sound)?)
+                Some(open_projector(folder, access, (&manifest, &params), &trajectory, sound)?)
             }
         };
         // The number of the line up to which rows are there; rows that lack need the facts before them.
@@ -65,26 +65,13 @@ impl Session {
                 "The last line of the trajectory was unfinished ({bytes} bytes) and was dropped: it was never confirmed."
             ));
         }
-        session.check_memo(&trajectory);
+        session.check_memo(&trajectory, access);
         session.finish_week(&trajectory);
         Ok(session)
     }
 
-    /// Notes that are not the ones that were kept last are told; they are the person's own, and stay as they are.
-    fn check_memo(&mut self, trajectory: &Trajectory) {
-        let last = trajectory.lines.iter().rev().find(|line| line.kind == "memo");
-        // Once a run is over, notes are kept without a line.
-        let Some(line) = last.filter(|_| self.ended.is_none()) else { return };
-        let digest = |text: &str| Value::from(blake3::hash(text.as_bytes()).to_hex().as_str());
-        let kept = self.memo().ok().map(|text| digest(&text));
-        if kept.as_ref() != line.fields.get("digest") {
-            self.remarks
-                .push("memo.md is not as it was kept last: it was changed outside, or damaged.".to_owned());
-        }
-    }
-
     /// A session that has seen no line yet, or everything up to a snapshot's; and how many it has seen.
-    fn before_replay(
+    pub(super) fn before_replay(
         manifest: Manifest,
         folder: &Path,
         lock: Option<File>,
@@ -107,7 +94,7 @@ impl Session {
     }
 
     /// Applies every line again but those the session has seen; the database gets only what it does not have yet.
-    fn replay(
+    pub(super) fn replay(
         &mut self,
         path: &Path,
         trajectory: &Trajectory,
@@ -243,10 +230,10 @@ fn same_figures(reached: &serde_json::Map<String, Value>, line: &Line) -> Result
 }
 
 /// Starts the database. What it holds already counts only if `sound` says so.
-fn open_projector(
+pub(super) fn open_projector(
     folder: &Path,
     access: Access,
-    params: &Arc<Params>,
+    (manifest, params): (&Manifest, &Arc<Params>),
     trajectory: &Trajectory,
     sound: bool,
 ) -> Result<(Projector, Option<Position>), RunError> {
@@ -259,11 +246,11 @@ fn open_projector(
         let line = trajectory.lines.get(position.seq as usize);
         sound && line.is_some_and(|line| line.hash == position.line_hash)
     };
-    Ok(Projector::start(location, params.clone(), known)?)
+    Ok(Projector::start(location, manifest.number(), params.clone(), known)?)
 }
 
 /// The snapshot from which the run can go on: its line is in the trajectory, and the database lacks no row before it.
-fn usable<'a>(
+pub(super) fn usable<'a>(
     witnesses: &'a Witnesses,
     manifest: &Manifest,
     trajectory: &Trajectory,

@@ -381,7 +381,7 @@ pub(super) fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {
 
 /// A session before the first line.
 fn begin(origin: &Origin) -> Result<Session, RunError> {
-    let (projector, _) = Projector::start(Location::memory(), origin.params.clone(), |_| false)?;
+    let (projector, _) = Projector::start(Location::memory(), 0, origin.params.clone(), |_| false)?;
     let (manifest, params) = (origin.manifest.clone(), origin.params.clone());
     Ok(Session::unwritten(manifest, origin.folder.clone(), params, Some(projector)))
 }

@@ -47,7 +47,7 @@ pub fn rescue(folder: &Path) -> Result<Rescued, RunError> {
     let words = match (&problem, unreadable) {
         (Some((line, problem)), _) => format!("line {line}: {problem}"),
         (None, Some(problem)) => problem,
-        (None, None) => match Witnesses::of(folder, &manifest.id).check(&path, &trajectory) {
+        (None, None) => match Witnesses::of(folder, &manifest).check(&path, &trajectory) {
             Err(problem) => problem.to_string(),
             Ok(()) => {
                 let message = format!("run {} is not damaged; there is nothing to rescue", manifest.id);

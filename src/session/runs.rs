@@ -34,6 +34,8 @@ pub struct RunSummary {
     pub day: u32,
     /// Last day of the run.
     pub days: u32,
+    /// Cash on day 0, dollars.
+    pub starting_cash: f64,
     /// Cash after the last week, dollars.
     pub cash: f64,
     /// How it ended, if it did.
@@ -108,7 +110,10 @@ fn summarise(folder: &Path) -> RunSummary {
         Ok(manifest) => manifest,
         Err(error) => return unreadable(id, error.to_string()),
     };
-    let last = last_lines(&folder.join("trajectory.jsonl"));
+    let (last, problem) = match last_lines(&folder.join("trajectory.jsonl")) {
+        Ok(lines) => (lines, None),
+        Err(problem) => (Vec::new(), Some(problem)),
+    };
     let field = |kind: &[&str], name: &str| {
         last.iter()
             .rev()
@@ -126,9 +131,15 @@ fn summarise(folder: &Path) -> RunSummary {
         participant: manifest.participant,
         day: field(&["week", "step", "end"], "day").and_then(|day| day.as_u64()).unwrap_or(0) as u32,
         days: manifest.days,
-        cash: field(&["week", "step", "end"], "cash").and_then(|cash| cash.as_f64()).unwrap_or(manifest.cash),
+        starting_cash: manifest.cash,
+        cash: match field(&["week", "step", "end"], "cash").and_then(|cash| cash.as_f64()) {
+            Some(cash) => cash,
+            // Nobody knows what is left.
+            None if problem.is_some() => 0.0,
+            None => manifest.cash,
+        },
         ended: word(field(&["end"], "reason")).as_deref().and_then(Ended::parse),
-        problem: None,
+        problem,
     }
 }
 
@@ -143,6 +154,7 @@ fn unreadable(id: String, problem: String) -> RunSummary {
         participant: None,
         day: 0,
         days: 0,
+        starting_cash: 0.0,
         cash: 0.0,
         ended: None,
         problem: Some(problem),
@@ -150,26 +162,32 @@ fn unreadable(id: String, problem: String) -> RunSummary {
 }
 
 /// The lines at the end of a trajectory, enough to hold its last week; read from the end, for runs may be long.
-fn last_lines(path: &Path) -> Vec<Value> {
+///
+/// # Errors
+/// The file cannot be read, or holds no line: then nobody knows how far the run has come.
+fn last_lines(path: &Path) -> Result<Vec<Value>, String> {
     let mut window: u64 = 64 << 10;
     loop {
-        let Some((text, whole)) = tail(path, window) else { return Vec::new() };
+        let (text, whole) = tail(path, window).map_err(|error| format!("{}: {error}", path.display()))?;
         let lines: Vec<Value> = text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();
         let has_week = lines.iter().any(|line| line.get("state_hash").is_some());
-        if has_week || whole {
-            return lines;
+        let begins = || lines.iter().any(|line| line.get("kind").is_some_and(|kind| kind == "start"));
+        match (has_week, whole) {
+            (true, _) => return Ok(lines),
+            (false, true) if begins() => return Ok(lines),
+            (false, true) => return Err(format!("{}: no line of it can be read", path.display())),
+            (false, false) => window *= 8,
         }
-        window *= 8;
     }
 }
 
-fn tail(path: &Path, window: u64) -> Option<(String, bool)> {
-    let mut file = File::open(path).ok()?;
-    let length = file.metadata().ok()?.len();
-    file.seek(SeekFrom::Start(length.saturating_sub(window))).ok()?;
+fn tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(window)))?;
     let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes).ok()?;
-    Some((String::from_utf8_lossy(&bytes).into_owned(), window >= length))
+    file.read_to_end(&mut bytes)?;
+    Ok((String::from_utf8_lossy(&bytes).into_owned(), window >= length))
 }
 
 /// The folder of a run to play, by its name, a unique beginning of it, or `latest`: the newest unfinished one.

@@ -68,8 +68,17 @@ struct Notes<'a> {
     asked: Cow<'a, [String]>,
     notebook: Cow<'a, Notebook>,
     calculated: Cow<'a, [Calculated]>,
+    #[serde(default)]
+    last_dashboard: Option<Cow<'a, str>>,
     facts_chain: (String, bool),
     ended: Option<Ended>,
+}
+
+impl Notes<'_> {
+    /// No days have run yet.
+    fn cannot_have_a_dashboard(&self) -> bool {
+        self.weeks.is_empty() && self.running_week.days_run == 0
+    }
 }
 
 /// A snapshot file that is whole.
@@ -145,6 +154,10 @@ impl Snapshot {
     pub(super) fn recall(&self) -> Option<((World, Facts), Recalled)> {
         let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
         let notes: Notes<'static> = serde_json::from_str(&reader.read::<String>()?).ok()?;
+        // Snapshots of earlier builds lack it, and it cannot be made of a state that was changed since.
+        if notes.last_dashboard.is_none() && !notes.cannot_have_a_dashboard() {
+            return None;
+        }
         let chain = blake3::Hash::from_hex(&notes.facts_chain.0).ok()?;
         let (world, facts): (World, Facts) = (reader.read()?, reader.read()?);
         let recalled = Recalled {
@@ -223,6 +236,7 @@ impl Session {
             asked: Cow::Borrowed(&self.asked),
             notebook: Cow::Borrowed(&self.office.notebook),
             calculated: Cow::Borrowed(&self.calculated),
+            last_dashboard: self.last_dashboard.as_deref().map(Cow::Borrowed),
             facts_chain: (self.facts_chain.hash().to_hex().to_string(), self.facts_chain.is_closed()),
             ended: self.ended,
         };
@@ -269,6 +283,7 @@ impl Session {
         self.asked = notes.asked.into_owned();
         self.office.notebook = notes.notebook.into_owned();
         self.calculated = notes.calculated.into_owned();
+        self.last_dashboard = notes.last_dashboard.map(Cow::into_owned);
         self.ended = notes.ended;
         self.position = position;
     }

@@ -6,9 +6,12 @@
 use std::path::Path;
 
 use super::error::RunError;
+use super::manifest::Manifest;
 use super::snapshot::{FILE, Snapshot};
 use super::trajectory::{BRANCH_THEM, Trajectory};
-use crate::database::{Location, Position, file_digest, has_layout_of_now, is_consistent, position_of};
+use crate::database::{
+    Location, Position, file_digest, has_layout_of_now, is_consistent, owner_of, position_of,
+};
 
 /// What stood beside the trajectory before it was read.
 pub(super) struct Witnesses {
@@ -16,13 +19,15 @@ pub(super) struct Witnesses {
     pub snapshot: Option<Snapshot>,
     /// How far the database has come, if it can be read.
     database: Option<Position>,
+    /// The database is one of another run.
+    foreign: bool,
     /// What the person should know about them.
     pub remarks: Vec<String>,
 }
 
 impl Witnesses {
     /// Asks them. Has to come before the trajectory is read, which may grow in between.
-    pub(super) fn of(folder: &Path, run: &str) -> Witnesses {
+    pub(super) fn of(folder: &Path, manifest: &Manifest) -> Witnesses {
         let mut remarks = Vec::new();
         let snapshot = Snapshot::read(folder).unwrap_or_else(|problem| {
             remarks
@@ -30,8 +35,11 @@ impl Witnesses {
             None
         });
         // A stranger's snapshot says nothing about this run.
-        let snapshot = snapshot.filter(|snapshot| snapshot.is_of(run));
-        Witnesses { snapshot, database: position_of(&location(folder)), remarks }
+        let snapshot = snapshot.filter(|snapshot| snapshot.is_of(&manifest.id));
+        let foreign = owner_of(&location(folder)).is_some_and(|owner| owner != manifest.number());
+        // Nor does a stranger's database.
+        let database = if foreign { None } else { position_of(&location(folder)) };
+        Witnesses { snapshot, database, foreign, remarks }
     }
 
     /// Whether the trajectory goes as far as they remember.
@@ -71,6 +79,7 @@ impl Witnesses {
             }
         });
         let problem = match sound {
+            false if self.foreign => "belongs to another run",
             false => "is damaged",
             true if !has_layout_of_now(&location(folder)) => "was made by another version of the program",
             true => return true,

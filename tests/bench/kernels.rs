@@ -146,7 +146,7 @@ fn row_writing_of_a_day(bencher: Bencher<'_, '_>) {
     let rows = company.facts.arrivals.len() + company.facts.payments.len() + company.facts.openings.len();
     let empty = || {
         let (projector, _) =
-            Projector::start(Location::memory(), company.params.clone(), |_| false).expect("a database");
+            Projector::start(Location::memory(), 0, company.params.clone(), |_| false).expect("a database");
         (projector, Entry { facts: company.facts.clone(), ..Entry::default() })
     };
     bencher.counter(ItemsCount::new(rows)).with_inputs(empty).bench_local_values(|(projector, entry)| {

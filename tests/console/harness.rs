@@ -45,6 +45,7 @@ impl Console {
             glyphs: Glyphs::Braille,
             configuration,
             runs: runs.to_owned(),
+            again: "novamind --run latest".to_owned(),
         };
         let mut console = Console { rehearsal: Some(Rehearsal::new(settings, size)) };
         console.settle().expect("the menu");

@@ -1,5 +1,6 @@
 //! The console as a person meets it: stories, pictures, sizes, random keys.
 
+mod behind;
 mod company;
 mod dice;
 mod guide;

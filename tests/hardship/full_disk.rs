@@ -105,6 +105,21 @@ fn a_week_whose_closing_line_did_not_fit_is_simulated_again() {
 }
 
 #[test]
+fn an_archive_that_finds_no_room_is_not_blamed() {
+    let (home, other) = (Home::new(), Home::new());
+    let run = home.two_weeks();
+    let archive = home.0.path().join("run.tar.gz").to_string_lossy().into_owned();
+    assert_eq!(home.run(&["runs", "export", &id(&run), "--out", &archive]).code, 0);
+    let program = env!("CARGO_BIN_EXE_novamind");
+    let script = format!("trap '' XFSZ; ulimit -f 2; exec '{program}' runs import '{archive}'");
+    let full = said(other.command("sh").args(["-c", &script]), "");
+    full.fails(3, &["trajectory.jsonl", "File too large"]);
+    assert!(!full.err.contains("ask for the archive again"), "{}", full.err);
+    assert_eq!(fs::read_dir(other.runs()).expect("a folder").count(), 0, "it leaves nothing behind");
+    assert_eq!(other.run(&["runs", "import", &archive]).code, 0, "there is room again");
+}
+
+#[test]
 fn a_run_that_finds_no_room_at_all_does_not_begin() {
     let home = Home::new();
     let program = env!("CARGO_BIN_EXE_novamind");

@@ -364,6 +364,58 @@ fn the_good_beginning_of_a_damaged_run_becomes_a_branch() {
 }
 
 #[test]
+fn a_run_whose_trajectory_cannot_be_read_is_listed_as_such() {
+    let home = Home::new();
+    let path = home.two_weeks().join("trajectory.jsonl");
+    let whole = fs::read(&path).expect("a trajectory");
+    for damaged in [Some(&b""[..]), Some(b"\0\0\0\0\n"), None] {
+        match damaged {
+            Some(bytes) => fs::write(&path, bytes).expect("written"),
+            None => fs::remove_file(&path).expect("gone"),
+        }
+        let list = home.run(&["runs"]);
+        assert!(list.code == 0 && list.out.contains("cannot be read"), "{}", list.out);
+        assert!(list.out.contains("trajectory.jsonl"), "{}", list.out);
+        assert!(!list.out.contains("day ") && !list.out.contains('$'), "no false figures: {}", list.out);
+    }
+    fs::write(&path, whole).expect("written");
+    assert!(home.run(&["runs"]).out.contains("day  14/28"));
+}
+
+#[test]
+fn the_database_of_another_run_is_made_anew() {
+    let (home, other) = (Home::new(), Home::new());
+    let (own, foreign) = (home.two_weeks(), other.two_weeks());
+    let hash = |home: &Home| home.run(&["query", "latest", "SELECT sum(amount) FROM ledger"]).out;
+    let before = hash(&home);
+    for suffix in ["", "-wal", "-shm"] {
+        let _ = fs::remove_file(own.join(format!("world.db{suffix}")));
+    }
+    fs::copy(foreign.join("world.db"), own.join("world.db")).expect("copied");
+    for remark in [true, false] {
+        let said = home.play(&["--run", &id(&own)], "status\n");
+        assert_eq!(said.code, 0, "{}", said.err);
+        assert_eq!(said.out.contains("world.db belongs to another run"), remark, "{}", said.out);
+    }
+    assert_eq!(hash(&home), before);
+    assert_eq!(home.run(&["replay", &id(&own), "--verify"]).code, 0);
+}
+
+#[test]
+fn options_before_a_command_are_refused_and_not_forgotten() {
+    let home = Home::new();
+    for before in [&["--new", "--scenario", "short", "--seed", "1"][..], &["--ascii"], &["--plain"]] {
+        for command in [&["play", "--plain"][..], &["runs"], &["run", "--days", "7"]] {
+            home.run(&[before, command].concat()).fails(2, &["before a command do not count", command[0]]);
+        }
+    }
+    assert_eq!(fs::read_dir(home.runs()).expect("a folder").count(), 0, "no other run was started");
+    let runs = home.runs().to_string_lossy().into_owned();
+    assert_eq!(home.run(&["--runs-dir", &runs, "--as", "P01", "runs"]).code, 0, "these may stand there");
+    assert_eq!(home.run(&["play", "--plain", "--mode", "lesson"]).code, 2, "there are no lessons yet");
+}
+
+#[test]
 fn unknown_runs_are_named_with_the_way_to_the_list() {
     let home = Home::new();
     home.two_weeks();

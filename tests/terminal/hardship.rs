@@ -27,6 +27,73 @@ fn termination_restores_the_terminal_and_keeps_the_run() {
 }
 
 #[test]
+fn a_stopped_program_gives_the_terminal_back_and_takes_it_again() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
+    terminal.wait_for("Needs you");
+    assert!(terminal.is_raw());
+    for _ in 0..2 {
+        terminal.signal("-TSTP");
+        terminal.wait_until_stopped();
+        assert!(!terminal.is_raw(), "whoever has the terminal now can type");
+        terminal.wait_for_bytes(b"\x1b[?1049l");
+        terminal.signal("-CONT");
+        terminal.wait_for("Needs you");
+        terminal.wait_until_raw();
+    }
+    // Nobody is asked before this one; another program may leave the terminal as it likes.
+    terminal.signal("-STOP");
+    terminal.wait_until_stopped();
+    terminal.cook();
+    terminal.signal("-CONT");
+    terminal.wait_until_raw();
+    terminal.type_keys("8");
+    terminal.wait_for("set_prices");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn the_farewell_names_whose_run_goes_on() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--as", "P01", "--new"], (120, 30));
+    terminal.wait_for("Needs you");
+    terminal.type_keys("q");
+    let (code, screen) = terminal.end();
+    assert_eq!(code, 0);
+    assert!(screen.contains("`novamind --as P01 --run latest` continues"), "{screen}");
+    let mut terminal = Terminal::start(runs.path(), &["--as", "P01", "--run", "latest"], (120, 30));
+    terminal.wait_for("day 0/500");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn what_was_chosen_by_key_is_there_the_next_time() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
+    terminal.wait_for("Needs you");
+    assert!(!terminal.contents().is_ascii());
+    terminal.type_keys(";c");
+    terminal.wait_for("theme light, from now on");
+    terminal.type_keys(";d");
+    terminal.wait_for("drawn with blocks");
+    terminal.type_keys(";d");
+    terminal.wait_for("drawn with ASCII signs");
+    let chosen = runs.path().join("no-configuration/console.toml");
+    let is_kept = || std::fs::read_to_string(&chosen).is_ok_and(|text| text.contains("ascii"));
+    terminal.wait_until_true("the choice is kept", is_kept);
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+    assert!(std::fs::read_to_string(&chosen).expect("a file").contains("light"));
+    let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (100, 30));
+    terminal.wait_for("Needs you");
+    assert!(terminal.contents().is_ascii(), "{}", terminal.contents());
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
 fn a_wrong_theme_or_key_file_is_named_before_the_terminal_is_taken() {
     let runs = tempfile::tempdir().expect("a folder");
     let (code, screen) = Terminal::start(runs.path(), &["--theme", "pink"], (100, 30)).end();

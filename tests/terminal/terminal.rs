@@ -103,6 +103,53 @@ impl Terminal {
         }
     }
 
+    /// Waits until something outside the screen holds.
+    pub fn wait_until_true(&mut self, what: &str, holds: impl Fn() -> bool) {
+        let deadline = Instant::now() + Duration::from_secs(60);
+        while !holds() {
+            while let Ok(bytes) = self.bytes.try_recv() {
+                self.take(&bytes);
+            }
+            assert!(Instant::now() < deadline, "waiting for {what:?} in vain:\n{}", self.contents());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// Whether keys reach the program one by one, as the terminal itself says.
+    pub fn is_raw(&self) -> bool {
+        !self.settings().split_whitespace().any(|word| word == "icanon")
+    }
+
+    /// Waits until the program has the terminal.
+    pub fn wait_until_raw(&mut self) {
+        let path = self.path();
+        let is_raw = || !settings_of(&path, &["-a"]).split_whitespace().any(|word| word == "icanon");
+        self.wait_until_true("raw mode", is_raw);
+    }
+
+    /// Waits until the process is stopped.
+    pub fn wait_until_stopped(&mut self) {
+        let process = self.process();
+        let state = || {
+            let asked = std::process::Command::new("ps").args(["-o", "stat=", "-p", &process]).output();
+            asked.is_ok_and(|answer| answer.stdout.trim_ascii().starts_with(b"T"))
+        };
+        self.wait_until_true("a stopped process", state);
+    }
+
+    /// Makes the terminal gather lines, as a shell does.
+    pub fn cook(&self) {
+        settings_of(&self.path(), &["icanon", "echo"]);
+    }
+
+    fn settings(&self) -> String {
+        settings_of(&self.path(), &["-a"])
+    }
+
+    fn path(&self) -> std::path::PathBuf {
+        self.master.tty_name().expect("a terminal has a name")
+    }
+
     /// A program that does not end is a failure with a screen, not a test that never ends.
     fn exit_code(&mut self) -> u32 {
         let deadline = Instant::now() + Duration::from_secs(60);
@@ -168,6 +215,12 @@ impl Terminal {
         assert!(!self.screen.screen().alternate_screen(), "the terminal is not restored");
         (code, self.screen.screen().contents())
     }
+}
+
+fn settings_of(terminal: &Path, arguments: &[&str]) -> String {
+    let device = std::fs::File::open(terminal).expect("the terminal opens");
+    let answer = std::process::Command::new("stty").args(arguments).stdin(device).output();
+    String::from_utf8(answer.expect("stty runs").stdout).expect("text")
 }
 
 /// Lets a policy play a run that is kept in a folder.

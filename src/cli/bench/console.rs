@@ -44,6 +44,7 @@ fn settings(bench: &Bench) -> Result<Settings, BenchError> {
         glyphs: Glyphs::Braille,
         configuration,
         runs: bench.scratch.clone(),
+        again: String::new(),
     })
 }
 

@@ -10,6 +10,7 @@ use crate::cli::run::progress_bar;
 use crate::cli::{Failure, print};
 use crate::report::Logbook;
 use crate::report::logbook::columns::{RUNS, Unread, WEEKS, runs_table, weeks_table};
+use crate::session::archive::close_workshops;
 use crate::session::{Export as Sealing, Imported, RunError, RunSummary, Seal, import_run};
 
 /// Options of `runs export`.
@@ -40,6 +41,7 @@ pub struct Import {
 impl Export {
     /// Runs the command.
     pub fn run(&self, folders: &[PathBuf], json: bool) -> Result<(), Failure> {
+        tidy_up_on_signals();
         match &self.run {
             Some(run) => self.export_one(&find_in(folders, run)?, json),
             None => self.export_all(folders, json),
@@ -148,6 +150,22 @@ impl Export {
     }
 }
 
+/// A signal that ends the program takes with it what is half made: nothing hidden stays on a stick.
+fn tidy_up_on_signals() {
+    #[cfg(unix)]
+    {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        // Where signals cannot be watched they end the program as ever.
+        let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]) else { return };
+        std::thread::spawn(move || {
+            for signal in signals.forever() {
+                close_workshops();
+                std::process::exit(128 + signal);
+            }
+        });
+    }
+}
+
 /// Rows as comma-separated values.
 pub fn as_csv(rows: &[Vec<String>]) -> Result<String, Failure> {
     let wrong = |error: String| Failure::failed(format!("the table cannot be written as CSV: {error}"));
@@ -209,6 +227,7 @@ fn told(seal: &Seal, archive: &Path, day: u32) -> Value {
 impl Import {
     /// Runs the command. One archive that cannot be taken does not keep the others out.
     pub fn run(&self, runs: &Path, json: bool) -> Result<(), Failure> {
+        tidy_up_on_signals();
         let mut failures: Vec<Failure> = Vec::new();
         for file in &self.files {
             match import_run(runs, file) {

@@ -15,6 +15,7 @@ use crate::console::dialogs::rows::RowsBehind;
 use crate::console::dialogs::{Dialog, Outcome};
 use crate::console::effect::Effect;
 use crate::console::keys::{Chord, Meaning, written};
+use crate::console::preferences::Preferences;
 use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::text::number;
 
@@ -247,6 +248,7 @@ impl App {
             Action::NextMarker => {
                 self.glyphs = self.glyphs.next();
                 self.say(format!("drawn with {}", self.glyphs.words()));
+                self.remember(Preferences { marker: Some(self.glyphs), ..Preferences::default() });
             }
             Action::Mouse => self.hand_over_mouse(),
             Action::LeaveRun => self.leave(Closing::ToMenu),
@@ -290,8 +292,14 @@ impl App {
         let next = here.map_or(0, |at| (at + 1) % self.themes.len().max(1));
         if let Some(theme) = self.themes.get(next) {
             self.theme = theme.clone();
-            self.say(format!("theme {0}; --theme {0} starts with it", self.theme.name));
+            let name = self.theme.name.clone();
+            self.say(format!("theme {name}, from now on"));
+            self.remember(Preferences { theme: Some(name), ..Preferences::default() });
         }
+    }
+
+    fn remember(&mut self, chosen: Preferences) {
+        self.orders.push(Order::Remember(self.configuration.clone(), chosen));
     }
 
     fn hand_over_mouse(&mut self) {

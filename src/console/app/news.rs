@@ -73,9 +73,8 @@ impl App {
                     Some(folder) => format!(" Everything confirmed is safe in {}.", folder.display()),
                     None => String::new(),
                 });
-                let text = format!(
-                    "an error of the program itself: {words}.{saved} `novamind --run latest` continues."
-                );
+                let text =
+                    format!("an error of the program itself: {words}.{saved} `{}` continues.", self.again);
                 self.orders.push(Order::Exit(1, Some(text)));
             }
             News::QuerySaved(Ok((text, library))) => {
@@ -86,6 +85,12 @@ impl App {
                 self.say(text);
             }
             News::QuerySaved(Err(problem)) => self.complain(problem),
+            News::DatabaseBehind(problem) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    run.behind = Some(problem);
+                }
+            }
+            News::DatabaseWhole(interrupt) => self.database_whole(interrupt),
             News::Told(story) => self.told(&story),
             News::Reported(files) => {
                 self.write(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect());
@@ -201,6 +206,7 @@ impl App {
             tour,
             explained: false,
             viewer,
+            behind: None,
         }));
         if let Stage::Run(run) = &mut self.stage {
             run.screens.sql.learn(self.library.clone());
@@ -248,6 +254,16 @@ impl App {
             run.changes += 1;
         }
         self.renew();
+    }
+
+    /// What the screens were told while the database was behind is asked again.
+    fn database_whole(&mut self, interrupt: Option<Interrupt>) {
+        if let Stage::Run(run) = &mut self.stage {
+            (run.behind, run.interrupt) = (None, interrupt);
+            run.changes += 1;
+        }
+        self.say("the database is up to date again");
+        self.load();
     }
 
     fn renew(&mut self) {

@@ -155,7 +155,10 @@ impl App {
     /// Asks the database for the person; returns the number of the question.
     fn ask(&mut self, sql: String) -> u64 {
         self.questions += 1;
-        let question = Question::of_person(sql, self.questions);
+        let interrupt = self.run().and_then(|run| run.interrupt.as_ref());
+        // Drawn now: a stop may come before the query has begun.
+        let ticket = interrupt.map(|interrupt| interrupt.ticket());
+        let question = Question::of_person(sql, self.questions, ticket);
         let running = self.busy.is_some();
         self.orders.push(if running { Order::AskNow(question) } else { Order::Job(Job::Ask(question)) });
         self.questions

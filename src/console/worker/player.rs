@@ -28,12 +28,13 @@ impl SessionThread {
     pub(super) fn patience(&mut self) -> Option<Duration> {
         let follows = self.playback().is_some_and(|playback| playback.follows());
         let look = follows.then(|| self.looked + BETWEEN_LOOKS);
-        let next = [self.due, look].into_iter().flatten().min();
+        let next = [self.due, look, self.mending].into_iter().flatten().min();
         next.map(|moment| moment.saturating_duration_since(Instant::now()))
     }
 
-    /// Goes on with what is due: a week of the replay, or what somebody else has played since.
+    /// Goes on with what is due: a week of the replay, what somebody else has played since, a database to be mended.
     pub(super) fn go_on(&mut self) {
+        self.mend();
         let now = Instant::now();
         if self.due.is_some_and(|due| due <= now) {
             self.due = None;

@@ -10,11 +10,11 @@ use flate2::write::GzEncoder;
 use super::seal::{SEAL_FORMAT, Seal, SealedFile};
 use super::workshop::Workshop;
 use super::{DATABASE, MANIFEST, MEMO, SEAL, TRAJECTORY, is_compressed};
-use crate::session::create::new_id;
 use crate::session::error::RunError;
 use crate::session::manifest::{Manifest, sync_folder};
+use crate::session::memo::notes_file;
 use crate::session::open::check_start;
-use crate::session::trajectory::{Trajectory, now};
+use crate::session::trajectory::Trajectory;
 use crate::session::witness::Witnesses;
 use crate::session::{Access, Session};
 
@@ -50,7 +50,7 @@ impl Export {
         // A line without its end was never confirmed: it may be in the middle of being written.
         put(TRAJECTORY, bytes.get(..trajectory.length as usize).unwrap_or(&bytes))?;
         trajectory.unfinished = 0;
-        let memo = folder.join(MEMO);
+        let memo = notes_file(folder, &trajectory);
         match std::fs::read(&memo) {
             Ok(bytes) => put(MEMO, &bytes)?,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
@@ -88,13 +88,11 @@ impl Export {
             Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
             _ => PathBuf::from("."),
         };
-        let draft = folder.join(format!(".novamind-{}.draft", new_id()));
+        let workshop = Workshop::within(&folder)?;
+        let draft = workshop.path().join("archive");
         let written = self.pack(&draft, is_compressed(archive), &seal);
         let placed = written.and_then(|()| std::fs::rename(&draft, archive));
-        if let Err(error) = placed {
-            let _ = std::fs::remove_file(&draft);
-            return Err(RunError::Io { path: archive.to_owned(), error });
-        }
+        placed.map_err(RunError::io(archive))?;
         sync_folder(&folder)?;
         Ok(seal)
     }
@@ -108,7 +106,8 @@ impl Export {
         let seal = Seal {
             format: SEAL_FORMAT,
             program: env!("CARGO_PKG_VERSION").to_owned(),
-            created: now(),
+            // Not the moment of the export: an unchanged run has one seal, whenever it is handed over.
+            created: last.map(|line| line.at.clone()).unwrap_or_default(),
             run: self.session.manifest().id.clone(),
             last_seq: last.map_or(0, |line| line.seq),
             last_hash: last.map(|line| line.hash.clone()).unwrap_or_default(),
@@ -145,7 +144,7 @@ impl Export {
 /// whatever they remember is then in what is read.
 fn read_settled(folder: &Path, manifest: &Manifest) -> Result<(Vec<u8>, Trajectory), RunError> {
     let path = folder.join(TRAJECTORY);
-    let witnesses = Witnesses::of(folder, &manifest.id);
+    let witnesses = Witnesses::of(folder, manifest);
     let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
     let trajectory = Trajectory::of_file(&path, &bytes)?;
     check_start(&path, trajectory.lines.first(), manifest)?;

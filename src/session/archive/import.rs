@@ -7,12 +7,13 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
-use super::seal::{SEAL_FORMAT, Seal, SealedFile, copy_hashed};
+use super::seal::{CopyError, SEAL_FORMAT, Seal, SealedFile, copy_hashed};
 use super::workshop::Workshop;
 use super::{DATABASE, FILES, MANIFEST, MEMO, SEAL, TRAJECTORY, is_run_name, refused};
 use crate::session::error::RunError;
 use crate::session::manifest::{Manifest, sync_folder};
 use crate::session::open::check_start;
+use crate::session::runs::{all_run_folders, label_of, participant_folder};
 use crate::session::trajectory::Trajectory;
 
 /// What became of an archive.
@@ -39,15 +40,34 @@ pub fn import_run(runs: &Path, archive: &Path) -> Result<(Seal, Imported), RunEr
     let seal = check_seal(archive, &unpacked)?;
     let draft = workshop.path().join(&seal.run);
     check_run(archive, &draft, &seal)?;
-    let place = runs.join(&seal.run);
-    if place.exists() {
+    let folder = folder_for(runs, &draft, &seal)?;
+    // A run is on a machine once, whoever's folder it is in.
+    let there = all_run_folders(runs).into_iter().chain([folder.clone()]).map(|own| own.join(&seal.run));
+    if let Some(place) = there.into_iter().find(|place| place.exists()) {
         let same = compare(&draft, &place, &seal)?;
         return Ok((seal, same));
     }
+    let place = folder.join(&seal.run);
     sync_folder(&draft)?;
     std::fs::rename(&draft, &place).map_err(RunError::io(&place))?;
-    sync_folder(runs)?;
+    sync_folder(&folder)?;
     Ok((seal, Imported::New(place)))
+}
+
+/// The folder of runs that a run belongs in: that of its participant where they have one on this machine.
+fn folder_for(runs: &Path, draft: &Path, seal: &Seal) -> Result<PathBuf, RunError> {
+    let whose = Manifest::read(draft)?.participant;
+    match (label_of(runs), whose) {
+        (Some(label), Some(other)) if label != other => Err(RunError::NotPossible(format!(
+            "run {} is one of {other}, not of {label}: import it with `--as {other}`. Nothing was imported",
+            seal.run
+        ))),
+        (None, Some(label)) => {
+            let own = participant_folder(runs, &label).ok().filter(|folder| folder.is_dir());
+            Ok(own.unwrap_or_else(|| runs.to_owned()))
+        }
+        _ => Ok(runs.to_owned()),
+    }
 }
 
 /// What was found in an archive.
@@ -94,8 +114,12 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
             ));
         }
         found.run = run.to_owned();
-        let measured = store(&mut entry, &workshop.join(run), file)
-            .map_err(|error| error.into_run_error(archive, &name))?;
+        let path = workshop.join(run).join(file);
+        let measured = store(&mut entry, &path, file).map_err(|error| match error {
+            CopyError::Read(error) => broken_file(archive, &name, &error),
+            // The archive is as good as it was: there is no room for it here.
+            CopyError::Write(error) => RunError::Io { path, error },
+        })?;
         if file == SEAL {
             let path = workshop.join(run).join(SEAL);
             found.seal =
@@ -126,37 +150,21 @@ fn parts(name: &str) -> Option<(&str, &str)> {
     is_run_name(run).then_some((run, file))
 }
 
-/// Which side failed while a file was copied.
-enum StoreError {
-    Archive(io::Error),
-    Disk(PathBuf, io::Error),
-}
-
-impl StoreError {
-    fn into_run_error(self, archive: &Path, name: &str) -> RunError {
-        match self {
-            StoreError::Archive(error) => broken_file(archive, name, &error),
-            StoreError::Disk(path, error) => RunError::Io { path, error },
-        }
-    }
-}
-
 fn broken_file(archive: &Path, name: &str, error: &io::Error) -> RunError {
     refused(archive, format!("{name} cannot be read ({error})"))
 }
 
-fn store(entry: &mut dyn Read, folder: &Path, file: &str) -> Result<SealedFile, StoreError> {
+fn store(entry: &mut dyn Read, path: &Path, file: &str) -> Result<SealedFile, CopyError> {
     let name = file.to_owned();
     if file == DATABASE {
         // A projection: it is made anew from the trajectory, but its hash counts.
-        let (bytes, blake3) = copy_hashed(entry, &mut io::sink()).map_err(StoreError::Archive)?;
+        let (bytes, blake3) = copy_hashed(entry, &mut io::sink())?;
         return Ok(SealedFile { name, bytes, blake3 });
     }
-    let path = folder.join(file);
-    let made = std::fs::create_dir_all(folder).and_then(|()| File::create_new(&path));
-    let mut out = made.map_err(|error| StoreError::Disk(path.clone(), error))?;
-    let (bytes, blake3) = copy_hashed(entry, &mut out).map_err(StoreError::Archive)?;
-    out.sync_all().map_err(|error| StoreError::Disk(path, error))?;
+    let made = path.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| File::create_new(path));
+    let mut out = made.map_err(CopyError::Write)?;
+    let (bytes, blake3) = copy_hashed(entry, &mut out)?;
+    out.sync_all().map_err(CopyError::Write)?;
     Ok(SealedFile { name, bytes, blake3 })
 }
 

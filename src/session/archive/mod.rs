@@ -25,6 +25,7 @@ use std::path::Path;
 pub use export::Export;
 pub use import::{Imported, import_run};
 pub use seal::{Seal, SealedFile};
+pub use workshop::close_workshops;
 
 use super::error::RunError;
 

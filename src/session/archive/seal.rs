@@ -19,7 +19,7 @@ pub struct Seal {
     pub format: u32,
     /// Version of the program that made it.
     pub program: String,
-    /// When it was made, RFC 3339.
+    /// When the last line of the trajectory was written, RFC 3339.
     pub created: String,
     /// Run.
     pub run: String,
@@ -53,7 +53,8 @@ impl SealedFile {
     pub fn of(folder: &Path, name: &str) -> Result<SealedFile, RunError> {
         let path = folder.join(name);
         let mut file = File::open(&path).map_err(RunError::io(&path))?;
-        let (bytes, blake3) = copy_hashed(&mut file, &mut io::sink()).map_err(RunError::io(&path))?;
+        let copied = copy_hashed(&mut file, &mut io::sink()).map_err(io::Error::from);
+        let (bytes, blake3) = copied.map_err(RunError::io(&path))?;
         Ok(SealedFile { name: name.to_owned(), bytes, blake3 })
     }
 }
@@ -80,8 +81,25 @@ impl Seal {
     }
 }
 
+/// Which side failed while something was copied.
+#[derive(Debug)]
+pub enum CopyError {
+    /// What is copied cannot be read.
+    Read(io::Error),
+    /// It cannot be written where it should go.
+    Write(io::Error),
+}
+
+impl From<CopyError> for io::Error {
+    fn from(error: CopyError) -> io::Error {
+        match error {
+            CopyError::Read(error) | CopyError::Write(error) => error,
+        }
+    }
+}
+
 /// Copies everything; returns how much it was and its hash.
-pub fn copy_hashed(from: &mut dyn Read, to: &mut dyn Write) -> io::Result<(u64, String)> {
+pub fn copy_hashed(from: &mut dyn Read, to: &mut dyn Write) -> Result<(u64, String), CopyError> {
     let (mut hasher, mut length) = (blake3::Hasher::new(), 0u64);
     let mut buffer = vec![0u8; 1 << 16];
     loop {
@@ -89,10 +107,10 @@ pub fn copy_hashed(from: &mut dyn Read, to: &mut dyn Write) -> io::Result<(u64, 
             Ok(0) => return Ok((length, hasher.finalize().to_hex().to_string())),
             Ok(count) => count,
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-            Err(error) => return Err(error),
+            Err(error) => return Err(CopyError::Read(error)),
         };
         hasher.update(&buffer[..count]);
-        to.write_all(&buffer[..count])?;
+        to.write_all(&buffer[..count]).map_err(CopyError::Write)?;
         length += count as u64;
     }
 }

@@ -1,6 +1,7 @@
 //! A folder to work in, that is gone afterwards.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard};
 
 use crate::session::create::new_id;
 use crate::session::error::RunError;
@@ -9,15 +10,32 @@ use crate::session::error::RunError;
 /// when the work is done or has failed.
 pub(super) struct Workshop(PathBuf);
 
+/// The workshops that are open, and whether the program is about to end.
+struct Open {
+    folders: Vec<PathBuf>,
+    closed: bool,
+}
+
+static OPEN: Mutex<Open> = Mutex::new(Open { folders: Vec::new(), closed: false });
+
+fn open() -> MutexGuard<'static, Open> {
+    OPEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
 impl Workshop {
     /// Makes one in a folder.
     ///
     /// # Errors
-    /// The folder cannot be written.
+    /// The folder cannot be written, or the program is about to end.
     pub fn within(folder: &Path) -> Result<Workshop, RunError> {
         std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
         let own = folder.join(format!(".novamind-{}", new_id()));
+        let mut open = open();
+        if open.closed {
+            return Err(RunError::NotPossible("the program is about to end".to_owned()));
+        }
         std::fs::create_dir(&own).map_err(RunError::io(&own))?;
+        open.folders.push(own.clone());
         Ok(Workshop(own))
     }
 
@@ -29,7 +47,24 @@ impl Workshop {
 
 impl Drop for Workshop {
     fn drop(&mut self) {
+        open().folders.retain(|folder| *folder != self.0);
         // What cannot be removed is only in the way of whoever looks for hidden folders.
         let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Tries to remove a workshop that somebody may still be writing into.
+const TRIES: usize = 100;
+
+/// Removes every open workshop and makes no new ones: for a program that a signal is about to end.
+pub fn close_workshops() {
+    let folders = {
+        let mut open = open();
+        open.closed = true;
+        std::mem::take(&mut open.folders)
+    };
+    for folder in folders {
+        // A file that is made between the look into the folder and its removal asks for another look.
+        let _ = (0..TRIES).find(|_| std::fs::remove_dir_all(&folder).is_ok() || !folder.exists());
     }
 }

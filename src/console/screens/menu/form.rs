@@ -9,13 +9,16 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
 use crate::console::widgets::field::parse_number;
+use crate::notation::dollars;
 use crate::session::{Configuration, DEFAULT_SCENARIO, Mode, NewRun};
 
 /// Fields of a new run.
 pub(super) struct Form {
-    /// Names and titles of the scenarios.
+    /// Names and descriptions of the scenarios.
     scenarios: Vec<(String, String)>,
     scenario: usize,
+    /// Days and starting cash of the chosen one in the chosen mode, where they can be read.
+    terms: Option<(u32, f64)>,
     mode: usize,
     seed: Field,
     days: Field,
@@ -45,16 +48,17 @@ const FIELD: u16 = 18;
 
 impl Form {
     pub(super) fn new(configuration: &Configuration) -> Form {
-        let title = |name: &String| {
-            configuration.scenario(name).map_or_else(|error| error.to_string(), |own| own.title)
+        let told = |name: &String| {
+            configuration.scenario(name).map_or_else(|error| error.to_string(), |own| own.description)
         };
         let scenarios: Vec<(String, String)> =
-            configuration.scenarios().into_iter().map(|name| (name.clone(), title(&name))).collect();
+            configuration.scenarios().into_iter().map(|name| (name.clone(), told(&name))).collect();
         let scenario = scenarios.iter().position(|(name, _)| name == DEFAULT_SCENARIO).unwrap_or(0);
         Form {
             scenarios,
             scenario,
-            mode: Mode::ALL.iter().position(|mode| *mode == Mode::Sandbox).unwrap_or(0),
+            terms: None,
+            mode: Mode::OFFERED.iter().position(|mode| *mode == Mode::Sandbox).unwrap_or(0),
             seed: Field::to_replace("42"),
             days: Field::default(),
             cash: Field::default(),
@@ -62,6 +66,14 @@ impl Form {
             at: ROWS.len() - 1,
             refused: None,
         }
+    }
+
+    /// Reads what the chosen scenario says about days and cash.
+    pub(super) fn read_terms(&mut self, configuration: &Configuration) {
+        let name = self.scenarios.get(self.scenario).map_or(DEFAULT_SCENARIO, |own| own.0.as_str());
+        let own = Mode::OFFERED[self.mode] != Mode::Baseline;
+        let scenario = configuration.scenario(name);
+        self.terms = scenario.and_then(|scenario| configuration.terms(&scenario, own)).ok();
     }
 
     /// Whether the selected row is typed into.
@@ -99,7 +111,7 @@ impl Form {
         };
         match self.at {
             0 => self.scenario = step(self.scenario, self.scenarios.len()),
-            1 => self.mode = step(self.mode, Mode::ALL.len()),
+            1 => self.mode = step(self.mode, Mode::OFFERED.len()),
             _ => {}
         }
     }
@@ -151,7 +163,7 @@ impl Form {
                 .get(self.scenario)
                 .map_or(DEFAULT_SCENARIO, |own| own.0.as_str())
                 .to_owned(),
-            mode: Mode::ALL[self.mode],
+            mode: Mode::OFFERED[self.mode],
             participant: (!participant.is_empty()).then(|| participant.to_owned()),
             ..NewRun::default()
         }
@@ -167,10 +179,10 @@ impl Form {
                 let chosen = self.scenarios.get(self.scenario);
                 (chosen.map_or(String::new(), |(name, _)| format!("‹ {name} ›")), Role::Text)
             }
-            1 => (format!("‹ {} ›", Mode::ALL[self.mode].id()), Role::Text),
+            1 => (format!("‹ {} ›", Mode::OFFERED[self.mode].id()), Role::Text),
             2 => or(&self.seed, "any: a new one is drawn"),
-            3 => or(&self.days, "as the scenario says (500)"),
-            4 => or(&self.cash, "as the scenario says ($1,000,000)"),
+            3 => or(&self.days, &standard(self.terms.map(|(days, _)| whole(days)))),
+            4 => or(&self.cash, &standard(self.terms.map(|(_, cash)| dollars(cash)))),
             5 => or(&self.participant, "nobody in particular"),
             _ => (String::new(), Role::Text),
         }
@@ -197,7 +209,7 @@ impl Form {
             Some(problem) => say(&format!("! {problem}"), Role::Bad),
             None => say(ROWS[self.at].1, Role::Text),
         }
-        let mode = Mode::ALL[self.mode];
+        let mode = Mode::OFFERED[self.mode];
         let scenario = self.scenarios.get(self.scenario).map_or("", |own| own.1.as_str());
         say("", Role::Dim);
         say(&format!("{}: {}. {}", mode.id(), mode.purpose(), allows(mode)), Role::Dim);
@@ -232,6 +244,15 @@ impl Form {
         }
         canvas.click(row, Click::Row(0, at));
     }
+}
+
+fn whole(days: u32) -> String {
+    crate::notation::grouped(f64::from(days), 0)
+}
+
+/// What a field that is left empty stands for.
+fn standard(value: Option<String>) -> String {
+    value.map_or("scenario default".to_owned(), |value| format!("scenario default: {value}"))
 }
 
 /// What a mode allows.

@@ -26,8 +26,12 @@ pub(super) enum Choice {
 const WIDE: u16 = 76;
 
 impl Menu {
+    /// What the page offers; nothing while the runs are being looked for, for they decide what comes first.
     pub(super) fn choices(&self) -> Vec<(Choice, &'static str, String)> {
         let mut choices = Vec::new();
+        if self.runs.is_none() {
+            return choices;
+        }
         let count = self.list().len();
         if let Some(run) = self.latest() {
             choices.push((Choice::Continue, "Continue", short(run)));

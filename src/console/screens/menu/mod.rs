@@ -43,6 +43,8 @@ pub struct Menu {
     courses: Courses,
     /// What is asked about before it is done.
     asked: Option<Asked>,
+    /// What was to be done on the first page before the runs were known: what it offers depends on them.
+    early: Vec<Action>,
     configuration: Configuration,
 }
 
@@ -67,15 +69,19 @@ impl Menu {
             marked: Vec::new(),
             courses: Courses::new(),
             asked: None,
+            early: Vec::new(),
             configuration: configuration.clone(),
         }
     }
 
-    /// Takes the list of runs; asks how the last one went.
+    /// Takes the list of runs; asks how the last one went, and does what was waiting for the list.
     pub fn take(&mut self, runs: Result<Vec<RunSummary>, String>) -> Vec<Effect> {
+        let choice = self.chosen_choice();
         self.runs = Some(runs);
         if self.page == Page::Home {
-            self.selected = 0;
+            // The same choice, wherever it stands now.
+            let same = self.choices().iter().position(|(own, ..)| Some(*own) == choice);
+            self.selected = same.unwrap_or(0);
         }
         let known: Vec<String> = self.list().iter().map(|run| run.id.clone()).collect();
         self.marked.retain(|id| known.contains(id));
@@ -88,7 +94,14 @@ impl Menu {
         if self.page == Page::Runs {
             effects.extend(self.read_chosen());
         }
+        for action in std::mem::take(&mut self.early) {
+            effects.extend(self.act(action));
+        }
         effects
+    }
+
+    fn chosen_choice(&self) -> Option<Choice> {
+        self.choices().get(self.selected).map(|choice| choice.0)
     }
 
     /// Takes how a run went.
@@ -187,12 +200,16 @@ impl Menu {
         }
         match (action, self.page) {
             (Action::NewRun, _) => self.open_form(),
+            (_, Page::Home) if self.runs.is_none() => self.early.push(action),
             (Action::ContinueRun, _) => return self.open_latest(),
             (Action::ReplayRun, Page::Home) => return self.replay(self.list().first()),
             (_, Page::Runs) => return self.act_on_runs(action),
             (Action::Close | Action::Discard, Page::Compare) => self.page = Page::Runs,
             (Action::Close | Action::Discard, _) => self.go_home(),
-            (Action::Left | Action::Right, Page::NewRun) => self.form.turn(action == Action::Right),
+            (Action::Left | Action::Right, Page::NewRun) => {
+                self.form.turn(action == Action::Right);
+                self.form.read_terms(&self.configuration);
+            }
             (Action::Open | Action::Commit, Page::NewRun) => return self.form.enter(),
             (Action::Open, Page::Home) => return self.choose(),
             _ => self.walk(action),
@@ -216,8 +233,10 @@ impl Menu {
     }
 
     fn open_form(&mut self) {
+        self.early.clear();
         self.page = Page::NewRun;
         self.form = Form::new(&self.configuration);
+        self.form.read_terms(&self.configuration);
     }
 
     fn open_latest(&self) -> Vec<Effect> {
@@ -228,7 +247,7 @@ impl Menu {
     }
 
     fn choose(&mut self) -> Vec<Effect> {
-        match self.choices().get(self.selected).map(|choice| choice.0) {
+        match self.chosen_choice() {
             Some(Choice::Continue) => return self.open_latest(),
             Some(Choice::Tour) => return vec![Effect::StartTour],
             Some(Choice::New) => self.open_form(),

@@ -8,11 +8,8 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{compact, dollars};
-use crate::report::ranking::published;
+use crate::report::ranking::{self, published};
 use crate::session::{Ended, Mode, RunSummary};
-
-/// Days of a run that can stand beside published ones.
-const PUBLISHED_DAYS: u32 = 500;
 
 /// A line of the table.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +51,7 @@ fn is_finished(run: &RunSummary) -> bool {
 }
 
 fn is_comparable(run: &RunSummary) -> bool {
-    is_finished(run) && run.days == PUBLISHED_DAYS
+    is_finished(run) && ranking::is_comparable(run.days, run.starting_cash, &run.scenario)
 }
 
 impl Menu {
@@ -74,8 +71,8 @@ impl Menu {
         let yours = match (own, left_out) {
             (0, 0) => "Finish a run of 500 days and it stands here.".to_owned(),
             (_, 0) => "Yours are marked; a bankrupt run counts as $0.".to_owned(),
-            (_, 1) => "One finished run of another length is left out.".to_owned(),
-            (_, count) => format!("{count} finished runs of another length are left out."),
+            (_, 1) => "One finished run of another length, start or scenario is left out.".to_owned(),
+            (_, count) => format!("{count} finished runs of another length, start or scenario are left out."),
         };
         let bound = published().estimated_upper_bound;
         let source = format!(
@@ -124,6 +121,11 @@ mod tests {
         let runs = [
             finished("rich", 1e9, 500, Some(Ended::Horizon)),
             finished("short", 1e9, 70, Some(Ended::Horizon)),
+            RunSummary { starting_cash: 2e6, ..finished("gift", 1e9, 500, Some(Ended::Horizon)) },
+            RunSummary {
+                scenario: "competitor-off".to_owned(),
+                ..finished("alone", 1e9, 500, Some(Ended::Horizon))
+            },
             finished("open", 1e9, 500, None),
             finished("ruin", -5.0, 500, Some(Ended::Bankruptcy)),
         ];

@@ -19,6 +19,7 @@ pub(in crate::console) fn summary(id: &str) -> RunSummary {
         participant: None,
         day: 84,
         days: 500,
+        starting_cash: 1_000_000.0,
         cash: 1_234_567.0,
         ended: None,
         problem: None,
@@ -99,6 +100,38 @@ fn the_course_of_a_run_is_asked_for_once() {
 }
 
 #[test]
+fn a_key_that_comes_before_the_runs_are_known_means_what_is_shown_then() {
+    let hurried = |keys: &[Action], runs: Vec<RunSummary>| {
+        let mut menu = Menu::new(&Configuration::shipped());
+        let screen = shown(&menu, 80, 23);
+        assert!(screen.contains("looking for runs") && !screen.contains("New run"), "{screen}");
+        for key in keys {
+            assert!(menu.act(*key).is_empty(), "nothing is done yet");
+        }
+        let effects = menu.take(Ok(runs));
+        (menu, effects)
+    };
+    let (_, effects) = hurried(&[Action::Open], vec![summary("aaaa0001")]);
+    assert!(matches!(&effects[..], [Effect::ReadCourse(_), Effect::Open(id)] if id == "aaaa0001"));
+    let (_, effects) = hurried(&[Action::ContinueRun], vec![summary("aaaa0001")]);
+    assert!(matches!(&effects[..], [Effect::ReadCourse(_), Effect::Open(id)] if id == "aaaa0001"));
+    let (_, effects) = hurried(&[Action::Open], Vec::new());
+    assert!(matches!(effects[..], [Effect::StartTour]));
+    let (menu, _) = hurried(&[Action::Down, Action::Open], vec![summary("aaaa0001")]);
+    assert!(menu.page == Page::NewRun);
+    let (menu, effects) = hurried(&[Action::Open, Action::NewRun], vec![summary("aaaa0001")]);
+    assert!(menu.page == Page::NewRun && effects.len() == 1, "what came last counts");
+}
+
+#[test]
+fn a_new_list_leaves_the_choice_where_it_was() {
+    let mut menu = menu(Vec::new());
+    menu.act(Action::Last);
+    menu.take(Ok(vec![summary("aaaa0001"), summary("bbbb0002")]));
+    assert!(matches!(menu.act(Action::Open)[..], [Effect::Do(Action::Quit)]));
+}
+
+#[test]
 fn runs_are_given_up_and_deleted_only_after_a_question() {
     let mut menu = three();
     menu.page = Page::Runs;
@@ -176,6 +209,43 @@ fn the_form_says_what_is_wrong_while_it_is_typed() {
             assert_eq!((new.days, new.seed, new.mode), (Some(30), Some(42), Mode::Baseline))
         }
         other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_form_shows_what_the_chosen_scenario_is_and_says() {
+    let mut menu = menu(Vec::new());
+    menu.act(Action::NewRun);
+    let configuration = Configuration::shipped();
+    menu.form.at = 0;
+    for name in configuration.scenarios() {
+        let screen = shown(&menu, 120, 39);
+        let scenario = configuration.scenario(&name).expect("a scenario");
+        let (days, cash) = configuration.terms(&scenario, true).expect("its terms");
+        let told = scenario.description.split(' ').take(6).collect::<Vec<_>>().join(" ");
+        for part in [
+            format!("‹ {name} ›"),
+            format!("scenario default: {days}"),
+            format!("scenario default: {}", crate::notation::dollars(cash)),
+            told,
+        ] {
+            assert!(screen.contains(&part), "{part} is missing in\n{screen}");
+        }
+        menu.act(Action::Right);
+    }
+    let short = configuration.scenario("short").expect("a scenario");
+    assert_eq!(configuration.terms(&short, true).expect("its terms").0, 50);
+}
+
+#[test]
+fn modes_without_anything_to_them_are_not_offered() {
+    let mut menu = menu(Vec::new());
+    menu.act(Action::NewRun);
+    menu.form.at = 1;
+    for _ in Mode::ALL {
+        menu.act(Action::Right);
+        let screen = shown(&menu, 120, 39);
+        assert!(!screen.contains("lesson") && !screen.contains("hints"), "{screen}");
     }
 }
 

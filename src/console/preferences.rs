@@ -1,0 +1,63 @@
+//! How the console looks because somebody chose it by key: kept in `console.toml` of the configuration folder.
+
+use serde::{Deserialize, Serialize};
+
+use super::glyphs::Glyphs;
+use crate::session::{Configuration, RunError};
+
+const FILE: &str = "console.toml";
+
+/// What was chosen.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Preferences {
+    /// Name of the set of colours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub theme: Option<String>,
+    /// What frames are drawn with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub marker: Option<Glyphs>,
+}
+
+impl Preferences {
+    /// What was chosen before. A file that cannot be read is as good as none: it is written anew with the next choice.
+    pub fn of(configuration: &Configuration) -> Preferences {
+        let file = configuration.file(FILE).ok().flatten();
+        file.and_then(|source| toml::from_str(&source.text).ok()).unwrap_or_default()
+    }
+
+    /// Keeps what this chooses; the rest stays as it was chosen before.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn keep(self, configuration: &Configuration) -> Result<(), RunError> {
+        let Some(folder) = &configuration.folder else { return Ok(()) };
+        let before = Preferences::of(configuration);
+        let all = Preferences { theme: self.theme.or(before.theme), marker: self.marker.or(before.marker) };
+        std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+        let (path, draft) = (folder.join(FILE), folder.join("console.draft"));
+        let text = toml::to_string(&all).expect("names are plain values");
+        std::fs::write(&draft, text).map_err(RunError::io(&draft))?;
+        std::fs::rename(&draft, &path).map_err(RunError::io(&path))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_choice_is_kept_beside_the_others() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let configuration = Configuration { folder: Some(folder.path().join("not-yet")) };
+        assert_eq!(Preferences::of(&configuration), Preferences::default());
+        let light = Preferences { theme: Some("light".to_owned()), marker: None };
+        light.keep(&configuration).expect("kept");
+        let ascii = Preferences { theme: None, marker: Some(Glyphs::Ascii) };
+        ascii.keep(&configuration).expect("kept");
+        let both = Preferences { theme: Some("light".to_owned()), marker: Some(Glyphs::Ascii) };
+        assert_eq!(Preferences::of(&configuration), both);
+        std::fs::write(folder.path().join("not-yet/console.toml"), "marker = 3").expect("written");
+        assert_eq!(Preferences::of(&configuration), Preferences::default());
+    }
+}

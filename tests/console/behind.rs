@@ -1,0 +1,36 @@
+//! A database that cannot be written: the screen says so as long as it lasts, and asks again when it is over.
+
+use novamind::console::message::{Message, News};
+
+use super::harness::Console;
+
+const BANNER: &str = "The database is behind";
+
+#[test]
+fn older_figures_are_marked_until_the_database_is_whole_again() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.week();
+    console.press("esc 3");
+    let before = console.screen();
+    assert!(!before.contains(BANNER) && !before.contains("stale"), "{before}");
+    let problem = "database or disk is full".to_owned();
+    console.app.update(Message::News(News::DatabaseBehind(problem.clone())));
+    // It stands on every screen, and outlives keys and messages; what the database tells is marked.
+    for (key, marked) in [("3", true), ("2", true), ("8", false), ("9", true)] {
+        console.press(key);
+        let screen = console.screen();
+        assert!(screen.contains(BANNER) && screen.contains(&problem), "{key}:\n{screen}");
+        assert_eq!(screen.contains("stale"), marked, "{key}:\n{screen}");
+    }
+    for (width, height) in [(60, 16), (80, 24), (200, 60)] {
+        console.size = (width, height);
+        console.shows(BANNER);
+    }
+    console.size = (120, 40);
+    console.app.update(Message::News(News::DatabaseWhole(None)));
+    console.hand_over();
+    console.settle().expect("everything is asked again");
+    let after = console.screen();
+    assert!(!after.contains(BANNER) && !after.contains("stale"), "{after}");
+}

@@ -2,6 +2,7 @@
 //! within the limits (specification, chapter 60 §3.4).
 
 use std::path::Path;
+use std::sync::{Mutex, MutexGuard};
 use std::time::Duration;
 
 use novamind::database::query::Limits;
@@ -13,6 +14,13 @@ const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(3600), ste
 
 /// For what is to be answered to its end.
 const AMPLE: Limits = Limits { steps: Some(1_000_000_000), ..LIMITS };
+
+/// SQLite counts its memory for the whole process: what one test takes would stop the queries of another.
+static MEMORY: Mutex<()> = Mutex::new(());
+
+fn alone() -> MutexGuard<'static, ()> {
+    MEMORY.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
 
 /// A company of six weeks, with rows in as many tables as it can have.
 fn played(folder: &Path) -> Session {
@@ -134,6 +142,7 @@ fn ask_all(desk: &Desk, attacks: &[Attack], secrets: &[String]) {
 
 #[test]
 fn statements_read_nothing_hidden_write_nothing_and_end() {
+    let _alone = alone();
     let runs = tempfile::tempdir().expect("a folder");
     let session = played(runs.path());
     let folder = session.folder().expect("a folder").to_owned();
@@ -175,6 +184,7 @@ fn statements_read_nothing_hidden_write_nothing_and_end() {
 
 #[test]
 fn sealed_columns_and_tables_do_not_exist_in_any_form() {
+    let _alone = alone();
     let runs = tempfile::tempdir().expect("a folder");
     let session = played(runs.path());
     let mut attacks = Vec::new();
@@ -221,6 +231,7 @@ fn sealed_columns_and_tables_do_not_exist_in_any_form() {
 
 #[test]
 fn a_query_that_takes_too_much_memory_is_stopped() {
+    let _alone = alone();
     let session = Session::create(NewRun { days: Some(60), ..NewRun::default() }, &Configuration::shipped())
         .expect("a run");
     let desk = session.open_desk().expect("a desk");

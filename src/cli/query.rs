@@ -1,10 +1,14 @@
 //! `novamind query`: SQL on a run.
 
+use std::path::Path;
+
 use clap::{Args, ValueEnum};
 
+use super::run::progress_bar;
 use super::{Context, Failure, print};
 use crate::session::{
-    Access, Cell, Line, Rows, Session, Trajectory, desk_of_file, find_run_to_read, rows_as_json,
+    Access, Cell, Line, Refusal, Rows, RunError, Session, Trajectory, desk_of_file, find_run_to_read,
+    rebuild_database, rows_as_json,
 };
 
 /// Options of `query`.
@@ -43,8 +47,35 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Asks the run's database if it is complete, otherwise one made from the trajectory.
-fn ask(folder: &std::path::Path, sql: &str) -> Result<Rows, Failure> {
+/// Asks the run's database, which is brought up to date on the disk if it is not complete. Where somebody plays the run,
+/// or its folder cannot be written, a database in memory is made from the trajectory.
+fn ask(folder: &Path, sql: &str) -> Result<Rows, Failure> {
+    if let Some(rows) = ask_file(folder, sql)? {
+        return Ok(rows);
+    }
+    let mut progress = None;
+    let rebuilt = rebuild_database(folder, &mut |day, days| {
+        let bar = progress.get_or_insert_with(|| progress_bar(u64::from(days), "days of the database"));
+        bar.set_position(u64::from(day));
+    });
+    if let Some(bar) = progress {
+        bar.finish_and_clear();
+    }
+    match rebuilt {
+        Ok(()) => {
+            if let Some(rows) = ask_file(folder, sql)? {
+                return Ok(rows);
+            }
+        }
+        Err(RunError::InUse { .. } | RunError::NotWritable { .. } | RunError::Projection(_)) => {}
+        Err(error) => return Err(error.into()),
+    }
+    let mut session = Session::open(folder, Access::Read, true)?;
+    Ok(session.query(sql)?)
+}
+
+/// Asks the run's database if it is complete.
+fn ask_file(folder: &Path, sql: &str) -> Result<Option<Rows>, Failure> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
     // Queries and views do not move the database on; only lines that change the company do.
     let last = trajectory.lines.iter().rev().find(|line| moves_database(line));
@@ -54,10 +85,9 @@ fn ask(folder: &std::path::Path, sql: &str) -> Result<Rows, Failure> {
     {
         let time = std::time::Duration::from_secs(120);
         let limits = crate::database::query::Limits { rows: 5000, time, steps: None };
-        return desk.ask(sql, limits).map_err(|error| crate::session::Refusal::from(error).into());
+        return desk.ask(sql, limits).map(Some).map_err(|error| Refusal::from(error).into());
     }
-    let mut session = Session::open(folder, Access::Read, true)?;
-    Ok(session.query(sql)?)
+    Ok(None)
 }
 
 fn moves_database(line: &Line) -> bool {

@@ -139,9 +139,9 @@ fn is_stale(run: &Run) -> bool {
 
 /// The line that stays as long as the database is behind.
 fn draw_behind(canvas: &mut Canvas<'_>, row: Rect, run: &Run) {
-    let here = if is_stale(run) { "panes marked stale show older figures; " } else { "" };
+    let here = if is_stale(run) { "Panes marked stale show older figures; it" } else { "It" };
     let problem = run.behind.as_deref().unwrap_or_default();
-    let text = format!(" ! The database is behind: {here}tried again every few seconds. {problem}");
+    let text = format!(" ! The database is behind: {problem}. {here} is tried again every few seconds.");
     canvas.clear(row, Role::Bad);
     canvas.text(row, &text, Role::Bad);
 }

@@ -106,7 +106,9 @@ impl Screen {
     /// # Errors
     /// The terminal does not take it.
     pub fn clear(&mut self) -> io::Result<()> {
-        self.terminal.clear()
+        // Clearing it would ask the terminal where its cursor is, and the answer goes to the thread that reads keys.
+        let size = self.terminal.size()?;
+        self.terminal.resize(size.into())
     }
 
     /// Takes the mouse, or leaves it to the terminal, which then selects text with it.

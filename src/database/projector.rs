@@ -109,6 +109,8 @@ impl Projector {
         let (jobs, queue) = sync_channel(QUEUE);
         let spare = Spare::default();
         let failed = Failed::default();
+        let told: fn(rusqlite::Error) -> ProjectionError =
+            if location.path().is_some() { told } else { told_of_memory };
         let (writer_spare, writer_failed) = (spare.clone(), failed.clone());
         let (writer_gate, writer_shelf) = (gate.clone(), shelf.clone());
         let thread = std::thread::Builder::new()
@@ -117,7 +119,7 @@ impl Projector {
                 let rows = RowWriter::new(params, writer_shelf, issue_clock);
                 let connection = &mut connection;
                 let (gate, spare, failed) = (writer_gate, writer_spare, writer_failed);
-                Worker { connection, rows, gate, spare, failed }.run(&queue);
+                Worker { connection, rows, gate, spare, failed, told }.run(&queue);
             })
             .map_err(|error| ProjectionError(error.to_string()))?;
         let projector =
@@ -205,12 +207,25 @@ fn told(error: rusqlite::Error) -> ProjectionError {
     ProjectionError(error.to_string())
 }
 
+/// A database in memory is bounded by SQLite, not by a disk.
+fn told_of_memory(error: rusqlite::Error) -> ProjectionError {
+    match error.sqlite_error_code() {
+        Some(rusqlite::ErrorCode::DiskFull) => ProjectionError(
+            "in memory it may have 1 GiB; a run that nobody else plays, in a folder that can be written, has it on its disk"
+                .to_owned(),
+        ),
+        _ => told(error),
+    }
+}
+
 struct Worker<'a> {
     connection: &'a mut Connection,
     rows: RowWriter,
     gate: Arc<RwLock<()>>,
     spare: Spare,
     failed: Failed,
+    /// The words for what goes wrong.
+    told: fn(rusqlite::Error) -> ProjectionError,
 }
 
 /// Emptied facts that are written and that nobody reads any more.
@@ -262,7 +277,7 @@ impl Worker<'_> {
         if self.failed.get().is_none()
             && let Err(error) = work(self)
         {
-            self.failed.set(told(error));
+            self.failed.set((self.told)(error));
         }
     }
 

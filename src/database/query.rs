@@ -186,8 +186,9 @@ impl Desk {
         }
         self.look(ticket, sql, limits)?;
         let answer = self.run(sql, limits).map_err(|fault| self.told(sql, fault, limits));
-        self.look_away()?;
-        answer
+        let closed = self.look_away();
+        // What kept the statement from being answered tells more than what came of it.
+        answer.and_then(|rows| closed.map(|()| rows))
     }
 
     /// Runs statements one after the other, each with the rows and time of `limits`, all of them in `time`
@@ -224,8 +225,8 @@ impl Desk {
                 }
             }
         }
-        self.look_away().map_err(at(1))?;
-        done
+        let closed = self.look_away().map_err(at(1));
+        done.and(closed)
     }
 
     /// Fixes what the query sees: rows and blocks of the same commit, whatever is written meanwhile.
@@ -246,6 +247,10 @@ impl Desk {
 
     fn look_away(&self) -> Result<(), QueryError> {
         self.seen.see(Shelf::default());
+        // Where memory runs out, SQLite has ended the transaction by itself.
+        if self.connection.is_autocommit() {
+            return Ok(());
+        }
         self.as_desk("ROLLBACK").map_err(|error| refusal("sql_error", &error.to_string()))
     }
 
@@ -276,8 +281,15 @@ impl Desk {
         let copied = self
             .as_desk(&format!("SAVEPOINT copies; PRAGMA query_only = 0; {copies}; PRAGMA query_only = 1"));
         let answer = copied.map_err(Fault::Sqlite).and_then(|()| self.answer(reading, sql, limits));
-        self.as_desk("PRAGMA query_only = 1; ROLLBACK TO copies; RELEASE copies")?;
-        answer
+        // A copy that was stopped has taken the whole transaction with it.
+        let undo = match self.connection.is_autocommit() {
+            true => "PRAGMA query_only = 1",
+            false => "PRAGMA query_only = 1; ROLLBACK TO copies; RELEASE copies",
+        };
+        let undone = self.as_desk(undo);
+        let rows = answer?;
+        undone?;
+        Ok(rows)
     }
 
     fn answer(&self, reading: Reading, sql: &str, limits: Limits) -> Result<Rows, Fault> {
@@ -340,11 +352,16 @@ impl Desk {
     }
 
     fn told_by_sqlite(&self, sql: &str, error: &rusqlite::Error, limits: Limits) -> QueryError {
-        if error.sqlite_error_code() == Some(rusqlite::ErrorCode::OperationInterrupted) {
+        use rusqlite::ErrorCode::{OperationInterrupted, OutOfMemory};
+        if error.sqlite_error_code() == Some(OutOfMemory) {
+            // The machine has less than the limit allows.
+            return refusal("sql_timeout", TOO_MUCH_MEMORY);
+        }
+        if error.sqlite_error_code() == Some(OperationInterrupted) {
             let seconds = limits.time.as_secs();
             let message = match self.interrupt.cause() {
                 Cause::Request => CANCELLED.to_owned(),
-                Cause::Memory => "the query needs too much memory; ask for less at a time".to_owned(),
+                Cause::Memory => TOO_MUCH_MEMORY.to_owned(),
                 Cause::Time => format!("the query ran longer than {seconds} s; ask for less at a time"),
             };
             return refusal("sql_timeout", &message);
@@ -407,6 +424,8 @@ impl From<rusqlite::Error> for Fault {
         Fault::Sqlite(error)
     }
 }
+
+const TOO_MUCH_MEMORY: &str = "the query needs too much memory; ask for less at a time";
 
 const CANCELLED: &str = "the query was cancelled";
 

@@ -425,6 +425,27 @@ fn a_stop_reaches_a_query_that_has_not_begun_and_none_that_is_asked_later() {
 }
 
 #[test]
+fn a_query_that_is_stopped_while_tables_are_copied_for_it_says_so() {
+    let mut company = Company::open(Location::memory());
+    let desk = company.weeks(6);
+    let sql = "SELECT count(*) FROM issues RIGHT JOIN customers USING (customer_id)";
+    let all = one(&desk, sql);
+    let mut stopped = 0;
+    for steps in (250..60_000).step_by(1250) {
+        match desk.ask(sql, Limits { steps: Some(steps), ..LIMITS }) {
+            Ok(rows) => assert_eq!(super::query::number_at(&rows.rows[0], 0), all, "after {steps} steps"),
+            Err(error) => {
+                assert_eq!(error.code, "sql_timeout", "after {steps} steps: {}", error.message);
+                stopped += 1;
+            }
+        }
+        assert_eq!(one(&desk, "SELECT 1"), 1.0, "the desk still answers");
+        assert!(desk.ask("DELETE FROM ledger", LIMITS).is_err_and(|error| error.code == "sql_write"));
+    }
+    assert!(stopped > 0);
+}
+
+#[test]
 fn empty_results_explain_themselves() {
     let mut company = Company::open(Location::memory());
     let desk = company.weeks(1);

@@ -38,7 +38,7 @@ impl Session {
         let snapshot = usable(&witnesses, &self.manifest, &read, Some(rows));
         let (manifest, params) = (self.manifest.clone(), Arc::clone(&self.params));
         let (mut other, seen) = Session::before_replay(manifest, &folder, None, params, snapshot);
-        other.replay(&path, &read, seen, Some(database))?;
+        other.replay(&path, &read, seen, Some(database), &mut |_| {})?;
         let mended: Option<Projector> = other.projector.take();
         if let Some(projector) = &mended {
             projector.wait()?;

@@ -35,6 +35,7 @@ mod open;
 mod pace;
 mod place;
 mod playback;
+mod rebuild;
 mod record;
 mod rescue;
 mod runs;
@@ -83,6 +84,7 @@ pub use open::Access;
 pub use pace::Pace;
 pub use place::{Chapter, Goal, Place, Went};
 pub use playback::Playback;
+pub use rebuild::rebuild_database;
 pub use rescue::{Rescued, rescue};
 pub use runs::{
     RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,

@@ -55,7 +55,7 @@ impl Session {
         let snapshot = usable(&witnesses, &manifest, &trajectory, rows);
         let (mut session, seen) = Session::before_replay(manifest.clone(), folder, lock, params, snapshot);
         session.remarks.append(&mut witnesses.remarks);
-        session.replay(&path, &trajectory, seen, database)?;
+        session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
         if access == Access::Write {
             session.trajectory = Some(TrajectoryWriter::resume(&path, &trajectory)?);
         }
@@ -94,12 +94,14 @@ impl Session {
     }
 
     /// Applies every line again but those the session has seen; the database gets only what it does not have yet.
+    /// `reached` is told the day after each line.
     pub(super) fn replay(
         &mut self,
         path: &Path,
         trajectory: &Trajectory,
         seen: usize,
         database: Option<(Projector, Option<Position>)>,
+        reached: &mut dyn FnMut(u32),
     ) -> Result<(), RunError> {
         let (mut projector, projected): (Option<Projector>, _) = database.unzip();
         let projected = projected.flatten();
@@ -109,6 +111,7 @@ impl Session {
                 self.projector = projector.take();
             }
             self.apply_line(path, line)?;
+            reached(self.world.day);
         }
         if projector.is_some() {
             self.projector = projector;

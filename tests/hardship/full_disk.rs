@@ -120,6 +120,31 @@ fn an_archive_that_finds_no_room_is_not_blamed() {
 }
 
 #[test]
+fn a_query_makes_a_missing_database_anew_on_the_disk_and_changes_nothing_else() {
+    let home = Home::new();
+    let run = home.two_weeks();
+    let ask = || home.run(&["query", &id(&run), "SELECT count(*), sum(amount) FROM ledger"]);
+    let (before, trajectory) = (ask().out, bytes_of(&run, "trajectory.jsonl"));
+    for snapshot in [true, false] {
+        fs::remove_file(run.join("world.db")).expect("gone");
+        if !snapshot {
+            fs::remove_file(run.join("snapshot.bin")).expect("gone");
+        }
+        let answer = ask();
+        assert_eq!((answer.code, &answer.out), (0, &before), "{}", answer.err);
+        assert!(run.join("world.db").exists(), "the next question finds it");
+        assert_eq!(bytes_of(&run, "trajectory.jsonl"), trajectory);
+    }
+    assert_eq!(ask().out, before);
+    // Where it finds no room it is made in memory.
+    fs::remove_file(run.join("world.db")).expect("gone");
+    let program = env!("CARGO_BIN_EXE_novamind");
+    let sql = "SELECT count(*), sum(amount) FROM ledger";
+    let script = format!("trap '' XFSZ; ulimit -f 8; exec '{program}' query {} '{sql}'", id(&run));
+    assert_eq!(said(home.command("sh").args(["-c", &script]), "").out, before);
+}
+
+#[test]
 fn a_run_that_finds_no_room_at_all_does_not_begin() {
     let home = Home::new();
     let program = env!("CARGO_BIN_EXE_novamind");

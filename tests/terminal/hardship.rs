@@ -54,6 +54,18 @@ fn a_stopped_program_gives_the_terminal_back_and_takes_it_again() {
 }
 
 #[test]
+fn the_screen_is_drawn_again_on_request() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
+    terminal.wait_for("Needs you");
+    terminal.forget();
+    terminal.type_keys("\x0c");
+    terminal.wait_for("Needs you");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
 fn the_farewell_names_whose_run_goes_on() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--as", "P01", "--new"], (120, 30));

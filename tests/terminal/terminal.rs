@@ -70,6 +70,11 @@ impl Terminal {
         }
     }
 
+    /// Forgets what was on the screen, as if another program had written over it.
+    pub fn forget(&mut self) {
+        self.screen.process(b"\x1b[2J");
+    }
+
     /// Types.
     pub fn type_keys(&mut self, keys: &str) {
         self.writer.write_all(keys.as_bytes()).expect("written");

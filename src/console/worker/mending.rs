@@ -17,7 +17,7 @@ impl SessionThread {
             && let Some(problem) = session.database_failure()
         {
             self.mending = Some(Instant::now() + BETWEEN_TRIES);
-            self.say(News::DatabaseBehind(problem.to_string()));
+            self.say(News::DatabaseBehind(problem.0));
         }
     }
 

@@ -158,7 +158,7 @@ fn tidy_up_on_signals() {
         // Where signals cannot be watched they end the program as ever.
         let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]) else { return };
         std::thread::spawn(move || {
-            for signal in signals.forever() {
+            if let Some(signal) = signals.forever().next() {
                 close_workshops();
                 std::process::exit(128 + signal);
             }

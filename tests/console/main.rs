@@ -11,3 +11,4 @@ mod pictures;
 mod replay;
 mod sizes;
 mod stories;
+mod tasks;

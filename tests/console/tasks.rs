@@ -1,0 +1,224 @@
+//! Everyday tasks, key by key, in a usual and in a large window: every key does something, none is refused, and no task
+//! takes more keys than are written beside it.
+
+use std::path::Path;
+
+use novamind::session::{list_runs, verify};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use super::company::led;
+use super::harness::Console;
+
+/// Windows in which the tasks are done.
+const SIZES: [(u16, u16); 2] = [(80, 24), (120, 40)];
+
+/// Keys of the tour by step: what its texts say to press, and a statement and a sentence to type.
+const TOUR: [(&str, &str); 11] = [
+    ("What counts", "8"),
+    ("Prices", "enter enter '12' tab '25' tab '55' enter ctrl-s"),
+    ("Quotas", "down down enter enter '60k' tab '250k' tab '1.2M' enter ctrl-s"),
+    ("Leads", "down down down enter down down down enter '750' enter ctrl-s"),
+    ("Ask", "9 'SELECT_*_FROM_ledger' f5 esc 1"),
+    ("A week", "n"),
+    ("Why", "enter 'A_first_try.' enter"),
+    ("Forecasts", "f enter"),
+    ("Report", "esc"),
+    ("What is this?", "i"),
+    ("On your own", "esc n enter 'Once_more.' enter f enter"),
+];
+
+/// Keys that a task may take, letters that are typed included.
+const CHANGE_ONE_QUOTA: usize = 14;
+const RAISE_A_PRICE: usize = 7;
+const BUY_CAPACITY: usize = 3;
+const ANSWER_ALL_COMPANIES: usize = 4;
+const QUERY_CHART_EXPORT: usize = 42;
+const POST: usize = 22;
+const ORDER_A_STUDY: usize = 4;
+const UNDO_TWICE_AND_REDO: usize = 3;
+const COMPARE_TWO_RUNS: usize = 5;
+const LEAVE_AND_GO_ON: usize = 2;
+
+/// Presses keys one by one as `Console::press` does; each must change the picture and none may be refused.
+fn do_it(console: &mut Console, keys: &str, most: usize) {
+    let mut pressed = 0;
+    for word in keys.split(' ') {
+        let text = word.strip_prefix('\'').and_then(|rest| rest.strip_suffix('\''));
+        let single: Vec<String> = match text {
+            Some(text) => text.chars().map(|letter| letter.to_string()).collect(),
+            None => vec![word.to_owned()],
+        };
+        for key in single {
+            let (buffer, cursor) = (console.draw(), console.cursor);
+            console.key(&key);
+            pressed += 1;
+            if console.left.is_some() {
+                continue;
+            }
+            let after = console.draw();
+            let screen = console.screen();
+            assert!(after != buffer || console.cursor != cursor, "{key} of {keys} does nothing:\n{screen}");
+            let footer = screen.trim_end().lines().last().unwrap_or_default();
+            assert!(!footer.contains(" ! "), "{key} of {keys} is refused:\n{screen}");
+        }
+    }
+    assert!(pressed <= most, "{keys}: {pressed} keys, {most} are enough");
+}
+
+/// A setting that is in force.
+fn in_force(console: &Console, tool: &str, argument: &str) -> Value {
+    let company = &console.app.run().expect("a run").company;
+    company.settings[tool].get(argument).cloned().unwrap_or(Value::Null)
+}
+
+/// A shop that has opened, in a console that is started anew.
+fn shop(runs: &Path, size: (u16, u16)) -> Console {
+    let mut console = Console::in_new_run(runs, size);
+    console.press("8 enter enter '12' tab '25' tab '55' enter ctrl-s");
+    console.press("down down enter enter '60k' tab '250k' tab '1.2M' enter ctrl-s q");
+    drop(console);
+    Console::in_latest_run(runs, size)
+}
+
+/// A company that a policy has led, in a window.
+fn company(policy: &str, seed: u64, until: u32, size: (u16, u16)) -> (TempDir, Console) {
+    let runs = tempfile::tempdir().expect("a folder");
+    led(policy, seed, until, runs.path());
+    let console = Console::in_latest_run(runs.path(), size);
+    (runs, console)
+}
+
+#[test]
+fn the_tour_is_played_as_its_texts_say() {
+    for size in SIZES {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut console = Console::start(runs.path(), size);
+        do_it(&mut console, "enter", 1);
+        for (number, (title, keys)) in TOUR.iter().enumerate() {
+            console.shows(&format!("Tour · {} of 11 · {title}", number + 1));
+            do_it(&mut console, keys, 40);
+        }
+        console.shows("that was the tour");
+        assert_eq!(console.app.run().expect("a run").company.seen.day, 14);
+    }
+}
+
+#[test]
+fn one_quota_is_changed() {
+    for size in SIZES {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut console = shop(runs.path(), size);
+        do_it(&mut console, "8 down down enter down enter '300k' enter ctrl-s", CHANGE_ONE_QUOTA);
+        let quotas = ["A", "B", "C"].map(|plan| in_force(&console, "set_usage_quotas", plan));
+        assert_eq!(quotas, [json!(60_000), json!(300_000), json!(1_200_000)]);
+    }
+}
+
+#[test]
+fn a_price_is_raised() {
+    for size in SIZES {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut console = shop(runs.path(), size);
+        do_it(&mut console, "8 enter enter '15' enter ctrl-s", RAISE_A_PRICE);
+        assert_eq!(in_force(&console, "set_prices", "A"), json!(15));
+    }
+}
+
+#[test]
+fn capacity_is_bought_from_the_need() {
+    for size in SIZES {
+        let (_runs, mut console) = company("crisis.toml", 42, 210, size);
+        let before = in_force(&console, "set_capacity_tier", "tier");
+        do_it(&mut console, "down enter ctrl-s", BUY_CAPACITY);
+        let after = in_force(&console, "set_capacity_tier", "tier");
+        assert!(after.as_u64() > before.as_u64(), "{before} to {after}:\n{}", console.screen());
+    }
+}
+
+#[test]
+fn all_companies_are_answered() {
+    for size in SIZES {
+        let (_runs, mut console) = company("companies.toml", 3, 35, size);
+        assert!(console.app.run().expect("a run").company.seen.waiting.len() > 1);
+        do_it(&mut console, "6 a ctrl-s y", ANSWER_ALL_COMPANIES);
+        assert_eq!(console.app.run().expect("a run").company.seen.waiting.len(), 0, "{}", console.screen());
+    }
+}
+
+#[test]
+fn a_query_is_written_drawn_and_exported() {
+    for size in SIZES {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut console = shop(runs.path(), size);
+        console.week();
+        console.press("esc");
+        let keys = "9 'SELECT' _ 'day,amount' _ 'FROM' _ 'ledger' f5 esc . . e c";
+        do_it(&mut console, keys, QUERY_CHART_EXPORT);
+        let folder = console.app.run().expect("a run").company.folder.clone().expect("a folder");
+        let text = std::fs::read_to_string(folder.join("query-0001.csv"))
+            .unwrap_or_else(|problem| panic!("{problem}: {}", console.screen()));
+        assert!(text.starts_with("day,amount\n"), "{text}");
+    }
+}
+
+#[test]
+fn a_post_is_published() {
+    for size in SIZES {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut console = shop(runs.path(), size);
+        do_it(&mut console, "5 p 'Drafts,_at_once.' ctrl-s y", POST);
+        console.shows("Drafts, at once.");
+    }
+}
+
+#[test]
+fn a_study_is_ordered() {
+    for size in SIZES {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut console = shop(runs.path(), size);
+        do_it(&mut console, "7 down r y", ORDER_A_STUDY);
+        assert_eq!(console.app.run().expect("a run").company.studies.len(), 1);
+    }
+}
+
+#[test]
+fn two_changes_are_undone_and_one_redone() {
+    for size in SIZES {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut console = shop(runs.path(), size);
+        console.press("8 enter enter '15' enter ctrl-s enter enter '18' enter ctrl-s");
+        do_it(&mut console, "u u U", UNDO_TWICE_AND_REDO);
+        assert_eq!(in_force(&console, "set_prices", "A"), json!(15));
+    }
+}
+
+#[test]
+fn two_runs_are_compared() {
+    for size in SIZES {
+        let runs = tempfile::tempdir().expect("a folder");
+        led("opening.toml", 3, 14, runs.path());
+        led("companies.toml", 3, 14, runs.path());
+        let mut console = Console::start(runs.path(), size);
+        console.press("down down enter");
+        do_it(&mut console, "space space v", COMPARE_TWO_RUNS);
+        console.shows("Where they stand");
+    }
+}
+
+#[test]
+fn one_leaves_and_goes_on() {
+    for size in SIZES {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut console = shop(runs.path(), size);
+        console.week();
+        console.press("esc");
+        do_it(&mut console, "q", 1);
+        drop(console);
+        let run = list_runs(runs.path()).expect("a list").remove(0);
+        assert_eq!(verify(&runs.path().join(&run.id)).expect("an intact run").day, 7);
+        let mut console = Console::start(runs.path(), size);
+        do_it(&mut console, "c", LEAVE_AND_GO_ON - 1);
+        console.shows("day 7/500");
+    }
+}

@@ -27,7 +27,6 @@ use super::effect::Effect;
 use super::glyphs::Glyphs;
 use super::keys::{Chord, Keys};
 use super::message::Message;
-use super::preferences::Preferences;
 use super::readings::Reading;
 use super::screens::menu::Menu;
 use super::screens::{Look, Screen, ScreenId};
@@ -55,8 +54,6 @@ pub enum Order {
     Write(Vec<(PathBuf, Vec<u8>)>),
     /// Save a query: its name, its title, the statement.
     SaveQuery(Configuration, [String; 3]),
-    /// Start with this look the next time, too.
-    Remember(Configuration, Preferences),
     /// List the runs.
     ListRuns,
     /// Draw everything again.

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 
 use super::message::{Message, News};
-use super::preferences::Preferences;
 use crate::session::{Configuration, Library, library};
 
 /// Writes files on a thread of its own and reports where they are.
@@ -32,15 +31,6 @@ pub fn save_query_behind(
             Err(error) => Err(error.to_string()),
         };
         let _ = news.send(Message::News(News::QuerySaved(saved)));
-    });
-}
-
-/// Keeps how the console looks on a thread of its own; reports only what went wrong.
-pub fn remember_behind(configuration: Configuration, chosen: Preferences, news: Sender<Message>) {
-    std::thread::spawn(move || {
-        if let Err(error) = chosen.keep(&configuration) {
-            let _ = news.send(Message::News(News::Written(Err(error.to_string()))));
-        }
     });
 }
 

@@ -119,9 +119,6 @@ impl Console {
                 Order::SaveQuery(configuration, query) => {
                     files::save_query_behind(configuration, query, self.sender.clone());
                 }
-                Order::Remember(configuration, chosen) => {
-                    files::remember_behind(configuration, chosen, self.sender.clone());
-                }
                 Order::ListRuns => self.workers.send(Job::List(self.runs.clone())),
                 Order::Redraw => self.screen.clear()?,
                 Order::Mouse(taken) => self.screen.mouse(taken),

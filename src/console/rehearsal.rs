@@ -175,8 +175,10 @@ impl Rehearsal {
         for order in self.app.take_orders() {
             match order {
                 Order::Job(job) => {
-                    let silent =
-                        matches!(job, Job::NoteQuery(..) | Job::NoteView(..) | Job::GoOn(_) | Job::Hold);
+                    let silent = matches!(
+                        job,
+                        Job::NoteQuery(..) | Job::NoteView(..) | Job::GoOn(_) | Job::Hold | Job::Remember(_)
+                    );
                     self.waiting += u32::from(!silent);
                     self.workers.send(job);
                 }
@@ -198,7 +200,7 @@ impl Rehearsal {
                 }
                 Order::Copy(text) => self.copied.push(text),
                 Order::Exit(code, text) => self.left = Some((code, text)),
-                Order::CancelQuery | Order::Redraw | Order::Mouse(_) | Order::Remember(..) => {}
+                Order::CancelQuery | Order::Redraw | Order::Mouse(_) => {}
             }
         }
     }

@@ -19,6 +19,7 @@ use serde_json::Value;
 
 use super::company::Company;
 use super::message::{Instead, Message, News};
+use super::preferences::Preferences;
 use super::readings::Reading;
 use crate::database::query::Limits;
 use crate::report::{Story, as_html, as_markdown};
@@ -75,6 +76,8 @@ pub enum Job {
     Tell,
     /// Put the report of the run into words.
     Report,
+    /// Start with this look the next time, too. One after the other: what was chosen last counts.
+    Remember(Preferences),
     /// Save and close the run.
     Close,
     /// Save, close the run and end the thread.
@@ -296,6 +299,11 @@ impl SessionThread {
             Job::Hold => self.due = None,
             Job::TakeOver(mode) => self.take_over(mode),
             Job::Rescue(runs, id) => self.rescue(&runs, &id),
+            Job::Remember(chosen) => {
+                if let Err(error) = chosen.keep(&self.configuration) {
+                    self.say(News::Written(Err(error.to_string())));
+                }
+            }
             Job::Close | Job::End => {
                 let problem = self.open.as_mut().and_then(|open| open.session().save().err());
                 (self.open, self.company, self.due, self.mending) = (None, None, None, None);
@@ -433,6 +441,7 @@ impl SessionThread {
             | Job::Hold
             | Job::TakeOver(_)
             | Job::Rescue(..)
+            | Job::Remember(_)
             | Job::Close
             | Job::End => None,
         }

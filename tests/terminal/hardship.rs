@@ -53,6 +53,31 @@ fn a_stopped_program_gives_the_terminal_back_and_takes_it_again() {
     assert_eq!(terminal.end().0, 0);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_and_forgotten_once_there_is_room() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
+    terminal.wait_for("Needs you");
+    let run = std::fs::read_dir(runs.path()).expect("a folder").next().expect("a run").expect("a run").path();
+    let written = std::fs::metadata(run.join("world.db-wal")).expect("a database").len();
+    terminal.bound_files(&written.to_string());
+    terminal.type_keys("n");
+    terminal.wait_for("[1 review]");
+    terminal.type_keys("\rbecause\r");
+    terminal.wait_for("[3 forecasts]");
+    terminal.type_keys("f\r");
+    terminal.wait_for("Week 1 · day 7");
+    terminal.wait_for("The database is behind");
+    terminal.type_keys("\r3");
+    terminal.wait_for("stale");
+    terminal.bound_files("unlimited");
+    terminal.wait_for("up to date again");
+    terminal.wait_until_gone("The database is behind");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
 #[test]
 fn the_screen_is_drawn_again_on_request() {
     let runs = tempfile::tempdir().expect("a folder");

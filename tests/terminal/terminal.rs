@@ -38,7 +38,9 @@ impl Terminal {
     ) -> Terminal {
         let size = PtySize { rows, cols: columns, pixel_width: 0, pixel_height: 0 };
         let pair = native_pty_system().openpty(size).expect("a terminal");
-        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_novamind"));
+        // A file that may not grow is an error for the program, as a full disk is, and no signal.
+        let mut command = CommandBuilder::new("sh");
+        command.args(["-c", "trap '' XFSZ; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_novamind")]);
         command.args(arguments);
         command.env("NOVAMIND_RUNS", runs);
         command.env("NOVAMIND_CONFIG", runs.join("no-configuration"));
@@ -191,6 +193,15 @@ impl Terminal {
     /// Number of the process.
     pub fn process(&self) -> String {
         self.child.process_id().expect("a process").to_string()
+    }
+
+    /// Lets no file of the process grow beyond so many bytes, as a full disk does; `unlimited` makes room again.
+    #[cfg(target_os = "linux")]
+    pub fn bound_files(&self, bytes: &str) {
+        let arguments = ["--pid", &self.process(), &format!("--fsize={bytes}:")].map(str::to_owned);
+        assert!(
+            std::process::Command::new("prlimit").args(arguments).status().expect("prlimit runs").success()
+        );
     }
 
     /// Sends the process a signal, for instance `-TERM`.

@@ -18,6 +18,7 @@ use crate::console::keys::{Chord, Meaning, written};
 use crate::console::preferences::Preferences;
 use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::text::number;
+use crate::console::worker::Job;
 
 impl App {
     pub(super) fn input(&mut self, event: Event) {
@@ -299,7 +300,7 @@ impl App {
     }
 
     fn remember(&mut self, chosen: Preferences) {
-        self.orders.push(Order::Remember(self.configuration.clone(), chosen));
+        self.orders.push(Order::Job(Job::Remember(chosen)));
     }
 
     fn hand_over_mouse(&mut self) {

@@ -21,6 +21,39 @@ fn policies_end_where_the_released_simulator_ends() {
     for policy in ["P0", "P10", "P1a", "P1b", "P6", "P8"] {
         assert!(said.contains(&format!("{policy} ")), "{policy} was not compared:\n{said}");
     }
+    figures_stay_where_they_were(&said);
+}
+
+/// Standard errors by which a figure may move against the released simulator from one version to the next. The seeds are
+/// the same, so only a change of the mechanics moves it at all.
+const SWAY: f64 = 0.25;
+
+/// Compares the median deviation of every figure with that of the last release: the verdict of the laboratory allows
+/// whatever chance would do, this only what was there before.
+fn figures_stay_where_they_were(said: &str) {
+    let text = fs::read_to_string(data("medians.csv")).expect("the deviations of the last release");
+    let mut policy = "";
+    let mut own: BTreeMap<(String, String), f64> = BTreeMap::new();
+    for line in said.lines() {
+        if let Some((name, _)) = line.split_once("  ").filter(|(name, _)| !name.is_empty()) {
+            policy = name;
+        }
+        let words: Vec<&str> = line.split_whitespace().collect();
+        if let [figure, _, "cells", "median", "z", median, ..] = words[..] {
+            own.insert((policy.to_owned(), figure.to_owned()), median.parse().expect("a number"));
+        }
+    }
+    let mut moved = Vec::new();
+    for line in text.lines().skip(1) {
+        let [policy, figure, _, before] = line.split(',').collect::<Vec<_>>()[..] else { panic!("{line}") };
+        let now = own.remove(&(policy.to_owned(), figure.to_owned()));
+        let before: f64 = before.parse().expect("a number");
+        if now.is_none_or(|now| (now - before).abs() > SWAY) {
+            moved.push(format!("  {policy} {figure}: {now:?}, not {before}"));
+        }
+    }
+    assert!(own.is_empty(), "figures without a past: {own:?}");
+    assert!(moved.is_empty(), "{} figures have moved:\n{}", moved.len(), moved.join("\n"));
 }
 
 /// Figures by seed, day, name and group.

@@ -8,6 +8,7 @@
 mod home;
 
 mod edges;
+mod forged;
 mod past;
 mod settings;
 mod support;

@@ -137,3 +137,54 @@ fn every_core_setting_stands_in_its_own_column() {
         [[12.0, 25.0, 55.0, 2.0, 3.0, 4.0, 60_000.0, 250_000.0, 1_200_000.0, 200.0, 300.25, 2.0]]
     );
 }
+
+#[test]
+fn numbers_without_bounds_are_refused_by_the_run_itself() {
+    let mut session = create(Storage::Memory, &[]);
+    for (tool, arguments) in [
+        ("set_daily_spend", json!({"operations": 1e308})),
+        ("set_prices", json!({"A": 1e308})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"linkedin": {"S1": 1e308}}})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 1e308}})),
+        ("set_targeted_ops_spend", json!({"by_plan": {"A": 1e308}})),
+        ("set_promotion", json!({"by_customer": {"17": 1e308}})),
+        ("set_lead_promotion", json!({"by_channel": {"linkedin": 1e308}})),
+        ("set_usage_quotas", json!({"A": 1e308, "B": 1, "C": 1})),
+    ] {
+        let before = session.state_hash();
+        let refusal = session.call(tool, &arguments, Via::Script).expect_err(tool);
+        assert_eq!((refusal.code, session.state_hash()), ("amount_too_large", before), "{tool}");
+        let refusal = session.check(tool, &arguments).expect_err(tool);
+        assert_eq!(refusal.code, "amount_too_large", "{tool} is checked as it is called");
+    }
+    crate::week(&mut session);
+    assert!(session.observe().cash.is_finite());
+}
+
+#[test]
+fn parts_of_a_unit_of_quota_are_kept() {
+    let mut session = create(Storage::Memory, &[]);
+    call(&mut session, "set_usage_quotas", json!({"A": 59.75, "B": 250000, "C": 1.5}));
+    let row = numbers(&mut session, "SELECT quota_A, quota_B, quota_C FROM config_history");
+    assert_eq!(row, [[59.75, 250_000.0, 1.5]]);
+    assert_eq!(session.current("set_usage_quotas")["A"], 59.75);
+}
+
+#[test]
+fn tables_are_described_with_types_and_with_values_where_they_are_few() {
+    let mut session = create(Storage::Memory, &[]);
+    let described = call(&mut session, "describe_tables", json!({}));
+    for table in novamind::database::tables() {
+        let columns = &described["tables"][&table.name]["columns"];
+        for column in &table.columns {
+            let line =
+                columns[&column.name].as_str().unwrap_or_else(|| panic!("{}.{}", table.name, column.name));
+            assert!(line.starts_with(&column.kind), "{line}");
+            assert!(line.contains(&column.description), "{line}");
+            let listed: Vec<String> = column.values.iter().map(|value| format!("'{value}'")).collect();
+            assert!(line.contains(&listed.join(", ")), "{listed:?} are missing in: {line}");
+        }
+    }
+    let status = described["tables"]["subscriptions"]["columns"]["status"].to_string();
+    assert!(status.contains("one of 'lead', 'subscribed', 'cancelled', 'lost'"), "{status}");
+}

@@ -3,6 +3,7 @@
 mod behind;
 mod company;
 mod dice;
+mod figures;
 mod guide;
 mod harness;
 mod looks;

@@ -1,5 +1,7 @@
 //! Every screen and every dialog in windows of every size.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use novamind::console::glyphs::Glyphs;
 
 use super::dice::Dice;
@@ -65,19 +67,75 @@ fn console(runs: &std::path::Path) -> Console {
     Console::in_latest_run(runs, (120, 40))
 }
 
+/// Every width with a quarter of the heights and the other way round, each quarter at another place.
 fn boundaries() -> impl Iterator<Item = (u16, u16)> {
-    WIDTHS.into_iter().flat_map(|width| HEIGHTS.into_iter().map(move |height| (width, height)))
+    let all = WIDTHS.into_iter().enumerate().flat_map(|(across, width)| {
+        HEIGHTS.into_iter().enumerate().map(move |(down, height)| (across + down, (width, height)))
+    });
+    all.filter(|(at, _)| at % 4 == 0).map(|(_, size)| size)
 }
 
-/// Draws every place in windows of some sizes; what was there before is there again when the window has its size back.
+/// Windows in which nothing has to be cut: whatever is a word there is a word everywhere.
+const ROOMY: [(u16, u16); 3] = [(160, 50), (220, 60), (400, 120)];
+
+/// Words of screens, and those that end where their pane does and so may be the first half of one.
+#[derive(Default)]
+struct Words {
+    whole: BTreeSet<String>,
+    at_edges: BTreeMap<String, String>,
+}
+
+impl Words {
+    /// Reads a screen; `roomy` says that nothing is cut on it.
+    fn read(&mut self, screen: &str, width: u16, roomy: bool, place: &str) {
+        for line in screen.lines() {
+            let mut begin = 0;
+            let letters: Vec<char> = line.chars().collect();
+            while begin < letters.len() {
+                if !letters[begin].is_alphabetic() {
+                    begin += 1;
+                    continue;
+                }
+                let end = (begin..letters.len()).find(|at| !letters[*at].is_alphabetic());
+                let end = end.unwrap_or(letters.len());
+                let word: String = letters[begin..end].iter().collect();
+                let border = letters.get(end).is_some_and(|next| "│┃║▐▌█".contains(*next));
+                if roomy || !(border || end == usize::from(width)) {
+                    self.whole.insert(word);
+                } else if word.len() > 2 {
+                    self.at_edges.entry(word).or_insert_with(|| format!("{place}: {line}"));
+                }
+                begin = end;
+            }
+        }
+    }
+
+    /// Words that stand at an edge and nowhere whole.
+    fn cut(&self) -> Vec<&String> {
+        self.at_edges.iter().filter(|(word, _)| !self.whole.contains(*word)).map(|(_, line)| line).collect()
+    }
+}
+
+/// Draws every place in windows of some sizes; what was there before is there again when the window has its size back,
+/// and no word is cut in two.
 fn sweep(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
+    let mut words = Words::default();
     for (open, close) in PLACES {
         console.size = (120, 40);
         console.press(open);
         let before = console.screen();
+        // A dialog covers words of the screen below it; they are not cut.
+        let alone = !close.contains("esc");
+        for size in ROOMY {
+            console.size = size;
+            words.read(&console.screen(), size.0, true, open);
+        }
         for size in sizes() {
             console.size = size;
             let drawn = console.screen();
+            if alone && size.0 >= 60 && size.1 >= 16 {
+                words.read(&drawn, size.0, false, &format!("{open} at {size:?}"));
+            }
             if (size.0 < 60 || size.1 < 16) && size.0 > 20 && size.1 > 0 {
                 assert!(drawn.contains("NovaMind needs 60"), "{open} at {size:?}: {drawn}");
             }
@@ -86,6 +144,8 @@ fn sweep(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
         assert_eq!(console.screen(), before, "{open}");
         console.press(close);
     }
+    let cut = words.cut();
+    assert!(cut.is_empty(), "{} words are cut, for instance\n{cut:#?}", cut.len());
 }
 
 #[test]
@@ -121,12 +181,19 @@ fn the_menu_fits_every_window() {
     for keys in ["", "n"] {
         console.press(keys);
         let before = console.screen();
-        for size in boundaries() {
+        let mut words = Words::default();
+        for (size, roomy) in
+            ROOMY.map(|size| (size, true)).into_iter().chain(boundaries().map(|size| (size, false)))
+        {
             console.size = size;
-            console.draw();
+            let drawn = console.screen();
+            if size.0 >= 60 && size.1 >= 16 {
+                words.read(&drawn, size.0, roomy, &format!("menu {keys} at {size:?}"));
+            }
         }
         console.size = (80, 24);
         assert_eq!(console.screen(), before);
+        assert!(words.cut().is_empty(), "{:#?}", words.cut());
     }
 }
 

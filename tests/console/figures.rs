@@ -1,0 +1,353 @@
+//! One definition per figure: whatever stands under a name on a screen, in a plain answer, in a report or on the
+//! dashboard is what the database tells of it. A figure that is shown anew under one of these names is compared too.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use super::company::led;
+use super::harness::Console;
+
+/// A young company, one with enterprise deals, one in trouble: policy, seed, last days of weeks.
+const COMPANIES: [(&str, u64, [u32; 3]); 3] = [
+    ("opening.toml", 7, [7, 14, 28]),
+    ("companies.toml", 11, [35, 63, 84]),
+    ("crisis.toml", 5, [28, 49, 70]),
+];
+
+/// Windows whose screens are read.
+const SIZES: [(u16, u16); 2] = [(80, 24), (200, 57)];
+
+/// What is asked in plain mode, once as text and once as JSON.
+const ASKED: &str = "status\ndashboard\nneeds\ninbox\nchanges\nreport week\nreport run\n";
+
+/// A figure: the names it is shown under, `#` where the number stands if it is not the end, and what the database tells
+/// of it; `{from}` and `{to}` are the days of the week. A figure without a statement is compared with itself alone.
+struct Figure(&'static [&'static str], &'static str);
+
+/// By which share sums of the same amounts in another order may differ.
+const SUMS: f64 = 1e-12;
+
+/// Figures whose sign depends on whether they stand among costs or for themselves.
+const COSTS: [&str; 6] =
+    ["running costs", "compute", "advertising", "operations", "development", "lead costs"];
+
+const FIGURES: [Figure; 26] = [
+    Figure(&["cash", "cash at week's end", "cash is"], "SELECT sum(amount) FROM ledger"),
+    Figure(&["cash change", "cash #, of it", CASH_MOVED], "SELECT sum(amount) FROM ledger WHERE {in_week}"),
+    Figure(
+        &["subscribers", "individual subscribers", "subs"],
+        "SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) WHERE status = 'subscribed' \
+         AND customer_type = 'small'",
+    ),
+    Figure(
+        &["seats", "enterprise seats", "enterprise subscribed seats"],
+        "SELECT total(seat_count) FROM subscriptions JOIN customers USING (customer_id) WHERE status = 'subscribed' \
+         AND customer_type = 'large'",
+    ),
+    Figure(
+        &["recurring revenue"],
+        "SELECT total(effective_price * seat_count) FROM subscriptions WHERE status = 'subscribed'",
+    ),
+    Figure(
+        &["payments"],
+        "SELECT total(amount) FROM ledger WHERE category = 'subscription_payment' AND {in_week}",
+    ),
+    Figure(
+        &["running costs"],
+        "SELECT -total(amount) FROM ledger WHERE category IN \
+         ('compute', 'capacity', 'operations', 'development', 'advertising') AND {in_week}",
+    ),
+    Figure(&["compute"], "SELECT -total(amount) FROM ledger WHERE category = 'compute' AND {in_week}"),
+    Figure(
+        &["advertising"],
+        "SELECT -total(amount) FROM ledger WHERE category = 'advertising' AND {in_week}",
+    ),
+    Figure(&["operations"], "SELECT -total(amount) FROM ledger WHERE category = 'operations' AND {in_week}"),
+    Figure(
+        &["development"],
+        "SELECT -total(amount) FROM ledger WHERE category = 'development' AND {in_week}",
+    ),
+    Figure(
+        &["individual leads", "new individual leads"],
+        "SELECT count(*) FROM customers WHERE customer_type = 'small' AND created_day BETWEEN {from} AND {to}",
+    ),
+    Figure(
+        &["enterprise leads", "new enterprise leads"],
+        "SELECT count(*) FROM enterprise_turns WHERE thread_type = 'new_lead' AND turn_number = 0 \
+         AND day BETWEEN {from} AND {to}",
+    ),
+    Figure(
+        &["new subscribers", "new individual subscribers"],
+        "SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) WHERE customer_type = 'small' \
+         AND start_day BETWEEN {from} AND {to} AND status IN ('subscribed', 'cancelled')",
+    ),
+    Figure(
+        &["new seats", "new enterprise seats", "new enterprise subscribed seats"],
+        "SELECT total(seat_count) FROM subscriptions JOIN customers USING (customer_id) WHERE customer_type = 'large' \
+         AND start_day BETWEEN {from} AND {to} AND status IN ('subscribed', 'cancelled')",
+    ),
+    Figure(
+        &["cancellations"],
+        "SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) WHERE customer_type = 'small' \
+         AND status = 'cancelled' AND end_day BETWEEN {from} AND {to}",
+    ),
+    Figure(
+        &["companies lost", "enterprise lost"],
+        "SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) WHERE customer_type = 'large' \
+         AND status = 'cancelled' AND end_day BETWEEN {from} AND {to}",
+    ),
+    Figure(&["upgrades"], ""),
+    Figure(&["downgrades"], ""),
+    Figure(
+        &["usage", "usage, units"],
+        "SELECT sum(total_usage_units) FROM service_day WHERE day BETWEEN {from} AND {to}",
+    ),
+    Figure(
+        &["the busiest day used # units"],
+        "SELECT max(total_usage_units) FROM service_day WHERE day BETWEEN {from} AND {to}",
+    ),
+    Figure(
+        &["overload, peak", "overload (peak)", "overload peak"],
+        "SELECT max(max(0.0, 1.0 * total_usage_units / capacity_units - 1)) FROM service_day \
+         WHERE day BETWEEN {from} AND {to}",
+    ),
+    Figure(
+        &["outage, minutes", "outage: yes (", "downtime minutes"],
+        "SELECT total(downtime_minutes) FROM service_day WHERE day BETWEEN {from} AND {to}",
+    ),
+    Figure(
+        &["latency, peak ms", "p95 latency (peak)", "p95 ms peak"],
+        "SELECT max(p95_ms) FROM service_day WHERE day BETWEEN {from} AND {to}",
+    ),
+    Figure(
+        &["error rate, peak", "error rate (peak)", "error rate peak"],
+        "SELECT max(error_rate) FROM service_day WHERE day BETWEEN {from} AND {to}",
+    ),
+    Figure(
+        &["open issues", "issues # open"],
+        "SELECT count(DISTINCT customer_id) FROM issues JOIN subscriptions USING (customer_id) \
+         WHERE issues.status = 'open' AND subscriptions.status = 'subscribed'",
+    ),
+];
+
+/// The name of what stands behind cash: an arrow, or a parenthesis.
+const CASH_MOVED: &str = "what cash did";
+
+/// Names that tables of the product screen use for something else: seats by plan, individuals among them, and minutes of
+/// single days.
+const OF_OTHER_TABLES: [(&str, &str); 2] = [("screen 4", "seats"), ("screen 4", "outage, minutes")];
+
+/// A number as it is written, and by how much its rounding may have moved it.
+#[derive(Debug, Clone, Copy)]
+struct Written {
+    value: f64,
+    rounding: f64,
+}
+
+/// Reads a number at the beginning of a text: sign, dollars, digits, k, M, B or %. Returns what follows it.
+fn number(text: &str) -> Option<(Written, &str)> {
+    let mut rest = text;
+    let mut sign = 1.0;
+    for mark in ["▲ ", "+", "-", "−", "$", "-"] {
+        if let Some(after) = rest.strip_prefix(mark) {
+            rest = after;
+            sign *= if ["-", "−"].contains(&mark) { -1.0 } else { 1.0 };
+        }
+    }
+    let end =
+        rest.find(|letter: char| !letter.is_ascii_digit() && !",.".contains(letter)).unwrap_or(rest.len());
+    let digits = rest[..end].trim_end_matches([',', '.']);
+    let after = &rest[digits.len()..];
+    let plain = digits.replace(',', "");
+    let value: f64 = plain.parse().ok()?;
+    let decimals = plain.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let (scale, after) = match after.chars().next() {
+        Some('k') => (1e3, &after[1..]),
+        Some('M') => (1e6, &after[1..]),
+        Some('B') => (1e9, &after[1..]),
+        Some('%') => (0.01, &after[1..]),
+        _ => (1.0, after),
+    };
+    let rounding = (0..decimals).fold(0.5001 * scale, |half, _| half / 10.0);
+    Some((Written { value: sign * scale * value, rounding }, after))
+}
+
+/// The number that a name has here: behind it, or where its `#` stands.
+fn value_of(name: &str, cell: &str) -> Option<Written> {
+    let (before, after) = name.split_once('#').unwrap_or((name, ""));
+    let (before, low) = (before.trim_end(), cell.to_lowercase());
+    // Bytes of both are compared, so a letter that changes its length in small letters is left out.
+    if low.len() != cell.len() {
+        return None;
+    }
+    let mut from = 0;
+    while let Some(at) = low[from..].find(before).map(|at| at + from) {
+        from = at + before.len();
+        let own = low[..at].trim_end_matches(['*', '"']);
+        let word = own.ends_with(|letter: char| letter.is_alphanumeric() || "'-_".contains(letter));
+        let phrase =
+            own.strip_suffix(' ').is_some_and(|own| own.ends_with(|last: char| last.is_alphanumeric()));
+        if word || phrase {
+            continue;
+        }
+        let rest = cell[from..].trim_start_matches(['"', '*', ':', '|', ' ', '─']);
+        let Some((mut written, mut left)) = number(rest) else { continue };
+        if let Some((new, after)) = left.strip_prefix(" → ").and_then(number) {
+            (written, left) = (new, after);
+        }
+        // What is a day is a rate, not the figure; another name may say more of the same number.
+        let rate = [" $/day", " units/day"].iter().any(|unit| left.starts_with(unit));
+        let change = after.is_empty() && left.starts_with(", of it");
+        let ends = left.chars().next().is_none_or(|next| " ,;.|)│".contains(next));
+        if ends && !rate && !change && left.starts_with(after) {
+            return Some(written);
+        }
+    }
+    None
+}
+
+/// The change that stands behind cash, `▼ $9.86k` or `(-$9,857 over the last week)`.
+fn cash_moved(cell: &str) -> Option<Written> {
+    let cash = cell.trim().strip_prefix("cash").or_else(|| cell.trim().strip_prefix("Cash"))?;
+    let cash = cash.strip_prefix(" at week's end").unwrap_or(cash);
+    let (_, rest) = number(cash.trim_start_matches([' ', '─']))?;
+    let rest = rest.trim_start();
+    let fell = rest.strip_prefix("▼ ");
+    let (written, _) = number(fell.or(rest.strip_prefix("▲ ")).or(rest.strip_prefix('('))?)?;
+    Some(if fell.is_some() { Written { value: -written.value, ..written } } else { written })
+}
+
+/// Parts of a line that stand for themselves; what the top line says of cash is one of them.
+fn cells(part: &str) -> impl Iterator<Item = &str> {
+    let at = part.find("   cash ").unwrap_or(0);
+    [&part[..at], &part[at..]].into_iter().flat_map(|part| part.split(" | "))
+}
+
+/// Everything that a text shows: figure, number, and the line it stands in.
+fn shown(text: &str) -> Vec<(usize, Written, String)> {
+    let mut found = Vec::new();
+    for line in text.lines() {
+        // Behind it stand the changes of a figure's parts, not the parts.
+        let line = line.split(';').next().unwrap_or_default();
+        for cell in line.split(['│', '┌', '┐', '└', '·']).flat_map(cells) {
+            for (figure, Figure(names, _)) in FIGURES.iter().enumerate() {
+                let own = names.iter().filter_map(|name| match *name {
+                    CASH_MOVED => cash_moved(cell),
+                    name => value_of(name, cell),
+                });
+                found.extend(own.map(|written| (figure, written, cell.trim().to_owned())));
+            }
+        }
+    }
+    found
+}
+
+/// What plain mode says.
+fn plain(runs: &Path, options: &[&str], lines: &str) -> String {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_novamind"))
+        .env("NOVAMIND_RUNS", runs)
+        .env("NOVAMIND_CONFIG", runs.join("configuration"))
+        .args(["play", "--plain", "--run", "latest"])
+        .args(options)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    child.stdin.take().expect("a pipe").write_all(lines.as_bytes()).expect("it reads");
+    let output = child.wait_with_output().expect("it ends");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// What the database tells of every figure; none where no statement does.
+fn told(runs: &Path, day: u32) -> Vec<Option<f64>> {
+    let in_week = novamind::session::entries_of_weeks(day.div_ceil(7), day.div_ceil(7));
+    let statement = |sql: &str| {
+        let sql = sql.replace("{in_week}", &in_week);
+        sql.replace("{from}", &(day - 6).to_string()).replace("{to}", &day.to_string())
+    };
+    let asked: Vec<String> =
+        FIGURES.iter().filter(|figure| !figure.1.is_empty()).map(|figure| statement(figure.1)).collect();
+    let lines: String = asked.iter().map(|sql| format!("sql {sql}\n")).collect();
+    let text = plain(runs, &["--json"], &lines);
+    let answers = text.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON"));
+    let mut rows = answers.filter_map(|answer| {
+        let row = answer.pointer("/data/rows/0")?.as_object()?;
+        Some(row.values().next()?.as_f64().unwrap_or(0.0))
+    });
+    let next =
+        |figure: &Figure| (!figure.1.is_empty()).then(|| rows.next().unwrap_or_else(|| panic!("{text}")));
+    FIGURES.iter().map(next).collect()
+}
+
+/// Everything that is shown of a company: where, and the text.
+fn surfaces(runs: &Path) -> Vec<(String, String)> {
+    let mut all = vec![("plain".to_owned(), plain(runs, &[], ASKED))];
+    let json = plain(runs, &["--json"], "status\n");
+    all.push(("JSON".to_owned(), json.replace(",\"", "\n\"").replace('_', " ")));
+    for size in SIZES {
+        let mut console = Console::in_latest_run(runs, size);
+        for key in ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0"] {
+            console.press(key);
+            all.push((format!("screen {key} at {size:?}"), console.screen()));
+        }
+    }
+    all
+}
+
+#[test]
+fn what_has_one_name_is_one_figure() {
+    let mut places: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut wrong = Vec::new();
+    for (policy, seed, days) in COMPANIES {
+        for day in days {
+            let runs = tempfile::tempdir().expect("a folder");
+            led(policy, seed, day, runs.path());
+            let told = told(runs.path(), day);
+            let mut first: BTreeMap<usize, Written> = BTreeMap::new();
+            for (place, text) in surfaces(runs.path()) {
+                for (figure, written, line) in shown(&text) {
+                    let other =
+                        |(table, name): &(&str, &str)| place.starts_with(table) && line.starts_with(name);
+                    if OF_OTHER_TABLES.iter().any(other) {
+                        continue;
+                    }
+                    *places.entry(figure).or_default() += 1;
+                    let cost = COSTS.contains(&FIGURES[figure].0[0]);
+                    let sign = |value: f64| if cost { value.abs() } else { value };
+                    let other = *first.entry(figure).or_insert(written);
+                    let (should, leeway) = match told[figure] {
+                        Some(value) => (value, 0.0),
+                        None => (other.value, other.rounding),
+                    };
+                    if (sign(written.value) - sign(should)).abs()
+                        > written.rounding + leeway + SUMS * should.abs()
+                    {
+                        wrong.push(format!("{policy} day {day}, {place}: {line:?}; it is {should}"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    for (figure, Figure(names, _)) in FIGURES.iter().enumerate() {
+        let count = places.get(&figure).copied().unwrap_or(0);
+        assert!(count > 1, "{names:?} is compared in {count} places");
+    }
+}
+
+#[test]
+fn figures_are_read_where_they_stand() {
+    let of = |text: &str| -> Vec<(&str, f64)> {
+        let named = |(figure, written, _): (usize, Written, String)| (FIGURES[figure].0[0], written.value);
+        shown(text).into_iter().map(named).collect()
+    };
+    let top = " NovaMind  day 49/84 · wk 7/12   cash $952k ▼ $9.86k   runway ∞";
+    assert_eq!(of(top), [("cash", 952_000.0), ("cash change", -9_860.0)]);
+    assert_eq!(of("┌ Cash ───── $952,425 ▲ $9 ┐"), [("cash", 952_425.0), ("cash change", 9.0)]);
+    assert_eq!(of("cash $9 (-$7 over the last week)"), [("cash", 9.0), ("cash change", -7.0)]);
+    assert_eq!(of("subscribers 65 → 150; of it 7"), [("subscribers", 150.0)]);
+    assert_eq!(of("New Individual Subscribers: 3"), [("new subscribers", 3.0)]);
+    assert_eq!(of("operations: 0 → 100 $/day · cash lasts 12 weeks"), []);
+}

@@ -27,14 +27,27 @@ pub fn grouped(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Money without cents, as dashboards and refusals show it: `$1,234,568`, negative `$-1,234`.
+/// Money without cents: `$1,234,568`, `-$1,234`.
 pub fn dollars(value: f64) -> String {
-    format!("${}", grouped(value, 0))
+    signed(value, 0)
 }
 
-/// Money with cents: `$1,234.50`.
+/// Money with cents: `$1,234.50`, `-$0.50`.
 pub fn cents(value: f64) -> String {
-    format!("${}", grouped(value, 2))
+    signed(value, 2)
+}
+
+/// Money with its sign before the dollar; what rounds to nothing has none.
+fn signed(value: f64, decimals: usize) -> String {
+    let text = grouped(value.abs(), decimals);
+    let nothing = text.chars().all(|letter| matches!(letter, '0' | '.'));
+    let sign = if value < 0.0 && !nothing { "-" } else { "" };
+    format!("{sign}${text}")
+}
+
+/// Money as the weekly dashboard of the released simulator writes it: negative `$-1,234`.
+pub fn released_dollars(value: f64) -> String {
+    format!("${}", grouped(value, 0))
 }
 
 /// Money with its sign in front, for changes: `+$45,210`, `-$45,210`.
@@ -175,8 +188,12 @@ mod tests {
             (-0.4, "$-0"),
             (-2095.0, "$-2,095"),
         ] {
-            assert_eq!(dollars(value), text);
+            assert_eq!(released_dollars(value), text);
         }
+        assert_eq!(
+            [dollars(-2095.0), dollars(-0.4), cents(-0.5), cents(-0.001)],
+            ["-$2,095", "$0", "-$0.50", "$0.00"]
+        );
         assert_eq!(percent(0.12345, 1), "12.3%");
         assert_eq!(percent(0.012345, 2), "1.23%");
         assert_eq!(percent(0.00474, 2), "0.47%");

@@ -179,7 +179,7 @@ fn a_run_is_left_continued_finished_and_replayed() {
     let (said, code) = play(runs.path(), &["--run", "latest"], lines);
     assert_eq!(code, 0);
     assert!(said.starts_with(&format!("run {id} · seed 3 · day 7 of 17")));
-    assert!(said.contains("taken back\n"));
+    assert!(said.contains("undone\n"));
     assert!(said.contains("week 3 done · day 17") && said.contains("run ended: horizon · day 17 · score $"));
     assert!(said.contains("refused run_over: ") && said.contains("\n12\n(1 row)"));
     let replay = program(runs.path()).args(["replay", &id, "--verify"]).output().expect("it runs");
@@ -278,7 +278,7 @@ fn words_are_explained() {
         "Delivered quality (product)\n",
         "\n  churn ",
         "set_prices.A (argument of set_prices)",
-        "error usage: there is nothing called nonsens",
+        "error usage: unknown term nonsens",
         "explain TERM ",
     ] {
         assert!(said.contains(part), "{part} is missing in\n{said}");
@@ -311,7 +311,7 @@ fn weeks_and_runs_are_told() {
     let lines = "report\nset_prices A=12 B=25 C=55\nnext \"if it sells, more\" naive\nreport\nreport run\nreport never\n";
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], lines);
     for part in [
-        "> report\nrefused no_week_yet: no week has passed yet; next lets one pass\n",
+        "> report\nrefused no_week_yet: no week has run yet; next runs one\n",
         "> report\nweek to day 7: cash -$",
         "capacity -$",
         "decided before it: price A: 0 → 12 $/month",
@@ -320,7 +320,7 @@ fn weeks_and_runs_are_told() {
         "> report run\n# NovaMind · run ",
         "price A: 0 → 12 $/month",
         "“if it sells, more”",
-        "error usage: report tells of a week or of the run",
+        "error usage: report takes week or run",
     ] {
         assert!(said.contains(part), "{part} is missing in\n{said}");
     }

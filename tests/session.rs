@@ -231,11 +231,7 @@ fn what_can_be_undone_and_redone_survives_leaving() {
 fn purchases_of_a_decision_day_count_in_the_week_they_open() {
     let mut session = create(new_run(Storage::Memory));
     call(&mut session, "research_market", json!({}));
-    assert_eq!(
-        (session.observe().cash_change, session.observe().cash),
-        (0.0, 975_000.0),
-        "no week has passed"
-    );
+    assert_eq!((session.observe().cash_change, session.observe().cash), (0.0, 975_000.0), "no week yet");
     week(&mut session);
     let seen = session.observe();
     let week_figures = seen.last_week.expect("a week");

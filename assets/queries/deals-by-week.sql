@@ -1,5 +1,5 @@
 -- title: Deals by week
--- what: Talks that began and deals that were made, week by week, and the price that was agreed.
+-- what: Threads opened and deals made by week, with the agreed price.
 -- chart: line week began deals
 SELECT (day + 6) / 7 AS week, sum(turn_number = 0) AS began,
     sum(close_reason = 'accepted' AND sender = 'customer') AS deals,

@@ -1,5 +1,5 @@
 -- title: Record of forecasts
--- what: For each horizon, the share of outcomes inside your interval (95 in 100 is right) and how wide it was.
+-- what: For each horizon, the share of outcomes inside your interval (the aim is 95 %) and how wide it was.
 -- chart: bar horizon inside_percent
 WITH cash AS (
     SELECT day, sum(sum(amount)) OVER (ORDER BY day) AS cash

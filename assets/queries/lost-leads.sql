@@ -1,5 +1,5 @@
--- title: Leads that came to nothing
--- what: Of the leads of the last four weeks, how many signed, left without signing, or still think, by group.
+-- title: Lost leads
+-- what: Of the leads of the last four weeks, how many signed, left without signing, or are still deciding, by group.
 -- chart: bar group_id lost
 SELECT c.group_id, count(*) AS leads, sum(s.status IN ('subscribed', 'cancelled')) AS signed,
     sum(s.status = 'lost') AS lost, sum(s.status = 'lead') AS undecided,

@@ -58,7 +58,7 @@ fn report_of(folder: &Path, format: Format) -> Result<String, Failure> {
         Format::Markdown => told(as_markdown),
         Format::Html => told(as_html),
         Format::Json => Err(Failure::usage(
-            "a report is told as markdown or html; --session has json, and `novamind query` the figures",
+            "a report is markdown or html; --session has json, and `novamind query` the figures",
         )),
     }
 }

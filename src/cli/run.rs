@@ -85,7 +85,7 @@ pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
         None => number(text).map(|seed| Seeds { first: seed, last: seed })?,
     };
     if seeds.first > seeds.last {
-        return Err(format!("{}..{} holds no seed; write the smaller end first", seeds.first, seeds.last));
+        return Err(format!("{}..{} holds no seed; put the smaller number first", seeds.first, seeds.last));
     }
     Ok(seeds)
 }

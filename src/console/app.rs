@@ -285,6 +285,11 @@ impl App {
         }
     }
 
+    /// Whether the person waits for the answer to a query.
+    pub fn is_asking(&self) -> bool {
+        self.run().is_some_and(|run| run.screens.sql.is_running())
+    }
+
     /// Scopes of the place that has the focus, the innermost first.
     pub fn scopes(&self) -> Vec<Scope> {
         let mut scopes = match (self.layers.last(), &self.stage) {
@@ -344,7 +349,7 @@ impl App {
                 self.orders.push(Order::ListRuns);
                 match problem {
                     Some(problem) => self.complain(problem),
-                    None if was_replay => self.say("the replay is closed; nothing was changed"),
+                    None if was_replay => self.say("replay closed; nothing changed"),
                     None => self.say("the run is saved"),
                 }
                 return;
@@ -396,7 +401,7 @@ impl App {
                 self.move_to(screen);
                 self.load();
             }
-            None => self.complain("there is no screen before this one"),
+            None => self.complain("nothing to go back to"),
         }
     }
 
@@ -408,7 +413,7 @@ impl App {
                 self.move_to(screen);
                 self.load();
             }
-            None => self.complain("no screen was left with back"),
+            None => self.complain("nothing to go forward to"),
         }
     }
 

@@ -192,23 +192,30 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
     canvas.aligned(Rect { x: row.right() - width, width, ..row }, &state, Role::Title, Align::Right);
 }
 
+/// Writes a tab: key, title and badge of a screen, and whether it is the one that is shown.
+type Way = fn(&str, &str, &str, bool) -> String;
+
 fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
-    // The first way in which every screen has its tab; the last one if none has.
-    let ways: [fn(&str, &str, &str) -> String; 3] = [
-        |key, title, badge| format!(" {key} {title}{badge} "),
-        |key, title, badge| format!(" {key} {title}{badge}"),
-        |key, title, badge| format!(" {key} {}{badge}", short(title)),
+    // The first way in which every screen has its tab; the last one if none has. Only the screen that is shown keeps
+    // its name in the narrowest windows.
+    let ways: [Way; 4] = [
+        |key, title, badge, _| format!(" {key} {title}{badge} "),
+        |key, title, badge, _| format!(" {key} {title}{badge}"),
+        |key, title, badge, _| format!(" {key} {}{badge}", short(title)),
+        |key, title, badge, here| {
+            if here { format!(" {key} {title} ") } else { format!(" {key}{}", badge.trim()) }
+        },
     ];
-    let texts = |way: &fn(&str, &str, &str) -> String| {
+    let texts = |way: &Way| {
         ScreenId::ALL.map(|screen| {
             let key = app.keys.label(screen.action()).unwrap_or_default();
-            way(&key, screen.action().entry().title, &badge(run, screen))
+            way(&key, screen.action().entry().title, &badge(run, screen), screen == run.here)
         })
     };
     let fits = |texts: &[String; ScreenId::ALL.len()]| {
         texts.iter().map(|text| text.width()).sum::<usize>() <= row.width as usize
     };
-    let fitting = ways.iter().map(texts).find(fits).unwrap_or_else(|| texts(&ways[2]));
+    let fitting = ways.iter().map(texts).find(fits).unwrap_or_else(|| texts(&ways[3]));
     let mut x = row.x;
     for (screen, text) in ScreenId::ALL.into_iter().zip(fitting) {
         let width = text.width() as u16;
@@ -258,7 +265,8 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
         (None, Some(note)) => Some((note.text.clone(), Role::Good)),
         (None, None) => None,
     };
-    let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 2).min(row.width);
+    // Two blanks before a message and one after it.
+    let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 3).min(row.width);
     let mut x = row.x + 1;
     for action in actions_shown(app) {
         let Some(key) = app.keys.label(action) else { continue };
@@ -274,7 +282,7 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
         x += width + 3;
     }
     if let Some((text, role)) = right {
-        let place = Rect { x: row.right() - taken, width: taken, ..row };
+        let place = Rect { x: row.right() - taken + 2.min(taken), width: taken.saturating_sub(2), ..row };
         canvas.text(place, &text, role);
     }
 }

@@ -36,13 +36,19 @@ pub mod widgets;
 pub mod worker;
 
 use std::io;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
 
 use app::{App, Order, Settings, Stage};
 use effect::Effect;
 use message::Message;
 use terminal::Screen;
 use worker::{Job, Workers};
+
+/// How often a frame is drawn while only time passes.
+const BETWEEN_SECONDS: Duration = Duration::from_millis(500);
+/// How long is waited for a message when nothing on the screen depends on the time.
+const FOREVER: Duration = Duration::from_secs(3600);
 
 /// Runs the console; returns the exit code and what to print on the way out.
 ///
@@ -82,8 +88,13 @@ impl Console {
                 return Ok(end);
             }
             self.screen.draw(&mut self.app)?;
-            let Ok(message) = self.messages.recv() else { return Ok((1, None)) };
-            self.hear(message)?;
+            // A query that is being answered shows how long it has taken.
+            let patience = if self.app.is_asking() { BETWEEN_SECONDS } else { FOREVER };
+            match self.messages.recv_timeout(patience) {
+                Ok(message) => self.hear(message)?,
+                Err(RecvTimeoutError::Timeout) => continue,
+                Err(RecvTimeoutError::Disconnected) => return Ok((1, None)),
+            }
             // Everything that has arrived meanwhile is drawn once.
             while let Ok(message) = self.messages.try_recv() {
                 self.hear(message)?;

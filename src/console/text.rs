@@ -4,6 +4,7 @@ use unicode_width::UnicodeWidthStr;
 
 use crate::notation::grouped;
 pub use crate::notation::short_dollars;
+use crate::report;
 
 /// Text in lines of at most a width, broken between words where that is possible.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
@@ -51,6 +52,11 @@ pub fn arrow(change: f64, shown: &str) -> String {
     }
 }
 
+/// A count with its noun: `1 seat`, `1,200 seats`.
+pub fn count(number: f64, noun: &str) -> String {
+    report::count(number.clamp(0.0, f64::from(u32::MAX)) as u32, noun)
+}
+
 /// A number with as many decimals as it needs, at most two.
 pub fn number(value: f64) -> String {
     // A sum over nothing is minus zero.
@@ -78,6 +84,14 @@ pub fn flowed(pieces: &[String], width: usize) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_is_singular() {
+        assert_eq!(
+            [count(1.0, "seat"), count(0.0, "seat"), count(1204.0, "seat")],
+            ["1 seat", "0 seats", "1,204 seats"]
+        );
+    }
 
     #[test]
     fn lines_break_between_words_and_long_words_in_themselves() {

@@ -166,6 +166,12 @@ impl Theme {
         Ok(Theme { name: name.to_owned(), looks })
     }
 
+    /// Whether so many series can be told apart by colour alone.
+    pub fn colours_apart(&self, count: usize) -> bool {
+        let colours = || (0..count).map(|number| self.style(Role::Series(number)).fg);
+        colours().enumerate().all(|(at, own)| own.is_some() && colours().take(at).all(|other| other != own))
+    }
+
     /// The style of a meaning.
     pub fn style(&self, role: Role) -> Style {
         let looks = &self.looks;
@@ -210,6 +216,15 @@ mod tests {
         let mono = Theme::find("mono", &Configuration::shipped()).expect("mono");
         for role in [Role::Bad, Role::Selection, Role::Series(3), Role::TabHere] {
             assert_eq!((mono.style(role).fg, mono.style(role).bg), (None, None));
+        }
+        assert!(!mono.colours_apart(2));
+        // Colour 8 is the background on many palettes: no words stand in it.
+        for name in ["dark", "light"] {
+            let theme = Theme::find(name, &Configuration::shipped()).expect(name);
+            for role in [Role::Text, Role::Dim, Role::Tab, Role::Key, Role::Header, Role::Comment] {
+                assert_ne!(theme.style(role).fg, Some(Color::DarkGray), "{name} {role:?}");
+            }
+            assert!(theme.colours_apart(12), "{name}: one colour a category");
         }
         let problem = Theme::find("pink", &Configuration::shipped()).expect_err("no theme");
         assert!(problem.contains("dark, light, high-contrast, mono"), "{problem}");

@@ -270,10 +270,7 @@ impl SessionThread {
             }
             Job::EndRun(runs, id) => {
                 let done = end_run(&runs, &id).map_err(|error| error.to_string());
-                self.say_kept(
-                    &runs,
-                    done.map(|()| format!("run {id} is given up; it can still be looked at")),
-                );
+                self.say_kept(&runs, done.map(|()| format!("run {id} is given up; you can still open it")));
             }
             Job::DeleteRun(runs, id) => {
                 let done = delete_run(&runs, &id).map_err(|error| error.to_string());

@@ -26,30 +26,27 @@ use crate::tools::{self, Kind, Module, Tool};
 const COMMANDS: [(&str, &str); 25] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("queries", "queries [NAME]           the library of queries, or the answer to one of them"),
-    ("next", "next \"WHY\" naive          file a rationale and forecasts, let a week pass (also: next-week)"),
+    ("next", "next \"WHY\" naive          file a rationale and forecasts, run a week (also: next-week)"),
     ("dashboard", "dashboard                the dashboard of the last week"),
     ("status", "status                   run, day, cash, runway, subscribers and what waits"),
     ("inbox", "inbox                    threads that wait for an answer"),
     (
         "needs",
-        "needs                    what needs you, ranked by the money at risk, with the call that would mend it",
+        "needs                    what needs you, ranked by money at risk, with the call that addresses it",
     ),
     ("changes", "changes                  settings changed since the last week"),
-    ("undo", "undo                     take the last setting of this week back"),
-    ("redo", "redo                     set again what undo took back"),
+    ("undo", "undo                     undo the last setting of this week"),
+    ("redo", "redo                     redo what undo reverted"),
     ("history", "history [N]              the last N confirmed actions and weeks (20)"),
-    (
-        "report",
-        "report [week|run]        what the last week changed and why it may have; or the whole run told",
-    ),
+    ("report", "report [week|run]        what changed in the last week; or the story of the run"),
     ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
     ("tools", "tools [NAME]             the tools, or one of them"),
     ("tables", "tables [NAME]            the tables, or one of them"),
     ("explain", "explain TERM             what a term, tool, argument, table or column means (also: what)"),
     ("glossary", "glossary [WORD]          every term in a line, or those with a word"),
-    ("vars", "vars                     the current day, as get_vars tells it"),
-    ("branch", "branch WEEK              go on in a branch from the start of that week"),
-    ("step", "step [DAYS]              debug: let single days pass (1)"),
+    ("vars", "vars                     the current day, as get_vars returns it"),
+    ("branch", "branch WEEK              continue in a branch from the start of that week"),
+    ("step", "step [DAYS]              debug: run single days (1)"),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),
     ("quit", "quit                     leave; everything confirmed is saved (also: exit)"),
     ("query", ""),
@@ -224,14 +221,14 @@ impl Desk {
 
     fn undo(&mut self) -> Answer {
         match self.session.undo(Via::Plain) {
-            Ok(back) => Answer::done("undo", in_words("taken back", &back), json!({ "taken_back": back })),
+            Ok(back) => Answer::done("undo", in_words("undone", &back), json!({ "taken_back": back })),
             Err(refusal) => Answer::refused("undo", refusal),
         }
     }
 
     fn redo(&mut self) -> Answer {
         match self.session.redo(Via::Plain) {
-            Ok(again) => Answer::done("redo", in_words("set again", &again), json!({ "set_again": again })),
+            Ok(again) => Answer::done("redo", in_words("redone", &again), json!({ "set_again": again })),
             Err(refusal) => Answer::refused("redo", refusal),
         }
     }

@@ -32,7 +32,7 @@ pub fn highlights(
     }
     if let Some((day, _)) = outages.last().filter(|_| outages.len() > OUTAGES_TOLD) {
         let more = count((outages.len() - OUTAGES_TOLD) as u32, "more outage");
-        add(*day, format!("the last of {more}"));
+        add(*day, format!("last of {more}"));
     }
     let last = cash_by_day.len().saturating_sub(1) as u32;
     if ended == Some(Ended::Bankruptcy) {
@@ -52,10 +52,10 @@ fn firsts(weeks: &[WeekFigures], add: &mut impl FnMut(u32, String)) {
     }
     if let Some(week) = first(|week| week.enterprise_seats > 0) {
         let seats = count(week.enterprise_seats, "seat");
-        add(week.day, format!("the first company has signed: {seats}"));
+        add(week.day, format!("first company signed: {seats}"));
     }
     if let Some(week) = first(|week| week.cash_change > 0.0) {
-        add(week.day, format!("the first week that earned money: {}", signed_dollars(week.cash_change)));
+        add(week.day, format!("first profitable week: {}", signed_dollars(week.cash_change)));
     }
 }
 
@@ -68,10 +68,10 @@ fn extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32
         let whole = weeks.iter().map(|week| week.days_run).max();
         let complete = weeks.iter().filter(|week| Some(week.days_run) == whole);
         if let Some(best) = complete.max_by(by_change) {
-            add(best.day, format!("the best week for cash: {}", signed_dollars(best.cash_change)));
+            add(best.day, format!("best week for cash: {}", signed_dollars(best.cash_change)));
         }
         if let Some(worst) = weeks.iter().min_by(by_change) {
-            add(worst.day, format!("the worst week for cash: {}", signed_dollars(worst.cash_change)));
+            add(worst.day, format!("worst week for cash: {}", signed_dollars(worst.cash_change)));
         }
     }
     let peak = |figure: fn(&WeekFigures) -> u32| {
@@ -79,19 +79,19 @@ fn extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32
         weeks.iter().rev().max_by_key(|week| figure(week)).filter(|week| figure(week) > 0)
     };
     if let Some(week) = peak(|week| week.individual_subscribers) {
-        add(week.day, format!("most subscribers: {}", whole(f64::from(week.individual_subscribers))));
+        add(week.day, format!("peak subscribers: {}", whole(f64::from(week.individual_subscribers))));
     }
     if let Some(week) = peak(|week| week.enterprise_seats) {
-        add(week.day, format!("most enterprise seats: {}", whole(f64::from(week.enterprise_seats))));
+        add(week.day, format!("peak enterprise seats: {}", whole(f64::from(week.enterprise_seats))));
     }
     let days = cash_by_day.iter().enumerate();
     let most = days.clone().rev().max_by(|left, right| left.1.total_cmp(right.1));
     if let Some((day, cash)) = most.filter(|(day, _)| *day > 0) {
-        add(day as u32, format!("most cash: {}", money(*cash)));
+        add(day as u32, format!("peak cash: {}", money(*cash)));
     }
     let least = days.min_by(|left, right| left.1.total_cmp(right.1));
     if let Some((day, cash)) = least.filter(|(day, cash)| *day > 0 && **cash >= 0.0) {
-        add(day as u32, format!("least cash: {}", money(*cash)));
+        add(day as u32, format!("lowest cash: {}", money(*cash)));
     }
 }
 
@@ -126,14 +126,14 @@ mod tests {
                 "9 outage of 10 minutes",
                 "10 outage of 20 minutes",
                 "14 first subscribers: 30 that week",
-                "14 the first week that earned money: +$20",
-                "14 most subscribers: 30",
-                "21 the first company has signed: 12 seats",
-                "21 the best week for cash: +$90",
-                "21 most enterprise seats: 12",
-                "21 most cash: $160",
-                "25 the last of 2 more outages",
-                "28 the worst week for cash: -$200",
+                "14 first profitable week: +$20",
+                "14 peak subscribers: 30",
+                "21 first company signed: 12 seats",
+                "21 best week for cash: +$90",
+                "21 peak enterprise seats: 12",
+                "21 peak cash: $160",
+                "25 last of 2 more outages",
+                "28 worst week for cash: -$200",
                 "28 bankrupt",
             ]
         );
@@ -145,7 +145,7 @@ mod tests {
         let cut_short = WeekFigures { days_run: 2, ..week(23, 0, 0, -10.0) };
         let weeks = [week(7, 0, 0, -50.0), week(14, 0, 0, -40.0), week(21, 0, 0, -60.0), cut_short];
         let told = highlights(&weeks, &[100.0; 24], &[], Some(Ended::Bankruptcy));
-        let best = told.iter().find(|one| one.text.contains("the best week")).expect("it is told");
-        assert_eq!((best.day, best.text.as_str()), (14, "the best week for cash: -$40"));
+        let best = told.iter().find(|one| one.text.contains("best week")).expect("it is told");
+        assert_eq!((best.day, best.text.as_str()), (14, "best week for cash: -$40"));
     }
 }

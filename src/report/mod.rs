@@ -29,7 +29,7 @@ mod words;
 pub use logbook::Logbook;
 pub use story::Story;
 pub use week::WeekReport;
-pub use words::category_name;
+pub use words::{category_name, count};
 
 /// The report of a run as Markdown.
 pub fn as_markdown(story: &Story) -> String {

@@ -103,13 +103,13 @@ fn rank_in_words(story: &Story) -> String {
 fn ruined(ruin: &Ruin) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("How it ended")];
     blocks.push(Block::Text(format!(
-        "On day {} cash fell below zero, and that ends the company. {}",
+        "Cash fell below zero on day {}, which ended the company. {}",
         ruin.day,
         ruin.turned.join(" ")
     )));
     if !ruin.costs.is_empty() {
         let most = ruin.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
-        blocks.push(Block::Text("What the money went to:".to_owned()));
+        blocks.push(Block::Text("Where the money went:".to_owned()));
         let bar = |cost: &super::turn::Cost| Bar {
             name: cost.name.to_owned(),
             shown: format!("{} · {}", money(cost.dollars), percent(cost.share, 0)),
@@ -201,7 +201,7 @@ fn customers(story: &Story) -> Vec<Block> {
         }));
     }
     if blocks.len() == before {
-        blocks.push(Block::Text("Nobody has come yet.".to_owned()));
+        blocks.push(Block::Text("No customers yet.".to_owned()));
     }
     blocks
 }
@@ -233,7 +233,7 @@ fn forecasts(story: &Story) -> Vec<Block> {
         rows: scored.iter().map(row).collect(),
     }));
     blocks.push(Block::Note(
-        "Inside: how often the 95 % interval held what came; 95 % is the aim. Miss and width are relative to what came."
+        "Inside: how often the outcome fell within the 95 % interval; the aim is 95 %. Miss and width are relative to the outcome."
             .to_owned(),
     ));
     let (naive, all) = story.measures.filled_naively;

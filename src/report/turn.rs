@@ -49,25 +49,25 @@ pub fn turned(weeks: &[WeekFigures]) -> Vec<String> {
     };
     let people = |week: &WeekFigures| f64::from(week.individual_subscribers);
     match high(people).filter(|week| people(week) > 0.0) {
-        None => told.push("Nobody ever subscribed: all of the money went out and none came in.".to_owned()),
+        None => told.push("Nobody ever subscribed: there were costs and no income.".to_owned()),
         Some(top) if top.day < last.day => told.push(format!(
-            "Subscribers were most on day {}: {}; at the end there were {}.",
-            top.day,
+            "Peak: {} subscribers on day {}; {} at the end.",
             whole(people(top)),
+            top.day,
             whole(people(last))
         )),
         Some(top) => told.push(format!("Subscribers still grew at the end: {}.", whole(people(top)))),
     }
     if let Some(week) = weeks.iter().rev().find(|week| week.cash_change > 0.0) {
-        told.push(format!("The last week that earned money ended on day {}.", week.day));
+        told.push(format!("The last profitable week ended on day {}.", week.day));
     } else {
-        told.push("No week earned money.".to_owned());
+        told.push("No week was profitable.".to_owned());
     }
     let recent = &weeks[weeks.len().saturating_sub(4)..];
     let mean = |figure: fn(&WeekFigures) -> f64| recent.iter().map(figure).sum::<f64>() / recent.len() as f64;
     let (income, costs) = (mean(|week| week.payments), mean(|week| week.costs));
     told.push(format!(
-        "In the last {} weeks {} a week came in and running costs took {}.",
+        "In the last {} weeks, income was {} a week and running costs {}.",
         recent.len(),
         money(income),
         money(costs)
@@ -75,7 +75,7 @@ pub fn turned(weeks: &[WeekFigures]) -> Vec<String> {
     let outgrown = weeks.iter().find(|week| week.cancellations > week.new_individual_subscribers);
     if let Some(week) = outgrown.filter(|week| week.cancellations > 20) {
         told.push(format!(
-            "In the week to day {} for the first time more people left ({}) than came ({}).",
+            "In the week to day {}, more people left ({}) than joined ({}) for the first time.",
             week.day,
             whole(f64::from(week.cancellations)),
             whole(f64::from(week.new_individual_subscribers))
@@ -127,10 +127,10 @@ mod tests {
         assert_eq!(
             turned(&weeks),
             [
-                "Subscribers were most on day 14: 150; at the end there were 90.",
-                "The last week that earned money ended on day 7.",
-                "In the last 3 weeks $67 a week came in and running costs took $107.",
-                "In the week to day 21 for the first time more people left (80) than came (20).",
+                "Peak: 150 subscribers on day 14; 90 at the end.",
+                "The last profitable week ended on day 7.",
+                "In the last 3 weeks, income was $67 a week and running costs $107.",
+                "In the week to day 21, more people left (80) than joined (20) for the first time.",
             ]
         );
         assert!(turned(&[week(7, 0, 0, 0, 0.0, 9.0)])[0].starts_with("Nobody ever subscribed"));

@@ -288,7 +288,7 @@ impl Session {
             };
             return Err(Refusal::new(
                 "run_over",
-                format!("the run is over: {how}; readings and queries stay open"),
+                format!("the run is over: {how}; you can still read and query"),
             ));
         }
         self.refuse_if_only_read()

@@ -143,7 +143,7 @@ mod tests {
         let opened = Session::open(&folder, Access::Write, false).expect("it opens");
         assert_eq!(opened.manifest().consent, Some(given));
         assert!(start(Some("P02"), false, Mode::Baseline).is_err(), "somebody else has not");
-        assert!(start(None, false, Mode::Baseline).is_err(), "nor has nobody in particular");
+        assert!(start(None, false, Mode::Baseline).is_err(), "nor has a run without a participant");
         std::fs::write(place.path().join(FILE), "We keep what you do for two years.").expect("written");
         assert!(start(Some("P01"), false, Mode::Baseline).is_err(), "another text is another question");
     }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::scripts::Calculated;
 use super::week::{WeekFigures, week_of};
-use crate::notation::{dollars, grouped, percent, signed_dollars};
+use crate::notation::{dollars, grouped, percent, released_dollars, signed_dollars};
 use crate::world::identifiers::{ByPlan, Group, Plan};
 use crate::world::market::social::own::OwnPost;
 use crate::world::params::Params;
@@ -73,7 +73,7 @@ fn head(text: &mut String, stocks: &WeekFigures) {
     let _ = writeln!(
         text,
         "Cash: {} | Individual Subscribers: {}",
-        dollars(stocks.cash),
+        released_dollars(stocks.cash),
         stocks.individual_subscribers
     );
     let _ = writeln!(
@@ -92,9 +92,14 @@ fn week_block(text: &mut String, week: &WeekFigures) {
         text,
         "Cash Change: {} | Recurring Revenue: {}",
         signed_dollars(week.cash_change),
-        dollars(week.recurring_revenue)
+        released_dollars(week.recurring_revenue)
     );
-    let _ = writeln!(text, "Payments: {} | Running Costs: {}", dollars(week.payments), dollars(week.costs));
+    let _ = writeln!(
+        text,
+        "Payments: {} | Running Costs: {}",
+        released_dollars(week.payments),
+        released_dollars(week.costs)
+    );
     let _ = writeln!(text, "Usage: {} units", grouped(week.usage as f64, 0));
     let _ = writeln!(
         text,
@@ -204,8 +209,10 @@ fn inbox_block(text: &mut String, week: Option<&WeekFigures>, waiting: Waiting) 
     if waiting.threads > 0 {
         let _ = writeln!(
             text,
-            "- {} awaiting your response; the first is lost in {} days unless it is answered now",
-            waiting.threads, waiting.days_left
+            "- {} awaiting your response; the first is lost in {} {} unless it is answered now",
+            waiting.threads,
+            waiting.days_left,
+            if waiting.days_left == 1 { "day" } else { "days" }
         );
         lines += 1;
     }

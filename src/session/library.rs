@@ -353,7 +353,7 @@ mod tests {
             play(&mut session, 1);
         }
         let waiting = session.observe().waiting;
-        assert!(!waiting.is_empty(), "there must be talks");
+        assert!(!waiting.is_empty(), "there must be threads");
         let deals = json!({"deals": [[waiting[0].customer, [["C", 30.0], ["B", 20.0]]]]});
         session.call("send_enterprise_deal", &deals, Via::Script).expect("an offer");
         play(&mut session, 1);

@@ -34,7 +34,7 @@ fn the_tour_goes_on_by_doing_and_is_resumed_where_it_stopped() {
     console.shows("Tour · 11 of 11 · On your own");
     console.press("f3");
     assert!(!console.screen().contains("Tour ·"), "it is over");
-    console.shows("that was the tour");
+    console.shows("the tour is over");
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn a_baseline_run_explains_but_has_no_tour() {
     console.press("n up up up up up left down down down down down enter");
     console.shows("BASELINE");
     console.press(": 'tour' enter");
-    console.shows("a baseline run has no tour");
+    console.shows("baseline runs have no tour");
     console.press(": 'glossary' enter");
     console.shows("Glossary");
     console.press("/ 'word' _ 'of' _ 'mouth' enter enter");
@@ -74,7 +74,7 @@ fn runs_are_compared_given_up_and_deleted_from_the_menu() {
     console.press("_ _ v");
     console.shows("Where they stand");
     console.press("esc x");
-    console.shows("has no score");
+    console.shows("without a score");
     console.press("y");
     console.shows("is given up");
     let list = list_runs(runs.path()).expect("a list");

@@ -98,7 +98,7 @@ fn one_steps_forward_and_back_by_weeks_and_by_actions_and_seeks() {
     assert_eq!(day(&console), 35);
     console.shows("end of the record");
     console.press(">");
-    console.shows("the record ends here");
+    console.shows("end of the record");
     console.press("{");
     assert_eq!(day(&console), 0);
     // The screens are those of the moment.
@@ -111,7 +111,7 @@ fn one_steps_forward_and_back_by_weeks_and_by_actions_and_seeks() {
     console.press("esc D");
     assert!(!console.screen().contains("Decided before"), "the pane can be hidden");
     console.press("Q");
-    console.shows("the replay is closed; nothing was changed");
+    console.shows("replay closed; nothing changed");
     drop(console);
     assert_eq!(std::fs::read(folder.join("trajectory.jsonl")).expect("a trajectory"), before);
 }
@@ -140,7 +140,7 @@ fn it_plays_by_itself_until_the_end_and_pauses_at_a_key() {
     left(runs.path(), Mode::Sandbox, 6);
     let mut console = replayed(runs.path(), (120, 40), Goal::First);
     console.press("F F F F F space");
-    console.shows("playing, as fast as it goes");
+    console.shows("playing, full speed");
     let mut days = vec![day(&console)];
     while day(&console) < 42 {
         let message = console.receive().expect("the next week");
@@ -255,7 +255,7 @@ fn the_good_beginning_of_a_damaged_run_is_opened_as_a_branch() {
     std::fs::write(&path, &damaged).expect("written");
     let mut console = Console::start(runs.path(), (80, 24));
     console.press("c");
-    console.shows("Open the good beginning as a branch?");
+    console.shows("Open the intact part as a branch?");
     console.press("esc");
     assert_eq!(list_runs(runs.path()).expect("a list").len(), 1);
     console.press("c y");

@@ -209,3 +209,35 @@ fn ascii_is_all_that_is_drawn_with_ascii() {
         console.press(close);
     }
 }
+
+#[test]
+fn the_smallest_window_names_the_screen_that_is_shown() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = console(runs.path());
+    console.size = (60, 16);
+    for (key, title) in [("1", "Overview"), ("5", "Social"), ("6", "Inbox"), ("8", "Tools"), ("0", "Journal")]
+    {
+        console.press(key);
+        let screen = console.screen();
+        let tabs = screen.lines().nth(1).expect("tabs");
+        assert!(tabs.contains(&format!(" {key} {title}")), "{tabs}");
+    }
+}
+
+#[test]
+fn a_message_stands_apart_from_the_keys_before_it() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = console(runs.path());
+    let message = "charts drawn with blocks";
+    console.press("; d");
+    let mut beside = 0;
+    for width in 60..140 {
+        console.size = (width, 20);
+        let screen = console.screen();
+        let line = screen.lines().last().expect("a last line").to_owned();
+        let (before, _) = line.split_once(message).unwrap_or_else(|| panic!("{line}"));
+        assert!(before.is_empty() || before.ends_with("  "), "{line}");
+        beside += u32::from(!before.trim().is_empty());
+    }
+    assert!(beside > 40, "keys and message share the line: {beside}");
+}

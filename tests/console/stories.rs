@@ -63,7 +63,7 @@ fn a_short_run_ends_on_the_final_page() {
     console.press("n");
     console.shows("Day 17. You end with $998,555.");
     console.shows("not ranked");
-    console.shows("words of planning");
+    console.shows("planning words");
     console.press("r");
     let id = console.app.run().expect("a run").company.seen.run.clone();
     for (name, begins) in [("report.md", "# NovaMind · run "), ("report.html", "<!DOCTYPE html>")] {
@@ -94,11 +94,11 @@ fn a_week_is_not_filed_without_a_reason_and_four_forecasts() {
     console.press("n enter enter");
     console.shows("a rationale is required");
     console.press("'why_not' enter enter");
-    console.shows("1 week: a number is missing here");
+    console.shows("1 week: enter a number");
     console.press("'5' tab '4' tab '9' enter ctrl-s");
     console.shows("the point lies outside low to high");
     console.press("esc q");
-    console.shows("that was not sent");
+    console.shows("unsent");
     console.press("esc n enter");
     console.shows("why not");
     console.press("enter '6' enter f enter");
@@ -112,7 +112,7 @@ fn what_is_set_can_be_taken_back_and_the_zero_of_the_start_cannot() {
     console.press("8 down down down down enter enter '300' enter ctrl-s");
     console.shows("set_daily_spend: done");
     console.press("u");
-    console.shows("taken back: operations");
+    console.shows("undone: operations");
     console.press("u");
     console.shows("! ");
     console.press("esc home enter enter '12' enter ctrl-s u");
@@ -124,7 +124,7 @@ fn a_purchase_asks_once_and_a_refusal_stands_at_its_cell() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     console.press(": 'start_res' enter enter '1' enter ctrl-s");
-    console.shows("cannot be taken back");
+    console.shows("cannot be undone");
     console.press("enter");
     console.shows("$1,000,000");
     console.press("ctrl-s y");
@@ -146,7 +146,7 @@ fn everything_is_found_in_the_palette() {
     console.press("esc : 'prices' enter");
     console.shows("set_prices · pricing");
     console.press(": 'zzzz'");
-    console.shows("nothing is called like that");
+    console.shows("no match");
     console.press("esc ?");
     console.shows("Keys that work here");
 }
@@ -176,14 +176,14 @@ fn a_post_is_published_from_the_feed_after_one_question() {
     console.press("esc");
     console.shows("5 Social ●");
     console.press("5 p 'Drafts_are_right_at_once.' ctrl-s");
-    console.shows("is the only post of this week");
+    console.shows("It costs nothing");
     console.press("esc ctrl-s y");
     console.shows("post_social_media: done");
     console.shows("our post 1 · 0 views, 0 comments");
     console.press("p 'Again' ctrl-s");
     console.shows("already posted");
     console.press("esc q");
-    console.shows("forget that text?");
+    console.shows("discard");
     console.press("esc 1 5");
     console.shows("Again");
 }
@@ -236,4 +236,29 @@ fn a_named_query_is_run_drawn_taken_out_and_saved_as_ones_own() {
     console.shows("The economy");
     console.press("esc i ctrl-r");
     console.shows("1 of 1");
+}
+
+#[test]
+fn a_week_without_decisions_takes_three_keys() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    for week in 1..=3 {
+        console.press("n f enter");
+        console.shows(&format!("day {}/500", 7 * week));
+        console.shows("What changed most");
+    }
+}
+
+#[test]
+fn the_keys_after_a_query_of_the_library_are_those_of_its_result() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.week();
+    console.press("esc 9 ctrl-o 'ledger' enter");
+    console.shows("Result ·");
+    let before = console.screen();
+    console.press(".");
+    let after = console.screen();
+    assert_ne!(before, after);
+    assert!(after.contains("lines") || after.contains("bars") || after.contains("fewer than two"), "{after}");
 }

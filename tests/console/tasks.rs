@@ -99,7 +99,7 @@ fn the_tour_is_played_as_its_texts_say() {
             console.shows(&format!("Tour · {} of 11 · {title}", number + 1));
             do_it(&mut console, keys, 40);
         }
-        console.shows("that was the tour");
+        console.shows("the tour is over");
         assert_eq!(console.app.run().expect("a run").company.seen.day, 14);
     }
 }

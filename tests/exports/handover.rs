@@ -78,7 +78,7 @@ fn a_run_is_imported_into_the_folder_of_its_participant() {
     assert_eq!(folders(&own), [own.join(id(&run))], "where its participant finds it");
     for options in [&[][..], &["--as", "P01"]] {
         let again = import(options);
-        assert!(again.code == 0 && again.out.contains("there already"), "{}{}", again.out, again.err);
+        assert!(again.code == 0 && again.out.contains("already exists"), "{}{}", again.out, again.err);
     }
     let list = lab.run(&["runs"]);
     assert_eq!(list.out.matches(&id(&run)).count(), 1, "once on a machine: {}", list.out);

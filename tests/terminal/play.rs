@@ -8,7 +8,7 @@ fn a_person_starts_plays_two_weeks_leaves_and_continues() {
     let mut terminal = Terminal::start(runs.path(), &[], (120, 40));
     terminal.wait_for("New run");
     terminal.type_keys("n");
-    terminal.wait_for("enter begins the run");
+    terminal.wait_for("enter starts the run");
     terminal.type_keys("\r");
     terminal.wait_for("day 0/500");
     terminal.type_keys("8\r\r12\t25\t55\r");
@@ -108,13 +108,13 @@ fn many_companies_are_answered_by_one_rule() {
     let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (120, 40));
     terminal.wait_for("day 35/500");
     terminal.type_keys("6");
-    terminal.wait_for("wait for you");
+    terminal.wait_for("waiting for you");
     terminal.type_keys("a");
     terminal.wait_for("marked");
     terminal.type_keys("\x13");
     terminal.wait_for("y yes");
     terminal.type_keys("y");
-    terminal.wait_for("0 wait for you");
+    terminal.wait_for("0 waiting for you");
     terminal.type_keys("q");
     let (code, screen) = terminal.end();
     assert_eq!(code, 0, "{screen}");
@@ -133,7 +133,7 @@ fn the_mouse_presses_and_can_be_left_to_the_terminal() {
     terminal.type_keys(";");
     terminal.wait_for("esc cancel");
     terminal.type_keys("m");
-    terminal.wait_for("belongs to the terminal");
+    terminal.wait_for("mouse off");
     terminal.wait_for_bytes(b"\x1b[?1000l");
     terminal.type_keys(";m");
     terminal.wait_for("shift and drag");
@@ -175,7 +175,7 @@ fn a_recorded_run_is_played_again_and_taken_over() {
     terminal.wait_for("week 0/2");
     terminal.type_keys("FFFF ");
     terminal.wait_for("week 2/2");
-    terminal.wait_for("the record ends here");
+    terminal.wait_for("end of the record");
     terminal.type_keys("#1\r");
     terminal.wait_for("week 1/2");
     terminal.type_keys("T");

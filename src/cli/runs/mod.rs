@@ -109,7 +109,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             let found = rescue(&find_run_to_read(&runs, run)?)?;
             print(&format!(
                 "run {} holds lines 1 to {} of run {run} and stands at day {}, mode {}\n\
-                 what was wrong: {}\nrun {run} is as it was; `novamind play --run {}` goes on\n",
+                 problem: {}\nrun {run} is unchanged; `novamind play --run {}` continues\n",
                 found.run, found.lines, found.day, found.mode, found.problem, found.run
             ))
         }

@@ -253,12 +253,10 @@ impl Import {
 
 fn import_answer(seal: &Seal, imported: &Imported, json: bool) -> String {
     let (new, remark) = match imported {
-        Imported::New(_) => (true, "imported; its database is made when it is first opened"),
-        Imported::Same { other_memo: false } => {
-            (false, "is there already, line for line; nothing was changed")
-        }
+        Imported::New(_) => (true, "imported; its database is built when it is first opened"),
+        Imported::Same { other_memo: false } => (false, "already exists, line for line; nothing was changed"),
         Imported::Same { other_memo: true } => {
-            (false, "is there already, line for line, with other notes; nothing was changed")
+            (false, "already exists, line for line, with other notes; nothing was changed")
         }
     };
     if json {

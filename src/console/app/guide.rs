@@ -47,7 +47,7 @@ impl App {
     pub(super) fn show_tour(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         if run.company.is_baseline() {
-            return self.complain("a baseline run has no tour: start one for practice from the start menu");
+            return self.complain("baseline runs have no tour; start a practice run from the start menu");
         }
         run.tour.get_or_insert_default();
     }
@@ -68,7 +68,7 @@ impl App {
             Some(key) => key,
             None => format!("{} tour", self.keys.label(Action::Palette).unwrap_or_default()),
         };
-        self.say(format!("the tour is closed; {way} goes on with it"));
+        self.say(format!("tour closed; {way} resumes it"));
     }
 
     fn tour(&mut self) -> Option<&mut Tour> {
@@ -93,7 +93,7 @@ impl App {
         };
         if !tour.settle(&facts) {
             run.tour = None;
-            self.say("that was the tour; the company is yours");
+            self.say("the tour is over; the company is yours");
         }
     }
 }

@@ -55,7 +55,8 @@ impl App {
             let plain = chord.is_printable();
             own.or_else(|| self.keys.action(&scopes, chord).filter(|action| goes_on(action) && !plain))
         } else {
-            self.keys.action(&scopes, chord).or_else(|| self.anywhere(chord))
+            let own = self.before_dialogs(chord).or_else(|| self.keys.action(&scopes, chord));
+            own.or_else(|| self.anywhere(chord))
         };
         match action {
             Some(action) => self.act(action),
@@ -78,10 +79,16 @@ impl App {
             Meaning::Nothing => {
                 let pressed = written(&std::mem::take(&mut self.pending));
                 if !chord.is_escape() {
-                    self.complain(format!("{pressed} means nothing here"));
+                    self.complain(format!("{pressed} does nothing here"));
                 }
             }
         }
+    }
+
+    /// What a chord means before the dialog on top gives it a meaning of its own.
+    fn before_dialogs(&self, chord: Chord) -> Option<Action> {
+        let Some(Layer::Dialog(dialog)) = self.layers.last() else { return None };
+        self.keys.action(&[Scope::Global], chord).filter(|action| dialog.goes_before(*action))
     }
 
     /// What a chord means even over a dialog: leaving and drawing again must always be possible.
@@ -248,7 +255,7 @@ impl App {
             Action::NextTheme => self.next_theme(),
             Action::NextMarker => {
                 self.glyphs = self.glyphs.next();
-                self.say(format!("drawn with {}", self.glyphs.words()));
+                self.say(format!("charts drawn with {}", self.glyphs.words()));
                 self.remember(Preferences { marker: Some(self.glyphs), ..Preferences::default() });
             }
             Action::Mouse => self.hand_over_mouse(),
@@ -268,7 +275,7 @@ impl App {
     fn zoom(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         if run.screens.get(run.here).panes() < 2 {
-            return self.complain("this screen has one pane, and it has all the room");
+            return self.complain("this screen has only one pane");
         }
         run.zoomed = !run.zoomed;
     }
@@ -282,7 +289,7 @@ impl App {
             }
             Some(Figure { title, sql: None, .. }) => {
                 let explain = self.keys.label(Action::Explain).unwrap_or_default();
-                self.complain(format!("{title}: no rows make it up; {explain} explains it"));
+                self.complain(format!("{title} has no source rows; {explain} explains it"));
             }
             None => self.complain("no figure is selected here: tab changes the pane, arrows the row"),
         }
@@ -307,9 +314,9 @@ impl App {
         self.mouse = !self.mouse;
         self.orders.push(Order::Mouse(self.mouse));
         self.say(if self.mouse {
-            "the mouse selects and presses; shift and drag marks text"
+            "mouse on: click to select; shift and drag marks text"
         } else {
-            "the mouse belongs to the terminal and marks text"
+            "mouse off: the terminal marks text"
         });
     }
 
@@ -329,7 +336,7 @@ impl App {
         let Stage::Run(run) = &self.stage else { return };
         match run.company.week.is_some() {
             true => self.open(Report::new(None)),
-            false => self.complain("no week has passed yet: n lets one pass"),
+            false => self.complain("no week has run yet: n runs one"),
         }
     }
 
@@ -349,10 +356,10 @@ impl App {
         let mut lines: Vec<String> =
             seen.changes.iter().map(line).chain(seen.purchases.iter().cloned()).collect();
         if lines.is_empty() {
-            lines.push("Nothing was changed since the last week.".to_owned());
+            lines.push("Nothing has changed since last week.".to_owned());
         } else {
             lines.push(String::new());
-            lines.push("u takes back the last setting, U sets it again; purchases stay.".to_owned());
+            lines.push("u undoes the last setting, U redoes it; purchases stay.".to_owned());
         }
         self.open(Reader::new("Changes of this week", lines.join("\n")));
     }
@@ -363,8 +370,7 @@ impl App {
                 || ScreenId::ALL.iter().any(|screen| run.screens.get(*screen).holds_unsent_text())
         });
         if unsent {
-            let text = "A form, the notes or the dialog before a week hold text that was not sent. The run itself is \
-                        saved; leave and forget that text?";
+            let text = "A form, the notes or the next-week dialog holds unsent text. The run itself is saved. Leave and discard that text?";
             self.open(Confirm::new("Leave", text, vec![Effect::LeaveNow]));
             return;
         }

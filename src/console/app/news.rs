@@ -123,16 +123,16 @@ impl App {
                 ScreenId::Tools
             }
             News::Undone(changes, company) => {
-                self.restored("taken back", changes, company);
+                self.restored("undone", changes, company);
                 ScreenId::Tools
             }
             News::Redone(changes, company) => {
-                self.restored("set again", changes, company);
+                self.restored("redone", changes, company);
                 ScreenId::Tools
             }
             News::MemoKept(kept, company) => {
                 match kept {
-                    Ok(()) => self.say("the notes are kept"),
+                    Ok(()) => self.say("notes saved"),
                     Err(refusal) => self.complain(refusal.to_string()),
                 }
                 self.changed(company.clone());
@@ -182,11 +182,11 @@ impl App {
         match company.remarks.last() {
             _ if viewer.is_some() => {
                 let help = self.keys.label(Action::Help).unwrap_or_default();
-                self.say(format!("a replay: nothing is changed; {help} shows its keys"));
+                self.say(format!("replay: nothing is changed; {help} shows the keys"));
             }
             Some(remark) => self.say(remark.clone()),
             None if company.seen.day == 0 => {
-                self.say("a new company: 8 shows the forms, n lets a week pass, ? explains the keys")
+                self.say("a new company: 8 shows the forms, n runs a week, ? explains the keys")
             }
             None => self.say(format!("day {}: welcome back", company.seen.day)),
         }

@@ -31,7 +31,7 @@ impl App {
             Effect::TakeOver(mode) => self.start("starting a run from here", Job::TakeOver(mode)),
             Effect::Rescue(id) => {
                 let job = Job::Rescue(self.runs.clone(), id);
-                self.start("opening what is good of the run", job);
+                self.start("opening the intact part of the run", job);
             }
             Effect::Create(new) => {
                 let new = crate::session::NewRun {

@@ -148,13 +148,12 @@ impl App {
     /// Goes somewhere in the record.
     pub(super) fn go(&mut self, goal: Goal) {
         if self.busy.is_some() {
-            return self.complain("on the way already; esc stops it");
+            return self.complain("already seeking; esc stops it");
         }
         let Some(viewer) = self.viewer() else { return };
         let place = &viewer.place;
         if place.at_end && goal == Goal::Weeks(1) {
-            let text =
-                if place.follows { "nothing more has been played yet" } else { "the record ends here" };
+            let text = if place.follows { "nothing more recorded yet" } else { "end of the record" };
             viewer.playing = false;
             return self.say(text);
         }
@@ -170,11 +169,8 @@ impl App {
         viewer.stop.store(false, Ordering::Relaxed);
         viewer.goes = true;
         let stop = viewer.stop.clone();
-        self.busy = Some(Busy {
-            what: "on the way",
-            days: Some((from, target.max(from), from)),
-            since: Instant::now(),
-        });
+        self.busy =
+            Some(Busy { what: "seeking", days: Some((from, target.max(from), from)), since: Instant::now() });
         self.orders.push(Order::Job(Job::Go(goal, stop)));
     }
 
@@ -187,7 +183,7 @@ impl App {
             return self.say("paused");
         }
         if viewer.place.at_end {
-            return self.say("the record ends here; go back to play it");
+            return self.say("end of the record; go back to replay it");
         }
         viewer.playing = true;
         let text = viewer.speed_in_words();
@@ -235,8 +231,8 @@ impl App {
         }
         match problem {
             Some(problem) => self.complain(problem),
-            None if ends => self.say("the record ends here"),
-            None if news => self.say("more has been played"),
+            None if ends => self.say("end of the record"),
+            None if news => self.say("new actions recorded"),
             None => {}
         }
         self.play_on();

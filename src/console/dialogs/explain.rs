@@ -94,7 +94,7 @@ impl Explain {
             page.title.clone_from(&figure.title);
         }
         if let Some(sql) = &figure.sql {
-            page.parts.push(("rows behind".to_owned(), sql.trim().to_owned()));
+            page.parts.push(("source rows".to_owned(), sql.trim().to_owned()));
         }
         Explain { pages: vec![page], rows: figure.sql.is_some(), numbers }
     }

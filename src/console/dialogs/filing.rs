@@ -156,7 +156,7 @@ impl Filing {
             let mut values = [0.0; 3];
             for (column, cell) in cells.iter().enumerate() {
                 values[column] = parse_number(cell.text())
-                    .ok_or_else(|| ((row, column), format!("{}: a number is missing here", HORIZONS[row])))?;
+                    .ok_or_else(|| ((row, column), format!("{}: enter a number", HORIZONS[row])))?;
             }
             let [lower, point, upper] = values;
             if lower > upper {
@@ -216,7 +216,7 @@ impl Dialog for Filing {
 
     fn hints(&self) -> Vec<Action> {
         match self.step {
-            Step::Review => vec![Action::NextStep, Action::Close],
+            Step::Review => vec![Action::NextStep, Action::FillNaively, Action::Close],
             Step::Rationale => {
                 vec![Action::NextStep, Action::PreviousStep, Action::FillRationale, Action::LeaveEditor]
             }
@@ -241,6 +241,12 @@ impl Dialog for Filing {
             Action::Close | Action::LeaveEditor => return Outcome::close(),
             Action::FillRationale if self.step == Step::Rationale => self.fill_rationale(look.company),
             Action::FillNaively if self.step == Step::Forecasts => self.fill_naively(look.company),
+            // A week in which nothing is decided takes one key on the way to the last step.
+            Action::FillNaively if self.step == Step::Review && !look.company.is_baseline() => {
+                self.fill_rationale(look.company);
+                self.fill_naively(look.company);
+                self.step = Step::Forecasts;
+            }
             Action::Discard => {
                 self.typing = false;
                 let before = self.before.clone();
@@ -329,6 +335,7 @@ impl Dialog for Filing {
         let mut actions = self.hints();
         if look.company.is_baseline() {
             actions.retain(|action| *action != Action::FillRationale);
+            actions.retain(|action| *action != Action::FillNaively || self.step == Step::Forecasts);
         }
         canvas.pane_keys(own, &look.hints(&actions));
     }
@@ -356,12 +363,12 @@ fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &
         seen.purchases.iter().map(|done| TextLine::from(canvas.span(format!("  {done}"), Role::Changed))),
     );
     if seen.changes.is_empty() && seen.purchases.is_empty() {
-        lines.push(TextLine::from(canvas.span("  none: everything stays as it is", Role::Dim)));
+        lines.push(TextLine::from(canvas.span("  none", Role::Dim)));
     }
     lines.push(TextLine::default());
-    lines.push(head("Before you go on", canvas));
+    lines.push(head("Before you continue", canvas));
     for tool in unsent {
-        let text = format!("  ! the form of {tool} holds values that were not applied");
+        let text = format!("  ! the {tool} form holds unsent values");
         lines.push(TextLine::from(canvas.span(text, Role::Warning)));
     }
     for need in &company.needs {
@@ -386,7 +393,7 @@ fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &
         let left = lines.len() - room + 1;
         lines.truncate(room - 1);
         lines.push(TextLine::from(
-            canvas.span(format!("  … and {left} lines more: c shows all changes"), Role::Dim),
+            canvas.span(format!("  … {left} more lines: c shows all changes"), Role::Dim),
         ));
     }
     canvas.lines(area, &lines);
@@ -395,21 +402,17 @@ fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &
 impl Filing {
     fn draw_rationale(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
         let why = if company.is_baseline() {
-            "It is required and kept with the run."
+            "Required, and kept with the run."
         } else {
             "It is kept with the run."
         };
-        canvas.text(
-            area,
-            &format!("Why do you play the week like this, and what do you expect? {why}"),
-            Role::Text,
-        );
+        canvas.text(area, &format!("Why these decisions, and what do you expect? {why}"), Role::Text);
         let editor = Rect { y: area.y + 2, height: area.height.saturating_sub(2), ..area };
         self.rationale.draw(
             canvas,
             editor,
             true,
-            "for instance: raised C to $60, for margins are thin; expect fewer upgrades",
+            "for example: raised C to $60 because margins are thin; expect fewer upgrades",
         );
     }
 
@@ -417,9 +420,9 @@ impl Filing {
         let mut rows = rows_of(area);
         let now = dollars(company.seen.cash);
         let question = match area.width {
-            0..90 => format!("Cash now {now}. Be right 95 times in 100 between low and high."),
+            0..90 => format!("Cash now {now}. Aim for 95 % between low and high."),
             _ => format!(
-                "Cash now {now}. What will it be? You should be right 95 times in 100 between low and high."
+                "Cash now {now}. What will it be? Between low and high you should be right 95 % of the time."
             ),
         };
         if let Some(row) = rows.next() {
@@ -442,8 +445,8 @@ impl Filing {
         if self.filled.as_flattened().contains(&true)
             && let Some(row) = rows.next()
         {
-            let words = "naive: income and use of the last four weeks at the costs set now; recorded as such";
-            canvas.text(row, words, Role::Dim);
+            let words = "naive: four-week mean of income and usage at the costs set now; recorded";
+            canvas.text(row, words, Role::Text);
         }
         let used = 7;
         let left = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };

@@ -13,9 +13,9 @@ use crate::console::canvas::{Canvas, centered, fit};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens::Look;
-use crate::console::text::{short_dollars, wrapped};
+use crate::console::text::wrapped;
 use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Line, chart};
+use crate::console::widgets::{Axis, Line, Side, Unit, chart};
 use crate::console::worker::Recorded;
 use crate::notation::{dollars, grouped, percent};
 use crate::report::Story;
@@ -43,7 +43,7 @@ fn replay(company: &Company, goal: Goal) -> Outcome {
             Outcome::with(vec![Effect::Replay { recorded, goal, follow: false }])
         }
         (None, _) => {
-            let text = "this run is kept in memory: there is no record of it to play again";
+            let text = "this run is kept in memory and has no record to replay";
             Outcome::with(vec![Effect::Complain(text.to_owned())])
         }
     }
@@ -134,7 +134,7 @@ impl FinalPage {
         parts.push(ranking(canvas, &standing, width, best, roomy));
         parts.push(match &self.story {
             Some(story) => facts(canvas, &story.measures, width, roomy),
-            None => vec![TextLine::from(canvas.span("reading the books of the run …", Role::Dim))],
+            None => vec![TextLine::from(canvas.span("reading the ledger …", Role::Dim))],
         });
         if roomy && let Some(folder) = &company.folder {
             let text = format!("The report goes to {}", folder.display());
@@ -160,7 +160,7 @@ impl FinalPage {
         if ruin.costs.is_empty() {
             return Some(lines);
         }
-        lines.push(TextLine::from(canvas.span("What the money went to", Role::Header)));
+        lines.push(TextLine::from(canvas.span("Where the money went", Role::Header)));
         let room = (width as usize).saturating_sub(NAMES + 20).min(40);
         let most = ruin.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
         for cost in ruin.costs.iter().take(if roomy { 6 } else { 3 }) {
@@ -201,7 +201,7 @@ impl FinalPage {
 fn draw_cash(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
     let cash = [Line::of(&company.cash_by_day, Role::Series(0))];
     let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
-    chart(canvas, area, &cash, &x, &Axis { write: &short_dollars, holds: &[0.0] });
+    chart(canvas, area, &cash, &x, &Side { unit: Unit::Dollars, holds: &[0.0] });
 }
 
 fn headline(company: &Company) -> String {
@@ -267,7 +267,7 @@ fn facts<'a>(canvas: &Canvas<'_>, measures: &Measures, width: u16, roomy: bool) 
         (
             "planning",
             format!(
-                "{:.1} words of planning in a rationale of {:.0}",
+                "{:.1} planning words in a rationale of {:.0}",
                 measures.planning.planning_each, measures.planning.words_each
             ),
         ),
@@ -362,14 +362,14 @@ mod tests {
                 "of 2 tried",
                 "targeted development  97%",
                 "calls a week",
-                "words of planning",
+                "planning words",
                 "day 0",
                 "r report",
             ] {
                 assert!(text.contains(part), "{part} is missing at {name}:\n{text}");
             }
         }
-        assert!(large.contains("Highlights") && large.contains("most cash"), "{large}");
+        assert!(large.contains("Highlights") && large.contains("peak cash"), "{large}");
     }
 
     #[test]
@@ -379,12 +379,12 @@ mod tests {
             let text = picture(&page, &company, width, height);
             for part in [
                 "The company is bankrupt; the score is $0.",
-                "What the money went to",
+                "Where the money went",
                 "development and R&D",
-                "No week earned money.",
+                "No week was",
                 "not ranked",
                 "ads on best channel",
-                "words of planning",
+                "planning words",
             ] {
                 assert!(text.contains(part), "{part} is missing at {width}×{height}:\n{text}");
             }
@@ -395,7 +395,7 @@ mod tests {
     fn before_the_story_is_told_the_page_says_so() {
         let company = Company::of(&test_kit::finished());
         let text = picture(&FinalPage::new(None), &company, 80, 21);
-        assert!(text.contains("reading the books") && !text.contains("▌ You"), "{text}");
+        assert!(text.contains("reading the ledger") && !text.contains("▌ You"), "{text}");
     }
 
     #[test]

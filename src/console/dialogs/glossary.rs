@@ -42,7 +42,7 @@ impl Glossary {
             vec![
                 Cell::words(term.title.as_str()),
                 Cell::words(term.topic.as_str()).role(Role::Dim),
-                Cell::words(text).role(Role::Dim),
+                Cell::words(text).role(Role::Text),
             ]
         };
         let mut table = Table::new(columns);
@@ -127,7 +127,7 @@ impl Dialog for Glossary {
         self.table.draw(canvas, list, true, 0);
         if self.table.shown().is_empty() && list.height > 1 {
             let row = Rect { y: list.y + 1, height: 1, ..list };
-            let text = format!("no term has this word in it: {}", look.hint(Action::Discard));
+            let text = format!("no term contains {}", look.hint(Action::Discard));
             canvas.text(row, &text, Role::Dim);
         }
         let below = Rect { y: list.bottom(), height: for_text, ..inside };
@@ -189,7 +189,7 @@ mod tests {
         in_dialog(&mut dialog, Action::Filter, &company);
         dialog.table.edit_filter(|field| field.insert("zzz"));
         let shown = dialog_picture(&dialog, &company, 80, 21);
-        assert!(shown.contains("no term has this word in it"), "{shown}");
+        assert!(shown.contains("no term contains"), "{shown}");
         in_dialog(&mut dialog, Action::Commit, &company);
         assert!(in_dialog(&mut dialog, Action::Open, &company).effects.is_empty());
         for (width, height) in [(0, 0), (2, 2), (20, 5), (60, 13), (200, 57)] {

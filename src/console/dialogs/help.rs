@@ -35,7 +35,7 @@ impl Help {
                 Cell::words(scope.id()).role(Role::Dim),
                 keys,
                 Cell::words(title),
-                Cell::words(doc).role(Role::Dim),
+                Cell::words(doc).role(Role::Text),
             ]
         };
         table.set_rows(keys.help(scopes).into_iter().map(row).collect());

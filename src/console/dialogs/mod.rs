@@ -64,6 +64,11 @@ pub trait Dialog {
     /// Actions worth showing in the footer.
     fn hints(&self) -> Vec<Action>;
 
+    /// Whether an action from everywhere goes before what its key means in dialogs.
+    fn goes_before(&self, _: Action) -> bool {
+        false
+    }
+
     /// Does an action of its scopes.
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome;
 

@@ -33,6 +33,62 @@ struct Entry {
     effect: Effect,
 }
 
+impl Entry {
+    /// Other words that people type for it.
+    fn synonyms(&self) -> &'static [&'static str] {
+        let Effect::Do(action) = &self.effect else { return &[] };
+        match action {
+            Action::WriteReport => &["export", "save", "markdown", "html", "print"],
+            Action::Journal => &["memo", "notes", "log", "history"],
+            Action::Sql => &["export", "csv", "database"],
+            Action::NextTheme => &["light", "dark", "colours", "colors", "contrast"],
+            Action::NextMarker => &["ascii", "braille"],
+            Action::LeaveRun => &["menu", "home", "save"],
+            Action::Quit => &["exit", "save"],
+            Action::Undo => &["revert"],
+            Action::NextWeek => &["advance", "simulate"],
+            Action::Dashboard => &["figures"],
+            _ => &[],
+        }
+    }
+
+    /// How much of its name was typed; less is better.
+    fn closeness(&self, typed: &str, in_title: bool) -> Closeness {
+        let typed = typed.to_lowercase();
+        let title = self.title.to_lowercase();
+        let words = || title.split(|letter: char| !letter.is_alphanumeric());
+        match () {
+            () if title.starts_with(&typed) => Closeness::Prefix,
+            () if words().any(|word| word.starts_with(&typed)) => Closeness::Word,
+            () if title.contains(&typed) => Closeness::Word,
+            () if self.synonyms().iter().any(|word| word.starts_with(&typed)) => Closeness::Word,
+            () if in_title => Closeness::Letters,
+            () => Closeness::Text,
+        }
+    }
+
+    /// What acts stands before what is asked, that before what is only read.
+    fn order(&self) -> usize {
+        ["tool", "command", "group", "query", "table", "term"]
+            .iter()
+            .position(|kind| *kind == self.kind)
+            .unwrap_or(usize::MAX)
+    }
+}
+
+/// How much of the name of an entry was typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Closeness {
+    /// It begins with it.
+    Prefix,
+    /// One of its words, or another word for it, begins with it.
+    Word,
+    /// The letters stand in it, in this order.
+    Letters,
+    /// Its explanation holds it.
+    Text,
+}
+
 /// The palette.
 pub struct Palette {
     entries: Vec<Entry>,
@@ -69,19 +125,37 @@ impl Palette {
         if let Some(at) = coded.filter(|at| self.found.iter().all(|(found, _)| found != at)) {
             self.found.push((at, Vec::new()));
         }
-        // A code says exactly what is meant. What acts on the company comes before what only asks about it; a word of an
-        // explanation counts least. Before anything is typed, the tools that were used last come first.
+        let named = (0..self.entries.len())
+            .filter(|at| !typed.is_empty() && self.entries[*at].closeness(typed, false) == Closeness::Word)
+            .filter(|at| self.found.iter().all(|(found, _)| found != at));
+        let named: Vec<Found> = named.map(|at| (at, Vec::new())).collect();
+        self.found.extend(named);
+        // A code says exactly what is meant. Tools, commands and screens come before what only asks or explains, if their
+        // names hold what was typed as a word; letters here and there count less, a word of an explanation least. Before
+        // anything is typed, the tools that were used last come first.
         let entries = &self.entries;
         let recent = |at: usize| match typed.is_empty() {
             true => self.recent.iter().position(|name| *name == entries[at].title),
             false => None,
         };
-        self.found.sort_by_key(|(at, letters)| match (letters.is_empty(), entries[*at].kind) {
-            _ if typed.is_empty() => recent(*at).unwrap_or(usize::MAX),
-            _ if entries[*at].code.eq_ignore_ascii_case(typed) => 0,
-            (true, _) => 3,
-            (false, "query") => 2,
-            (false, _) => 1,
+        self.found.sort_by_cached_key(|(at, letters)| {
+            let entry = &entries[*at];
+            if typed.is_empty() {
+                return (recent(*at).unwrap_or(usize::MAX), 0, Closeness::Prefix);
+            }
+            if entry.code.eq_ignore_ascii_case(typed) {
+                return (0, 0, Closeness::Prefix);
+            }
+            let closeness = entry.closeness(typed, !letters.is_empty());
+            // The name of a screen or a group that was typed whole is what is meant.
+            let whole = entry.order() < 3 && entry.title.eq_ignore_ascii_case(typed);
+            let tier = match closeness {
+                _ if whole => 1,
+                Closeness::Prefix | Closeness::Word => 2,
+                Closeness::Letters => 3,
+                Closeness::Text => 4,
+            };
+            (tier, entry.order(), closeness)
         });
         self.selected = 0;
     }
@@ -121,7 +195,7 @@ fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
         Effect::Do(Action::NextWeek | Action::Undo | Action::Redo) if !company.is_running() => {
             Some("the run is over")
         }
-        Effect::Do(Action::Report) if company.weeks.is_empty() => Some("no week has passed yet"),
+        Effect::Do(Action::Report) if company.weeks.is_empty() => Some("no week has run yet"),
         Effect::ShowTool(tool) if acts(tool) && !company.is_running() => Some("the run is over"),
         _ => None,
     }
@@ -242,7 +316,7 @@ impl Dialog for Palette {
         self.field.draw(canvas, Rect { x: line.x + 2, width: line.width.saturating_sub(2), ..line });
         let list = Rect { y: inside.y + 1, height: inside.height.saturating_sub(1), ..inside };
         if self.found.is_empty() {
-            canvas.text(list, "nothing is called like that", Role::Dim);
+            canvas.text(list, "no match", Role::Dim);
         }
         let from = first_row(self.selected, list.height as usize, self.found.len());
         for (row, (place, (at, letters))) in rows_of(list).zip(self.found.iter().enumerate().skip(from)) {
@@ -266,7 +340,7 @@ impl Palette {
         let title = Rect { x: row.x + 9, width: titles.min(row.width.saturating_sub(9)), ..row };
         fuzzy::draw_title(canvas, title, &entry.title, letters, [role(Role::Text), role(Role::Key)]);
         let doc = Rect { x: row.x + titles + 10, width: row.width.saturating_sub(titles + 20), ..row };
-        canvas.text(doc, &entry.doc, role(Role::Dim));
+        canvas.text(doc, &entry.doc, role(Role::Text));
         let keys = Rect { x: row.right().saturating_sub(9), width: 9.min(row.width), ..row };
         canvas.aligned(keys, &entry.keys, role(Role::Key), Align::Right);
     }
@@ -295,11 +369,39 @@ mod tests {
     }
 
     #[test]
+    fn what_acts_stands_first_and_words_before_letters() {
+        let mut palette = Palette::new(&Keys::shipped(), &company(), &Library::shipped());
+        let mut found = |typed: &str| {
+            palette.field = Field::of(typed.to_owned());
+            palette.find();
+            let of = |(at, _): &Found| (palette.entries[*at].kind, palette.entries[*at].title.clone());
+            palette.found.iter().map(of).collect::<Vec<_>>()
+        };
+        for (typed, first) in [
+            ("quota", "set_usage_quotas"),
+            ("price", "set_prices"),
+            ("tier", "set_capacity_tier"),
+            ("research", "start_research_project"),
+            ("memo", "Journal"),
+            ("light", "next theme"),
+        ] {
+            let all = found(typed);
+            assert!(all.iter().take(3).any(|(_, title)| title == first), "{typed}: {:?}", &all[..4]);
+            let term = all.iter().position(|(kind, _)| *kind == "term").unwrap_or(usize::MAX);
+            assert!(all.iter().position(|(_, title)| title == first) < Some(term), "{typed}: {all:?}");
+        }
+        for (typed, command) in [("export", "write the report"), ("save", "quit")] {
+            let all = found(typed);
+            assert!(all.iter().take(4).any(|(_, title)| title == command), "{typed}: {:?}", &all[..6]);
+        }
+    }
+
+    #[test]
     fn tools_used_last_stand_first_and_what_cannot_be_done_says_why() {
         let mut session = crate::console::test_kit::session();
         let fresh = Palette::new(&Keys::shipped(), &Company::of(&session), &Library::shipped());
         let report = fresh.entries.iter().find(|entry| entry.title == "last week").expect("a command");
-        assert!(report.doc.starts_with("not now, no week has passed yet: "), "{}", report.doc);
+        assert!(report.doc.starts_with("not now, no week has run yet: "), "{}", report.doc);
         for (tool, arguments) in [("set_prices", r#"{"A": 12}"#), ("set_capacity_tier", r#"{"tier": 2}"#)] {
             let arguments = serde_json::from_str(arguments).expect("JSON");
             session.call(tool, &arguments, crate::session::Via::Form).expect(tool);

@@ -8,6 +8,7 @@ use unicode_width::UnicodeWidthStr;
 use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, centered, fit};
+use crate::console::effect::Effect;
 use crate::console::screens::overview::needs::screen_of;
 use crate::console::screens::{Look, ScreenId};
 use crate::console::text::{arrow, flowed, short_dollars, wrapped};
@@ -43,12 +44,17 @@ impl Dialog for Report {
     }
 
     fn hints(&self) -> Vec<Action> {
-        vec![Action::Cancel]
+        vec![Action::Cancel, Action::NextWeek]
+    }
+
+    fn goes_before(&self, action: Action) -> bool {
+        action == Action::NextWeek
     }
 
     fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
         match action {
-            Action::Cancel => Outcome::close(),
+            Action::Cancel | Action::Report => Outcome::close(),
+            Action::NextWeek => Outcome::close_with(vec![Effect::Do(action)]),
             _ => Outcome::stay(),
         }
     }
@@ -289,7 +295,7 @@ fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], width: u16, 
 fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], shown: usize, width: u16, look: &Look<'_>) -> Part<'a> {
     if needs.is_empty() {
         let key = look.keys.label(Action::NextWeek).unwrap_or_default();
-        let text = format!("  nothing waits; close this and {key} lets the next week pass");
+        let text = format!("  nothing waits; {key} starts the next week");
         return vec![Line::from(canvas.span(text, Role::Dim))];
     }
     let line = |need: &Need| {

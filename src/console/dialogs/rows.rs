@@ -125,7 +125,7 @@ impl Dialog for RowsBehind {
         let taken = (used as u16 + 1).min(inside.height);
         let below = Rect { y: inside.y + taken, height: inside.height - taken, ..inside };
         match &self.answer {
-            None => canvas.text(below, "asking … esc cancels", Role::Warning),
+            None => canvas.text(below, "running … esc cancels", Role::Warning),
             Some(Err(refusal)) => canvas.text(below, &refusal.message, Role::Bad),
             Some(Ok(rows)) if rows.rows.is_empty() => {
                 canvas.text(below, "no rows yet", Role::Dim);

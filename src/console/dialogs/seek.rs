@@ -34,7 +34,7 @@ impl Seek {
                 Outcome::stay()
             }
             Err(_) => {
-                self.problem = Some(format!("the number of a week is expected, 0 to {}", self.weeks));
+                self.problem = Some(format!("enter a week from 0 to {}", self.weeks));
                 Outcome::stay()
             }
         }
@@ -85,7 +85,7 @@ impl Dialog for Seek {
         let below = Rect { y: row.y + 2, ..row }.intersection(inside);
         match &self.problem {
             Some(problem) => canvas.text(below, problem, Role::Bad),
-            None => canvas.text(below, "the company as it was when the week was over", Role::Dim),
+            None => canvas.text(below, "the company at the end of that week", Role::Dim),
         }
         canvas.pane_keys(own, &look.hints(&[Action::Commit, Action::Discard]));
     }

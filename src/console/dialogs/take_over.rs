@@ -60,8 +60,7 @@ impl Dialog for TakeOver {
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let text = format!(
-            "A new run begins here, on day {} before week {}, with everything that was done up to this moment. The \
-             recorded run stays as it is.",
+            "A new run starts here, on day {} before week {}, with everything done up to this moment. The recorded run is not changed.",
             self.day, self.week
         );
         let lines = wrapped(&text, 72);
@@ -85,7 +84,7 @@ impl Dialog for TakeOver {
             canvas.click(row, Click::Row(0, at));
         }
         let key = look.keys.label(Action::Open).unwrap_or_default();
-        canvas.pane_keys(own, &format!("{key} begin there · {}", look.hint(Action::Close)));
+        canvas.pane_keys(own, &format!("{key} start · {}", look.hint(Action::Close)));
     }
 }
 

@@ -17,7 +17,7 @@ const SPEEDS: [(u64, &str); 6] = [
     (1_000, "1 week a second"),
     (500, "2 weeks a second"),
     (200, "5 weeks a second"),
-    (0, "as fast as it goes"),
+    (0, "full speed"),
 ];
 
 /// A replay on the screen.

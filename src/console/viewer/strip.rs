@@ -20,7 +20,7 @@ impl Viewer {
         let state = match (self.playing, place.at_end, place.follows) {
             (true, ..) => format!("playing, {}", self.speed_in_words()),
             (false, true, true) => "live".to_owned(),
-            (false, false, true) => "paused, more is being played".to_owned(),
+            (false, false, true) => "paused; more is being recorded".to_owned(),
             (false, true, false) => "end of the record".to_owned(),
             (false, false, false) => "paused".to_owned(),
         };

@@ -38,9 +38,9 @@ pub fn brief(entry: &Decided) -> Vec<(String, Role)> {
             };
             vec![(sql, Role::Keyword), (answer, Role::Dim)]
         }
-        Act::View { screen, for_ms } => one(format!("looked at {screen} for {}", time(*for_ms)), Role::Dim),
+        Act::View { screen, for_ms } => one(format!("viewed {screen} for {}", time(*for_ms)), Role::Dim),
         Act::Memo { length, .. } => {
-            one(format!("kept notes of {} bytes", grouped(*length as f64, 0)), Role::Text)
+            one(format!("saved notes ({} bytes)", grouped(*length as f64, 0)), Role::Text)
         }
         Act::Advance { rationale, forecasts, filled_naively } => {
             let mut lines = vec![(format!("“{}”", rationale.trim()), Role::Strong)];
@@ -53,7 +53,7 @@ pub fn brief(entry: &Decided) -> Vec<(String, Role)> {
             one(format!("{days_run} days passed, cash {}", dollars(*cash)), Role::Header)
         }
         Act::End { reason } => one(format!("the run was over: {reason}"), Role::Warning),
-        Act::Branch { run } => one(format!("here it branched off run {run}"), Role::Warning),
+        Act::Branch { run } => one(format!("branched off run {run} here"), Role::Warning),
         Act::Other(kind) => one(kind.clone(), Role::Dim),
     }
 }
@@ -80,7 +80,7 @@ fn foreseen_in_brief(foreseen: &Foreseen) -> (String, Role) {
 pub fn whole(place: &Place) -> String {
     let chapter = &place.chapter;
     let mut parts = vec![format!(
-        "Day {}, before week {}. Outcomes marked “later” are from the rest of the record: nobody knew them then.",
+        "Day {}, before week {}. Outcomes marked “later” come from later in the record; nobody knew them then.",
         chapter.day, chapter.week
     )];
     for (at, entry) in chapter.entries.iter().enumerate() {
@@ -103,8 +103,8 @@ fn in_full(act: &Act) -> String {
     match act {
         Act::Call { tool, args, answer, reversal } => {
             let remark = match reversal {
-                Some(Reversal::Undoes(_)) => " (took back an earlier call)",
-                Some(Reversal::Redoes(_)) => " (repeated a call that was taken back)",
+                Some(Reversal::Undoes(_)) => " (undid an earlier call)",
+                Some(Reversal::Redoes(_)) => " (redid an undone call)",
                 None => "",
             };
             format!("{tool}{remark}\n{}\n  answered\n{}", pretty(args), pretty(answer))
@@ -201,7 +201,7 @@ mod tests {
         assert_eq!(said(query), ["SELECT 1 FROM x", "1,200 rows, 3 ms"]);
         for (for_ms, words) in [(400, "a moment"), (1_500, "1 s"), (83_000, "1 min 23 s")] {
             let view = Act::View { screen: "cash".to_owned(), for_ms };
-            assert_eq!(said(view), [format!("looked at cash for {words}")]);
+            assert_eq!(said(view), [format!("viewed cash for {words}")]);
         }
     }
 

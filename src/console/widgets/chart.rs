@@ -4,10 +4,13 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::raster::Raster;
-use super::scale::{ticks, widened};
+use super::scale::{Unit, ticks, widened};
 use crate::console::canvas::{Align, Canvas};
 use crate::console::text::arrow;
 use crate::console::theme::Role;
+
+/// What stands where a chart has no data.
+pub const NO_DATA: &str = "no data yet: run a week (n)";
 
 /// Narrowest plot that leaves room for names at the ends of its curves.
 const ROOM_FOR_NAMES: u16 = 36;
@@ -65,10 +68,18 @@ impl Band {
     }
 }
 
-/// What an axis means.
+/// The axis below.
 pub struct Axis<'a> {
     /// Writes a value.
     pub write: &'a dyn Fn(f64) -> String,
+    /// Values that must be on it.
+    pub holds: &'a [f64],
+}
+
+/// The axis to the left.
+pub struct Side<'a> {
+    /// What its values are.
+    pub unit: Unit,
     /// Values that must be on it.
     pub holds: &'a [f64],
 }
@@ -84,11 +95,11 @@ pub struct Plot<'a> {
     /// The axis below.
     pub x: &'a Axis<'a>,
     /// The axis to the left.
-    pub y: &'a Axis<'a>,
+    pub y: &'a Side<'a>,
 }
 
 /// Draws lines; says so when there is nothing to draw yet.
-pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], x: &Axis<'_>, y: &Axis<'_>) {
+pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], x: &Axis<'_>, y: &Side<'_>) {
     Plot { lines, band: None, mark: None, x, y }.draw(canvas, area);
 }
 
@@ -126,8 +137,8 @@ impl Plot<'_> {
             return;
         }
         let points = || self.lines.iter().flat_map(|line| &line.points).filter(|point| point.1.is_finite());
-        if points().count() < 2 {
-            canvas.text(area, "nothing to draw yet: let a week pass (n)", Role::Dim);
+        if points().next().is_none() {
+            canvas.text(area, NO_DATA, Role::Dim);
             return;
         }
         let band = || self.band.iter().flat_map(|band| &band.ends);
@@ -137,7 +148,7 @@ impl Plot<'_> {
         let rows = ((area.height - 2) / 4).clamp(2, 6) as usize;
         let y = widened(y, rows);
         let marks = ticks(y, rows + 1);
-        let labels: Vec<String> = marks.iter().map(|value| (self.y.write)(*value)).collect();
+        let labels = self.y.unit.labels(&marks);
         let left = labels.iter().map(|label| label.width()).max().unwrap_or(0) as u16;
         let left = left.min(area.width / 2);
         let plot = area.width - left - 1;
@@ -202,10 +213,16 @@ impl Plot<'_> {
     fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &Frame) {
         let Some(band) = self.band else { return };
         for at in 0..frame.inside.width {
-            let share = f64::from(at) / f64::from(frame.inside.width.saturating_sub(1).max(1));
-            let x = frame.x[0] + (frame.x[1] - frame.x[0]) * share;
-            let Some((lower, upper)) = band.at(x) else { continue };
-            for y in frame.row(upper)..=frame.row(lower) {
+            // All that the band covers between the edges of the column: neighbouring columns touch, however steep it is.
+            let edges = [f64::from(at) - 0.5, f64::from(at) + 0.5].map(|column| {
+                let share = column / f64::from(frame.inside.width.saturating_sub(1).max(1));
+                band.at(frame.x[0] + (frame.x[1] - frame.x[0]) * share)
+            });
+            let ends = edges.iter().flatten();
+            let upper = ends.clone().map(|end| frame.row(end.1)).min();
+            let lower = ends.map(|end| frame.row(end.0)).max();
+            let (Some(upper), Some(lower)) = (upper, lower) else { continue };
+            for y in upper..=lower {
                 let cell = Rect { x: frame.inside.x + at, y, width: 1, height: 1 };
                 canvas.text(cell, "░", Role::Fan);
             }
@@ -214,6 +231,7 @@ impl Plot<'_> {
 
     fn draw_lines(&self, canvas: &mut Canvas<'_>, frame: &Frame) {
         let mut raster = Raster::new(canvas.marker, frame.inside.width, frame.inside.height);
+        let alone = |line: &Line| line.points.iter().filter(|point| point.1.is_finite()).count() == 1;
         for line in self.lines.iter().filter(|line| !line.scattered) {
             let place = |point: &(f64, f64)| (Frame::share(frame.x, point.0), Frame::share(frame.y, point.1));
             let points: Vec<(f64, f64)> =
@@ -221,7 +239,8 @@ impl Plot<'_> {
             points.windows(2).for_each(|pair| raster.line(pair[0], pair[1], line.role));
         }
         raster.paint(canvas, frame.inside);
-        for line in self.lines.iter().filter(|line| line.scattered) {
+        // A single week is a point, not a line.
+        for line in self.lines.iter().filter(|line| line.scattered || alone(line)) {
             for point in line.points.iter().filter(|point| point.1.is_finite()) {
                 let cell = Rect { x: frame.column(point.0), y: frame.row(point.1), width: 1, height: 1 };
                 canvas.text(cell, "•", line.role);
@@ -235,7 +254,7 @@ impl Plot<'_> {
             let last = line.points.iter().rev().find(|point| point.1.is_finite())?;
             Some((line.name, frame.row(last.1), line.role))
         };
-        let of_band = |band: &Band| Some((band.name, frame.row(band.ends.last()?.2), Role::Fan));
+        let of_band = |band: &Band| Some((band.name, frame.row(band.ends.last()?.2), Role::Text));
         let mut taken: Vec<u16> = Vec::new();
         let lines = self.lines.iter().rev().filter_map(of_line);
         for (name, wanted, role) in lines.chain(self.band.and_then(of_band)).filter(|own| !own.0.is_empty()) {
@@ -251,7 +270,12 @@ fn bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {
     let all = values.chain(holds.iter().copied());
     let (least, most) = all
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
-    if most > least { [least, most] } else { [least - 1.0, most + 1.0] }
+    match least {
+        _ if most > least => [least, most],
+        0.0 => [0.0, 1.0],
+        // A level without change stands in the middle, and the axis begins at zero.
+        level => [(2.0 * level).min(0.0), (2.0 * level).max(0.0)],
+    }
 }
 
 /// The axis to the left and the grid; the line of zero is whole.
@@ -295,7 +319,7 @@ pub fn summary(values: &[f64], write: &dyn Fn(f64) -> String, room: usize) -> St
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let before = values.len().checked_sub(2).map(|at| values[at]);
     let change = before.map(|before| format!(" {}", arrow(now - before, &write((now - before).abs()))));
-    let extremes = format!(" · least {} · most {}", write(least), write(most));
+    let extremes = format!(" · min {} · max {}", write(least), write(most));
     for part in change.into_iter().chain([extremes]) {
         if words.width() + part.width() > room {
             break;

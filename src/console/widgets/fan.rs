@@ -2,10 +2,10 @@
 
 use ratatui::layout::Rect;
 
-use super::chart::{Axis, Band, Line, Plot, zero_if_near};
+use super::chart::{Axis, Band, Line, Plot, Side, zero_if_near};
+use super::scale::Unit;
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
-use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::tools::Forecast;
 
@@ -39,7 +39,7 @@ pub fn draw_fan(canvas: &mut Canvas<'_>, area: Rect, company: &Company, filed: u
         band: Some(&band).filter(|_| !forecasts.is_empty()),
         mark: None,
         x: &Axis { write: &|day| format!("day {day:.0}"), holds: &[] },
-        y: &Axis { write: &short_dollars, holds: zero },
+        y: &Side { unit: Unit::Dollars, holds: zero },
     };
     plot.draw(canvas, area);
 }

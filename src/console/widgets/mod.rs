@@ -10,8 +10,9 @@ pub mod scale;
 pub mod spark;
 pub mod table;
 
-pub use chart::{Axis, Band, Line, Plot, chart};
+pub use chart::{Axis, Band, Line, Plot, Side, chart};
 pub use editor::Editor;
 pub use field::Field;
+pub use scale::Unit;
 pub use spark::spark;
 pub use table::{Cell, Column, Table};

@@ -1,5 +1,42 @@
 //! Round numbers between two bounds, for the axes of charts.
 
+/// What the values of an axis are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// Dollars.
+    Dollars,
+    /// Anything else.
+    Number,
+}
+
+impl Unit {
+    /// Round values with as many decimals as they need, so that no two of them read the same: `$500k`, `$1M`, `$1.002M`.
+    pub fn labels(self, values: &[f64]) -> Vec<String> {
+        let step = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        values.iter().map(|value| self.label(*value, step)).collect()
+    }
+
+    fn label(self, value: f64, step: f64) -> String {
+        let size = value.abs();
+        let (scale, suffix) = match size {
+            _ if size >= 1e9 => (1e9, "B"),
+            _ if size >= 1e6 => (1e6, "M"),
+            _ if size >= 1e3 => (1e3, "k"),
+            _ => (1.0, ""),
+        };
+        let scaled = size / scale;
+        let step = if step.is_finite() { step } else { size };
+        let near = |decimals: &usize| {
+            let power = libm::pow(10.0, *decimals as f64);
+            (scaled - (scaled * power).round() / power).abs() * scale <= 1e-3 * step
+        };
+        let decimals = (0..=15).find(near).unwrap_or(15);
+        let (sign, dollar) =
+            (if value < 0.0 { "-" } else { "" }, if self == Unit::Dollars { "$" } else { "" });
+        format!("{sign}{dollar}{scaled:.decimals$}{suffix}")
+    }
+}
+
 /// Round values between two bounds, at most so many: multiples of 1, 2 or 5 times a power of ten.
 pub fn ticks([from, to]: [f64; 2], most: usize) -> Vec<f64> {
     let step = step([from, to], most);
@@ -62,6 +99,23 @@ mod tests {
         assert_eq!(ticks([3.0, 3.0], 4), Vec::<f64>::new());
         assert_eq!(ticks([0.0, f64::INFINITY], 4), Vec::<f64>::new());
         assert_eq!(ticks([0.0, 9.0], 0), Vec::<f64>::new());
+    }
+
+    #[test]
+    fn labels_are_short_and_no_two_are_equal() {
+        let label = |from: f64, to: f64, most: usize| Unit::Dollars.labels(&ticks([from, to], most));
+        assert_eq!(label(0.0, 1e6, 3), ["$0", "$500k", "$1M"]);
+        assert_eq!(label(1_000_000.0, 1_002_000.0, 3), ["$1M", "$1.001M", "$1.002M"]);
+        assert_eq!(label(-1.5e6, 1.5e6, 3), ["-$1M", "$0", "$1M"]);
+        assert_eq!(Unit::Number.labels(&ticks([48.0, 49.5], 4)), ["48", "48.5", "49", "49.5"]);
+        for from in [0.0, 0.003, 299_400.0, 999_999.0, 1e9] {
+            for span in [1e-3, 0.7, 40.0, 12_345.0, 3e7] {
+                for most in 2..8 {
+                    let labels = label(from, from + span, most);
+                    assert!(labels.windows(2).all(|pair| pair[0] != pair[1]), "{from} + {span}: {labels:?}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -2,13 +2,14 @@
 
 const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// The last values as bars of one row; the lowest is the lowest bar, equal values are drawn in the middle.
+/// The last values as bars of one row; the lowest is the lowest bar. Equal values stand in the middle, zeros at the foot.
 pub fn spark(values: &[f64], width: usize) -> String {
     let shown = &values[values.len().saturating_sub(width)..];
     let finite = || shown.iter().copied().filter(|value| value.is_finite());
     let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
     let level = |value: &f64| match value.is_finite() {
         false => ' ',
+        true if most <= least && most == 0.0 => LEVELS[0],
         true if most <= least => LEVELS[3],
         true => LEVELS[(((value - least) / (most - least)) * 7.0).round() as usize],
     };
@@ -29,6 +30,7 @@ mod tests {
     fn trends_are_drawn_between_their_extremes() {
         assert_eq!(spark(&[0.0, 7.0, 3.0], 8), "▁█▄");
         assert_eq!(spark(&[5.0, 5.0], 8), "▄▄");
+        assert_eq!(spark(&[0.0, 0.0, 0.0], 8), "▁▁▁");
         assert_eq!(spark(&[1.0, 2.0, 3.0], 2), "▁█");
         assert_eq!(spark(&[f64::NAN, 1.0], 2), " ▄");
         assert_eq!(spark(&[], 3), "");

@@ -60,7 +60,7 @@ impl SessionThread {
                 Some(Arrival { company: None, place: playback.place(), interrupt: None, problem: None })
             }
             Err(problem) => {
-                let problem = Some(format!("{problem}. It is not watched any more"));
+                let problem = Some(format!("{problem}. No longer watching it"));
                 Some(Arrival { company: None, place: playback.place(), interrupt: None, problem })
             }
         };
@@ -144,7 +144,7 @@ impl SessionThread {
         let place = playback.place();
         self.open = Some(Open::Replayed(playback));
         let problem = match went {
-            Ok(Went::Stopped) => Some("stopped on the way".to_owned()),
+            Ok(Went::Stopped) => Some("seeking stopped".to_owned()),
             Ok(_) => None,
             Err(error) => Some(error.to_string()),
         };
@@ -160,7 +160,7 @@ impl SessionThread {
             Ok(session) => {
                 let (own, day) = (session.manifest().id.clone(), session.day());
                 let remark =
-                    format!("this is run {own} now, yours from day {day}; run {parent} is as it was");
+                    format!("this is run {own} now, yours from day {day}; run {parent} is unchanged");
                 self.take(Ok(session), "", Some(remark));
             }
             Err(refusal) => self.say(News::NotOpened(refusal.to_string(), None)),
@@ -172,7 +172,7 @@ impl SessionThread {
         let rescued = find_run_to_read(runs, id).and_then(|folder| rescue(&folder));
         let opened = rescued.and_then(|found| {
             let remark = format!(
-                "run {} holds lines 1 to {} of run {id}, which is as it was; {}",
+                "run {} holds lines 1 to {} of run {id}, which is unchanged; {}",
                 found.run, found.lines, found.problem
             );
             Session::open(&runs.join(&found.run), Access::Write, true).map(|session| (session, remark))

@@ -105,7 +105,7 @@ impl Desk {
         let funnels_so_far: Vec<Value> = funnels(&self.session).iter().map(funnel).collect();
         let data = json!({ "threads": waiting, "funnels": funnels_so_far });
         if waiting.is_empty() {
-            let mut lines = vec!["no thread waits for an answer".to_owned()];
+            let mut lines = vec!["no threads waiting".to_owned()];
             lines.extend(funnels(&self.session).iter().map(Funnel::in_words));
             return Answer::done("inbox", lines.join("\n"), data);
         }

@@ -17,19 +17,16 @@ impl Desk {
         match what {
             None | Some("week") => Ok(self.week_report()),
             Some("run") => Ok(self.run_report()),
-            Some(_) => {
-                Err(problem(arguments, "report tells of a week or of the run: report week, report run"))
-            }
+            Some(_) => Err(problem(arguments, "report takes week or run: report week, report run")),
         }
     }
 
     fn week_report(&self) -> Answer {
         match WeekReport::of_session(&self.session) {
             Some(report) => Answer::done("report", in_words(&report), as_data(&report)),
-            None => Answer::refused(
-                "report",
-                Refusal::new("no_week_yet", "no week has passed yet; next lets one pass"),
-            ),
+            None => {
+                Answer::refused("report", Refusal::new("no_week_yet", "no week has run yet; next runs one"))
+            }
         }
     }
 

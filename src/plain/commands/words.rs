@@ -15,11 +15,9 @@ pub(super) fn explain(command: &str, words: &str, numbers: &Numbers) -> Answer {
     match glossary::find(words) {
         Ok(found) => answer("explain", found, numbers),
         Err(near) if near.is_empty() => {
-            Answer::usage(format!("there is nothing called {words}; glossary lists every term"), column)
+            Answer::usage(format!("unknown term {words}; glossary lists every term"), column)
         }
-        Err(near) => {
-            Answer::usage(format!("there is nothing called {words}; near it: {}", near.join(", ")), column)
-        }
+        Err(near) => Answer::usage(format!("unknown term {words}; near it: {}", near.join(", ")), column),
     }
 }
 
@@ -61,7 +59,7 @@ pub(super) fn glossary(word: &str) -> Answer {
         text += &format!("  {:<width$}  {}\n", term.id, term.text);
     }
     let count = if found.len() == 1 { "1 term".to_owned() } else { format!("{} terms", found.len()) };
-    Answer::done("glossary", format!("{text}({count}; explain TERM tells more)"), json!({ "terms": found }))
+    Answer::done("glossary", format!("{text}({count}; explain TERM for more)"), json!({ "terms": found }))
 }
 
 #[cfg(test)]

@@ -12,14 +12,14 @@ pub fn page_of(book: &Logbook) -> Page {
     let mut blocks = vec![Block::Facts(facts(book))];
     if book.clock_set_back > 0 {
         blocks.push(Block::Warning(format!(
-            "The clock of the machine was set back {} while the run was played; the time around it counts as none.",
+            "The system clock was set back {} during the run; the time around it is not counted.",
             count(book.clock_set_back, "time")
         )));
     }
     blocks.push(Block::Heading("Weeks"));
     blocks.push(weeks(book));
     blocks.push(Block::Note(format!(
-        "Time is what passed before the week was let pass, without breaks: more than {:.0} minutes without a line.",
+        "Time is the time before each week was run, without breaks (gaps of more than {:.0} minutes).",
         BREAK_SECONDS / 60.0
     )));
     blocks.push(Block::Heading("Breaks"));
@@ -50,7 +50,7 @@ pub fn page_of(book: &Logbook) -> Page {
 }
 
 fn headline(book: &Logbook) -> String {
-    let who = book.participant.as_deref().unwrap_or("Somebody without a label");
+    let who = book.participant.as_deref().unwrap_or("An unnamed participant");
     let weeks = count(book.weeks.iter().filter(|week| !week.inherited).count() as u32, "week");
     let minutes = whole(book.total.active_seconds / 60.0);
     let how = match book.ended {

@@ -24,7 +24,7 @@ pub(super) fn runway(situation: &Situation<'_>) -> Option<Need> {
     Some(Need {
         problem: Problem::Runway,
         text: format!(
-            "cash lasts {} at this pace: {} a week come in, {} go out",
+            "cash lasts {} at this pace: income {} a week, costs {}",
             count(weeks as u32, "week"),
             money(pace.income * 7.0),
             money(out)

@@ -93,7 +93,7 @@ fn wave(situation: &Situation<'_>, group: Group) -> Option<Need> {
     Some(Need {
         problem: Problem::Churn(group),
         text: format!(
-            "{group}: {} of {} cancelled last week ({}); the mean of the four weeks before was {}{told}",
+            "{group}: {} of {} cancelled last week ({}); four-week average {}{told}",
             whole(gone),
             whole(had),
             percent(gone / had.max(1.0), 1),

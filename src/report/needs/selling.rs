@@ -46,7 +46,8 @@ pub(super) fn nothing_on_sale(situation: &Situation<'_>) -> Option<Need> {
         [one] => (format!("plan {one}"), "has"),
         more => (format!("plans {}", more.join(", ")), "have"),
     };
-    let consequence = if all { "nobody gets anything for the price" } else { "nobody gets anything on it" };
+    let consequence =
+        if all { "subscribers get nothing for their money" } else { "subscribers get nothing on it" };
     Some(Need {
         problem: Problem::NoQuota,
         text: format!("{plans} {verb} a price and a quota of 0 units a day: {consequence}"),
@@ -98,9 +99,9 @@ pub(super) fn no_leads(situation: &Situation<'_>) -> Option<Need> {
     let total = FIRST_TRY * Channel::ALL.len() as f64;
     Some(Need {
         problem: Problem::NoLeads,
-        text: "no leads: no ad channel is paid and no subscriber can tell others".to_owned(),
+        text: "no leads: no ads are running and there are no subscribers to spread the word".to_owned(),
         proposal: Some(format!(
-            "{} a day on each channel for {group} shows in a week which of them brings leads, for {}",
+            "{} a day per channel on {group} shows within a week which ones bring leads, for {}",
             money(FIRST_TRY),
             money(7.0 * total)
         )),
@@ -263,7 +264,7 @@ impl Offers<'_> {
                         money(self.price(plan)),
                         own.floor
                     ),
-                    "a lower price or a higher quality wins them".to_owned(),
+                    "only a lower price or a higher quality can win them".to_owned(),
                     Place::Group(group),
                 ))
             }

@@ -135,14 +135,14 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
     Some(Need {
         problem: Problem::Backlog,
         text: format!(
-            "{} subscribers wait for support and {} issues a day are opened; operations of {} a day solve about {} a day",
-            whole(f64::from(week.open_issues)),
+            "{} waiting for support; {} issues open a day, and operations of {} a day solve about {}",
+            count(week.open_issues, "subscriber"),
             whole(opened),
             money(operations),
             whole(base + per_dollar * operations)
         ),
         proposal: Some(format!(
-            "{} a day solve about {}: as many as are opened when nobody waits, and those who wait within a week",
+            "{} a day solve about {}: the daily inflow, and the backlog within a week",
             money(dollars),
             whole(base + per_dollar * dollars)
         )),

@@ -103,11 +103,7 @@ fn quotas_of_zero_deliver_nothing() {
 fn without_ads_and_subscribers_no_lead_comes() {
     let calls = but(&[("set_targeted_ad_spend", json!({"targeted_spend": {}}))]);
     for weeks in [0, 1] {
-        is_first(
-            &company(3, 1e6, &calls, weeks),
-            Problem::NoLeads,
-            &["no leads", "$50 a day on each channel"],
-        );
+        is_first(&company(3, 1e6, &calls, weeks), Problem::NoLeads, &["no leads", "$50 a day per channel"]);
     }
 }
 
@@ -211,7 +207,7 @@ fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
         }
         play(&mut session, 1);
     }
-    let need = is_first(&session, Problem::Backlog, &["wait for support", "those who wait within a week"]);
+    let need = is_first(&session, Problem::Backlog, &["waiting for support", "the backlog within a week"]);
     let Place::Call("set_daily_spend", arguments) = &need.place else { panic!("{need:?}") };
     session.call("set_daily_spend", arguments, Via::Script).expect("it is set");
     assert!(

@@ -25,7 +25,7 @@ pub fn cash(story: &Story) -> Option<Block> {
         band
     });
     let summary = format!(
-        "Cash begins at {}, is at least {} and at most {}, and is {} on day {}.",
+        "Cash starts at {}, ranges from {} to {}, and is {} on day {}.",
         money(story.start_cash),
         money(low),
         money(high),
@@ -87,7 +87,7 @@ pub fn income_and_costs(story: &Story) -> Option<Block> {
         parts.iter().flat_map(|part| &part.values).filter(|value| (**value > 0.0) == positive).sum()
     };
     let summary = format!(
-        "In {} {} came in and {} went out.",
+        "In {}, income was {} and costs {}.",
         count(at.len() as u32, "week"),
         money(sum(true)),
         money(-sum(false))
@@ -119,7 +119,7 @@ pub fn people(story: &Story) -> Option<Block> {
     let summary = curves.iter().map(|curve| {
         let (week, most) = highest(&curve.points);
         format!(
-            "{}: at most {} in week {week:.0}, {} at the end.",
+            "{}: peak {} in week {week:.0}, {} at the end.",
             curve.name,
             whole(most),
             whole(last(&curve.points))
@@ -198,7 +198,7 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
     });
     let ahead = count(horizon / 7, "week");
     let summary = format!(
-        "{} forecasts made {ahead} ahead came due; what came lay inside of {} of their intervals.",
+        "{} forecasts made {ahead} ahead came due; {} of their intervals held the outcome.",
         due.len(),
         inside.count()
     );
@@ -207,7 +207,7 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
     let high = came.iter().map(|point| point.1).fold(f64::NEG_INFINITY, f64::max);
     let reach = (high - low).max(0.1 * high.abs()).max(1.0);
     Some(Block::Chart(Chart {
-        title: format!("Cash as forecast {ahead} ahead, and as it came"),
+        title: format!("Cash forecast {ahead} ahead, and the outcome"),
         summary,
         across: "day",
         dollars: true,

@@ -27,7 +27,7 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::Now,
-    effect: "The calculation runs no more.",
+    effect: "The calculation no longer runs.",
     cost: "nothing",
     writes: &[],
     refusals: &["calculation_not_found"],

@@ -16,7 +16,7 @@ static SPEC: Spec = Spec {
     code: "DOC",
     module: Module::Time,
     kind: Kind::Engine,
-    summary: "Tell everything about tools: arguments, effect, cost, refusals, results",
+    summary: "Show everything about tools: arguments, effect, cost, refusals, results",
     arguments: &[Argument {
         name: "tool_names",
         alias: None,

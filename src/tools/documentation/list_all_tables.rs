@@ -12,7 +12,7 @@ static SPEC: Spec = Spec {
     code: "TABS",
     module: Module::Time,
     kind: Kind::Engine,
-    summary: "List the tables that can be asked, in a line each",
+    summary: "List the tables that can be queried, one line each",
     arguments: &[],
     own_unknown: false,
     whole: None,

@@ -16,7 +16,7 @@ static SPEC: Spec = Spec {
     code: "INS",
     module: Module::Market,
     kind: Kind::Read,
-    summary: "Tell the estimates of a known group, as of its last study",
+    summary: "Show the estimates of a known group, as of its last study",
     arguments: &[Argument {
         name: "group_id",
         alias: None,

@@ -39,8 +39,7 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::AtCompletion,
-    effect: "On its completion day the level rises to the target, and get_group_insights tells the market of that \
-             day. Level 2 takes 3 days, 3 takes 5, 4 takes 7, 5 takes 10; the errors are at most 40, 25, 15 and 5 %. \
+    effect: "On its completion day the level rises to the target, and get_group_insights describes the market of that day. Level 2 takes 3 days, 3 takes 5, 4 takes 7, 5 takes 10; the errors are at most 40, 25, 15 and 5 %. \
              One study of a group at a time; studies of several groups run side by side.",
     cost: "$60,000 for level 2, $175,000 for 3, $350,000 for 4, $700,000 for 5, at once",
     writes: &["ledger", "group_info_levels", "notifications"],

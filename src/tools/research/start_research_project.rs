@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
     code: "RND",
     module: Module::Research,
     kind: Kind::Purchase,
-    summary: "Buy an R&D project; its duration and gain are told at once",
+    summary: "Buy an R&D project; its duration and gain are known at once",
     arguments: &[Argument {
         name: "tier",
         alias: None,

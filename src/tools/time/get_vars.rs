@@ -12,7 +12,7 @@ static SPEC: Spec = Spec {
     code: "VARS",
     module: Module::Time,
     kind: Kind::Read,
-    summary: "Tell the current day",
+    summary: "Show the current day",
     arguments: &[],
     own_unknown: false,
     whole: None,

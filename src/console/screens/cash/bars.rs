@@ -1,12 +1,15 @@
 //! Bars of the weeks: income above the line, costs below, made of their categories.
 
 use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+use ratatui::symbols::Marker;
 
-use super::model::{Amounts, Books, CATEGORIES, side};
+use super::model::{Amounts, Books, CATEGORIES, COUNT, side};
 use crate::console::canvas::{Align, Canvas, Click, fit};
-use crate::console::text::short_dollars;
 use crate::console::theme::Role;
-use crate::session::Category;
+use crate::console::widgets::Unit;
+use crate::console::widgets::chart::NO_DATA;
+use crate::console::widgets::scale::ticks;
 
 /// Narrowest column of a week, with the gap.
 const NARROWEST: u16 = 3;
@@ -23,10 +26,13 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &Books, selected: u32, p
     let room = area.width - SIDE;
     let weeks = books.last_weeks((room / NARROWEST) as usize);
     if weeks.is_empty() {
-        canvas.text(area, "nothing to draw yet: let a week pass (n)", Role::Dim);
+        canvas.text(area, NO_DATA, Role::Dim);
         return;
     }
     let width = (room / weeks.len() as u16).clamp(NARROWEST, WIDEST);
+    let coloured = in_colours(canvas);
+    let sign =
+        |category: usize| if coloured { "█".to_owned() } else { CATEGORIES[category].glyph.to_string() };
     let legend = legend(books, area.width as usize);
     let legend_rows = (legend.len() as u16).min(area.height.saturating_sub(6) / 2);
     let nets = u16::from(width >= 7);
@@ -52,7 +58,12 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &Books, selected: u32, p
         let y = area.bottom() - legend_rows + row as u16;
         for (category, text) in pieces {
             let piece = Rect { x, y, width: area.right().saturating_sub(x), height: 1 };
-            canvas.text(piece, text, Role::Series(*category));
+            canvas.text(piece, text, Role::Text);
+            canvas.text(
+                Rect { width: 1, ..piece }.intersection(piece),
+                &sign(*category),
+                Role::Series(*category),
+            );
             x += text.chars().count() as u16 + 2;
         }
     }
@@ -82,39 +93,119 @@ impl Scale {
         let per_row = |most: f64, rows: u16| if rows == 0 { 0.0 } else { most / f64::from(rows) };
         Scale { above, below, dollars: per_row(income, above).max(per_row(costs, below)) }
     }
+
+    /// Row of a value, counted from the highest; values within a row share it.
+    fn row(&self, value: f64) -> u16 {
+        let rows = (value.abs() / self.dollars).ceil() as u16;
+        if value < 0.0 { self.above + rows.min(self.below) } else { self.above - rows.min(self.above) }
+    }
 }
 
+/// The line of zero, and round values beside the rows they end in.
 fn draw_side(canvas: &mut Canvas<'_>, area: Rect, scale: &Scale) {
-    let label = |canvas: &mut Canvas<'_>, y: u16, value: f64| {
-        let place = Rect { y, height: 1, width: SIDE - 1, ..area };
-        canvas.aligned(place, &short_dollars(value), Role::Dim, Align::Right);
-    };
-    if scale.above > 0 {
-        label(canvas, area.y, f64::from(scale.above) * scale.dollars);
-    }
-    if scale.below > 1 {
-        label(canvas, area.y + scale.above + scale.below, -f64::from(scale.below) * scale.dollars);
-    }
     let line = Rect { y: area.y + scale.above, height: 1, ..area };
     canvas.text(line, &"─".repeat(area.width as usize), Role::Border);
-    label(canvas, line.y, 0.0);
+    let bounds = [-f64::from(scale.below) * scale.dollars, f64::from(scale.above) * scale.dollars];
+    let marks = ticks(bounds, usize::from((scale.above + scale.below) / 2).clamp(2, 7));
+    let mut taken = vec![scale.above];
+    for (value, label) in marks.iter().zip(Unit::Dollars.labels(&marks)) {
+        let row = scale.row(*value);
+        if *value != 0.0 && taken.contains(&row) {
+            continue;
+        }
+        taken.push(row);
+        let place = Rect { y: area.y + row, height: 1, width: SIDE - 1, ..area };
+        canvas.aligned(place, &label, Role::Dim, Align::Right);
+    }
 }
 
+/// Where a category ends in a bar, in eighths of a row from the line.
+type Part = (usize, u32);
+
+/// The parts of one side of a bar, from the line outwards.
+fn parts(amounts: &Amounts, income: bool, scale: &Scale, rows: u16) -> Vec<Part> {
+    let mut sum = 0.0;
+    let own = CATEGORIES.iter().enumerate().filter(|(_, category)| category.income == income);
+    let end = own.map(|(at, _)| {
+        sum += amounts[at].abs();
+        (at, ((sum / scale.dollars * 8.0).round() as u32).min(u32::from(rows) * 8))
+    });
+    end.collect()
+}
+
+/// What stands in a row of eighths: the category next to the line, how far it reaches, and the one beyond it.
+fn in_row(parts: &[Part], row: u16) -> Option<(usize, u32, Option<usize>)> {
+    let (from, to) = (u32::from(row) * 8, u32::from(row) * 8 + 8);
+    let mut start = 0;
+    let mut shares: Vec<(usize, u32)> = Vec::new();
+    for (category, end) in parts {
+        let share = (*end).min(to).saturating_sub(start.max(from));
+        if share > 0 {
+            shares.push((*category, share));
+        }
+        start = *end;
+    }
+    let filled: u32 = shares.iter().map(|(_, share)| share).sum();
+    // A cell has two colours: the smallest parts of three or more give way to those beside them.
+    while shares.len() > 2 || (shares.len() == 2 && filled < 8) {
+        let (least, _) = shares.iter().enumerate().min_by_key(|(_, (_, share))| *share)?;
+        let (_, share) = shares.remove(least);
+        shares[least.saturating_sub(1)].1 += share;
+    }
+    let (near, share) = *shares.first()?;
+    Some((near, share, shares.get(1).map(|(beyond, _)| *beyond)))
+}
+
+/// Draws the bar of a week: eighths of a row in one colour a category, or whole rows of signs where colours cannot tell
+/// the categories apart.
 fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts, scale: &Scale) {
+    let coloured = in_colours(canvas);
     for income in [true, false] {
-        let mut sum = 0.0;
-        let most = if income { scale.above } else { scale.below };
-        for (at, category) in CATEGORIES.iter().enumerate().filter(|(_, own)| own.income == income) {
-            let rows = |dollars: f64| ((dollars / scale.dollars).round() as u16).min(most);
-            let from = rows(sum);
-            sum += amounts[at].abs();
-            for step in from..rows(sum) {
-                let y = if income { line - 1 - step } else { line + 1 + step };
-                let text: String = std::iter::repeat_n(category.glyph, column.width as usize).collect();
-                canvas.text(Rect { y, height: 1, ..column }, &text, Role::Series(at));
+        let rows = if income { scale.above } else { scale.below };
+        let parts = parts(amounts, income, scale, rows);
+        for step in 0..rows {
+            let Some((near, eighths, beyond)) = in_row(&parts, step) else { continue };
+            let y = if income { line - 1 - step } else { line + 1 + step };
+            let cell = Rect { y, height: 1, ..column };
+            if coloured {
+                draw_eighths(canvas, cell, income, (near, eighths), beyond);
+            } else if eighths >= 4 || beyond.is_some() {
+                let own = if eighths >= 4 { near } else { beyond.unwrap_or(near) };
+                let text: String =
+                    std::iter::repeat_n(CATEGORIES[own].glyph, column.width as usize).collect();
+                canvas.text(cell, &text, Role::Series(own));
             }
         }
     }
+}
+
+/// Whether colours tell the categories apart.
+fn in_colours(canvas: &Canvas<'_>) -> bool {
+    canvas.marker != Marker::Dot && canvas.theme.colours_apart(COUNT)
+}
+
+/// Draws a cell of which some eighths beside the line are of one category, and the others of another or empty.
+fn draw_eighths(
+    canvas: &mut Canvas<'_>,
+    cell: Rect,
+    up: bool,
+    (near, eighths): (usize, u32),
+    beyond: Option<usize>,
+) {
+    const BLOCKS: [&str; 9] = [" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"];
+    let colour = |category: usize| canvas.style(Role::Series(category)).fg;
+    // Blocks grow from below: downwards, the block is what the near category leaves free.
+    let lower = if up { eighths } else { 8 - eighths };
+    let style = match (up, beyond) {
+        _ if eighths >= 8 => Style { fg: colour(near), ..Style::new() },
+        (true, beyond) => Style { fg: colour(near), bg: beyond.and_then(colour), ..Style::new() },
+        (false, Some(beyond)) => Style { fg: colour(beyond), bg: colour(near), ..Style::new() },
+        (false, None) => Style { fg: colour(near), ..Style::new() }.add_modifier(Modifier::REVERSED),
+    };
+    let block = BLOCKS[if eighths >= 8 { 8 } else { lower as usize }];
+    let cell = cell.intersection(canvas.buffer.area);
+    canvas.text(cell, &block.repeat(cell.width as usize), Role::Text);
+    canvas.buffer.set_style(cell, style);
 }
 
 fn draw_net(canvas: &mut Canvas<'_>, place: Rect, amounts: &Amounts) {
@@ -129,10 +220,11 @@ fn legend(books: &Books, width: usize) -> Vec<Vec<(usize, String)>> {
     let mut lines: Vec<Vec<(usize, String)>> = Vec::new();
     let mut used = width;
     for (at, category) in CATEGORIES.iter().enumerate() {
-        if !books.is_used(at) || category.category == Category::InitialFunding {
+        if !books.is_used(at) {
             continue;
         }
-        let text = format!("{} {}", category.glyph, category.name());
+        // The sign of the category is drawn over the first column.
+        let text = format!("  {}", category.name());
         let length = text.chars().count() + 2;
         if used + length > width + 2 || lines.is_empty() {
             lines.push(Vec::new());
@@ -158,5 +250,59 @@ mod tests {
         amounts[3] = 0.0;
         assert_eq!(Scale::of(&[(1, amounts)], 5), Scale { above: 4, below: 0, dollars: 75.0 });
         assert_eq!(Scale::of(&[], 0).above, 0);
+    }
+
+    #[test]
+    fn a_bar_ends_at_an_eighth_of_a_row_and_a_cell_has_two_categories_at_most() {
+        let scale = Scale { above: 3, below: 3, dollars: 80.0 };
+        let mut amounts = [0.0; COUNT];
+        (amounts[0], amounts[1]) = (90.0, 40.0);
+        let income = parts(&amounts, true, &scale, 3);
+        assert_eq!(in_row(&income, 0), Some((0, 8, None)));
+        assert_eq!(
+            in_row(&income, 1),
+            Some((1, 5, None)),
+            "what is above the bar leaves one colour to the cell"
+        );
+        assert_eq!(in_row(&income, 2), None);
+        (amounts[3], amounts[4], amounts[5], amounts[6]) = (-20.0, -10.0, -45.0, -500.0);
+        let costs = parts(&amounts, false, &scale, 3);
+        assert_eq!(in_row(&costs, 0), Some((3, 3, Some(5))));
+        assert_eq!(in_row(&costs, 1), Some((6, 8, None)));
+        assert_eq!(costs.last(), Some(&(11, 24)), "no bar leaves its room");
+    }
+
+    /// The bars of a company as cells, in a theme and with a marker.
+    fn painted(theme: &str, marker: Marker) -> ratatui::buffer::Buffer {
+        use crate::console::test_kit::played;
+        let books = Books::of(&crate::console::company::Company::of(&played(6)));
+        let theme = crate::console::theme::Theme::find(theme, &crate::session::Configuration::shipped());
+        let theme = theme.expect("a theme");
+        let area = Rect::new(0, 0, 60, 20);
+        let mut buffer = ratatui::buffer::Buffer::empty(area);
+        let mut canvas = Canvas::new(&mut buffer, &theme);
+        canvas.marker = marker;
+        draw(&mut canvas, area, &books, 6, 0);
+        buffer
+    }
+
+    #[test]
+    fn colours_tell_the_categories_apart_and_signs_do_where_there_are_none() {
+        let letters = |buffer: &ratatui::buffer::Buffer| {
+            buffer.content.iter().map(|cell| cell.symbol().to_owned()).collect::<String>()
+        };
+        let coloured = painted("dark", Marker::Braille);
+        let signs: Vec<char> = CATEGORIES.iter().skip(1).map(|own| own.glyph).collect();
+        let bars = letters(&coloured);
+        assert!(bars.contains('█') && !bars.contains(['≡', '▒']), "{bars}");
+        let mut colours: Vec<_> =
+            coloured.content.iter().filter(|cell| cell.symbol() == "█").map(|cell| cell.fg).collect();
+        colours.dedup();
+        assert!(colours.len() > 3, "{colours:?}");
+        for buffer in [painted("mono", Marker::Braille), painted("dark", Marker::Dot)] {
+            let bars = letters(&buffer);
+            assert!(signs.iter().filter(|sign| bars.contains(**sign)).count() > 2, "{bars}");
+            assert!(!bars.contains(['▁', '▂', '▃']), "{bars}");
+        }
     }
 }

@@ -8,7 +8,7 @@ use crate::console::company::Company;
 use crate::console::text::{arrow, short_dollars};
 use crate::console::theme::Role;
 use crate::console::widgets::chart::{note_room, summary, zero_if_near};
-use crate::console::widgets::{Axis, Line, Plot};
+use crate::console::widgets::{Axis, Line, Plot, Side, Unit};
 use crate::notation::dollars;
 
 /// Width of the figures beside the bars of the weeks.
@@ -33,7 +33,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, week: u32, f
         band: None,
         mark: focused.then(|| f64::from(days_of(week).1)),
         x: &Axis { write: &|day| format!("day {day:.0}"), holds: &[] },
-        y: &Axis { write: &short_dollars, holds: zero_if_near(cash.iter().copied()) },
+        y: &Side { unit: Unit::Dollars, holds: zero_if_near(cash.iter().copied()) },
     };
     plot.draw(canvas, above);
     draw_changes(canvas, below, company, week);

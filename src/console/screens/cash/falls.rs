@@ -6,13 +6,14 @@ use super::model::{Step, money};
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
+use crate::console::widgets::chart::NO_DATA;
 use crate::console::widgets::table::first_row;
 
 /// Draws steps, one in a row. The bars begin at the lowest level on the way, or changes would be too small to see.
 pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step], selected: Option<usize>, pane: usize) {
     let from = first_row(selected.unwrap_or(0), area.height as usize, steps.len());
     if steps.is_empty() {
-        canvas.text(area, "nothing has moved yet: let a week pass (n)", Role::Dim);
+        canvas.text(area, NO_DATA, Role::Dim);
         return;
     }
     let names = 12.min(area.width);
@@ -58,6 +59,6 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step], selected: Optio
     let below = area.y.saturating_add((steps.len() - from) as u16);
     if floor != 0.0 && below < area.bottom() && bars >= 24 {
         let row = Rect { x: area.x + names + figures + 1, y: below, width: bars - 1, height: 1 };
-        canvas.text(row, &format!("bars begin at {}", short_dollars(floor)), Role::Dim);
+        canvas.text(row, &format!("bars start at {}", short_dollars(floor)), Role::Dim);
     }
 }

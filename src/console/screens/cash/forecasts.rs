@@ -8,7 +8,7 @@ use crate::console::company::Company;
 use crate::console::screens::{Figure, Look};
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Band, Cell, Column, Line, Plot, Table};
+use crate::console::widgets::{Axis, Band, Cell, Column, Line, Plot, Side, Table, Unit};
 use crate::notation::percent;
 use crate::session::{Filed, filed_forecasts};
 
@@ -107,7 +107,7 @@ impl Outlook {
             canvas.pane_keys(area, &format!("{keys} · {} journal", label(Action::Open)));
         }
         if self.all.is_empty() {
-            let text = format!("no forecast was filed yet: {} asks for four", look.hint(Action::NextWeek));
+            let text = format!("no forecasts yet: {} asks for four", look.hint(Action::NextWeek));
             canvas.text(inside, &text, Role::Dim);
             return;
         }
@@ -148,7 +148,7 @@ impl Outlook {
             band: Some(&band),
             mark: None,
             x: &Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] },
-            y: &Axis { write: &short_dollars, holds: &[] },
+            y: &Side { unit: Unit::Dollars, holds: &[] },
         };
         plot.draw(canvas, area);
     }

@@ -22,7 +22,6 @@ use crate::console::text::{arrow, short_dollars};
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Table};
 use crate::notation::{compact, dollars, percent};
-use crate::session::Category;
 
 /// Panes.
 const TABLE: usize = 0;
@@ -87,10 +86,11 @@ impl Cash {
         }
         let subject = self.table.selected().and_then(|row| self.subjects.get(row)).copied()?;
         let weeks = match (self.focus, self.table.selected_column()) {
-            (TABLE, 2) => (week.saturating_sub(1), week),
-            (TABLE, 3) => (week.saturating_sub(1), week.saturating_sub(1)),
+            (TABLE, 2 | 3) if week < 2 => return None,
+            (TABLE, 2) => (week - 1, week),
+            (TABLE, 3) => (week - 1, week - 1),
             (TABLE, 4) => (week.saturating_sub(3).max(1.min(week)), week),
-            (TABLE, 5) => (0, self.books.open_week()),
+            (TABLE, 5) => (1, self.books.open_week()),
             _ => (week, week),
         };
         Some((subject, weeks))
@@ -134,9 +134,8 @@ fn table_of(books: &Books, week: u32) -> (Vec<Column>, Vec<Subject>, Vec<Vec<Cel
     let mut subjects = vec![Subject::Net];
     for income in [true, false] {
         let used = |at: &usize| CATEGORIES[*at].income == income && books.is_used(*at);
-        let now = |at: &usize| CATEGORIES[*at].category != Category::InitialFunding || week < 2;
         subjects.push(if income { Subject::Income } else { Subject::Costs });
-        subjects.extend((0..CATEGORIES.len()).filter(used).filter(now).map(Subject::Category));
+        subjects.extend((0..CATEGORIES.len()).filter(used).map(Subject::Category));
     }
     let all = [books.week(week), books.week(before), books.mean_of_four(week), books.total()];
     let rows = subjects.iter().map(|subject| row_of(subject, &all, week)).collect();
@@ -210,7 +209,7 @@ impl Screen for Cash {
         }
         let (subject, (from, to)) = self.selected(look.company)?;
         let weeks = match (from, to) {
-            (0, _) => "the whole run".to_owned(),
+            (1, to) if to == self.books.open_week() => "the whole run".to_owned(),
             (from, to) if from == to => format!("week {to}"),
             (from, to) => format!("weeks {from} to {to}"),
         };
@@ -375,7 +374,7 @@ impl Cash {
             let amount = subject.of(&self.books.week(self.week()));
             format!("week {}: {} {}", self.week(), subject.name(), money(amount))
         });
-        let inside = canvas.pane(area, "Weeks, income above costs", &note, focused);
+        let inside = canvas.pane(area, "Income and costs by week", &note, focused);
         bars::draw(canvas, inside, &self.books, self.week(), WEEKS);
         self.week_keys(canvas, area, look, focused);
     }

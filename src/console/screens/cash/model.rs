@@ -31,7 +31,6 @@ const fn shown(category: Category, glyph: char, income: bool) -> Shown {
 
 /// Number of categories.
 pub const COUNT: usize = Category::ALL.len();
-const FUNDING: usize = 2;
 
 /// All categories: income, then costs.
 pub static CATEGORIES: [Shown; COUNT] = [
@@ -52,7 +51,7 @@ pub static CATEGORIES: [Shown; COUNT] = [
 /// Dollars by category; costs are negative.
 pub type Amounts = [f64; COUNT];
 
-/// Dollars by week and category.
+/// Dollars by week and category, from the first week on: the opening cash is no income.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Books {
     weeks: BTreeMap<u32, Amounts>,
@@ -64,9 +63,7 @@ impl Books {
     /// The books of a company.
     pub fn of(company: &Company) -> Books {
         let last = week_of(company.seen.day);
-        let mut funding = [0.0; COUNT];
-        funding[FUNDING] = company.seen.starting_cash;
-        let mut weeks = BTreeMap::from([(0, funding)]);
+        let mut weeks = BTreeMap::new();
         for figures in &company.weeks {
             weeks.insert(week_of(figures.day), amounts_of(&figures.booked));
         }
@@ -114,7 +111,7 @@ impl Books {
         self.weeks.values().any(|amounts| amounts[category] != 0.0)
     }
 
-    /// The last weeks without the funding, which would flatten everything else.
+    /// The last weeks.
     pub fn last_weeks(&self, count: usize) -> Vec<(u32, Amounts)> {
         let mut last: Vec<(u32, Amounts)> = self
             .weeks
@@ -122,7 +119,7 @@ impl Books {
             .rev()
             .filter(|(week, _)| (1..=self.last).contains(*week))
             .take(count)
-            .map(|(week, amounts)| (*week, without_funding(*amounts)))
+            .map(|(week, amounts)| (*week, *amounts))
             .collect();
         last.reverse();
         last
@@ -131,11 +128,6 @@ impl Books {
 
 fn amounts_of(booked: &Booked) -> Amounts {
     std::array::from_fn(|at| booked.of(CATEGORIES[at].category))
-}
-
-fn without_funding(mut amounts: Amounts) -> Amounts {
-    amounts[FUNDING] = 0.0;
-    amounts
 }
 
 /// Sum of the income, or of the costs.
@@ -202,7 +194,7 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
     }
     if own < moved.len() {
         let rest: f64 = moved[own..].iter().map(|at| amounts[*at]).sum();
-        let name = if own == 0 { "all".to_owned() } else { format!("{} others", moved.len() - own) };
+        let name = if own == 0 { "net" } else { "other costs" }.to_owned();
         let subject = if own == 0 { Subject::Net } else { Subject::Costs };
         steps.push(Step { name, from: cash, to: cash + rest, is_level: false, subject });
     }
@@ -260,10 +252,10 @@ impl Subject {
         match self {
             Subject::Category(at) => match CATEGORIES[at].category {
                 Category::SubscriptionPayment => "payments",
-                Category::LeadAcquisitionCost => "lead-costs",
-                _ => "ledger.category",
+                Category::LeadAcquisitionCost => "lead-acquisition-cost",
+                _ => "ledger",
             },
-            Subject::Income | Subject::Costs | Subject::Net => "ledger.amount",
+            Subject::Income | Subject::Costs | Subject::Net => "cash-change",
         }
     }
 

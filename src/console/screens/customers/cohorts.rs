@@ -158,7 +158,7 @@ pub fn draw(
 ) {
     let weeks = cohorts.weeks(group);
     if weeks.is_empty() {
-        canvas.text(area, "nobody has signed in the last sixteen weeks", Role::Dim);
+        canvas.text(area, "nobody joined in the last sixteen weeks", Role::Dim);
         return;
     }
     if area.width < NAMES + CELL || area.height < 3 {

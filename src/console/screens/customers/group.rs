@@ -13,11 +13,11 @@ use crate::console::effect::Effect;
 use crate::console::screens::market::model::{level_of, name_of};
 use crate::console::screens::market::report;
 use crate::console::screens::{Figure, Look, ScreenId};
-use crate::console::text::arrow;
+use crate::console::text::{arrow, count};
 use crate::console::theme::Role;
 use crate::console::widgets::chart::{note_room, summary, zero_if_near};
 use crate::console::widgets::table::first_row;
-use crate::console::widgets::{Axis, Line, Plot};
+use crate::console::widgets::{Axis, Line, Plot, Side, Unit};
 use crate::notation::{compact, grouped, percent};
 use crate::world::identifiers::Group;
 
@@ -271,7 +271,7 @@ fn draw_weeks(
     let x = Axis { write: &|week| format!("wk {week:.0}"), holds: &[] };
     let zero = zero_if_near(values.iter().copied());
     let lines = [Line::through(held, Role::Series(0))];
-    Plot { lines: &lines, band: None, mark, x: &x, y: &Axis { write: &compact, holds: zero } }
+    Plot { lines: &lines, band: None, mark, x: &x, y: &Side { unit: Unit::Number, holds: zero } }
         .draw(canvas, inside);
     let (back, flow) = selected.unwrap_or((0, usize::MAX));
     let title = "By week";
@@ -283,7 +283,7 @@ fn draw_weeks(
         Line::through(trend(|flow| flow.signed), Role::Good).named("new"),
         Line { scattered: true, ..Line::through(trend(|flow| flow.cancelled), Role::Bad).named("left") },
     ];
-    Plot { lines: &lines, band: None, mark, x: &x, y: &Axis { write: &compact, holds: &[0.0] } }
+    Plot { lines: &lines, band: None, mark, x: &x, y: &Side { unit: Unit::Number, holds: &[0.0] } }
         .draw(canvas, inside);
 }
 
@@ -301,7 +301,7 @@ fn flow_words(facts: &Facts, week: u32, flow: usize, room: usize) -> String {
         );
     }
     let full =
-        format!("{} leads · {} new · {} left", whole(now.leads), whole(now.signed), whole(now.cancelled));
+        format!("{} · {} new · {} left", count(now.leads, "lead"), whole(now.signed), whole(now.cancelled));
     if full.len() <= room { full } else { format!("+{} -{}", compact(now.signed), compact(now.cancelled)) }
 }
 
@@ -313,7 +313,7 @@ fn draw_cohorts(
     place: Option<cohorts::Place>,
 ) {
     let week = known.company.seen.week;
-    let title = "Still there, %";
+    let title = "Retention, %";
     let words = known.cohorts.summary(group, week, note_room(area, title));
     let inside = canvas.pane(area, title, &words, place.is_some());
     cohorts::draw(canvas, inside, known.cohorts, (group, week), place, COHORTS);

@@ -7,6 +7,7 @@ use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click};
 use crate::console::company::Company;
 use crate::console::screens::Figure;
+use crate::console::text::count;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{dollars, grouped};
@@ -91,7 +92,7 @@ pub fn draw(
     }
     if area.height >= HEIGHT {
         let below = Rect { y: area.y + HEIGHT - 1, height: 1, ..area };
-        canvas.text(below, &words(company, market, place), Role::Dim);
+        canvas.text(below, &words(company, market, place), Role::Text);
     }
 }
 
@@ -131,7 +132,7 @@ pub fn figure(company: &Company, place: Place) -> Option<Figure> {
         i64::from(company.seen.day) - 28
     );
     let title = format!("leads of {group} through {} per $1,000 in 28 days", channel.id());
-    Some(Figure { title, term: "leads-per-thousand", sql: Some(sql) })
+    Some(Figure { title, term: "cost-per-lead", sql: Some(sql) })
 }
 
 /// The selected pair in words.
@@ -150,6 +151,6 @@ fn words(company: &Company, market: &Market, place: Place) -> String {
         leads if leads > 0.0 => format!(", ${} each", grouped(measured.spend / leads, 2)),
         _ => String::new(),
     };
-    let leads = grouped(measured.leads, 0);
-    format!("{pair}: {leads} leads for {}{each}; set now {}/day", dollars(measured.spend), dollars(now))
+    let leads = count(measured.leads, "lead");
+    format!("{pair}: {leads} for {}{each}; set now {}/day", dollars(measured.spend), dollars(now))
 }

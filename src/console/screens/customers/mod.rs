@@ -22,8 +22,8 @@ use crate::console::canvas::{Canvas, Click};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::readings::Reading;
+use crate::console::text::count;
 use crate::console::widgets::Table;
-use crate::notation::grouped;
 use crate::session::Rows;
 use crate::world::identifiers::Group;
 
@@ -253,9 +253,9 @@ impl Customers {
         let seen = &look.company.seen;
         let note = match self.table.note() {
             note if note.is_empty() => format!(
-                "{} subscribers · {} seats · week {}",
-                grouped(f64::from(seen.subscribers), 0),
-                grouped(f64::from(seen.seats), 0),
+                "{} · {} · week {}",
+                count(f64::from(seen.subscribers), "subscriber"),
+                count(f64::from(seen.seats), "seat"),
                 seen.week
             ),
             note => note,

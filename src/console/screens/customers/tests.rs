@@ -162,7 +162,7 @@ fn the_triangle_is_made_of_customers_who_stayed() {
         act(&mut screen, Action::Right, &company);
     }
     let text = drawn(&screen, &company, 120, 37);
-    for words in ["Still there, %", "signed", "+0", "100█", "all", "after 4 weeks"] {
+    for words in ["Retention, %", "signed", "+0", "100█", "all", "after 4 weeks"] {
         assert!(text.contains(words), "{words} in\n{text}");
     }
 }
@@ -194,8 +194,7 @@ fn every_pane_of_a_group_has_its_figures() {
     act(&mut screen, Action::Left, &company);
     assert_eq!(title(&screen), "leads of S1 in week 7");
     let text = drawn(&screen, &company, 200, 57);
-    for words in ["Study of S1", "the truth is in", "Still there, %", "Go to", "sources, 12 weeks", "week 7:"]
-    {
+    for words in ["Study of S1", "the truth is in", "Retention, %", "Go to", "sources, 12 weeks", "week 7:"] {
         assert!(text.contains(words), "{words} in\n{text}");
     }
 }

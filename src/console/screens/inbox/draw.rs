@@ -10,7 +10,7 @@ use super::{Inbox, LIST, OFFER, THREAD, View, list_prices};
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::screens::Look;
-use crate::console::text::wrapped;
+use crate::console::text::{count, wrapped};
 use crate::console::theme::Role;
 use crate::notation::{cents, dollars, grouped, percent};
 use crate::world::identifiers::Plan;
@@ -73,15 +73,15 @@ fn draw_list(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
     canvas.click(area, Click::Pane(LIST));
     let count = inbox.rows.len();
     let (title, worth) = match inbox.view {
-        View::Waiting => (format!("{count} wait for you"), true),
-        View::Theirs => (format!("{count} you wait for"), true),
+        View::Waiting => (format!("{count} waiting for you"), true),
+        View::Theirs => (format!("{count} waiting for them"), true),
         View::Over => (format!("{count} ended"), false),
     };
     let threads = inbox.rows.iter().filter_map(|at| inbox.letters.threads.get(*at));
     let seats: f64 = threads.map(|thread| thread.seats).sum();
     let mut note = inbox.table.note();
     if note.is_empty() && worth && count > 0 {
-        note = format!("{} seats", grouped(seats, 0));
+        note = crate::console::text::count(seats, "seat");
     }
     if !inbox.marked.is_empty() {
         note = format!("{} marked · {note}", inbox.marked.len());
@@ -106,7 +106,7 @@ fn draw_list(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
 fn nobody(inbox: &Inbox, look: &Look<'_>) -> String {
     let key = |action: Action| look.keys.label(action).unwrap_or_default();
     if !inbox.letters.threads.is_empty() {
-        return format!("Nobody here. {} shows the other threads.", key(Action::OtherThreads));
+        return format!("No threads here. {} shows others.", key(Action::OtherThreads));
     }
     let funnels: Vec<String> =
         look.company.funnels.iter().map(|own| format!("· {}", own.in_words())).collect();
@@ -136,7 +136,7 @@ fn draw_thread(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, own: bool) {
     // In a small window the list beside it says how many seats; the days are what presses.
     let note = match area.width {
         ..50 => state,
-        _ => format!("{} seats · {state}", grouped(thread.seats, 0)),
+        _ => format!("{} · {state}", count(thread.seats, "seat")),
     };
     let inside = canvas.pane(area, &title, &note, focused);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
@@ -168,7 +168,7 @@ fn conversation(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, Ro
             "lead" => format!("not a customer; asked on day {}", firm.since),
             other => format!("{other}; came on day {}", firm.since),
         };
-        lines.extend(wrapped(&text, width).into_iter().map(|line| (line, Role::Dim)));
+        lines.extend(wrapped(&text, width).into_iter().map(|line| (line, Role::Text)));
         lines.extend(wrapped(&terms, width).into_iter().map(|line| (line, Role::Strong)));
         lines.push((String::new(), Role::Text));
     }
@@ -257,7 +257,8 @@ fn draw_offer(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_
     let focused = inbox.focus == OFFER;
     canvas.click(area, Click::Pane(OFFER));
     let batch = !inbox.marked.is_empty();
-    let title = if batch { format!("One rule for {}", inbox.marked.len()) } else { "Your offer".to_owned() };
+    let title =
+        if batch { format!("Bulk offer for {}", inbox.marked.len()) } else { "Your offer".to_owned() };
     let inside = canvas.pane(area, &title, "", focused);
     let lists = list_prices(look.company);
     let offer = inbox.offer();
@@ -328,7 +329,7 @@ fn offer_notes(
         notes.push((format!("they ask {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
     }
     let Some((units, source)) = inbox.usage.per_seat(look.company, &thread.group) else {
-        notes.push(("compute unknown: nobody of the group uses it yet".to_owned(), Role::Dim));
+        notes.push(("compute unknown: nobody in the group uses it yet".to_owned(), Role::Dim));
         return notes;
     };
     if width >= WORTH {

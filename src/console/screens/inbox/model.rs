@@ -53,8 +53,8 @@ impl State {
     /// In words.
     pub fn words(self) -> &'static str {
         match self {
-            State::Waiting(_) => "waits for you",
-            State::Theirs => "you wait for them",
+            State::Waiting(_) => "waiting for you",
+            State::Theirs => "waiting for them",
             State::Accepted => "agreed",
             State::Rejected => "ended by you",
             State::Lost => "lost",

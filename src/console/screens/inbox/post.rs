@@ -8,7 +8,8 @@ use super::{Inbox, list_prices};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens::Figure;
-use crate::notation::{dollars, grouped};
+use crate::console::text::count;
+use crate::notation::dollars;
 use crate::world::identifiers::Plan;
 
 /// Tools of this screen.
@@ -66,7 +67,7 @@ impl Inbox {
     /// Sends the offer on screen.
     pub(super) fn send(&self, company: &Company) -> Vec<Effect> {
         if !company.is_running() {
-            return vec![Effect::Complain("the run is over: nobody reads offers any more".to_owned())];
+            return vec![Effect::Complain("the run is over: offers go unanswered".to_owned())];
         }
         let planned = self.planned(company);
         let sent: Vec<(&Thread, &Vec<(Plan, f64)>)> =
@@ -85,7 +86,7 @@ impl Inbox {
         };
         let arguments = json!({ "deals": sent.iter().map(deal).collect::<Vec<_>>() });
         let text = if sent.len() == 1 {
-            let to = format!("#{} ({} seats)", first.customer, grouped(first.seats, 0));
+            let to = format!("#{} ({})", first.customer, count(first.seats, "seat"));
             match first.state {
                 State::Waiting(_) => return vec![Effect::Call { tool: SEND, arguments }],
                 State::Theirs => format!(
@@ -94,8 +95,7 @@ impl Inbox {
                     in_words(offers)
                 ),
                 _ => format!(
-                    "Nothing is open with {to} in this thread. If it subscribes, {} opens a new thread; if that \
-                     comes to nothing, the company leaves.",
+                    "This thread with {to} is closed. If it subscribes, {} opens a new thread; if the company declines, it leaves.",
                     in_words(offers)
                 ),
             }
@@ -109,16 +109,16 @@ impl Inbox {
     pub(super) fn reject(&self, company: &Company) -> Vec<Effect> {
         let open: Vec<&Thread> = self.targets().into_iter().filter(|thread| thread.state.is_open()).collect();
         if !company.is_running() || open.is_empty() {
-            return vec![Effect::Complain("there is no open thread here to end".to_owned())];
+            return vec![Effect::Complain("no open thread to end here".to_owned())];
         }
         let leads = open.iter().filter(|thread| thread.kind == "new_lead");
         let (leads, seats) = leads.fold((0, 0.0), |(count, seats), thread| (count + 1, seats + thread.seats));
         let mut text = String::new();
         if leads > 0 {
             text += &format!(
-                "{leads} new lead{} with {} seats {} lost for good: none ever asks again. ",
-                if leads == 1 { "" } else { "s" },
-                grouped(seats, 0),
+                "{} with {} {} lost for good: none ever asks again. ",
+                count(leads as f64, "new lead"),
+                count(seats, "seat"),
                 if leads == 1 { "is" } else { "are" },
             );
         }
@@ -166,20 +166,20 @@ impl Inbox {
 /// A batch in a sentence.
 pub(super) fn summary(planned: &[Planned<'_>]) -> String {
     let sent = planned.iter().filter_map(|(thread, offers)| Some((*thread, offers.as_ref().ok()?)));
-    let (mut count, mut seats, mut worth) = (0, 0.0, 0.0);
+    let (mut companies, mut seats, mut worth) = (0, 0.0, 0.0);
     for (thread, offers) in sent {
-        count += 1;
+        companies += 1;
         seats += thread.seats;
         worth += monthly(thread, offers);
     }
-    let skipped = match planned.len() - count {
+    let skipped = match planned.len() - companies {
         0 => String::new(),
         skipped => format!(" {skipped} skipped."),
     };
-    let noun = if count == 1 { "company" } else { "companies" };
+    let noun = if companies == 1 { "company" } else { "companies" };
     format!(
-        "{count} {noun}, {} seats, at most {} a month if all agree.{skipped}",
-        grouped(seats, 0),
+        "{companies} {noun}, {}, at most {} a month if all agree.{skipped}",
+        count(seats, "seat"),
         dollars(worth)
     )
 }

@@ -197,7 +197,8 @@ fn pictures_hold_list_thread_offer_and_preview() {
     let (mut screen, company) = crowded_screen();
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        for words in ["200 wait for you", "left", "company", "new lead", "retention", "Your offer", "a seat"]
+        for words in
+            ["200 waiting for you", "left", "company", "new lead", "retention", "Your offer", "a seat"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
@@ -205,7 +206,7 @@ fn pictures_hold_list_thread_offer_and_preview() {
     press(&mut screen, &company, "a");
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        for words in ["One rule for 200", "What 200 would get", "200 marked", "→ B $32.00", "200 companies"]
+        for words in ["Bulk offer for 200", "What 200 would get", "200 marked", "→ B $32.00", "200 companies"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }

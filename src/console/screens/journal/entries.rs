@@ -210,9 +210,9 @@ fn of_call(entry: &JournalEntry, settings: &mut Settings, undone: &BTreeSet<u64>
     };
     let is_undone = undone.contains(seq);
     let (sign, remark) = match reversal {
-        _ if is_undone => ("undone: ", "\n\nThis call was taken back."),
-        Some(Reversal::Undoes(_)) => ("undo: ", "\n\nThis took back an earlier call."),
-        Some(Reversal::Redoes(_)) => ("redo: ", "\n\nThis repeated a call that was taken back."),
+        _ if is_undone => ("undone: ", "\n\nThis call was undone."),
+        Some(Reversal::Undoes(_)) => ("undo: ", "\n\nThis undid an earlier call."),
+        Some(Reversal::Redoes(_)) => ("redo: ", "\n\nThis redid an undone call."),
         None => ("", ""),
     };
     let gone = is_undone || matches!(reversal, Some(Reversal::Undoes(_)));

@@ -60,7 +60,7 @@ impl Journal {
         if self.is_draft() {
             vec![Effect::SetMemo(self.notes.text())]
         } else {
-            vec![Effect::Say("the notes are kept already".to_owned())]
+            vec![Effect::Say("notes already saved".to_owned())]
         }
     }
 
@@ -241,9 +241,9 @@ impl Journal {
 
     fn draw_notes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         canvas.click(area, Click::Pane(NOTES));
-        let note = if self.is_draft() { "draft, not kept yet" } else { "" };
+        let note = if self.is_draft() { "draft, unsaved" } else { "" };
         let inside = canvas.pane(area, "Notes", note, self.focus == NOTES);
-        let hint = "notes to yourself; they are kept with the run";
+        let hint = "notes to yourself, saved with the run";
         self.notes.draw(canvas, inside, self.editing, hint);
         let keys: &[Action] = match self.focus {
             _ if self.editing => &[Action::SaveMemo, Action::LeaveEditor],
@@ -382,7 +382,7 @@ mod tests {
         act(&mut screen, &company, Action::LeaveEditor);
         with_look(&company, |look| screen.renew(look));
         assert!(screen.holds_unsent_text() && screen.notes.text() == "watch S3");
-        assert!(holds(&picture(&screen, &company, 80, 21), "draft, not kept"));
+        assert!(holds(&picture(&screen, &company, 80, 21), "draft, unsaved"));
         let effects = act(&mut screen, &company, Action::SaveMemo);
         assert!(matches!(&effects[..], [Effect::SetMemo(text)] if text == "watch S3"));
         company.memo = "watch S3\n".to_owned();

@@ -47,7 +47,7 @@ pub fn draw(
     pane: usize,
 ) {
     canvas.click(area, Click::Pane(pane));
-    let inside = canvas.pane(area, "Forecasts", "95 in 100 inside?", focused);
+    let inside = canvas.pane(area, "Forecasts", "95 % coverage", focused);
     let head = format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "miss", "width");
     let mut rows = rows_of(inside);
     if let Some(row) = rows.next() {

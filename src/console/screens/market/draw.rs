@@ -67,7 +67,7 @@ impl Market {
         if focused {
             let keys =
                 [Action::Left, Action::Right].map(|action| look.keys.label(action).unwrap_or_default());
-            canvas.pane_keys(area, &format!("{}/{} another measurement", keys[0], keys[1]));
+            canvas.pane_keys(area, &format!("{}/{} other readings", keys[0], keys[1]));
         }
     }
 
@@ -109,7 +109,7 @@ impl Market {
         let inside = canvas.pane(area, "Attempts", &note, focused);
         if self.facts.attempts.is_empty() {
             let key = look.keys.label(Action::FindGroup).unwrap_or_default();
-            canvas.text(inside, &format!("no attempt was made yet: {key} pays for one"), Role::Dim);
+            canvas.text(inside, &format!("no attempts yet: {key} pays for one"), Role::Dim);
         } else {
             self.attempts.draw(canvas, inside, focused, ATTEMPTS);
         }
@@ -125,7 +125,7 @@ impl Market {
         };
         let inside = canvas.pane(area, "Rivals and economy in the news", &note, focused);
         if self.news.is_empty() {
-            canvas.text(inside, "the press has written nothing yet", Role::Dim);
+            canvas.text(inside, "no news yet", Role::Dim);
             return;
         }
         self.headlines.draw(canvas, inside, focused, NEWS);

@@ -9,7 +9,7 @@ use crate::console::canvas::{Canvas, rows_of};
 use crate::console::company::Company;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Line, chart};
+use crate::console::widgets::{Axis, Line, Side, Unit, chart};
 use crate::notation::grouped;
 use crate::session::Terms;
 
@@ -45,7 +45,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &View<
     let Some(here) = view.selected() else {
         let inside = canvas.pane(area, "Economy", "", focused);
         let words = format!(
-            "no index yet: the one of day 1 is published on day {}, {} days after it was measured",
+            "no index yet: day 1 is published on day {}, {} days after measurement",
             next_day(view.economy, terms),
             terms.economy_lag_days
         );
@@ -59,7 +59,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &View<
     let inside = canvas.pane(area, "Economy", &format!("{figures} · {}", here.words), focused);
     let width = inside.width as usize;
     let lag = format!(
-        "measured on day {}, told on day {}; next on day {}",
+        "measured on day {}, published on day {}; next on day {}",
         here.day,
         here.day + terms.economy_lag_days,
         next_day(view.economy, terms)
@@ -67,7 +67,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &View<
     let mut words = wrapped(&here.text, width);
     words.extend(wrapped(&lag, width));
     if inside.height >= 14 {
-        words.extend(wrapped("◆ told · ░ measured or to come, not told yet · ▁▃▅ news of rivals", width));
+        words.extend(wrapped("◆ published · ░ not yet published · ▁▃▅ news of rivals", width));
     }
     let room = (inside.height / 2) as usize;
     let words = &words[words.len().saturating_sub(room.max(1))..];
@@ -82,7 +82,9 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &View<
 /// The curve over the days of measurement, and below it two lanes: days of publication, news of rivals.
 fn draw_curve(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &View<'_>, here: &Published) {
     let lanes = if area.height >= 9 { 2 } else { 0 };
-    let upper = Rect { height: area.height - lanes, ..area };
+    // The names of the lanes stand left of the axis, and want four columns.
+    let indent = if lanes > 0 { 2.min(area.width) } else { 0 };
+    let upper = Rect { x: area.x + indent, width: area.width - indent, height: area.height - lanes, ..area };
     let today = company.seen.day.max(2);
     let points = view.economy.iter().map(|own| (f64::from(own.day), own.value)).collect();
     let selected = vec![(f64::from(here.day), here.value)];
@@ -92,7 +94,7 @@ fn draw_curve(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &Vie
     ];
     let days = [1.0, f64::from(today)];
     let x = Axis { write: &|day| format!("day {day:.0}"), holds: &days };
-    chart(canvas, upper, &lines, &x, &Axis { write: &|value| grouped(value, 1), holds: &[50.0] });
+    chart(canvas, upper, &lines, &x, &Side { unit: Unit::Number, holds: &[50.0] });
     let Some(plot) = plot_of(canvas, upper) else { return };
     let column = |day: u32| {
         let share = f64::from(day.clamp(1, today) - 1) / f64::from(today - 1);
@@ -106,7 +108,7 @@ fn draw_curve(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &Vie
     }
     let [told, rivals] = [0, 1].map(|lane| Rect { y: upper.bottom() + lane, height: 1, ..area });
     let names = Rect { width: plot.x - area.x, ..told };
-    canvas.text(names, "told", Role::Dim);
+    canvas.text(names, "publ", Role::Dim);
     canvas.text(Rect { y: rivals.y, ..names }, "news", Role::Dim);
     for own in view.economy {
         let (from, to) = (column(own.day), column(own.day + company.terms.economy_lag_days));

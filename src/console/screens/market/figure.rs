@@ -10,7 +10,7 @@ pub(super) fn of(market: &Market, company: &Company) -> Option<Figure> {
     match market.focus {
         ATTEMPTS => Some(Figure {
             title: "attempts at market research".to_owned(),
-            term: "segment_discovery.cost",
+            term: "market-research",
             sql: Some(
                 "SELECT day, cost, success, discovered_group_id FROM segment_discovery ORDER BY id DESC"
                     .to_owned(),

@@ -191,7 +191,7 @@ impl Market {
                 let level = target_of(company, group, self.target);
                 self.check(STUDY, json!({ "group_id": group.id(), "target_level": level }))
             }
-            None => vec![Effect::Complain("only a group that was found can be studied".to_owned())],
+            None => vec![Effect::Complain("only known groups can be studied".to_owned())],
         }
     }
 
@@ -200,7 +200,7 @@ impl Market {
         let rest = company.seen.cash - preview.cost_now;
         let what = match tool {
             FIND => format!(
-                "An attempt at market research: {} in 100 find one of the {} groups that are left.",
+                "A market research attempt: {} % find one of the {} groups still unknown.",
                 grouped(company.terms.attempt_chance * 100.0, 0),
                 undiscovered(company)
             ),
@@ -213,7 +213,7 @@ impl Market {
         };
         let when = preview.effect_day.map_or(String::new(), |day| format!(" It is done on day {day}."));
         let text = format!(
-            "{what}{when} It costs {} at once, leaves {}, and cannot be taken back.",
+            "{what}{when} It costs {} at once, leaves {}, and cannot be undone.",
             dollars(preview.cost_now),
             dollars(rest)
         );

@@ -151,8 +151,7 @@ pub fn draw(
         let inside = canvas.pane(area, &format!("{group} · not found yet"), "", focused);
         let terms = &company.terms;
         let words = format!(
-            "Nobody knows this group yet: {} pays {} for an attempt at market research, and {} in 100 attempts find \
-             one of the groups that are left. A found group sends leads from the next day on.",
+            "This group is still unknown: {} pays {} for a market research attempt; {} % of attempts find one of the unknown groups. A found group sends leads from the next day on.",
             look.keys.label(Action::FindGroup).unwrap_or_default(),
             dollars(terms.attempt_cost),
             grouped(terms.attempt_chance * 100.0, 0)

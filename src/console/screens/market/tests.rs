@@ -45,7 +45,7 @@ fn a_study_is_chosen_asked_for_and_shown_until_it_is_done() {
     act(&mut screen, Action::LevelDown, &company);
     act(&mut screen, Action::LevelDown, &company);
     let (question, said) = order(&mut screen, &mut session, Action::StudyGroup);
-    for part in ["A study of S1, to level 2.", "$60,000", "day 10", "cannot be taken back"] {
+    for part in ["A study of S1, to level 2.", "$60,000", "day 10", "cannot be undone"] {
         assert!(question.contains(part), "{part} in {question}");
     }
     assert!(matches!(&said[..], [Effect::Say(text)] if text.contains("day 10")), "{said:?}");
@@ -64,11 +64,11 @@ fn attempts_find_groups_and_are_listed() {
     let mut session = played(0);
     let company = Company::of(&session);
     let mut screen: Market = shown(&mut session, &company);
-    assert!(drawn(&screen, &company, 120, 37).contains("no attempt was made yet: m pays for one"));
+    assert!(drawn(&screen, &company, 120, 37).contains("no attempts yet: m pays for one"));
     let mut found = None;
     for _ in 0..25 {
         let (question, said) = order(&mut screen, &mut session, Action::FindGroup);
-        assert!(question.contains("30 in 100") && question.contains("$25,000 at once"), "{question}");
+        assert!(question.contains("30 % find") && question.contains("$25,000 at once"), "{question}");
         let [Effect::Say(text)] = &said[..] else { panic!("{said:?}") };
         if text.contains("was found") {
             found = screen.group();
@@ -123,7 +123,7 @@ fn a_group_leads_to_its_customers_and_unknown_ones_are_explained() {
     let effects = act(&mut screen, Action::StudyGroup, &company);
     assert!(matches!(&effects[..], [Effect::Complain(_)]), "{effects:?}");
     let text = drawn(&screen, &company, 120, 37);
-    assert!(text.contains("30 in 100 attempts"), "{text}");
+    assert!(text.contains("30 % of attempts"), "{text}");
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn the_economy_is_shown_with_its_lag() {
     assert_eq!(screen.facts.economy.len(), 2);
     for (width, height) in [(120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        for words in ["PMI ", "measured on day 31, told on day 61; next on day 91", "day 70"] {
+        for words in ["PMI ", "measured on day 31, published on day 61; next on day 91", "day 70"] {
             assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
         }
     }
@@ -193,9 +193,14 @@ fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
     screen.set_focus(ECONOMY);
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
-        for words in
-            ["░░", "told", "◆", "news", "◆ told", "measured on day 31, told on day 61; next on day 91"]
-        {
+        for words in [
+            "░░",
+            "publ",
+            "◆",
+            "news",
+            "◆ published",
+            "measured on day 31, published on day 61; next on day 91",
+        ] {
             assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
         }
         let lane = text.lines().find(|line| line.contains("│news")).expect("a lane").to_owned();
@@ -203,7 +208,7 @@ fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
     }
     act(&mut screen, Action::Left, &company);
     let text = drawn(&screen, &company, 120, 37);
-    assert!(text.contains("measured on day 1, told on day 31"), "{text}");
+    assert!(text.contains("measured on day 1, published on day 31"), "{text}");
     let keys = Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     let figure = screen.figure(&look).expect("a figure");

@@ -32,13 +32,13 @@ pub(super) struct Form {
 
 /// Rows of the form: name and what it means.
 pub(super) const ROWS: [(&str, &str); 7] = [
-    ("Scenario", "The rules of the world: left and right choose another."),
-    ("Mode", "What the run is for: left and right choose another. It cannot be changed later."),
-    ("Seed", "The same seed meets the same luck."),
+    ("Scenario", "The rules of the world; left and right change it."),
+    ("Mode", "What the run is for; left and right change it. Fixed once the run starts."),
+    ("Seed", "The same seed gives the same chance events."),
     ("Days", "Last day of the run, at least 7. Published results ran for 500."),
     ("Starting cash", "Dollars on day 0."),
-    ("Participant", "A label for the record; may be left out."),
-    ("Start", "enter begins the run"),
+    ("Participant", "A label for the record; optional."),
+    ("Start", "enter starts the run"),
 ];
 
 /// Column of the values.
@@ -180,10 +180,10 @@ impl Form {
                 (chosen.map_or(String::new(), |(name, _)| format!("‹ {name} ›")), Role::Text)
             }
             1 => (format!("‹ {} ›", Mode::OFFERED[self.mode].id()), Role::Text),
-            2 => or(&self.seed, "any: a new one is drawn"),
+            2 => or(&self.seed, "random"),
             3 => or(&self.days, &standard(self.terms.map(|(days, _)| whole(days)))),
             4 => or(&self.cash, &standard(self.terms.map(|(_, cash)| dollars(cash)))),
-            5 => or(&self.participant, "nobody in particular"),
+            5 => or(&self.participant, "none"),
             _ => (String::new(), Role::Text),
         }
     }
@@ -212,8 +212,8 @@ impl Form {
         let mode = Mode::OFFERED[self.mode];
         let scenario = self.scenarios.get(self.scenario).map_or("", |own| own.1.as_str());
         say("", Role::Dim);
-        say(&format!("{}: {}. {}", mode.id(), mode.purpose(), allows(mode)), Role::Dim);
-        say(&format!("scenario: {scenario}"), Role::Dim);
+        say(&format!("{}: {}. {}", mode.id(), mode.purpose(), allows(mode)), Role::Text);
+        say(&format!("scenario: {scenario}"), Role::Text);
         for (row, (line, role)) in rows_of(below).zip(&lines) {
             canvas.text(row, line, *role);
         }
@@ -262,8 +262,10 @@ fn allows(mode: Mode) -> &'static str {
             "No branches, no rewinding, no tour; rationale and forecasts are your own. The result can be compared with \
              published ones."
         }
-        Mode::Sandbox => "All of a baseline, and branches from any earlier week; forecasts may be filled in.",
-        Mode::Lesson => "All of a sandbox; the record says that it was played to learn.",
-        Mode::Debug => "All of a sandbox, but no run to compare with others.",
+        Mode::Sandbox => {
+            "Everything in baseline, plus branches from any earlier week; forecasts may be filled in."
+        }
+        Mode::Lesson => "Everything in sandbox; the record says it was played to learn.",
+        Mode::Debug => "Everything in sandbox, plus hidden state; not comparable with other runs.",
     }
 }

@@ -44,11 +44,8 @@ impl Menu {
         }
         choices.push((Choice::New, "New run", "500 days from one million dollars".to_owned()));
         if count > 0 {
-            let text = if count == 1 {
-                "the one on this machine".to_owned()
-            } else {
-                format!("all {count} on this machine")
-            };
+            let text =
+                if count == 1 { "1 on this machine".to_owned() } else { format!("{count} on this machine") };
             choices.push((Choice::Runs, "Runs", text));
         }
         if count > 1 {
@@ -158,12 +155,11 @@ fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
     let inside = canvas.pane(area, "What this is", "", false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let parts = [
-        "You run a company that sells an AI subscription. It begins with a million dollars and no customer.",
+        "You run a company that sells an AI subscription. It starts with a million dollars and no customers.",
         "Once a week you set prices, models, quotas, capacity, advertising and development, answer companies, and say \
-         what cash will be. Then seven days pass.",
-        "Customers, rivals and the economy answer. What you may know is on the screens and in the tables; the rest has \
-         to be found out.",
-        "Cash after the last day is the score. Below zero it is over.",
+         what cash will be. Then seven days run.",
+        "Customers, rivals and the economy answer. What you can know is on the screens and in the tables; the rest you have to find out.",
+        "Your score is the cash after the last day. Below zero, the run is over.",
         "Nothing you confirm is lost: quit whenever you like.",
     ];
     let text = parts.join("\n\n");

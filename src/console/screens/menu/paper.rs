@@ -69,10 +69,12 @@ impl Menu {
         }
         let left_out = self.list().iter().filter(|run| is_finished(run) && !is_comparable(run)).count();
         let yours = match (own, left_out) {
-            (0, 0) => "Finish a run of 500 days and it stands here.".to_owned(),
+            (0, 0) => "Finish a 500-day run to appear here.".to_owned(),
             (_, 0) => "Yours are marked; a bankrupt run counts as $0.".to_owned(),
-            (_, 1) => "One finished run of another length, start or scenario is left out.".to_owned(),
-            (_, count) => format!("{count} finished runs of another length, start or scenario are left out."),
+            (_, 1) => "One finished run of another length, start or scenario is not shown.".to_owned(),
+            (_, count) => {
+                format!("{count} finished runs of another length, start or scenario are not shown.")
+            }
         };
         let bound = published().estimated_upper_bound;
         let source = format!(

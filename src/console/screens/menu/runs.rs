@@ -8,10 +8,10 @@ use crate::console::action::Action;
 use crate::console::canvas::{Canvas, centered, rows_of};
 use crate::console::effect::Effect;
 use crate::console::message::Instead;
-use crate::console::text::{short_dollars, wrapped};
+use crate::console::text::{count, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::chart::zero_if_near;
-use crate::console::widgets::{Axis, Cell, Column, Line, chart};
+use crate::console::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
 use crate::console::worker::Recorded;
 use crate::notation::{dollars, grouped};
 use crate::session::{Ended, Goal, Mode, NewRun, RunCourse, RunSummary};
@@ -193,15 +193,13 @@ impl Menu {
             true => (
                 "Give up",
                 format!(
-                    "Run {id} stands at {stand}. If you give it up, it ends there for good and has no score. It can still \
-                     be looked at, and branched from."
+                    "Run {id} is at {stand}. Giving up ends it for good, without a score. You can still open it and branch from it."
                 ),
             ),
             false => (
                 "Delete",
                 format!(
-                    "Run {id} stands at {stand}. Deleting it removes its record and everything in its folder. It cannot \
-                     be brought back."
+                    "Run {id} is at {stand}. Deleting it removes its record and everything in its folder for good."
                 ),
             ),
         })
@@ -216,7 +214,7 @@ impl Menu {
                 ("To read only", "Watch it from here, read-only? What is played elsewhere appears here.")
             }
             Instead::Rescue(_) => {
-                ("Damaged", "Open the good beginning as a branch? The damaged run is not touched.")
+                ("Damaged", "Open the intact part as a branch? The damaged run is not touched.")
             }
         };
         let width = 76.min(area.width);
@@ -252,7 +250,7 @@ impl Menu {
         self.table.draw(canvas, inside, self.asked.is_none(), 0);
         if self.list().is_empty() {
             let row = Rect { y: inside.y + 1, height: 1.min(inside.height.saturating_sub(1)), ..inside };
-            canvas.text(row, "There are no runs any more; close this page and start one.", Role::Dim);
+            canvas.text(row, "No runs left; close this page and start one.", Role::Dim);
         }
         match (self.question(), self.chosen()) {
             (Some((title, text)), _) => {
@@ -308,11 +306,7 @@ pub(super) fn facts(
             1,
             (
                 "subscribers",
-                format!(
-                    "{} · {} seats",
-                    grouped(course.subscribers as f64, 0),
-                    grouped(course.seats as f64, 0)
-                ),
+                format!("{} · {}", grouped(course.subscribers as f64, 0), count(course.seats as f64, "seat")),
             ),
         );
         facts.insert(2, ("revenue", format!("{} a month", dollars(course.recurring_revenue))));
@@ -333,10 +327,10 @@ pub(super) fn draw_course(
 ) {
     match course {
         Some(Ok(course)) if course.cash.len() > 1 => draw_curves(canvas, area, &[(0, course)]),
-        Some(Ok(_)) => canvas.text(area, "no week has passed yet", Role::Dim),
+        Some(Ok(_)) => canvas.text(area, "no week has run yet", Role::Dim),
         Some(Err(problem)) => canvas.text(area, &format!("! {problem}"), Role::Bad),
         None if unreadable => {}
-        None => canvas.text(area, "reading the course …", Role::Dim),
+        None => canvas.text(area, "reading the run …", Role::Dim),
     }
 }
 
@@ -349,7 +343,7 @@ pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, courses: &[(usize
     let values = courses.iter().flat_map(|(_, course)| course.cash.iter().map(|point| point.1));
     let zero = zero_if_near(values);
     let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
-    chart(canvas, area, &lines, &x, &Axis { write: &short_dollars, holds: zero });
+    chart(canvas, area, &lines, &x, &Side { unit: Unit::Dollars, holds: zero });
 }
 
 /// A course that is known.
@@ -373,6 +367,6 @@ fn draw_text_to_agree_to(canvas: &mut Canvas<'_>, area: Rect, text: &str, from: 
     let question = Rect { y: inside.bottom().saturating_sub(1), height: inside.height.min(1), ..inside };
     canvas.text(question, "y I agree, the session begins   esc I do not, nothing is recorded", Role::Strong);
     if lines.len() > room {
-        canvas.pane_keys(own, "up down read on");
+        canvas.pane_keys(own, "up/down scroll");
     }
 }

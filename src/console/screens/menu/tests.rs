@@ -135,7 +135,7 @@ fn a_new_list_leaves_the_choice_where_it_was() {
 fn runs_are_given_up_and_deleted_only_after_a_question() {
     let mut menu = three();
     menu.page = Page::Runs;
-    for (action, words) in [(Action::EndRun, "has no score"), (Action::DeleteRun, "cannot be brought back")] {
+    for (action, words) in [(Action::EndRun, "Giving up"), (Action::DeleteRun, "Deleting")] {
         assert!(menu.act(action).is_empty());
         let screen = shown(&menu, 80, 23).replace("\n", " ");
         let words_apart: Vec<&str> = words.split(' ').collect();
@@ -333,7 +333,7 @@ fn a_participant_agrees_or_nothing_begins() {
     };
     let mut menu = asked();
     let screen = shown(&menu, 80, 23);
-    for part in ["Before the session", "We keep what you do", "y I agree", "esc I do not", "read on"] {
+    for part in ["Before the session", "We keep what you do", "y I agree", "esc I do not", "scroll"] {
         assert!(screen.contains(part), "{part} is missing in\n{screen}");
     }
     assert!(!screen.contains("stop at any time"));

@@ -97,7 +97,7 @@ pub static METRICS: [Metric; 22] = [
     ),
     metric(
         "subscribers",
-        "subscribers",
+        "subscriber",
         |week| f64::from(week.individual_subscribers),
         whole,
         true,
@@ -128,8 +128,8 @@ pub static METRICS: [Metric; 22] = [
         false,
         Source::Customers("s.end_day", LEFT),
     ),
-    metric("upgrades", "plan-switch", |week| f64::from(week.upgrades), whole, true, Source::None),
-    metric("downgrades", "plan-switch", |week| f64::from(week.downgrades), whole, false, Source::None),
+    metric("upgrades", "upgrade", |week| f64::from(week.upgrades), whole, true, Source::None),
+    metric("downgrades", "upgrade", |week| f64::from(week.downgrades), whole, false, Source::None),
     metric(
         "seats",
         "seats",
@@ -188,7 +188,7 @@ pub static METRICS: [Metric; 22] = [
         false,
         Source::Service("error_rate"),
     ),
-    metric("open issues", "issues", |week| f64::from(week.open_issues), whole, false, Source::None),
+    metric("open issues", "issue", |week| f64::from(week.open_issues), whole, false, Source::None),
     metric("companies lost", "churn", |week| f64::from(week.companies_lost), whole, false, Source::None),
 ];
 
@@ -215,7 +215,9 @@ fn weeks_of(column: usize) -> (u32, u32) {
 pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
     let trend = company.trend(12, metric.read);
     let now = trend.last().copied();
-    let before = trend.len().checked_sub(2).map(|at| trend[at]);
+    // Cash is the one figure that there was before the first week.
+    let opening = matches!(metric.source, Source::Cash).then_some(company.seen.starting_cash);
+    let before = trend.len().checked_sub(2).map(|at| trend[at]).or(opening.filter(|_| now.is_some()));
     let cell = |value: Option<f64>| match value {
         Some(value) => Cell::number(value, (metric.write)(value)),
         None => Cell::words("–"),

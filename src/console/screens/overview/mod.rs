@@ -23,7 +23,7 @@ use crate::console::readings::Reading;
 use crate::console::text::{arrow, number, short_dollars, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::chart::note_room;
-use crate::console::widgets::{Axis, Cell, Column, Line, Table, chart, fan};
+use crate::console::widgets::{Axis, Cell, Column, Line, Side, Table, Unit, chart, fan};
 use crate::notation::dollars;
 use crate::report::needs::Need;
 use crate::session::Rows;
@@ -268,7 +268,7 @@ impl Overview {
         let screen = metric.map(|metric| match metric.term {
             "cash" | "payments" | "running-costs" => ScreenId::Cash,
             "thread" | "seats" => ScreenId::Inbox,
-            "usage" | "overload" | "outage" | "latency" | "error-rate" | "issues" => ScreenId::Product,
+            "usage" | "overload" | "outage" | "latency" | "error-rate" | "issue" => ScreenId::Product,
             _ => ScreenId::Customers,
         });
         screen.map(Effect::Show).into_iter().collect()
@@ -341,8 +341,8 @@ impl Overview {
         let inside = canvas.pane(area, "Needs you", &note, focused);
         if needs.is_empty() {
             let text = match company.seen.ended {
-                Some(_) => "the run is over; readings and queries stay open",
-                None => "nothing: n lets the week pass",
+                Some(_) => "the run is over; you can still read and query",
+                None => "nothing: n starts the next week",
             };
             canvas.text(inside, text, Role::Dim);
         }
@@ -367,7 +367,7 @@ impl Overview {
         let note = match self.week.note() {
             note if note.is_empty() => match &look.company.seen.last_week {
                 Some(week) => format!("week {} · to day {}", look.company.seen.week, week.day),
-                None => "no week has passed".to_owned(),
+                None => "no week yet".to_owned(),
             },
             note => note,
         };
@@ -405,7 +405,7 @@ impl Overview {
             None => {
                 let lines = [Line::of(&company.cash_by_day, Role::Series(0))];
                 let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[] };
-                chart(canvas, inside, &lines, &x, &Axis { write: &short_dollars, holds: &[] });
+                chart(canvas, inside, &lines, &x, &Side { unit: Unit::Dollars, holds: &[] });
             }
         }
     }

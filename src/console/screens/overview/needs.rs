@@ -68,7 +68,7 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
             ("overload", Some(days("day, total_usage_units, capacity_units, capacity_tier")))
         }
         Problem::Outages => ("outage", Some(days("day, downtime_minutes, p95_ms, error_rate"))),
-        Problem::Backlog => ("issues", Some(days("day, total_usage_units, downtime_minutes"))),
+        Problem::Backlog => ("issue", Some(days("day, total_usage_units, downtime_minutes"))),
         Problem::Churn(group) => (
             "churn",
             Some(format!(

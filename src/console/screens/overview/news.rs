@@ -51,14 +51,14 @@ impl Item {
     pub fn figure(&self, day: u32) -> Figure {
         let (term, sql) = match self.kind {
             Kind::Research => {
-                ("research", "SELECT *\nFROM research_projects\nORDER BY started_day DESC".to_owned())
+                ("research-project", "SELECT *\nFROM research_projects\nORDER BY started_day DESC".to_owned())
             }
             Kind::Study => {
                 ("info-level", "SELECT *\nFROM group_info_levels\nWHERE info_level > 0".to_owned())
             }
             Kind::Economy => ("pmi", "SELECT *\nFROM macroeconomic_conditions\nORDER BY day DESC".to_owned()),
             Kind::Posts | Kind::Press => (
-                "social_media_posts.content",
+                if self.kind == Kind::Press { "press" } else { "post" },
                 format!(
                     "SELECT post_id, day, content\nFROM social_media_posts\nWHERE day BETWEEN {} AND {day}\nORDER BY post_id DESC",
                     day.saturating_sub(6)
@@ -89,7 +89,7 @@ pub fn of_research(projects: &[Project], day: u32) -> Vec<Item> {
     let ended = |project: &&Project| project.done && project.expected + 7 > day && project.expected <= day;
     let words = |project: &Project| Item {
         kind: Kind::Research,
-        text: format!("R&D {} is done: {:+.4} quality for everybody", project.id, project.boost),
+        text: format!("R&D {} done: {:+.4} quality for every group", project.id, project.boost),
     };
     projects.iter().filter(ended).map(words).collect()
 }
@@ -112,8 +112,7 @@ pub fn of_posts(company: &Company) -> Vec<Item> {
     let mut items = Vec::new();
     if own > 0 {
         let noun = if own == 1 { "post" } else { "posts" };
-        let compared =
-            if before > 0 { format!(" (mean of the four weeks before: {usual:.0})") } else { String::new() };
+        let compared = if before > 0 { format!(" (four-week average {usual:.0})") } else { String::new() };
         items.push(Item { kind: Kind::Posts, text: format!("{own} new {noun} about us{compared}") });
     }
     if press > 0 {

@@ -2,6 +2,7 @@ use super::*;
 use crate::console::test_kit::{act, courted, drawn, played, shown, sweep};
 use crate::report::needs::{Place, Problem};
 use crate::session::{Cell as Value, Session};
+use news::Kind;
 
 fn sum_of(session: &mut Session, sql: &str, column: &str) -> f64 {
     let rows = session.query(&format!("SELECT {column} FROM ({sql})")).expect("an answer");
@@ -106,6 +107,20 @@ fn every_need_leads_to_its_object_and_names_its_rows() {
 }
 
 #[test]
+fn what_is_selected_is_explained_by_a_term_or_a_tool() {
+    let company = Company::of(&played(7));
+    let day = company.seen.day;
+    let needs = company.needs.iter().map(|need| needs::figure_of(need, day).term);
+    let metrics = METRICS.iter().map(|metric| metric.term);
+    let kinds = [Kind::Research, Kind::Study, Kind::Economy, Kind::Posts, Kind::Press];
+    let news = kinds.map(|kind| news::Item { kind, text: String::new() }.figure(day).term);
+    for term in needs.chain(metrics).chain(news) {
+        let kind = crate::glossary::subject(term).map(|subject| subject.kind());
+        assert!(matches!(kind, Some("term" | "tool")), "{term}: {kind:?}");
+    }
+}
+
+#[test]
 fn the_waiting_threads_are_the_rows_of_their_need() {
     let mut session = courted();
     let company = Company::of(&session);
@@ -161,4 +176,14 @@ fn it_is_drawn_in_every_window_with_and_without_data() {
         sweep(&mut Overview::default(), &company);
         sweep(&mut shown::<Overview>(&mut session, &company), &company);
     }
+}
+
+#[test]
+fn cash_changes_in_the_first_week_as_the_header_says() {
+    let company = Company::of(&played(1));
+    let row = figures::row_of(&METRICS[0], &company);
+    assert_eq!(METRICS[0].name, "cash at week's end");
+    let change = row[2].number.expect("a change");
+    assert!((change - company.seen.cash_change).abs() < 0.01, "{row:?}");
+    assert_eq!(row[4].number, Some(company.seen.starting_cash), "{row:?}");
 }

@@ -8,7 +8,7 @@ use crate::console::company::Company;
 use crate::console::screens::product::model::Day;
 use crate::console::theme::Role;
 use crate::console::widgets::chart::{note_room, summary, zero_if_near};
-use crate::console::widgets::{Axis, Line, chart};
+use crate::console::widgets::{Axis, Line, Side, Unit, chart};
 use crate::notation::{compact, percent};
 
 /// Least height of a small chart with its border.
@@ -59,11 +59,12 @@ fn draw_one(canvas: &mut Canvas<'_>, area: Rect, metric: &Metric, title: &str, c
     let write = move |value: f64| {
         if dollar { crate::console::text::short_dollars(value) } else { compact(value) }
     };
+    let unit = if dollar { Unit::Dollars } else { Unit::Number };
     let words = summary(&values, &write, note_room(area, title));
     let inside = canvas.pane(area, title, &words, false);
     let zero = zero_if_near(values.iter().copied());
     let x = Axis { write: &|week| format!("wk {week:.0}"), holds: &[] };
-    chart(canvas, inside, &[Line::through(weeks, Role::Series(0))], &x, &Axis { write: &write, holds: zero });
+    chart(canvas, inside, &[Line::through(weeks, Role::Series(0))], &x, &Side { unit, holds: zero });
 }
 
 /// Draws usage against capacity by day.
@@ -85,5 +86,5 @@ pub fn draw_usage(canvas: &mut Canvas<'_>, area: Rect, days: &[Day]) {
         Line::through(points(|day| day.usage), Role::Series(0)).named("usage"),
     ];
     let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[] };
-    chart(canvas, inside, &lines, &x, &Axis { write: &compact, holds: &[0.0] });
+    chart(canvas, inside, &lines, &x, &Side { unit: Unit::Number, holds: &[0.0] });
 }

@@ -7,8 +7,9 @@ use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::company::Company;
 use crate::console::text::number;
 use crate::console::theme::Role;
+use crate::console::widgets::chart::NO_DATA;
 use crate::console::widgets::table::first_row;
-use crate::console::widgets::{Axis, Line, chart, spark};
+use crate::console::widgets::{Axis, Line, Side, Unit, chart, spark};
 use crate::notation::{compact, dollars, grouped, percent};
 
 /// The tier that served last, and the tier that is set.
@@ -22,10 +23,11 @@ pub fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> String {
     let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return String::new() };
     match last_week(days) {
         Some((mean, peak)) if rung.units > 0.0 => format!(
-            "tier {set} · used {}, peak {} · {} free",
+            "tier {set} · used {}, peak {} · {} {}",
             share(mean, rung.units),
             share(peak, rung.units),
-            compact(rung.units - peak)
+            compact((rung.units - peak).abs()),
+            if peak > rung.units { "too few" } else { "free" }
         ),
         _ => format!("tier {set} · {} units a day", compact(rung.units)),
     }
@@ -119,7 +121,7 @@ fn draw_ladder(
 fn draw_history(canvas: &mut Canvas<'_>, area: Rect, rungs: &[Rung], days: &[Day]) {
     let most = days.iter().map(|day| day.usage.max(day.capacity)).fold(0.0, f64::max);
     let (Some(first), Some(last)) = (days.first(), days.last()) else {
-        return canvas.text(area, "no day has passed", Role::Dim);
+        return canvas.text(area, NO_DATA, Role::Dim);
     };
     let step = (f64::from(last.day - first.day) / 24.0).max(1.0);
     let near = rungs.iter().filter(|rung| rung.units > most / 20.0 && rung.units <= most);
@@ -142,22 +144,26 @@ fn draw_history(canvas: &mut Canvas<'_>, area: Rect, rungs: &[Rung], days: &[Day
     ];
     let lines: Vec<Line> = dotted.into_iter().chain(curves).collect();
     let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[] };
-    chart(canvas, area, &lines, &x, &Axis { write: &compact, holds: &[0.0] });
+    chart(canvas, area, &lines, &x, &Side { unit: Unit::Number, holds: &[0.0] });
 }
 
-/// A measure of the service: name, how it is read and written.
-type Measure = (&'static str, fn(&Day) -> f64, fn(f64) -> String);
+/// A measure of the service: name, how it is read and written, and how several days are taken together.
+type Measure = (&'static str, fn(&Day) -> f64, fn(f64) -> String, fn(&[f64]) -> f64);
 
 static MEASURES: [Measure; 4] = [
-    ("utilisation", Day::utilisation, |share| percent(share, 0)),
-    ("latency p95, ms", |day| day.latency, |value| grouped(value, 0)),
-    ("error rate", |day| day.errors, |share| percent(share, 2)),
-    ("outage, minutes", |day| day.downtime, number),
+    ("utilisation", Day::utilisation, |share| percent(share, 0), peak),
+    ("latency p95, ms", |day| day.latency, |value| grouped(value, 0), peak),
+    ("error rate", |day| day.errors, |share| percent(share, 2), peak),
+    ("outage, minutes", |day| day.downtime, number, |days| days.iter().sum()),
 ];
+
+fn peak(days: &[f64]) -> f64 {
+    days.iter().copied().fold(0.0, f64::max)
+}
 
 /// One line on the service.
 pub fn service_summary(days: &[Day]) -> String {
-    let Some(last) = days.last() else { return "no day has passed".to_owned() };
+    let Some(last) = days.last() else { return NO_DATA.to_owned() };
     let minutes: f64 = days.iter().rev().take(28).map(|day| day.downtime).sum();
     format!(
         "p95 {} ms · errors {} · outage {} min in 28 days",
@@ -187,14 +193,14 @@ pub fn draw_service(canvas: &mut Canvas<'_>, area: Rect, days: &[Day]) {
     }
 }
 
-fn draw_measure(canvas: &mut Canvas<'_>, row: Rect, (name, read, write): &Measure, days: &[Day]) {
+fn draw_measure(canvas: &mut Canvas<'_>, row: Rect, (name, read, write, together): &Measure, days: &[Day]) {
     let values: Vec<f64> = days.iter().map(read).collect();
-    let peak = |count: usize| {
-        let last = &values[values.len().saturating_sub(count)..];
-        last.iter().copied().reduce(f64::max).map_or("–".to_owned(), write)
+    let of_days = |count: usize| match &values[values.len().saturating_sub(count)..] {
+        [] => "–".to_owned(),
+        last => write(together(last)),
     };
     let last = values.last().map_or("–".to_owned(), |value| write(*value));
-    let text = format!("{name:<16}{last:>8}{:>9}{:>9}", peak(7), peak(28));
+    let text = format!("{name:<16}{last:>8}{:>9}{:>9}", of_days(7), of_days(28));
     canvas.text(row, &text, Role::Text);
     if row.width > 44 {
         let room = row.width - 44;
@@ -216,7 +222,7 @@ fn draw_outages(canvas: &mut Canvas<'_>, row: Rect, days: &[Day]) {
         .map(|day| format!("day {} {} min", day.day, number(day.downtime)))
         .collect();
     let text = match outages.is_empty() {
-        true => "no outage so far; figures of several days are their peaks".to_owned(),
+        true => "no outages so far; 7-day and 28-day figures are peaks".to_owned(),
         false => format!("outages: {}", outages.join(" · ")),
     };
     canvas.text(row, &text, Role::Dim);

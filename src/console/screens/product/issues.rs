@@ -45,7 +45,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, list: &List<'_>) {
     }
     let below = Rect { y: area.y + 1, height: area.height - 1, ..area };
     let Some(issues) = list.issues.filter(|issues| !issues.is_empty()) else {
-        let words = if list.issues.is_some() { "no customer waits for support" } else { "reading …" };
+        let words = if list.issues.is_some() { "no customer is waiting for support" } else { "reading …" };
         return canvas.text(below, words, Role::Dim);
     };
     if area.width > FIGURES + 22 {

@@ -21,8 +21,9 @@ use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::readings::Reading;
+use crate::console::text::count;
 use crate::console::theme::Role;
-use crate::notation::{grouped, percent};
+use crate::notation::percent;
 use crate::session::{Category, Rows};
 use crate::world::identifiers::Plan;
 
@@ -270,7 +271,7 @@ impl Product {
             PLANS => {
                 let plan = |(name, plan): (char, &PlanFacts)| {
                     let margin = plan.margin().map_or("–".to_owned(), |margin| percent(margin, 0));
-                    format!("{name} {} seats, margin {margin}", grouped(plan.seats, 0))
+                    format!("{name} {}, margin {margin}", count(plan.seats, "seat"))
                 };
                 ['A', 'B', 'C'].into_iter().zip(&self.plans).map(plan).collect::<Vec<_>>().join(" · ")
             }

@@ -8,7 +8,7 @@ use crate::console::company::Company;
 use crate::console::theme::Role;
 use crate::console::widgets::spark;
 use crate::console::widgets::table::first_row;
-use crate::notation::{compact, dollars, grouped};
+use crate::notation::{compact, grouped, short_dollars};
 
 /// Weekly spend on development and operations.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -26,9 +26,9 @@ pub fn summary(projects: &[Project]) -> String {
     let done = projects.iter().filter(|project| project.done).count();
     match next {
         Some(next) => {
-            format!("{} run, next {} on day {} · {done} done", running.count(), next.id, next.expected)
+            format!("{} running, next {} on day {} · {done} done", running.count(), next.id, next.expected)
         }
-        None => format!("none runs · {done} done"),
+        None => format!("none running · {done} done"),
     }
 }
 
@@ -81,7 +81,7 @@ fn draw_line(
     let skipped = first_row(selected.unwrap_or(0), rows, projects.len());
     let shown = &projects[skipped..projects.len().min(skipped + rows)];
     if shown.is_empty() {
-        canvas.text(area, "no project was started yet: the form start_research_project buys one", Role::Dim);
+        canvas.text(area, "no projects yet: start_research_project starts one", Role::Dim);
         return;
     }
     let first = shown.iter().map(|project| project.started).min().unwrap_or(0).min(today);
@@ -145,8 +145,10 @@ fn draw_offers(
     before: usize,
     pane: usize,
 ) {
-    let head =
-        format!("{:>4} {:<17}{:>9}{:>6}{:>8}{:>9}  ", "tier", "project", "cost", "days", "quality", "$/0.01");
+    let head = format!(
+        "{:>4} {:<17} {:>8} {:>5} {:>7} {:>8}  ",
+        "tier", "project", "cost", "days", "quality", "$/0.01"
+    );
     canvas.text(area, head.trim_end(), Role::Header);
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
     if selected.is_some() {
@@ -161,16 +163,16 @@ fn draw_offers(
             (false, false) => Role::Dim,
         };
         let each =
-            if offer.boost > 0.0 { dollars(offer.cost / offer.boost * 0.01) } else { "–".to_owned() };
+            if offer.boost > 0.0 { short_dollars(offer.cost / offer.boost * 0.01) } else { "–".to_owned() };
         let mut remarks = Vec::new();
         if offer.counts.0 > 0 {
-            remarks.push(format!("{} run", offer.counts.0));
+            remarks.push(format!("{} running", offer.counts.0));
         }
         if offer.counts.1 > 0 {
             remarks.push(format!("{} done", offer.counts.1));
         }
         if !affordable {
-            remarks.push("! beyond cash".to_owned());
+            remarks.push("! more than your cash".to_owned());
         }
         // Where words do not fit, a sign says that it costs more than there is.
         let remarks = match row.width < 70 {
@@ -180,10 +182,10 @@ fn draw_offers(
         };
         canvas.clear(row, role);
         let text = format!(
-            "{:>4} {:<17}{:>9}{:>6}{:>+8.3}{each:>9} {}",
+            "{:>4} {:<17} {:>8} {:>5} {:>+7.3} {each:>8} {}",
             offer.tier,
             fit(&offer.name, 17),
-            format!("${}", compact(offer.cost)),
+            short_dollars(offer.cost),
             grouped(offer.days, 0),
             offer.boost,
             remarks

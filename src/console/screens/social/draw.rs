@@ -8,7 +8,7 @@ use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click};
 use crate::console::screens::Look;
 use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Line, chart};
+use crate::console::widgets::{Axis, Line, Side, Unit, chart};
 use crate::notation::grouped;
 
 /// Draws the screen.
@@ -66,10 +66,10 @@ impl Social {
         }
         if self.shown.is_empty() {
             let words = match self.all.is_empty() {
-                true => "nobody has written anything yet: let a week pass (n)".to_owned(),
-                false => format!("no post fits: {} shows all again", look.hint(Action::Close)),
+                true => "no posts yet: run a week (n)".to_owned(),
+                false => format!("no matching posts: {} shows all", look.hint(Action::Close)),
             };
-            canvas.text(inside, &words, Role::Dim);
+            canvas.text(inside, &words, Role::Text);
         }
         let posts: Vec<&Post> =
             self.shown.iter().filter_map(|at| self.all.get(*at)).map(AsRef::as_ref).collect();
@@ -102,8 +102,8 @@ impl Social {
         let inside = canvas.pane(area, &title, &note, self.focus == DESK);
         let key = look.keys.label(Action::Compose).unwrap_or_default();
         let hint = match today {
-            true => "published for this week; the next post can follow after it".to_owned(),
-            false => format!("{key} begins a post; one a week, every known group reads it"),
+            true => "this week's post is published; the next one after this week".to_owned(),
+            false => format!("{key} writes a post; one a week, read by every known group"),
         };
         self.draft.draw(canvas, inside, self.editing, &hint);
         if length > most && area.width > 8 {
@@ -132,7 +132,7 @@ impl Social {
         let inside = canvas.pane(area, "Our posts", &note, focused);
         if self.own.is_empty() {
             let key = look.keys.label(Action::Compose).unwrap_or_default();
-            canvas.text(inside, &format!("none yet: {key} begins one"), Role::Dim);
+            canvas.text(inside, &format!("none yet: {key} writes one"), Role::Dim);
             return;
         }
         self.table.draw(canvas, inside, focused, OWN);
@@ -153,6 +153,6 @@ impl Social {
             Line { scattered: true, ..Line::through(press, Role::Series(1)) },
         ];
         let x = Axis { write: &|week| format!("week {week:.0}"), holds: &[] };
-        chart(canvas, inside, &lines, &x, &Axis { write: &|count| grouped(count, 0), holds: &[0.0] });
+        chart(canvas, inside, &lines, &x, &Side { unit: Unit::Number, holds: &[0.0] });
     }
 }

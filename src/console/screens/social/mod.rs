@@ -174,7 +174,7 @@ impl Social {
         let (length, most) = (self.length(), look.company.terms.post_characters);
         if self.draft.is_blank() {
             let key = look.keys.label(Action::Compose).unwrap_or_default();
-            return vec![Effect::Complain(format!("nothing is written yet: {key} begins a post"))];
+            return vec![Effect::Complain(format!("nothing to publish: {key} writes a post"))];
         }
         if length > most {
             return vec![Effect::Complain(format!(
@@ -196,7 +196,7 @@ impl Social {
             effect_day.map_or(String::new(), |day| format!(" Every known group reads it on day {day}."));
         let text = fit(&self.draft.text(), 300);
         let text = format!(
-            "{kind} \"{text}\"?{read} It costs nothing, cannot be taken back, and is the only post of this week."
+            "{kind} \"{text}\"?{read} It costs nothing, cannot be undone, and is this week's only post."
         );
         Effect::ConfirmCall { tool: POST, arguments, text }
     }

@@ -85,7 +85,7 @@ fn filters_narrow_the_feed_and_esc_ends_them() {
     write(&mut screen, &company, "zzzz");
     act(&mut screen, Action::Commit, &company);
     assert!(screen.shown.is_empty());
-    assert!(drawn(&screen, &company, 80, 21).contains("no post fits: esc"));
+    assert!(drawn(&screen, &company, 80, 21).contains("no matching posts: esc"));
     sweep(&mut screen, &company);
     screen.set_focus(FEED);
     act(&mut screen, Action::Close, &company);
@@ -141,7 +141,7 @@ fn a_post_is_written_checked_asked_for_and_sent() {
     let company = Company::of(&session);
     let mut screen: Social = shown(&mut session, &company);
     let effects = act(&mut screen, Action::SendPost, &company);
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing is written")));
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing to publish")));
     let answered = screen.post().expect("a post").number;
     act(&mut screen, Action::Reply, &company);
     assert_eq!(screen.scopes(), [Scope::Editor, Scope::Social]);
@@ -162,7 +162,7 @@ fn a_post_is_written_checked_asked_for_and_sent() {
     let checked = News::Checked(1, session.check(tool, arguments));
     let effects = with_look(&company, |look| screen.hear(&checked, look));
     let [Effect::ConfirmCall { tool, arguments, text }] = &effects[..] else { panic!("{effects:?}") };
-    assert!(text.contains("cannot be taken back") && text.contains("on day 15"), "{text}");
+    assert!(text.contains("cannot be undone") && text.contains("on day 15"), "{text}");
     let answer = session.call(tool, arguments, Via::Form);
     let company = Company::of(&session);
     let called = News::Called(POST, answer, Arc::new(company.clone()));
@@ -170,7 +170,7 @@ fn a_post_is_written_checked_asked_for_and_sent() {
     assert!(!screen.holds_unsent_text() && screen.answers.is_none());
     let screen: Social = shown(&mut session, &company);
     assert_eq!(screen.own[0].answers, Some(answered));
-    assert!(drawn(&screen, &company, 80, 21).contains("published for this week"));
+    assert!(drawn(&screen, &company, 80, 21).contains("this week's post is published"));
 }
 
 #[test]
@@ -219,7 +219,7 @@ fn it_is_drawn_in_every_window_with_and_without_posts() {
     drawn(&screen, &company, 3, 40);
     sweep(&mut screen, &company);
     let empty = drawn(&Social::default(), &company, 80, 21);
-    assert!(empty.contains("nobody has written anything yet: let a week pass"), "{empty}");
+    assert!(empty.contains("no posts yet: run a week"), "{empty}");
 }
 
 #[test]

@@ -331,4 +331,24 @@ mod tests {
         editor.insert_name("amount", true);
         assert_eq!(editor.text(), "SELECT day, amount");
     }
+
+    #[test]
+    fn the_place_of_an_error_is_underlined_until_something_is_typed() {
+        let theme = crate::console::theme::Theme::find("mono", &crate::session::Configuration::shipped());
+        let theme = theme.expect("a theme");
+        let area = Rect::new(0, 0, 40, 3);
+        let underlined = |editor: &QueryEditor| {
+            let mut buffer = ratatui::buffer::Buffer::empty(area);
+            editor.draw(&mut Canvas::new(&mut buffer, &theme), area, false, "");
+            let marked = |x: &u16| buffer[(*x, 0)].style().add_modifier.contains(Modifier::UNDERLINED);
+            (0..40).filter(marked).collect::<Vec<u16>>()
+        };
+        let mut editor = QueryEditor::default();
+        editor.replace("SELECT wrong FROM ledger");
+        assert!(underlined(&editor).is_empty());
+        editor.mark(7);
+        assert_eq!(underlined(&editor), [7, 8, 9, 10, 11]);
+        editor.key(&KeyEvent::new(KeyCode::Char('x'), KeyModifiers::NONE));
+        assert!(underlined(&editor).is_empty());
+    }
 }

@@ -50,7 +50,7 @@ impl History {
                 });
             }
         }
-        (!items.is_empty()).then(|| Picker::new("Asked before", "puts it into the editor", items))
+        (!items.is_empty()).then(|| Picker::new("History", "puts it into the editor", items))
     }
 }
 

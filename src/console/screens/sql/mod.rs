@@ -14,6 +14,8 @@ mod takeout;
 mod tests;
 pub mod values;
 
+use std::time::Instant;
+
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -47,6 +49,7 @@ const WIDE: u16 = 90;
 struct Running {
     text: String,
     statement: Statement,
+    since: Instant,
 }
 
 /// What lies over the panes.
@@ -111,7 +114,14 @@ impl Sql {
     pub fn edit_and_run(&mut self, sql: &str) -> Vec<Effect> {
         self.edit(sql);
         self.editor.go_to_top();
+        // Nothing was typed: the keys are those of the result.
+        self.focus = RESULTS;
         self.run()
+    }
+
+    /// Whether a statement is being answered.
+    pub fn is_running(&self) -> bool {
+        self.running.is_some()
     }
 
     fn run(&mut self) -> Vec<Effect> {
@@ -120,11 +130,11 @@ impl Sql {
         }
         self.editor.hide_completion();
         let Some(statement) = self.editor.statement() else {
-            return vec![Effect::Complain("there is no statement to run: type one first".to_owned())];
+            return vec![Effect::Complain("no statement to run: type one first".to_owned())];
         };
         self.history.remember(&statement.sql);
         let sql = statement.sql.clone();
-        self.running = Some(Running { text: self.editor.text(), statement });
+        self.running = Some(Running { text: self.editor.text(), statement, since: Instant::now() });
         vec![Effect::Ask(sql)]
     }
 
@@ -135,7 +145,7 @@ impl Sql {
                 self.over = Some(Over::Earlier(picker));
                 Vec::new()
             }
-            None => vec![Effect::Say("nothing was asked in this run yet: f5 runs a statement".to_owned())],
+            None => vec![Effect::Say("no queries in this run yet: f5 runs a statement".to_owned())],
         }
     }
 
@@ -154,20 +164,16 @@ impl Sql {
 
     fn save(&mut self) -> Vec<Effect> {
         self.editor.hide_completion();
-        match self.editor.statement() {
-            Some(statement) => self.over = Some(Over::Saving(Saving::of(statement.sql))),
-            None => {
-                return vec![Effect::Complain("there is no statement to save: type one first".to_owned())];
-            }
-        }
+        let Some(statement) = self.editor.statement() else {
+            return vec![Effect::Complain("no statement to save: type one first".to_owned())];
+        };
+        self.over = Some(Over::Saving(Saving::of(statement.sql)));
         Vec::new()
     }
 
     fn take_out(&mut self) -> Vec<Effect> {
         if !self.results.has_rows() {
-            return vec![Effect::Complain(
-                "there is no result to take out: run a statement first".to_owned(),
-            )];
+            return vec![Effect::Complain("no result to export: run a statement first".to_owned())];
         }
         self.over = Some(Over::TakeOut(TakeOut::default()));
         Vec::new()
@@ -344,6 +350,7 @@ impl Screen for Sql {
             && self.editor.text() == running.text
         {
             self.editor.mark(running.statement.from + place);
+            self.focus = EDITOR;
         }
         self.results.take(&running.statement.sql, answer.clone(), *took);
         Vec::new()
@@ -439,7 +446,13 @@ impl Screen for Sql {
         if self.results.is_empty() && self.running.is_none() {
             self.results.draw_nothing(canvas, below, self.focus == RESULTS, &self.library);
         } else {
-            self.results.draw(canvas, below, self.focus == RESULTS, self.running.is_some(), look);
+            self.results.draw(
+                canvas,
+                below,
+                self.focus == RESULTS,
+                self.running.as_ref().map(|own| own.since.elapsed()),
+                look,
+            );
         }
         if self.focus == EDITOR && self.over.is_none() {
             self.editor.draw_completion(canvas, rest);
@@ -481,7 +494,7 @@ impl Sql {
         let note = look.hints(&[Action::RunQuery, Action::History, Action::Library]);
         let inside = canvas.pane(area, &title, &note, focused);
         let editing = focused && self.over.is_none();
-        let hint = if focused { "type a statement" } else { "i or a click types here" };
+        let hint = if focused { "type a statement" } else { "i or a click to edit" };
         self.editor.draw(canvas, inside, editing, hint);
     }
 }

@@ -154,7 +154,7 @@ impl Picker {
     fn draw_list(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) {
         canvas.page = area.height.max(1);
         if self.found.is_empty() {
-            canvas.text(area, "nothing holds these letters; backspace widens the search", Role::Dim);
+            canvas.text(area, "no match; backspace widens the search", Role::Dim);
         }
         let tags = self.items.iter().map(|item| item.tag.width()).max().unwrap_or(0) as u16;
         let from = first_row(self.selected, area.height as usize, self.found.len());

@@ -10,7 +10,7 @@ use crate::console::theme::Role;
 use crate::console::widgets::bars::{Bar, SIGNS, Scale};
 use crate::console::widgets::chart::zero_if_near;
 use crate::console::widgets::table::first_row;
-use crate::console::widgets::{Axis, Line, Table, chart};
+use crate::console::widgets::{Axis, Line, Side, Table, Unit, chart};
 use crate::notation::{compact, grouped};
 use crate::session::library::{ChartKind, ChartLine};
 use crate::session::{Cell, Rows};
@@ -193,7 +193,7 @@ impl Plot {
             }
         };
         format!(
-            "{name}: least {} {} · most {} {} · {end}",
+            "{name}: min {} {} · max {} {} · {end}",
             written(least.1),
             at(least.0),
             written(most.1),
@@ -250,7 +250,7 @@ impl Plot {
         let write_x = |at: f64| if numeric_x.is_some() { axis_number(at) } else { name(at) };
         let heights = lines.iter().flat_map(|line| &line.points).map(|point| point.1);
         let x = Axis { write: &write_x, holds: &[] };
-        let y = Axis { write: &compact, holds: zero_if_near(heights) };
+        let y = Side { unit: Unit::Number, holds: zero_if_near(heights) };
         chart(canvas, area, &lines, &x, &y);
     }
 
@@ -377,14 +377,11 @@ mod tests {
         let rows = leads();
         let table = shown(&rows);
         let mut plot = Plot::of(&rows, None).expect("a chart");
-        assert_eq!(
-            plot.summary(&rows, &table, 1),
-            "leads: least -3 (b) · most 8 (c) · total 10 · average 3.33"
-        );
+        assert_eq!(plot.summary(&rows, &table, 1), "leads: min -3 (b) · max 8 (c) · total 10 · average 3.33");
         plot.other_kind();
         assert_eq!(
             plot.summary(&rows, &table, 2),
-            "spend: least 0.25 at c · most 2.00 at b · last 0.25 · change ▼ 1.25"
+            "spend: min 0.25 at c · max 2.00 at b · last 0.25 · change ▼ 1.25"
         );
         let empty = result(&["t", "n"], vec![vec![Cell::Text("x".to_owned()), Cell::Null]]);
         assert_eq!(plot.summary(&empty, &shown(&empty), 1), "n: no numbers");

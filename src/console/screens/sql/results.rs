@@ -128,10 +128,10 @@ impl Results {
         match (&self.plot, self.rows()) {
             (Some(_), _) => Vec::new(),
             (None, Some(_)) => {
-                vec![Effect::Complain("no column of this result holds numbers to draw".to_owned())]
+                vec![Effect::Complain("no numeric column to chart".to_owned())]
             }
             (None, None) => {
-                vec![Effect::Complain("there is no result to draw: run a statement first".to_owned())]
+                vec![Effect::Complain("no result to chart: run a statement first".to_owned())]
             }
         }
     }
@@ -143,9 +143,7 @@ impl Results {
             Action::ChartX => plot.next_x(rows),
             Action::ChartY => plot.next_y(rows),
             Action::MoreSeries if !plot.more(rows) => {
-                return vec![Effect::Complain(
-                    "there is no other column of numbers, or no room for it".to_owned(),
-                )];
+                return vec![Effect::Complain("no other numeric column, or no room for it".to_owned())];
             }
             Action::MoreSeries | Action::Left | Action::Right => {}
             Action::FewerSeries => plot.fewer(),
@@ -193,7 +191,7 @@ impl Results {
     }
 
     fn act_in_rows(&mut self, action: Action, page: u16) -> Vec<Effect> {
-        let nothing = || vec![Effect::Complain("there is no result to take anything from".to_owned())];
+        let nothing = || vec![Effect::Complain("no result to copy from".to_owned())];
         match action {
             Action::WholeCell => {
                 let read = |(name, cell): (&str, &Cell)| Effect::ShowText(name.to_owned(), readable(cell));
@@ -234,8 +232,8 @@ impl Results {
             return;
         }
         canvas.click(area, Click::Pane(RESULTS));
-        let inside = canvas.pane(area, "Result", "nothing was asked yet", focused);
-        let used = (text(canvas, inside, "", LESSON, Role::Dim) + 1).min(inside.height);
+        let inside = canvas.pane(area, "Result", "no query yet", focused);
+        let used = (text(canvas, inside, "", LESSON, Role::Text) + 1).min(inside.height);
         let below = Rect { y: inside.y + used, height: inside.height - used, ..inside };
         let titles = library.queries().iter().map(|query| query.title.width()).max().unwrap_or(0) as u16;
         for (row, query) in rows_of(below).zip(library.queries()) {
@@ -246,13 +244,20 @@ impl Results {
     }
 
     /// Draws the pane.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, running: bool, look: &Look<'_>) {
+    pub fn draw(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        focused: bool,
+        running: Option<Duration>,
+        look: &Look<'_>,
+    ) {
         if area.is_empty() {
             return;
         }
         canvas.click(area, Click::Pane(RESULTS));
         let (title, note) = match &self.answer {
-            _ if running => ("Result".to_owned(), String::new()),
+            _ if running.is_some() => ("Result".to_owned(), String::new()),
             Answer::None => return,
             Answer::Refused(refusal) if refusal.code == "sql_timeout" => {
                 ("Result · stopped".to_owned(), String::new())
@@ -267,13 +272,13 @@ impl Results {
         if focused {
             canvas.pane_keys(area, &look.hints(self.keys()));
         }
-        if running {
-            canvas.text(
-                Rect { height: 1.min(inside.height), ..inside },
-                "running … esc cancels",
-                Role::Warning,
-            );
-            return;
+        if let Some(since) = running {
+            let seconds = match since.as_secs() {
+                0 => String::new(),
+                seconds => format!("{seconds} s "),
+            };
+            let row = Rect { height: 1.min(inside.height), ..inside };
+            return canvas.text(row, &format!("running {seconds}… esc cancels"), Role::Warning);
         }
         match &self.answer {
             Answer::None => {}

@@ -73,16 +73,13 @@ impl Saving {
             }
             Place::Free(name) => (format!("Becomes queries/{name}.sql in your configuration."), Role::Dim),
             Place::Own(name) if again(&name) => {
-                (format!("! {name} is yours already: enter again replaces it."), Role::Warning)
+                (format!("! {name} already exists: enter again replaces it."), Role::Warning)
             }
-            Place::Own(name) => (format!("{name} is yours already; enter asks once more."), Role::Warning),
-            Place::Shipped(name) if again(&name) => (
-                format!("! {name} came with the program: enter again puts yours in its place."),
-                Role::Warning,
-            ),
-            Place::Shipped(name) => {
-                (format!("{name} came with the program; enter asks once more."), Role::Warning)
+            Place::Own(name) => (format!("{name} already exists; enter asks again."), Role::Warning),
+            Place::Shipped(name) if again(&name) => {
+                (format!("! {name} is a built-in query: enter again overrides it."), Role::Warning)
             }
+            Place::Shipped(name) => (format!("{name} is a built-in query; enter asks again."), Role::Warning),
         }
     }
 

@@ -47,7 +47,7 @@ impl TakeOut {
         let own = centered(area, 62, WAYS.len() as u16 + 2);
         canvas.clear(own, Role::Text);
         canvas.clicks.clear();
-        let inside = canvas.pane(own, "Take out", rows, true);
+        let inside = canvas.pane(own, "Export", rows, true);
         for (row, (at, way)) in rows_of(inside).zip(WAYS.iter().enumerate()) {
             let selected = at == self.selected;
             let role = |other| if selected { Role::Selection } else { other };
@@ -84,7 +84,7 @@ fn copy(text: String, rows: &Rows, how: &str) -> Vec<Effect> {
     let kilobytes = |bytes: usize| grouped(bytes as f64 / 1024.0, 1);
     if text.len() > CLIPBOARD {
         return vec![Effect::Complain(format!(
-            "{} KB are too much for the clipboard of a terminal ({} KB): write a file, or filter first",
+            "{} KB is too much for a terminal's clipboard ({} KB): write a file, or filter first",
             kilobytes(text.len()),
             CLIPBOARD >> 10
         ))];

@@ -64,7 +64,7 @@ fn draw_list(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
         }
     }
     if lines.is_empty() {
-        let text = format!("no tool is called like that: {}", look.hint(Action::Close));
+        let text = format!("no matching tool: {}", look.hint(Action::Close));
         canvas.text(inside, &text, Role::Dim);
     }
     let field = u16::from(tools.typing.is_some());
@@ -119,7 +119,7 @@ fn draw_form(
     let mut head: Vec<TextLine<'_>> =
         summary.iter().map(|line| TextLine::from(canvas.span(line.as_str(), Role::Strong))).collect();
     let terms = wrapped(&terms(spec, &look.company.numbers, look.company.seen.day), inside.width as usize);
-    head.extend(terms.iter().map(|line| TextLine::from(canvas.span(line.as_str(), Role::Dim))));
+    head.extend(terms.iter().map(|line| TextLine::from(canvas.span(line.as_str(), Role::Text))));
     canvas.lines(inside, &head);
     let top = (head.len() as u16 + 1).min(inside.height);
     let below = Rect { y: inside.y + top, height: inside.height - top, ..inside };
@@ -168,21 +168,23 @@ fn draw_manual(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
     }
     for (row, line) in rows.zip(wrapped(&describe::manual(spec, &look.company.numbers), area.width as usize))
     {
-        canvas.text(row, &line, Role::Dim);
+        canvas.text(row, &line, Role::Text);
     }
 }
 
 fn keys(form: &Form, look: &Look<'_>) -> String {
     match form.spec.name {
-        "next_week" => return "n opens the dialog before a week".to_owned(),
+        "next_week" => return "n opens the next-week dialog".to_owned(),
         "query" => return "enter opens the SQL screen".to_owned(),
         _ => {}
     }
     match form.sheet.blocks.is_empty() {
-        true => "enter asks".to_owned(),
+        true => "enter runs it".to_owned(),
+        false if form.is_typing() => look.hints(&[Action::CommitDown, Action::Apply, Action::Discard]),
         false => format!(
-            "type {} · {} · {} · {} · {}",
-            if form.sheet.blocks.iter().all(Block::is_text) { "a list as JSON" } else { "a number" },
+            "{} {} · {} · {} · {} · {}",
+            look.hint(Action::EditCell),
+            if form.sheet.blocks.iter().all(Block::is_text) { "the list (JSON)" } else { "the value" },
             look.hint(Action::Apply),
             look.hint(Action::ResetForm),
             look.hint(Action::CopyCall),

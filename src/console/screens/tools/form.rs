@@ -122,12 +122,12 @@ impl Form {
         let tool = self.spec.name;
         match self.spec.kind {
             Kind::Setting if !self.sheet.is_changed() => {
-                vec![Effect::Complain("nothing differs from what holds; type a value first".to_owned())]
+                vec![Effect::Complain("nothing has changed; enter a value first".to_owned())]
             }
             Kind::Purchase => match &self.preview {
                 Some(Ok(preview)) => {
                     let text = format!(
-                        "{tool} {arguments} costs {} at once and cannot be taken back.",
+                        "{tool} {arguments} costs {} at once and cannot be undone.",
                         dollars(preview.cost_now)
                     );
                     vec![Effect::ConfirmCall { tool, arguments, text }]
@@ -135,7 +135,7 @@ impl Form {
                 _ => vec![Effect::Call { tool, arguments }],
             },
             Kind::OneShot if self.sheet.is_changed() => {
-                let text = format!("{tool} {arguments} cannot be taken back.");
+                let text = format!("{tool} {arguments} cannot be undone.");
                 vec![Effect::ConfirmCall { tool, arguments, text }]
             }
             _ => vec![Effect::Call { tool, arguments }],
@@ -152,7 +152,7 @@ impl Form {
             Action::ClearCell => return self.clear(),
             Action::ResetForm => {
                 self.reset(company);
-                return vec![Effect::Say("the form shows what holds".to_owned())];
+                return vec![Effect::Say("form reset".to_owned())];
             }
             Action::CopyCall => return vec![Effect::Copy(self.call())],
             Action::Discard => {

@@ -148,8 +148,16 @@ fn draw_head(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
     for (place, column) in shown.clone().enumerate() {
         canvas.aligned(cell_area(block, row, place), &block.columns[column], Role::Header, Align::Right);
     }
-    let mark = if shown.end < block.columns.len() { "more ›" } else { "total" };
-    canvas.aligned(cell_area(block, row, shown.len()), mark, Role::Header, Align::Right);
+    canvas.aligned(cell_area(block, row, shown.len()), "total", Role::Header, Align::Right);
+    // Columns that have no room stand beyond these signs.
+    let between =
+        |place: usize| Rect { x: row.x + NAME + place as u16 * cell_width(block) - 1, width: 1, ..row };
+    if shown.start > 0 {
+        canvas.text(between(0).intersection(row), "‹", Role::Key);
+    }
+    if shown.end < block.columns.len() {
+        canvas.text(between(shown.len()).intersection(row), "›", Role::Key);
+    }
 }
 
 fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: Rect, focused: bool) {
@@ -186,7 +194,7 @@ fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: 
     let doc = Rect { x, width: row.right().saturating_sub(x), ..row };
     if block.is_scalar() {
         let words = format!("{}, {} · {}", block.argument.unit, block.range().words(), block.argument.doc);
-        canvas.text(doc, &words, Role::Dim);
+        canvas.text(doc, &words, Role::Text);
     }
 }
 

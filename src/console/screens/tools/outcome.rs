@@ -9,7 +9,7 @@ use super::reference::reference;
 use super::sheet::Block;
 use crate::console::action::Action;
 use crate::console::screens::Look;
-use crate::console::text::{number, wrapped};
+use crate::console::text::{count, number, wrapped};
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped, signed_dollars};
 use crate::session::Rows;
@@ -54,8 +54,8 @@ impl Leads {
         let (leads, spend) =
             self.0.get(&(channel.to_owned(), group.to_owned())).filter(|(_, spend)| *spend > 0.0)?;
         Some(format!(
-            "{channel} × {group}, last four weeks: {} leads for {}, {} per $1,000",
-            grouped(*leads, 0),
+            "{channel} × {group}, last four weeks: {} for {}, {} per $1,000",
+            count(*leads, "lead"),
             dollars(*spend),
             rate_in_words(leads / spend * 1000.0)
         ))
@@ -121,7 +121,7 @@ pub(super) fn outcome_lines(
     let mut about = |text: &str| {
         if !text.is_empty() {
             lines.push((String::new(), Role::Text));
-            lines.extend(wrapped(text, width).into_iter().map(|line| (line, Role::Dim)));
+            lines.extend(wrapped(text, width).into_iter().map(|line| (line, Role::Text)));
         }
     };
     about(&look.company.numbers.fill(form.spec.effect));

@@ -1,6 +1,7 @@
 //! What helps to fill a form: prices of tiers, projects on offer, budgets in force.
 
 use serde_json::Value;
+use unicode_width::UnicodeWidthStr;
 
 use crate::console::company::Company;
 use crate::console::text::number;
@@ -50,26 +51,37 @@ fn capacities(company: &Company) -> Vec<String> {
     }));
     if let Some(week) = company.seen.last_week.filter(|week| week.days_run > 0) {
         let mean = week.usage as f64 / f64::from(week.days_run);
-        lines.push(format!("used  {:>14}  a day in the last week", grouped(mean, 0)));
+        lines.push(format!("used  {:>14}  a day last week", grouped(mean, 0)));
     }
     lines
 }
 
 fn projects(company: &Company) -> Vec<String> {
-    let mut lines = vec!["tier  name                        cost   mean days   mean gain   now".to_owned()];
     let list = company.projects.get("tiers").and_then(Value::as_array);
-    lines.extend(list.into_iter().flatten().map(|tier| {
+    let row = |tier: &Value| {
         let running = if field(tier, "in_progress") > 0.0 { "running" } else { "" };
         let name = tier.get("name").and_then(Value::as_str).unwrap_or("");
-        format!(
-            "{:>4}  {name:<22} {:>10}   {:>9}   {:>9.4}   {running}",
+        [
             number(field(tier, "tier")),
+            name.to_owned(),
             dollars(field(tier, "cost")),
             number(field(tier, "mean_days")),
-            field(tier, "mean_quality_boost")
-        )
-    }));
-    lines
+            format!("{:.4}", field(tier, "mean_quality_boost")),
+            running.to_owned(),
+        ]
+    };
+    let head = ["tier", "name", "cost", "mean days", "mean gain", "now"].map(str::to_owned);
+    let rows: Vec<[String; 6]> = std::iter::once(head).chain(list.into_iter().flatten().map(row)).collect();
+    let width = |column: usize| rows.iter().map(|row| row[column].width()).max().unwrap_or(0);
+    let widths: [usize; 6] = std::array::from_fn(width);
+    let line = |row: &[String; 6]| {
+        let cell = |(column, text): (usize, &String)| match column {
+            1 | 5 => format!("{text:<width$}", width = widths[column]),
+            _ => format!("{text:>width$}", width = widths[column]),
+        };
+        row.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    rows.iter().map(line).collect()
 }
 
 fn threads(company: &Company) -> Vec<String> {

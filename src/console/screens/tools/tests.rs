@@ -90,7 +90,7 @@ fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
     let (tools, effects) = typed("send_enterprise_deal", &keys);
     let Some(Effect::ConfirmCall { tool, arguments, text }) = effects.first() else { panic!("{effects:?}") };
     assert_eq!((*tool, arguments), ("send_enterprise_deal", &json!({"deals": [[7, [["B", 30]]]]})));
-    assert!(text.contains("cannot be taken back"), "{text}");
+    assert!(text.contains("cannot be undone"), "{text}");
     assert!(tools.holds_unsent_text());
     let (_, effects) = typed("send_enterprise_deal", &["enter", "[", "7", "enter", "ctrl-s"]);
     assert!(
@@ -119,7 +119,7 @@ fn the_same_value_goes_down_a_column() {
 #[test]
 fn a_form_without_changes_is_not_sent_and_a_wrong_cell_is_named() {
     let (_, effects) = typed("set_prices", &["ctrl-s"]);
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing differs")));
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing has changed")));
     let (_, effects) = typed("set_prices", &["enter", "1", "-", "ctrl-s"]);
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("A: a number")));
 }
@@ -272,4 +272,40 @@ fn forms_show_figures_and_never_the_names_of_parameters() {
     }
     tools.show("set_targeted_ad_spend", &company);
     assert!(drawn(&tools, &company, 200, 57).contains("$0.50 for every lead"));
+}
+
+#[test]
+fn a_matrix_keeps_its_totals_and_marks_the_columns_beyond_its_edges() {
+    let company = company();
+    let look_at = |column: usize| {
+        let mut keys = vec!["right"; column];
+        keys.push("enter");
+        let (tools, _) = typed("set_targeted_ad_spend", &keys);
+        let text = drawn(&tools, &company, 80, 21);
+        text.lines().find(|line| line.contains("total")).expect("a head").to_owned()
+    };
+    let (first, last) = (look_at(0), look_at(5));
+    assert!(first.contains('›') && !first.contains('‹') && first.contains("S1"), "{first}");
+    assert!(last.contains('‹') && !last.contains('›') && last.contains("E3"), "{last}");
+}
+
+#[test]
+fn the_keys_of_a_form_say_that_enter_edits() {
+    let (tools, _) = typed("set_prices", &[]);
+    let text = drawn(&tools, &company(), 120, 37);
+    assert!(text.contains("enter edit the value") && !text.contains("type a number"), "{text}");
+    let (tools, _) = typed("set_prices", &["enter"]);
+    assert!(!drawn(&tools, &company(), 120, 37).contains("enter edit"));
+}
+
+#[test]
+fn columns_of_projects_stand_apart() {
+    let lines = reference::reference("start_research_project", &company());
+    assert!(lines.len() > 10, "{lines:?}");
+    let ends = lines[0].find("cost").expect("a column") + "cost".len();
+    for line in &lines[1..] {
+        let (cost, after) = (&line[..ends], &line[ends..]);
+        assert!(cost.ends_with(|last: char| last.is_ascii_digit()) && after.starts_with("  "), "{line}");
+        assert!(cost.contains("  $"), "{line}");
+    }
 }

@@ -2,7 +2,6 @@ use ratatui::buffer::Buffer;
 use ratatui::symbols::Marker;
 
 use super::*;
-use crate::console::text::short_dollars;
 use crate::console::theme::Theme;
 use crate::session::Configuration;
 
@@ -19,7 +18,7 @@ fn drawn(plot: &Plot<'_>, width: u16, height: u16, marker: Marker) -> Vec<String
 
 fn plot<'a>(lines: &'a [Line], band: Option<&'a Band>) -> Plot<'a> {
     let x = &Axis { write: &day, holds: &[] };
-    let y = &Axis { write: &short_dollars, holds: &[] };
+    let y = &Side { unit: Unit::Dollars, holds: &[] };
     Plot { lines, band, mark: None, x, y }
 }
 
@@ -36,7 +35,7 @@ fn labels_are_round_lie_on_the_axis_and_end_with_the_data() {
     let days =
         |picture: &[String]| picture.last().expect("a row").split_whitespace().collect::<Vec<_>>().join(" ");
     assert_eq!(days(&picture), "day 0 day 50 day 100 day 150 day 200 day 250", "{text}");
-    for label in ["$0┤", "$5.00M┤", "$10.0M┤"] {
+    for label in ["$0┤", "$5M┤", "$10M┤"] {
         assert!(picture.iter().any(|line| line.trim_start().starts_with(label)), "{label} in\n{text}");
     }
     assert!(picture[0].ends_with("cash"), "{text}");
@@ -76,7 +75,11 @@ fn a_band_is_shaded_where_it_is_and_names_never_share_a_row() {
 #[test]
 fn nothing_is_drawn_without_points_and_no_value_is_too_strange() {
     let nothing = drawn(&plot(&[], None), 60, 8, Marker::Braille);
-    assert!(nothing[0].starts_with("nothing to draw yet"));
+    assert!(nothing[0].starts_with(NO_DATA));
+    let one = drawn(&plot(&[Line::of(&[5.0], Role::Text)], None), 60, 8, Marker::Braille).join("\n");
+    assert!(one.contains('•') && one.contains("$0┤"), "{one}");
+    let zeros = drawn(&plot(&[Line::of(&[0.0; 9], Role::Text)], None), 60, 8, Marker::Braille).join("\n");
+    assert!(zeros.contains("$0┤") && zeros.contains("$1┤") && !zeros.contains('-'), "{zeros}");
     for values in [[f64::NAN, 1.0, 1.0], [1e300, -1e300, 0.0], [0.0, 1e-300, 0.0], [5.0, 5.0, 5.0]] {
         for (width, height) in [(16, 4), (17, 5), (60, 20), (300, 60)] {
             drawn(&plot(&[Line::of(&values, Role::Text)], None), width, height, Marker::Braille);
@@ -88,8 +91,24 @@ fn nothing_is_drawn_without_points_and_no_value_is_too_strange() {
 fn a_chart_in_words_says_as_much_as_has_room() {
     let values = [3.0, 1.0, 2.0];
     let write = |value: f64| format!("{value:.0}");
-    assert_eq!(summary(&values, &write, 80), "2 ▲ 1 · least 1 · most 3");
+    assert_eq!(summary(&values, &write, 80), "2 ▲ 1 · min 1 · max 3");
     assert_eq!(summary(&values, &write, 8), "2 ▲ 1");
     assert_eq!(summary(&values, &write, 2), "2");
     assert_eq!(summary(&[], &write, 80), "nothing yet");
+}
+
+#[test]
+fn a_steep_band_is_connected() {
+    let lines = [Line::of(&[0.0; 2], Role::Text)];
+    let band = Band { ends: vec![(0.0, 0.0, 0.0), (20.0, 0.9e6, 1.0e6), (22.0, 0.1e6, 0.2e6)], name: "" };
+    let picture = drawn(&plot(&lines, Some(&band)), 40, 20, Marker::Braille);
+    let cell = |column: usize, row: usize| picture[row].chars().nth(column) == Some('░');
+    let rows = |column: usize| (0..18).filter(|row| cell(column, *row)).collect::<Vec<_>>();
+    let columns: Vec<usize> = (8..40).filter(|column| !rows(*column).is_empty()).collect();
+    assert!(columns.len() > 20, "{}", picture.join("\n"));
+    for pair in columns.windows(2) {
+        let (left, right) = (rows(pair[0]), rows(pair[1]));
+        let touch = left.iter().any(|row| right.iter().any(|other| row.abs_diff(*other) <= 1));
+        assert!(pair[1] == pair[0] + 1 && touch, "{}", picture.join("\n"));
+    }
 }

@@ -26,7 +26,7 @@ fn outcome<const DAYS: u32>(_: &Logbook, week: &WeekLog) -> String {
 
 const LOWER: &str = "lower end of its interval";
 const UPPER: &str = "upper end of its interval";
-const OUTCOME: &str = "what came; empty before its day, or when the run ended before";
+const OUTCOME: &str = "outcome; empty before its day, or if the run ended earlier";
 
 fn figure(week: &WeekLog, name: &str) -> String {
     week.figures.get(name).filter(|value| value.is_number()).map(ToString::to_string).unwrap_or_default()
@@ -148,8 +148,8 @@ pub const WEEKS: &[WeekColumn] = &[
         figure(week, "new_enterprise_seats")
     }),
     column("cancellations", "count", "cancellations of individuals", |_, week| figure(week, "cancellations")),
-    column("upgrades", "count", "switches to dearer plans", |_, week| figure(week, "upgrades")),
-    column("downgrades", "count", "switches to cheaper plans", |_, week| figure(week, "downgrades")),
+    column("upgrades", "count", "switches to higher-priced plans", |_, week| figure(week, "upgrades")),
+    column("downgrades", "count", "switches to lower-priced plans", |_, week| figure(week, "downgrades")),
     column("overload_peak", "share", "largest overload of a day", |_, week| figure(week, "overload_peak")),
     column("downtime_minutes", "minutes", "minutes of outages", |_, week| figure(week, "downtime_minutes")),
     column("p95_ms_peak", "milliseconds", "highest latency of a day (95th percentile)", |_, week| {

@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | 6 | [`cli`] | one file per subcommand; maps failures to exit codes |
 //! | 5 | [`console`], [`plain`], [`lab`] | the terminal application; the same game line by line; policies, metrics, comparison with reference figures and of runs with each other, speed |
-//! | 4 | [`report`] | a week and a whole run told: what changed and why it may have, behaviour measures, the report as Markdown and as a page, the logbook of a session and the tables for research |
+//! | 4 | [`report`] | a week and a whole run told: what changed, split by the ledger, behaviour measures, the report as Markdown and as a page, the logbook of a session and the tables for research |
 //! | 3 | [`session`] | one run: open, act, query, advance, record, resume from snapshots, replay, play back, branch, rescue, hand over. The only door to a world |
 //! | 3 | [`glossary`] | what every term, tool, argument, table and column means, for people |
 //! | 2 | [`tools`], [`database`], [`voice`] | the catalogue of tools; the observable company in SQLite and its guarded queries; words for facts, and the judge of the player's posts |

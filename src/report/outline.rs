@@ -194,8 +194,8 @@ fn customers(story: &Story) -> Vec<Block> {
                 ("leads", true),
                 ("customers now", true),
                 ("at most", true),
-                ("seats", true),
-                ("revenue a month", true),
+                ("seats billed", true),
+                ("billed a month", true),
             ],
             rows: story.books.groups.iter().map(row).collect(),
         }));

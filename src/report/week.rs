@@ -115,14 +115,6 @@ fn in_percent(share: f64) -> String {
     percent(share, 1)
 }
 
-/// Of the week's individual leads, those who signed up.
-fn conversion(week: &WeekFigures) -> f64 {
-    match week.new_individual_leads {
-        0 => f64::NAN,
-        leads => f64::from(week.new_individual_subscribers) / f64::from(leads),
-    }
-}
-
 const FIGURES: [Row; 14] = [
     Row("recurring revenue", |week| week.recurring_revenue, money, Some(true), &[]),
     Row("payments", |week| week.payments, money, Some(true), &[]),
@@ -132,7 +124,7 @@ const FIGURES: [Row; 14] = [
     Row("individual leads", |week| f64::from(week.new_individual_leads), whole, Some(true), &[]),
     Row("enterprise leads", |week| f64::from(week.new_enterprise_leads), whole, Some(true), &[]),
     Row("new subscribers", |week| f64::from(week.new_individual_subscribers), whole, Some(true), &[]),
-    Row("conversion", conversion, in_percent, Some(true), &[]),
+    Row("conversion", WeekFigures::conversion, in_percent, Some(true), &[]),
     Row("cancellations", |week| f64::from(week.cancellations), whole, Some(false), &[]),
     Row("usage, units", |week| week.usage as f64, compact, None, &[]),
     Row("overload, peak", |week| week.overload_peak, in_percent, Some(false), &[]),

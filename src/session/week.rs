@@ -80,6 +80,14 @@ pub struct WeekFigures {
 }
 
 impl WeekFigures {
+    /// Share of the week's individual leads who signed up, from 0 to 1; not a number without leads.
+    pub fn conversion(&self) -> f64 {
+        match self.new_individual_leads {
+            0 => f64::NAN,
+            leads => f64::from(self.new_individual_subscribers) / f64::from(leads),
+        }
+    }
+
     /// Adds a day. Sums add up, peaks rise, stocks are those of the last day.
     pub fn add(&mut self, day: &DayFigures) {
         self.day = day.day;

@@ -135,9 +135,8 @@ const FIGURES: [Figure; 26] = [
 /// The name of what stands behind cash: an arrow, or a parenthesis.
 const CASH_MOVED: &str = "what cash did";
 
-/// Names that tables of the product screen use for something else: seats by plan, individuals among them, and minutes of
-/// single days.
-const OF_OTHER_TABLES: [(&str, &str); 2] = [("screen 4", "seats"), ("screen 4", "outage, minutes")];
+/// Names that tables of the product screen use for something else: its service table has minutes of single days.
+const OF_OTHER_TABLES: [(&str, &str); 1] = [("screen 4", "outage, minutes")];
 
 /// A number as it is written, and by how much its rounding may have moved it.
 #[derive(Debug, Clone, Copy)]

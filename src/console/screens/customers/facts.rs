@@ -123,7 +123,7 @@ fn money(company: &Company, market: &Market, facts: &Facts, group: Group) -> Vec
          ORDER BY day DESC",
         i64::from(company.seen.day) - 28
     );
-    let revenue = super::columns::figure_named("MRR", group, company);
+    let revenue = super::columns::figure_named("billed/mo", group, company);
     let churn = super::columns::figure_named("churn 30d", group, company);
     let rows = |figure: &Option<Figure>| figure.as_ref().and_then(|figure| figure.sql.clone());
     for (name, value, term, sql) in [

@@ -121,8 +121,8 @@ fn every_figure_of_the_table_is_made_of_its_rows() {
         let flow = facts.week(7);
         for (head, shown, what) in [
             ("subs", facts.sum(|held| held.customers), "count(*)"),
-            ("seats", facts.sum(|held| held.seats), "sum(seat_count)"),
-            ("MRR", facts.sum(|held| held.monthly), "sum(amount)"),
+            ("billed seats", facts.sum(|held| held.seats), "sum(seat_count)"),
+            ("billed/mo", facts.sum(|held| held.monthly), "sum(amount)"),
             ("leads", flow.leads, "count(*)"),
             ("new", flow.signed, "count(*)"),
             ("left", flow.cancelled, "count(*)"),

@@ -37,7 +37,7 @@ type Estimate = (&'static str, &'static str, &'static str, fn(f64) -> String);
 
 const ESTIMATES: [Estimate; 8] = [
     ("willingness_to_pay", "budget", "$/month", figure),
-    ("usage_volume", "usage", "units/day", figure),
+    ("usage_volume", "usage demand", "units/day", figure),
     ("quality_floor_q_min", "quality floor", "", exact),
     ("market_cap", "market", "customers", figure),
     ("annual_market_cap_growth_rate", "growth of the market", "a year", share),

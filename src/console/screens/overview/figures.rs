@@ -57,17 +57,12 @@ fn whole(value: f64) -> String {
     grouped(value, 0)
 }
 
-fn share(value: f64) -> String {
-    percent(value, 1)
+fn share_or_none(value: f64) -> String {
+    if value.is_nan() { "–".to_owned() } else { percent(value, 1) }
 }
 
 fn none_or_percent(value: f64) -> String {
     if value > 0.0 { percent(value, 1) } else { "none".to_owned() }
-}
-
-/// Conversion of the week's individual leads, 0 without leads.
-fn conversion(week: &WeekFigures) -> f64 {
-    f64::from(week.new_individual_subscribers) / f64::from(week.new_individual_leads.max(1))
 }
 
 const SMALL: &str = "c.customer_type = 'small'";
@@ -119,7 +114,14 @@ pub static METRICS: [Metric; 22] = [
         true,
         Source::Customers("c.created_day", SIGNED),
     ),
-    metric("conversion", "conversion", conversion, share, true, Source::Customers("c.created_day", SMALL)),
+    metric(
+        "conversion",
+        "conversion",
+        WeekFigures::conversion,
+        share_or_none,
+        true,
+        Source::Customers("c.created_day", SMALL),
+    ),
     metric(
         "cancellations",
         "churn",
@@ -222,7 +224,7 @@ pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
         Some(value) => Cell::number(value, (metric.write)(value)),
         None => Cell::words("–"),
     };
-    let change = now.zip(before).map(|(now, before)| now - before);
+    let change = now.zip(before).map(|(now, before)| now - before).filter(|change| !change.is_nan());
     let moved = match change {
         Some(change) => {
             let tone = match change {

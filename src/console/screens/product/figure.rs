@@ -73,12 +73,12 @@ fn of_plan(row: usize, plan: Plan) -> Figure {
         2 => ("quota", "quota", setting("quota")),
         3 => ("unit cost", "compute", setting("tier")),
         4 => ("customers", "subscriber", subscribers()),
-        5 => ("seats", "seats", subscribers()),
+        5 => ("billed seats", "billed-seats", subscribers()),
         6 => ("usage a seat", "usage", usage()),
         7 => ("paid a seat", "effective-price", subscribers()),
         8 => ("compute a seat", "compute", usage()),
         9 => ("gross margin", "gross-margin", subscribers()),
-        _ => ("revenue", "mrr", subscribers()),
+        _ => ("billed a month", "billed-seats", subscribers()),
     };
     figure(format!("{name} of plan {plan}"), term, sql)
 }

@@ -65,12 +65,12 @@ pub static FIGURES: [Figure; 11] = [
     ("quota a day", |plan| compact(plan.quota)),
     ("unit cost, $/1k", |plan| format!("${}", grouped(plan.unit_cost * 1000.0, 3))),
     ("customers", |plan| grouped(plan.customers, 0)),
-    ("seats", |plan| grouped(plan.seats, 0)),
+    ("billed seats", |plan| grouped(plan.seats, 0)),
     ("usage/seat, day", |plan| or_none(plan.usage(), |usage| grouped(usage, 1))),
     ("paid/seat, mo.", |plan| or_none(plan.revenue(), cents)),
     ("compute/seat, mo.", |plan| or_none(plan.compute(), cents)),
     ("gross margin", |plan| or_none(plan.margin(), |margin| percent(margin, 1))),
-    ("revenue a month", |plan| format!("${}", compact(plan.monthly))),
+    ("billed a month", |plan| format!("${}", compact(plan.monthly))),
 ];
 
 /// Draws the plans as columns; a row leads to the tool that sets it.

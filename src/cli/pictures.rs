@@ -96,7 +96,11 @@ fn places(options: &Options, keys: &Keys) -> Result<Vec<(String, String)>, Failu
     let wanted = |screen: &ScreenId| {
         options.screens.is_empty() || options.screens.iter().any(|name| name == screen.id())
     };
-    let place = |screen: ScreenId| (screen.id().to_owned(), keys.label(screen.action()).unwrap_or_default());
+    // Letters and digits would be typed into a statement: esc leaves the editor first.
+    let place = |screen: ScreenId| {
+        let key = keys.label(screen.action()).unwrap_or_default();
+        (screen.id().to_owned(), format!("esc {key}"))
+    };
     Ok(ScreenId::ALL.into_iter().filter(wanted).map(place).collect())
 }
 

@@ -7,7 +7,7 @@ use super::page::{Bar, Block, Fact, Page, Table};
 use super::ranking::{Whose, published_targeted_shares};
 use super::story::{Ruin, Story};
 use super::words::{count, money, number, whole};
-use crate::notation::{percent, signed_dollars};
+use crate::notation::{grouped, percent, signed_dollars};
 use crate::session::Ended;
 
 /// The page that tells a story.
@@ -247,6 +247,11 @@ fn forecasts(story: &Story) -> Vec<Block> {
     blocks
 }
 
+/// Leads per thousand dollars; few of them keep the decimals that tell them from none.
+fn per_thousand(leads: f64) -> String {
+    grouped(leads, if leads < 1.0 { 3 } else { 1 })
+}
+
 fn behaviour(measures: &Measures) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("How it was played")];
     let none = || "–".to_owned();
@@ -286,7 +291,7 @@ fn behaviour(measures: &Measures) -> Vec<Block> {
                 money(ads.spend),
                 ads.tried.to_string(),
                 best.map_or_else(none, |best| best.channel.replace('_', " ")),
-                best.map_or_else(none, |best| number((best.leads_per_thousand * 10.0).round() / 10.0)),
+                best.map_or_else(none, |best| per_thousand(best.leads_per_thousand)),
                 best.map_or_else(none, |best| percent(best.share, 0)),
             ]
         };

@@ -271,7 +271,7 @@ impl Product {
             PLANS => {
                 let plan = |(name, plan): (char, &PlanFacts)| {
                     let margin = plan.margin().map_or("–".to_owned(), |margin| percent(margin, 0));
-                    format!("{name} {}, margin {margin}", count(plan.seats, "seat"))
+                    format!("{name} {}, margin {margin}", count(plan.customers, "customer"))
                 };
                 ['A', 'B', 'C'].into_iter().zip(&self.plans).map(plan).collect::<Vec<_>>().join(" · ")
             }

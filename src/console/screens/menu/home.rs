@@ -156,10 +156,10 @@ fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let parts = [
         "You run a company that sells an AI subscription. It starts with a million dollars and no customers.",
-        "Once a week you set prices, models, quotas, capacity, advertising and development, answer companies, and say \
-         what cash will be. Then seven days run.",
-        "Customers, rivals and the economy answer. What you can know is on the screens and in the tables; the rest you have to find out.",
-        "Your score is the cash after the last day. Below zero, the run is over.",
+        "Once a week you set prices, models, quotas, capacity, advertising and development, answer companies, and \
+         forecast your cash. Then seven days run.",
+        "Customers, rivals and the economy answer. What you can know is on the screens and in the tables.",
+        "Your score is the cash after the last day. Below zero it ends.",
         "Nothing you confirm is lost: quit whenever you like.",
     ];
     let text = parts.join("\n\n");

@@ -67,6 +67,7 @@ fn a_newcomer_is_offered_the_tour_first() {
         screen.contains("› Tour") && screen.contains("New here?") && screen.contains("What this is"),
         "{screen}"
     );
+    assert!(screen.contains("it ends."), "the rule of the game is told to its end: {screen}");
     assert!(!screen.contains("Continue") && !screen.contains("Runs"), "{screen}");
     assert!(matches!(menu.act(Action::Open)[..], [Effect::StartTour]));
 }

@@ -183,7 +183,7 @@ impl InnerViews {
 }
 
 /// The column that tables are joined by.
-const CUSTOMER: &str = "customer_id";
+pub(super) const CUSTOMER: &str = "customer_id";
 
 /// Watches what statements do.
 pub(super) struct Guard {

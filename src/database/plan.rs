@@ -84,7 +84,7 @@ mod tests {
             ("SCAN c", "SCAN c"),
             ("SCAN customer_rows", "SCAN customers"),
             (
-                "SEARCH issue_rows USING INDEX issues_by_customer (customer_id=?)",
+                "SEARCH issues USING INDEX issues_of_customers (customer_id=?)",
                 "SEARCH issues USING INDEX (customer_id=?)",
             ),
             ("SCAN ledger_rows USING COVERING INDEX ledger_by_day", "SCAN ledger USING COVERING INDEX"),

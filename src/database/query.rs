@@ -271,7 +271,7 @@ impl Desk {
     }
 
     fn fetch(&self, reading: Reading, sql: &str, limits: Limits) -> Result<Rows, Fault> {
-        let read = reading.joined_from_the_right.iter();
+        let read = reading.copied.iter();
         let copies: Vec<String> =
             read.filter_map(|(table, columns)| self.views.as_ref()?.copy(table, columns)).collect();
         if copies.is_empty() {

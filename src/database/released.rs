@@ -5,13 +5,15 @@
 //! tables understand (`rowid`, `main.ledger`) is replaced where they show that it makes no difference: both
 //! spellings must compile to the same program.
 
+use std::collections::BTreeSet;
+
 use rusqlite::fallible_iterator::FallibleIterator;
 use rusqlite::hooks::{AuthContext, Authorization};
 use rusqlite::types::Value;
 use rusqlite::{Batch, Connection, Statement};
 
 use super::catalogue::{Table, table, tables};
-use super::guard::{Columns, Guard, Objections, Reads, limit};
+use super::guard::{CUSTOMER, Columns, Guard, Objections, Reads, limit};
 use super::query::Fault;
 use super::tokens::{Token, tokens};
 
@@ -20,6 +22,9 @@ const MOST_ATTEMPTS: usize = 200;
 
 /// Names of the number of a row.
 const ROW_NUMBERS: [&str; 3] = ["rowid", "oid", "_rowid_"];
+
+/// The table in which customers are looked up and that has no index of them.
+const ISSUES: &str = "issues";
 
 /// The released schema.
 pub(super) struct Released {
@@ -37,8 +42,10 @@ pub(super) struct Reading {
     pub columns: Vec<String>,
     /// Whether it asks how a question is answered, and not for the answer.
     pub is_plan: bool,
-    /// The columns it reads if it has a RIGHT or FULL JOIN: the engine cannot search a view there.
-    pub joined_from_the_right: Columns,
+    /// The columns it reads of tables that are to be copied for it, with an index of their customers: all of them for
+    /// a RIGHT or FULL JOIN, because the engine cannot search a view there; `issues` where a query inside it looks for
+    /// a customer in them once for every row outside. A stored index of issues would slow every week down.
+    pub copied: Columns,
 }
 
 /// What a statement compiles to: the steps of its program. Names of columns are no part of it, but whatever is found by
@@ -83,10 +90,25 @@ impl Released {
         }
         let sql = statement.expanded_sql().ok_or(Fault::TooLarge)?;
         let columns = statement.column_names().map(str::to_owned).collect();
-        let reads = self.reads.take();
-        let joined_from_the_right = if joins_from_the_right(&sql) { reads } else { Columns::new() };
+        let mut copied = self.reads.take();
+        if !joins_from_the_right(&sql) {
+            let looked_up =
+                |table: &str, columns: &BTreeSet<String>| table == ISSUES && columns.contains(CUSTOMER);
+            copied.retain(|table, columns| looked_up(table, columns));
+            if !copied.is_empty() && !self.asks_for_every_row(&sql) {
+                copied.clear();
+            }
+        }
         let is_plan = statement.is_explain() == 2;
-        Ok(Reading { sql: self.respelled(sql), columns, is_plan, joined_from_the_right })
+        Ok(Reading { sql: self.respelled(sql), columns, is_plan, copied })
+    }
+
+    /// Whether a query inside the statement is asked again for every row outside.
+    fn asks_for_every_row(&self, sql: &str) -> bool {
+        let plan = self.steps(&format!("EXPLAIN QUERY PLAN {}", without_explain(sql))).unwrap_or_default();
+        // The engine turns some EXISTS into joins, and says so behind the table.
+        let again = |step: &str| step.starts_with("CORRELATED") || step.contains(" EXISTS");
+        plan.iter().flatten().any(|cell| matches!(cell, Value::Text(step) if again(step)))
     }
 
     /// The statement in a spelling that does without `main.` and the numbers of rows, as far as that makes no
@@ -117,7 +139,12 @@ impl Released {
 
     /// What a statement compiles to; none if it does not.
     fn program(&self, sql: &str) -> Option<Program> {
-        let mut statement = self.connection.prepare(&format!("EXPLAIN {}", without_explain(sql))).ok()?;
+        self.steps(&format!("EXPLAIN {}", without_explain(sql)))
+    }
+
+    /// The rows of an explanation.
+    fn steps(&self, explanation: &str) -> Option<Program> {
+        let mut statement = self.connection.prepare(explanation).ok()?;
         let width = statement.column_count();
         let steps = statement
             .query_map([], |row| (0..width).map(|at| row.get(at)).collect::<rusqlite::Result<Vec<Value>>>());

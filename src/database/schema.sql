@@ -177,7 +177,6 @@ CREATE TABLE issue_rows (
     status TEXT AS (CASE WHEN resolved_day IS NULL THEN 'open' ELSE 'resolved' END),
     resolution_type TEXT AS (CASE WHEN resolved_day IS NULL THEN NULL ELSE 'ops_resolved' END)
 );
-CREATE INDEX issues_by_customer ON issue_rows (customer_id);
 
 CREATE VIEW issues AS
 SELECT
@@ -339,7 +338,7 @@ INSERT INTO sqlite_stat1 (tbl, idx, stat) VALUES
     ('customer_rows', NULL, '500000'),
     ('subscription_rows', NULL, '500000'),
     ('ledger_rows', 'ledger_by_day', '1400000 2800'),
-    ('issue_rows', 'issues_by_customer', '1100000 3'),
+    ('issue_rows', NULL, '1100000'),
     ('service_day', NULL, '500'),
     ('config_history', NULL, '50'),
     ('config_overrides', NULL, '100'),

@@ -2,6 +2,7 @@
 //!
 //! Rounding is half to even on the exact binary value everywhere (specification, chapter 60 §8.2).
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
@@ -172,9 +173,31 @@ pub fn word_if_any<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<
     Ok(Option::<Given>::deserialize(deserializer)?.map(|given| given.0))
 }
 
+/// Text as a terminal may get it: what would move the cursor, colour what follows or turn the direction of writing round
+/// is written out; line ends and tabs stay.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    let acts = |letter: char| {
+        (letter.is_control() && !['\n', '\t'].contains(&letter))
+            || ('\u{202a}'..='\u{202e}').contains(&letter)
+            || ('\u{2066}'..='\u{2069}').contains(&letter)
+    };
+    if !text.contains(acts) {
+        return Cow::Borrowed(text);
+    }
+    let written =
+        |letter: char| if acts(letter) { letter.escape_unicode().to_string() } else { letter.to_string() };
+    Cow::Owned(text.chars().map(written).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_that_is_printed_commands_the_terminal() {
+        assert_eq!(printable("a\u{1b}[2J\u{202e}b\r"), "a\\u{1b}[2J\\u{202e}b\\u{d}");
+        assert_eq!(printable("größer\t€\n😀"), "größer\t€\n😀");
+    }
 
     #[test]
     fn check_3_of_chapter_60() {

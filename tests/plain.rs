@@ -315,7 +315,7 @@ fn weeks_and_runs_are_told() {
         "> report\nweek to day 7: cash -$",
         "capacity -$",
         "decided before it: price A: 0 → 12 $/month",
-        "forecast of 1 week ago: inside the interval, missed by ",
+        "forecast of 1 week ago: inside the interval, off by ",
         "new: ",
         "> report run\n# NovaMind · run ",
         "price A: 0 → 12 $/month",

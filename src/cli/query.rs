@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::run::progress_bar;
 use super::{Context, Failure, print};
+use crate::notation::printable;
 use crate::session::{
     Access, Cell, Line, Refusal, Rows, RunError, Session, Trajectory, desk_of_file, find_run_to_read,
     rebuild_database, rows_as_json,
@@ -41,7 +42,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
     let rows = ask(&folder, &options.sql)?;
     match options.format {
-        Format::Table => print(&crate::plain::table(&rows)),
+        Format::Table => print(&printable(&crate::plain::table(&rows))),
         Format::Csv => print(&as_csv(&rows)?),
         Format::Json => print(&format!("{}\n", serde_json::Value::Object(rows_as_json(&rows)))),
     }

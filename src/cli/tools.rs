@@ -27,10 +27,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         (Some(name), json) => {
             let tool = find(name).or_else(|| catalogue::find_code(name)).ok_or_else(|| {
-                Failure::usage(format!(
-                    "there is no tool {name}; near it: {}",
-                    catalogue::nearest(name).join(", ")
-                ))
+                Failure::usage(match catalogue::nearest(name) {
+                    near if near.is_empty() => {
+                        format!("there is no tool {name}; `novamind tools` lists them")
+                    }
+                    near => format!("there is no tool {name}; near it: {}", near.join(", ")),
+                })
             })?;
             if json {
                 format!("{:#}\n", describe::as_json(tool, &numbers))

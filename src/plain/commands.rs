@@ -292,6 +292,12 @@ fn unknown(word: &str, column: usize) -> Problem {
     let commands = COMMANDS.iter().map(|(name, _)| *name);
     let tools = tools::CATALOGUE.iter().map(|tool| tool.spec().name);
     let name = word.rsplit('.').next().unwrap_or(word);
+    if tools::find(name).is_some_and(|tool| tool.spec().kind == Kind::Time) {
+        let text = format!(
+            "{word} is not called by its name here; next \"WHY\" naive runs a week, help next tells more"
+        );
+        return Problem { text, column };
+    }
     let near = nearest(name, commands.chain(tools));
     let help = if near.is_empty() {
         "; help lists them all".to_owned()

@@ -16,6 +16,7 @@ use serde_json::{Value, json};
 
 pub use crate::database::text::{cell_text, table};
 
+use crate::notation::printable;
 use crate::session::{Library, Session};
 use answers::Answer;
 use commands::Desk;
@@ -146,7 +147,8 @@ fn farewell(session: &Session, style: Style, end: End) -> String {
     if style.json {
         json!({ "event": "end", "run": run, "day": day, "reason": end.id() }).to_string()
     } else {
-        format!("saved run {run} · day {day}")
+        let done = if session.is_recorded_to_its_end() { "saved" } else { "left" };
+        format!("{done} run {run} · day {day}")
     }
 }
 
@@ -166,9 +168,9 @@ fn answer(
         writeln!(out, "{object}")?;
     } else {
         if let Some(text) = echo {
-            writeln!(out, "> {text}")?;
+            writeln!(out, "> {}", printable(text))?;
         }
-        writeln!(out, "{}\n", reply.as_text().trim_end_matches('\n'))?;
+        writeln!(out, "{}\n", printable(reply.as_text().trim_end_matches('\n')))?;
     }
     out.flush()
 }

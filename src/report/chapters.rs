@@ -30,7 +30,9 @@ pub struct Chapter {
 
 /// A change as words.
 pub fn change_in_words(change: &Change) -> String {
-    format!("{}: {} → {} {}", change.setting, number(change.old), number(change.new), change.unit)
+    let told = format!("{}: {} → {}", change.setting, number(change.old), number(change.new));
+    // `model tier A` says already what its numbers are.
+    if change.setting.contains(change.unit) { told } else { format!("{told} {}", change.unit) }
 }
 
 /// The chapters of a run: weeks in which nothing new was decided join the one before them.

@@ -107,7 +107,8 @@ impl Standing {
         match self.rank {
             Some(rank) => format!("rank {rank} of {} beside the published results", self.places.len()),
             None if self.has_score => {
-                "not ranked: the published results are of another length, start or scenario".to_owned()
+                "not ranked: the published results are of another length, start, scenario or parameters"
+                    .to_owned()
             }
             None => "the published results".to_owned(),
         }
@@ -120,7 +121,7 @@ pub fn standing(score: Option<f64>, seen: &Observation, start_cash: f64) -> Stan
     let mut places: Vec<Place> =
         published().agent.iter().map(|agent| place(&agent.name, agent.best_cash, Whose::Agent)).collect();
     places.push(place("Rule-based baseline", published().rule_based_baseline, Whose::Baseline));
-    let is_comparable = is_comparable(seen.last_day, start_cash, &seen.scenario);
+    let is_comparable = is_comparable((seen.last_day, start_cash), &seen.scenario, seen.has_own_parameters);
     let ranked = score.filter(|_| is_comparable);
     places.extend(ranked.map(|score| place("You", score, Whose::Own)));
     places.sort_by(|left, right| right.cash.total_cmp(&left.cash));
@@ -134,8 +135,9 @@ const COMPARABLE: [&str; 2] = ["default", "paper"];
 
 /// Whether a run is as long, begins as rich and plays by the same rules as the published ones: then it can be ranked
 /// among them, of another seed too.
-pub fn is_comparable(days: u32, start_cash: f64, scenario: &str) -> bool {
-    days == PUBLISHED_RUN.1 && start_cash == published().start_cash && COMPARABLE.contains(&scenario)
+pub fn is_comparable((days, start_cash): (u32, f64), scenario: &str, has_own_parameters: bool) -> bool {
+    let terms = days == PUBLISHED_RUN.1 && start_cash == published().start_cash;
+    terms && COMPARABLE.contains(&scenario) && !has_own_parameters
 }
 
 /// Range of the published targeted shares of development spend: the lowest, the highest.
@@ -159,6 +161,9 @@ fn caveat(seen: &Observation, start_cash: f64) -> Option<String> {
     if !COMPARABLE.contains(&seen.scenario.as_str()) {
         other.push(format!("scenario {}", seen.scenario));
     }
+    if seen.has_own_parameters {
+        other.push("changed parameters".to_owned());
+    }
     let start = dollar_tick(published().start_cash);
     (!other.is_empty()).then(|| {
         format!("Published: seed {seed}, {days} days, {start} at the start; this run: {}.", other.join(", "))
@@ -169,6 +174,7 @@ fn caveat(seen: &Observation, start_cash: f64) -> Option<String> {
 mod tests {
     use super::*;
     use crate::report::test_kit;
+    use crate::session::{Configuration, Mode, NewRun, Session};
 
     #[test]
     fn a_score_stands_among_the_published_ones() {
@@ -193,17 +199,34 @@ mod tests {
     fn a_run_of_other_terms_is_not_ranked() {
         let mut seen = test_kit::played(0).observe();
         seen.last_day = 500;
-        for (days, cash, scenario, ranked) in [
-            (500, 1_000_000.0, "paper", true),
-            (28, 1_000_000.0, "default", false),
-            (500, 2_000_000.0, "default", false),
-            (500, 1_000_000.0, "competitor-off", false),
+        for (days, cash, scenario, changed, ranked) in [
+            (500, 1_000_000.0, "paper", false, true),
+            (28, 1_000_000.0, "default", false, false),
+            (500, 2_000_000.0, "default", false, false),
+            (500, 1_000_000.0, "competitor-off", false, false),
+            (500, 1_000_000.0, "default", true, false),
         ] {
             (seen.last_day, seen.scenario) = (days, scenario.to_owned());
+            seen.has_own_parameters = changed;
             let standing = standing(Some(2e6), &seen, cash);
             assert_eq!(standing.rank.is_some(), ranked, "{days} {cash} {scenario}");
             assert_eq!(standing.places.iter().any(|place| place.whose == Whose::Own), ranked);
             assert_eq!(standing.in_words().starts_with("not ranked"), !ranked);
+        }
+    }
+
+    #[test]
+    fn changed_parameters_are_no_shipped_scenario() {
+        let own = |scenario: &str, overrides: &[(&str, &str)]| {
+            let overrides =
+                overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+            let new =
+                NewRun { scenario: scenario.to_owned(), mode: Mode::Debug, overrides, ..NewRun::default() };
+            Session::create(new, &Configuration::shipped()).expect("a run").observe().has_own_parameters
+        };
+        for scenario in ["default", "paper", "competitor-off"] {
+            assert!(!own(scenario, &[]), "{scenario}");
+            assert!(own(scenario, &[("quality.base_product_quality", "1.0")]), "{scenario}");
         }
     }
 

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value, json};
 
 use super::Session;
+use super::witness::is_as_left;
 use crate::database::query::Limits;
 use crate::database::{Cell, Desk, Interrupt, Location, QueryError, Rows, Ticket, desk_of};
 use crate::notation::json_number;
@@ -137,11 +138,14 @@ impl From<QueryError> for Refusal {
     }
 }
 
-/// A desk on the database file of a run as it stands, and whether it holds everything up to the run's last line.
+/// A desk on the database file of a run as it stands, and the line of the trajectory that it stands at.
 ///
 /// # Errors
-/// The file is missing or no database of a run.
+/// The file is missing, no database of a run, or not the one that the program left when the run was closed.
 pub fn desk_of_file(folder: &Path) -> Result<(Desk, crate::database::Position), Refusal> {
+    if !is_as_left(folder) {
+        return Err(Refusal::new("sql_error", "world.db was changed after the run was closed"));
+    }
     desk_of(&Location::File(folder.join("world.db")))
         .map_err(|error| Refusal::new("sql_error", error.to_string()))
 }

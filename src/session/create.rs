@@ -164,6 +164,7 @@ impl Session {
             _lock: lock,
             params,
             numbers: OnceLock::new(),
+            own_parameters: OnceLock::new(),
             world,
             facts: facts.into(),
             facts_before: Arc::default(),

@@ -90,6 +90,15 @@ pub enum RunError {
         /// Who holds it.
         holder: String,
     },
+    /// The file of a run that is played is not the one it was.
+    #[error(
+        "{path} was moved or removed, or another program has written into it: from here on nothing is saved. \
+         Leave, and open the run again: it goes on where its file ends", path = .path.display()
+    )]
+    Astray {
+        /// The trajectory.
+        path: PathBuf,
+    },
     /// The folder of a run takes no changes.
     #[error(
         "run {id} cannot be written ({error}): its folder {folder} is on read-only media or belongs to somebody else; \

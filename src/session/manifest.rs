@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
+use super::configuration::Configuration;
 use super::consent::Consent;
 use super::error::RunError;
 use super::mode::Mode;
@@ -43,7 +44,7 @@ pub struct Manifest {
     /// Who plays, as the experimenter names them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub participant: Option<String>,
-    /// Earlier runs of this seed and scenario on this machine.
+    /// Runs of this seed and scenario that the folder of runs held when this one began.
     pub earlier_runs: u32,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
@@ -183,6 +184,17 @@ impl Manifest {
         let path = folder.join("run.toml");
         let text = toml::to_string(self).expect("a manifest holds plain values");
         write_whole(&path, text.as_bytes())
+    }
+
+    /// Whether the run's parameters are others than those of the shipped scenario whose name it has.
+    pub(super) fn has_own_parameters(&self) -> bool {
+        let shipped = Configuration::shipped();
+        let as_shipped = || shipped.parameters(&shipped.scenario(&self.scenario).ok()?, &[], false).ok();
+        match self.scenario.as_str() {
+            // Lists of runs ask this of every run, and nearly all of them are of this kind.
+            "default" => !self.parameters.is_empty(),
+            _ => as_shipped().is_none_or(|params| params.digest() != self.parameters_digest),
+        }
     }
 
     /// The parameters the run was recorded with.

@@ -26,6 +26,7 @@ mod groups;
 mod journal;
 pub mod library;
 mod manifest;
+mod medium;
 mod memo;
 mod mend;
 mod mode;
@@ -154,6 +155,8 @@ pub struct Session {
     params: Arc<Params>,
     /// The numbers of the parameters, once they were asked for.
     numbers: OnceLock<Arc<Numbers>>,
+    /// Whether the parameters are not those of a shipped scenario, once that was asked for.
+    own_parameters: OnceLock<bool>,
     streams: Streams,
     world: World,
     /// Facts of the last day or call.
@@ -306,6 +309,12 @@ impl Session {
             return Err(Refusal::new("not_in_this_mode", "hidden state is shown in debug runs only"));
         }
         Ok(Xray::new(self))
+    }
+
+    /// Whether everything that happened stands in the run's trajectory: not where a run is only read, or its file took no
+    /// more lines.
+    pub fn is_recorded_to_its_end(&self) -> bool {
+        self.trajectory.as_ref().is_some_and(TrajectoryWriter::is_complete)
     }
 
     /// Puts everything on the disk.

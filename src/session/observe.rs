@@ -23,6 +23,8 @@ pub struct Observation {
     pub seed: u64,
     /// Scenario.
     pub scenario: String,
+    /// The parameters are others than those of the shipped scenario of that name.
+    pub has_own_parameters: bool,
     /// Who plays.
     pub participant: Option<String>,
     /// Last simulated day.
@@ -110,6 +112,7 @@ impl Session {
             mode: self.manifest.mode,
             seed: self.manifest.seed,
             scenario: self.manifest.scenario.clone(),
+            has_own_parameters: *self.own_parameters.get_or_init(|| self.manifest.has_own_parameters()),
             participant: self.manifest.participant.clone(),
             day: self.world.day,
             last_day: self.manifest.days,

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::error::RunError;
 use super::manifest::Manifest;
@@ -211,12 +211,17 @@ pub(super) fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest
         return Err(damaged("the trajectory does not begin with the start of a run"));
     };
     let says = |name: &str, value: Value| first.fields.get(name) == Some(&value);
+    // Lines of the first builds lack it.
+    let says_if_any = |name: &str, value: Value| first.fields.get(name).is_none_or(|said| *said == value);
     let same = says("run", manifest.id.clone().into())
         && says("seed", manifest.seed.into())
         && says("days", manifest.days.into())
         && says("cash", crate::notation::json_number(manifest.cash))
         && says("mode", manifest.mode.id().into())
-        && says("parameters_digest", manifest.parameters_digest.clone().into());
+        && says("parameters_digest", manifest.parameters_digest.clone().into())
+        && says_if_any("scenario", manifest.scenario.clone().into())
+        && says_if_any("participant", manifest.participant.clone().into())
+        && says_if_any("consent", json!(manifest.consent));
     if same { Ok(()) } else { Err(damaged("the start of the trajectory contradicts run.toml")) }
 }
 

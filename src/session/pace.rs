@@ -188,6 +188,15 @@ mod tests {
     }
 
     #[test]
+    fn the_spread_of_days_grows_with_the_root_of_time() {
+        let pace = Pace { committed: 0.0, income: 50.0, variable: 50.0, spread: 2_000.0 };
+        for one in pace.project(1_000.0, &HORIZONS, &[]).all {
+            let half = 1.96 * 2_000.0 * f64::from(one.horizon_days).sqrt();
+            assert!((one.upper - 1_000.0 - half).abs() < 0.01 && (1_000.0 - one.lower - half).abs() < 0.01);
+        }
+    }
+
+    #[test]
     fn past_errors_widen_the_interval_of_their_horizon_and_of_longer_ones() {
         let missed = |horizon_days: u32, by: f64| Filed {
             day: 0,

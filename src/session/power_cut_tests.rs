@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 
 use serde_json::json;
 
-use super::trajectory::Medium;
+use super::medium::Medium;
 use super::{Access, Configuration, NewRun, Session, Storage, Via};
 
 /// A file that keeps what was not synced in memory, where a power cut takes it.
@@ -31,6 +31,10 @@ impl Medium for Volatile {
 
     fn cut(&mut self, _length: u64) -> io::Result<()> {
         unreachable!("this file never refuses")
+    }
+
+    fn is_ours(&self, _path: &Path, _length: u64) -> bool {
+        true
     }
 }
 

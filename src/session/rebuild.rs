@@ -32,7 +32,12 @@ pub fn rebuild_database(folder: &Path, progress: &mut dyn FnMut(u32, u32)) -> Re
     let days = manifest.days;
     let (mut session, seen) = Session::before_replay(manifest.clone(), folder, Some(lock), params, snapshot);
     session.replay(&path, &trajectory, seen, Some(database), &mut |day| progress(day, days))?;
-    if let Some(projector) = &session.projector {
+    let Some(projector) = &session.projector else { return Ok(()) };
+    projector.wait()?;
+    // The file is another one now: what vouched for the old one would call it damaged.
+    if let Some(closed) = witnesses.snapshot.filter(|snapshot| snapshot.database().is_some()) {
+        let folder = folder.to_owned();
+        projector.then(true, move |digest| closed.vouch_for(&folder, digest));
         projector.wait()?;
     }
     Ok(())

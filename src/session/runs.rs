@@ -28,6 +28,8 @@ pub struct RunSummary {
     pub seed: u64,
     /// Scenario.
     pub scenario: String,
+    /// The parameters are others than those of the shipped scenario of that name.
+    pub has_own_parameters: bool,
     /// Who plays.
     pub participant: Option<String>,
     /// Last simulated day.
@@ -123,6 +125,7 @@ fn summarise(folder: &Path) -> RunSummary {
     let word = |value: Option<Value>| value.and_then(|value| value.as_str().map(str::to_owned));
     RunSummary {
         id,
+        has_own_parameters: manifest.has_own_parameters(),
         created: manifest.created.clone(),
         played: last.last().and_then(|line| word(line.get("at").cloned())).unwrap_or(manifest.created),
         mode: Some(manifest.mode),
@@ -151,6 +154,7 @@ fn unreadable(id: String, problem: String) -> RunSummary {
         mode: None,
         seed: 0,
         scenario: String::new(),
+        has_own_parameters: false,
         participant: None,
         day: 0,
         days: 0,
@@ -271,7 +275,7 @@ pub(super) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
     }
 }
 
-/// Earlier runs of a seed and scenario on this machine.
+/// Runs of a seed and scenario that the folder of runs and those of its participants hold.
 pub(super) fn earlier_runs(runs: &Path, seed: u64, scenario: &str) -> u32 {
     let folders = all_run_folders(runs);
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());

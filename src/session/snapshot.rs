@@ -139,6 +139,12 @@ impl Snapshot {
         self.header.database.as_deref()
     }
 
+    /// Vouches for a database that was made anew as of the same line.
+    pub(super) fn vouch_for(&self, folder: &Path, database: Option<String>) {
+        let header = Header { database, ..self.header.clone() };
+        write(&folder.join(FILE), &header, &self.file[self.notes_at..]);
+    }
+
     /// Whether it is one of this run.
     pub(super) fn is_of(&self, run: &str) -> bool {
         self.header.run == run

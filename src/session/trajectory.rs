@@ -5,7 +5,6 @@
 //! confirmed and is dropped.
 
 use std::fs::File;
-use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
@@ -13,6 +12,7 @@ use time::OffsetDateTime;
 use time::format_description::well_known::Rfc3339;
 
 use super::error::RunError;
+use super::medium::Medium;
 use crate::database::Position;
 
 /// When a line has to be on the disk (chapter 90 §4).
@@ -101,31 +101,6 @@ pub fn now() -> String {
 /// Seconds since 1970 of a moment of a line.
 pub fn seconds(at: &str) -> f64 {
     OffsetDateTime::parse(at, &Rfc3339).map_or(0.0, |moment| moment.unix_timestamp_nanos() as f64 / 1e9)
-}
-
-/// Where lines end up: a file, or in tests one that forgets what was not synced.
-pub(super) trait Medium: Send {
-    /// Appends bytes.
-    fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
-    /// Makes everything appended survive a power cut.
-    fn sync(&self) -> io::Result<()>;
-    /// Forgets everything after so many bytes.
-    fn cut(&mut self, length: u64) -> io::Result<()>;
-}
-
-impl Medium for File {
-    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.write_all(bytes)
-    }
-
-    fn sync(&self) -> io::Result<()> {
-        self.sync_data()
-    }
-
-    fn cut(&mut self, length: u64) -> io::Result<()> {
-        self.set_len(length)?;
-        self.seek(SeekFrom::Start(length)).map(|_| ())
-    }
 }
 
 /// Appends lines.
@@ -246,6 +221,10 @@ impl TrajectoryWriter {
 
     fn write(&mut self, bytes: &[u8], durability: Durability) -> Result<(), RunError> {
         let Some(medium) = &mut self.medium else { return Ok(()) };
+        if !medium.is_ours(&self.path, self.length) {
+            // Lines of another program are not overwritten, and nothing is told to be saved that nobody finds.
+            return Err(RunError::Astray { path: self.path.clone() });
+        }
         let mut all = self.backlog.clone();
         all.extend_from_slice(bytes);
         let written = medium.append(&all).and_then(|()| match durability {
@@ -272,6 +251,12 @@ impl TrajectoryWriter {
     /// The disk refuses.
     pub fn sync_written(&self) -> Result<(), RunError> {
         self.medium.as_ref().map_or(Ok(()), |medium| medium.sync()).map_err(RunError::io(&self.path))
+    }
+
+    /// Whether the file still stands where it is looked for, and no line waits for it.
+    pub fn is_complete(&self) -> bool {
+        let is_ours = self.medium.as_ref().is_none_or(|medium| medium.is_ours(&self.path, self.length));
+        is_ours && self.backlog.is_empty()
     }
 
     /// Puts another medium in place of the file.
@@ -352,13 +337,17 @@ pub(super) fn damaged_at(path: &Path) -> impl Fn((usize, String)) -> RunError + 
     move |(line, problem)| RunError::Damaged {
         path: path.to_owned(),
         line,
-        problem,
-        safe: match line {
-            1 => "Nothing before it can be used".to_owned(),
-            _ => format!("Lines 1 to {} are good; nothing was changed{BRANCH_THEM}", line - 1),
+        safe: match line.saturating_sub(if problem == DOES_NOT_FOLLOW { 2 } else { 1 }) {
+            0 => "Nothing before it can be used".to_owned(),
+            good => format!("Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}"),
         },
+        problem,
     }
 }
+
+/// Each of two lines fits its own sum, and they contradict each other.
+pub(super) const DOES_NOT_FOLLOW: &str =
+    "the line does not follow from the one before: one of the two was changed";
 
 /// What can be done with the lines before a damaged one.
 pub(super) const BRANCH_THEM: &str = ": `novamind runs rescue` makes a branch of them";
@@ -375,7 +364,7 @@ fn parse_line(text: &[u8], seq: u64, previous: &str, summed: bool) -> Result<Lin
         return Err(format!("the line should have number {seq}: lines are missing or out of order"));
     }
     if fields.get("prev").and_then(Value::as_str) != Some(previous) {
-        return Err("the line does not follow from the one before: one of the two was changed".to_owned());
+        return Err(DOES_NOT_FOLLOW.to_owned());
     }
     let word = |name: &str| fields.get(name).and_then(Value::as_str).map(str::to_owned);
     let day = fields.get("day").and_then(Value::as_u64).and_then(|day| u32::try_from(day).ok());
@@ -431,6 +420,27 @@ mod tests {
         let mut writer = TrajectoryWriter::resume(&path, &read).expect("it opens");
         writer.append("call", 2, Map::new(), Durability::Synced).expect("a line");
         assert_eq!(Trajectory::read(&path).expect("it reads").lines.len(), 3);
+    }
+
+    #[test]
+    fn a_file_that_is_gone_or_grew_elsewhere_takes_no_line() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = written(folder.path(), 3);
+        let read = Trajectory::read(&path).expect("it reads");
+        let [mut first, mut second] =
+            [(), ()].map(|()| TrajectoryWriter::resume(&path, &read).expect("it opens"));
+        let note = |writer: &mut TrajectoryWriter| writer.append("memo", 9, Map::new(), Durability::Synced);
+        note(&mut second).expect("a line");
+        let kept = std::fs::read(&path).expect("bytes");
+        assert!(matches!(note(&mut first), Err(RunError::Astray { .. })), "somebody else has written");
+        assert_eq!(std::fs::read(&path).expect("bytes"), kept, "and keeps the line");
+        std::fs::rename(&path, folder.path().join("aside")).expect("moved");
+        assert!(matches!(note(&mut second), Err(RunError::Astray { .. })), "it was moved");
+        std::fs::copy(folder.path().join("aside"), &path).expect("a copy");
+        assert!(matches!(note(&mut second), Err(RunError::Astray { .. })), "a copy is another file");
+        std::fs::remove_file(&path).expect("removed");
+        std::fs::rename(folder.path().join("aside"), &path).expect("moved back");
+        note(&mut second).expect("it is there again");
     }
 
     #[test]

@@ -64,6 +64,14 @@ impl Witnesses {
         })
     }
 
+    /// Whether the database's file is the one that an orderly end left; none where no end tells.
+    fn is_as_closed(&self, folder: &Path) -> Option<bool> {
+        let position = self.database.as_ref()?;
+        let closed = self.snapshot.as_ref().filter(|snapshot| snapshot.position() == *position)?;
+        let digest = closed.database()?;
+        Some(file_digest(&folder.join("world.db")).as_deref() == Some(digest))
+    }
+
     /// Whether the database can be gone on with. After an orderly end its whole file is compared; after a crash
     /// its structure is.
     pub(super) fn vouch_for_database(&mut self, folder: &Path) -> bool {
@@ -71,13 +79,8 @@ impl Witnesses {
         if !file.exists() {
             return false;
         }
-        let sound = self.database.as_ref().is_some_and(|position| {
-            let closed = self.snapshot.as_ref().filter(|snapshot| snapshot.position() == *position);
-            match closed.and_then(Snapshot::database) {
-                Some(digest) => file_digest(&file).as_deref() == Some(digest),
-                None => is_consistent(&location(folder)),
-            }
-        });
+        let sound = self.database.is_some()
+            && self.is_as_closed(folder).unwrap_or_else(|| is_consistent(&location(folder)));
         let problem = match sound {
             false if self.foreign => "belongs to another run",
             false => "is damaged",
@@ -91,6 +94,12 @@ impl Witnesses {
 
 fn location(folder: &Path) -> Location {
     Location::File(folder.join("world.db"))
+}
+
+/// Whether nobody has changed the database's file since the run was closed.
+pub(super) fn is_as_left(folder: &Path) -> bool {
+    let Ok(manifest) = Manifest::read(folder) else { return false };
+    Witnesses::of(folder, &manifest).is_as_closed(folder).unwrap_or(true)
 }
 
 /// Line, from 1, that a remembered position shows to be missing or changed.

@@ -33,7 +33,7 @@ const SUMS: f64 = 1e-12;
 const COSTS: [&str; 6] =
     ["running costs", "compute", "advertising", "operations", "development", "lead costs"];
 
-const FIGURES: [Figure; 26] = [
+const FIGURES: [Figure; 28] = [
     Figure(&["cash", "cash at week's end", "cash is"], "SELECT sum(amount) FROM ledger"),
     Figure(&["cash change", "cash #, of it", CASH_MOVED], "SELECT sum(amount) FROM ledger WHERE {in_week}"),
     Figure(
@@ -98,6 +98,13 @@ const FIGURES: [Figure; 26] = [
         "SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) WHERE customer_type = 'large' \
          AND status = 'cancelled' AND end_day BETWEEN {from} AND {to}",
     ),
+    Figure(
+        &["conversion"],
+        "SELECT 1.0 * (SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) \
+         WHERE customer_type = 'small' AND start_day BETWEEN {from} AND {to} AND status IN ('subscribed', 'cancelled')) \
+         / (SELECT count(*) FROM customers WHERE customer_type = 'small' AND created_day BETWEEN {from} AND {to})",
+    ),
+    Figure(&["runway", "cash lasts"], ""),
     Figure(&["upgrades"], ""),
     Figure(&["downgrades"], ""),
     Figure(
@@ -259,6 +266,27 @@ fn plain(runs: &Path, options: &[&str], lines: &str) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
+/// The page of a run that is handed on, as text: a row of a table is a line.
+fn page(runs: &Path) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_novamind"))
+        .env("NOVAMIND_RUNS", runs)
+        .args(["report", "latest", "--format", "html"])
+        .output()
+        .expect("the program starts");
+    let html = String::from_utf8(output.stdout).expect("UTF-8");
+    let (mut text, mut rest) = (String::new(), html.as_str());
+    while let Some((before, after)) = rest.split_once('<') {
+        // What is drawn is no text.
+        let drawn = ["svg", "style"].into_iter().find(|drawn| after.starts_with(drawn));
+        let end = drawn.and_then(|drawn| after.find(&format!("</{drawn}>"))).map_or(0, |at| at + 1);
+        let tag = after[end..].split_once('>').map_or("", |(tag, _)| tag);
+        text += before;
+        text += if ["/tr", "/p", "/li", "/h1", "/h2", "/h3"].contains(&tag) { "\n" } else { " " };
+        rest = &after[end + tag.len() + 1..];
+    }
+    text
+}
+
 /// What the database tells of every figure; none where no statement does.
 fn told(runs: &Path, day: u32) -> Vec<Option<f64>> {
     let in_week = novamind::session::entries_of_weeks(day.div_ceil(7), day.div_ceil(7));
@@ -285,12 +313,15 @@ fn surfaces(runs: &Path) -> Vec<(String, String)> {
     let mut all = vec![("plain".to_owned(), plain(runs, &[], ASKED))];
     let json = plain(runs, &["--json"], "status\n");
     all.push(("JSON".to_owned(), json.replace(",\"", "\n\"").replace('_', " ")));
+    all.push(("HTML".to_owned(), page(runs)));
     for size in SIZES {
         let mut console = Console::in_latest_run(runs, size);
         for key in ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0"] {
             console.press(key);
             all.push((format!("screen {key} at {size:?}"), console.screen()));
         }
+        console.press("w");
+        all.push((format!("report of the week at {size:?}"), console.screen()));
     }
     all
 }
@@ -348,5 +379,5 @@ fn figures_are_read_where_they_stand() {
     assert_eq!(of("cash $9 (-$7 over the last week)"), [("cash", 9.0), ("cash change", -7.0)]);
     assert_eq!(of("subscribers 65 → 150; of it 7"), [("subscribers", 150.0)]);
     assert_eq!(of("New Individual Subscribers: 3"), [("new subscribers", 3.0)]);
-    assert_eq!(of("operations: 0 → 100 $/day · cash lasts 12 weeks"), []);
+    assert_eq!(of("operations: 0 → 100 $/day · cash lasts 12 weeks"), [("runway", 12.0)]);
 }

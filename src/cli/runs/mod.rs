@@ -93,7 +93,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             let folder = find_in(&folders, run)?;
             let text = std::fs::read_to_string(folder.join("run.toml"))
                 .map_err(|error| Failure::unreadable(format!("{}: {error}", folder.display())))?;
-            let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            let id = id_of(&folder);
             let summary = list_all(&folders)?.into_iter().map(|(_, run)| run).find(|run| run.id == id);
             if options.json {
                 return print(&(serde_json::to_string_pretty(&summary).unwrap_or_default() + "\n"));
@@ -102,14 +102,16 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         }
         Some(Choice::Path { run }) => print(&format!("{}\n", find_in(&folders, run)?.display())),
         Some(Choice::End { run }) => {
-            end_run(&runs, run)?;
-            print(&format!("run {run} is ended; it can still be read\n"))
+            let id = id_of(&find_run(&runs, run)?);
+            end_run(&runs, &id)?;
+            print(&format!("run {id} is ended; it can still be read\n"))
         }
         Some(Choice::Rescue { run }) => {
-            let found = rescue(&find_run_to_read(&runs, run)?)?;
+            let folder = find_run_to_read(&runs, run)?;
+            let (found, whole) = (rescue(&folder)?, id_of(&folder));
             print(&format!(
-                "run {} holds lines 1 to {} of run {run} and stands at day {}, mode {}\n\
-                 problem: {}\nrun {run} is unchanged; `novamind play --run {}` continues\n",
+                "run {} holds lines 1 to {} of run {whole} and stands at day {}, mode {}\n\
+                 problem: {}\nrun {whole} is unchanged; `novamind play --run {}` continues\n",
                 found.run, found.lines, found.day, found.mode, found.problem, found.run
             ))
         }
@@ -119,8 +121,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
                 let message = format!("this deletes {} for good; add --yes to do it", folder.display());
                 return Err(Failure::usage(message));
             }
-            delete_run(&runs, run)?;
-            print(&format!("run {run} is deleted\n"))
+            let id = id_of(&find_run(&runs, run)?);
+            delete_run(&runs, &id)?;
+            print(&format!("run {id} is deleted\n"))
         }
         Some(Choice::Export(export)) => export.run(&folders, options.json),
         Some(Choice::Import(import)) => import.run(&runs, options.json),
@@ -137,6 +140,11 @@ pub(super) fn list_all(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>
     }
     all.sort_by(|(_, left), (_, right)| right.played.cmp(&left.played).then_with(|| left.id.cmp(&right.id)));
     Ok(all)
+}
+
+/// A run's folder has its number for a name.
+fn id_of(folder: &Path) -> String {
+    folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 /// The folder of a run in one of some folders.

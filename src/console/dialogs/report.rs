@@ -97,15 +97,16 @@ impl Report {
         let fixed = head.len() + decided.len() + news.len() + 2 + if airy { 4 } else { 0 };
         let room = height.saturating_sub(fixed);
         let shown_needs = needs.len().min((room / 5).max(1)).max(1);
-        let moves =
-            moved(canvas, told, width, room.saturating_sub(shown_needs + usize::from(!notices.is_empty())));
-        let left = room.saturating_sub(shown_needs + moves.len());
+        let coming = next(canvas, &needs[..shown_needs.min(needs.len())], width, look);
+        let taken = coming.len() + usize::from(!notices.is_empty());
+        let moves = moved(canvas, told, width, room.saturating_sub(taken));
+        let left = room.saturating_sub(coming.len() + moves.len());
         let parts: [Part<'a>; 5] = [
             head,
             decided,
             with_heading(canvas, "What changed most", moves),
             news.into_iter().chain(notice_lines(canvas, notices, width, left.min(8))).collect(),
-            with_heading(canvas, "What comes next", next(canvas, needs, shown_needs, width, look)),
+            with_heading(canvas, "What comes next", coming),
         ];
         let mut lines = Vec::new();
         for (at, part) in parts.into_iter().enumerate() {
@@ -154,7 +155,7 @@ fn forecast_line<'a>(canvas: &Canvas<'_>, due: &Due) -> Line<'a> {
     Line::from(vec![
         canvas.span(said, Role::Dim),
         canvas.span(due.verdict(), role),
-        canvas.span(format!(", missed by {}", percent(due.miss(), 1)), Role::Dim),
+        canvas.span(format!(", off by {}", percent(due.miss(), 1)), Role::Dim),
     ])
 }
 
@@ -251,7 +252,7 @@ fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>)
             .keys
             .label(screen.action())
             .filter(|_| last)
-            .map_or(String::new(), |key| format!(" → {key}"));
+            .map_or(String::new(), |key| format!(" [{key}]"));
         if used + text.width() + key.width() > width as usize {
             lines.push(vec![canvas.span("   ", Role::Text)]);
             used = 3;
@@ -291,23 +292,31 @@ fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], width: u16, 
     told.into_iter().rev().map(line).collect()
 }
 
-/// What needs the person, and the key that goes on.
-fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], shown: usize, width: u16, look: &Look<'_>) -> Part<'a> {
+/// What needs the person, in two rows each at most, and the key that goes on.
+fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, look: &Look<'_>) -> Part<'a> {
     if needs.is_empty() {
         let key = look.keys.label(Action::NextWeek).unwrap_or_default();
         let text = format!("  nothing waits; {key} starts the next week");
         return vec![Line::from(canvas.span(text, Role::Dim))];
     }
-    let line = |need: &Need| {
-        let key = look.keys.label(screen_of(need).action()).map_or(String::new(), |key| format!(" → {key}"));
+    let lines = |need: &Need| {
+        let key = look.keys.label(screen_of(need).action()).map_or(String::new(), |key| format!(" [{key}]"));
         let (sign, role) = if need.urgent { ("!", Role::Warning) } else { ("·", Role::Text) };
         let room = (width as usize).saturating_sub(4 + key.width());
-        Line::from(vec![
-            canvas.span(format!("  {sign} {}", fit(&need.text, room)), role),
+        let rows = wrapped(&need.text, room);
+        let first = rows.first().cloned().unwrap_or_default();
+        let rest = rows.get(1..).unwrap_or_default().join(" ");
+        let mut lines = vec![Line::from(vec![
+            canvas.span(format!("  {sign} {first}"), role),
             canvas.span(key, Role::Key),
-        ])
+        ])];
+        if !rest.is_empty() {
+            let rest = fit(&rest, (width as usize).saturating_sub(4));
+            lines.push(Line::from(canvas.span(format!("    {rest}"), role)));
+        }
+        lines
     };
-    needs.iter().take(shown).map(line).collect()
+    needs.iter().flat_map(lines).collect()
 }
 
 #[cfg(test)]

@@ -99,6 +99,10 @@ mod tests {
         assert_eq!(ticks([3.0, 3.0], 4), Vec::<f64>::new());
         assert_eq!(ticks([0.0, f64::INFINITY], 4), Vec::<f64>::new());
         assert_eq!(ticks([0.0, 9.0], 0), Vec::<f64>::new());
+        for (to, most) in (1..60).flat_map(|to| (1..9).map(move |most| (f64::from(to), most))) {
+            let count = ticks([0.0, to], most).len();
+            assert!(count <= most && count > 0, "{count} ticks up to {to}, at most {most}");
+        }
     }
 
     #[test]

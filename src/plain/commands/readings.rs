@@ -10,6 +10,7 @@ use super::{COMMANDS, Desk, problem, tool_called, words};
 use crate::database;
 use crate::glossary;
 use crate::notation::{dollars, grouped, nearest, signed_dollars};
+use crate::report::chapters::change_in_words;
 use crate::report::funnel::{Funnel, funnels};
 use crate::report::needs::{Need, Place, needs};
 use crate::report::review::money_lines;
@@ -158,8 +159,7 @@ fn need_lines(need: &Need) -> Vec<String> {
 
 /// A change as one line.
 pub fn change(change: &Change) -> String {
-    let number = |value: f64| grouped(value, if value.fract() == 0.0 { 0 } else { 2 });
-    format!("{}: {} → {} {}", change.setting, number(change.old), number(change.new), change.unit)
+    change_in_words(change)
 }
 
 fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>) -> String {

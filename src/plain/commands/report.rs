@@ -75,7 +75,7 @@ fn in_words(report: &WeekReport) -> String {
     for due in &report.due {
         let (weeks, miss) = (due.horizon_days / 7, percent(due.miss(), 1));
         let verdict = due.verdict().trim_start_matches(['✓', '▲', '▼', ' ']);
-        lines.push(format!("forecast of {weeks} weeks ago: {verdict} the interval, missed by {miss}"));
+        lines.push(format!("forecast of {weeks} weeks ago: {verdict} the interval, off by {miss}"));
     }
     lines.push(format!(
         "new: {} threads, {} replies, {} posts, {} comments on ours, {} news items, {} finished R&D projects and studies",

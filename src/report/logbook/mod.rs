@@ -195,7 +195,7 @@ impl Logbook {
             parameters_digest: manifest.parameters_digest.clone(),
             earlier_runs: manifest.earlier_runs,
             parent: manifest.parent.as_ref().map(|parent| parent.run.clone()),
-            created: manifest.created.clone(),
+            created: lines.first().map_or_else(|| manifest.created.clone(), |line| line.at.clone()),
             last_at: last.map(|line| line.at.clone()).unwrap_or_default(),
             ended_at: end.map(|line| line.at.clone()),
             ended: session.ended(),

@@ -91,7 +91,11 @@ fn facts(book: &Logbook) -> Vec<Fact> {
             whole(book.wording.words as f64),
             failed(book.wording.ifs as u32, "if"),
         ),
-        Fact::new("Earlier runs of the seed", book.earlier_runs.to_string(), "on this machine"),
+        Fact::new(
+            "Earlier runs of the seed",
+            book.earlier_runs.to_string(),
+            "kept in the same folder of runs",
+        ),
     ]
 }
 

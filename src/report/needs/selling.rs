@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::{AHEAD, Need, Place, Problem, Situation, rounded_up};
 use crate::notation::{json_number, percent};
-use crate::report::words::{count, money, number, whole};
+use crate::report::words::{count, money, whole};
 use crate::session::{DeliveredQuality, Estimates, GroupWeek};
 use crate::world::identifiers::{Channel, Group, Plan};
 
@@ -54,7 +54,7 @@ pub(super) fn nothing_on_sale(situation: &Situation<'_>) -> Option<Need> {
         proposal: Some(format!(
             "{} units a day cover {group}, which uses about {} (at most {})",
             whole(quota),
-            number(situation.estimate(group)?.usage),
+            whole(situation.estimate(group)?.usage),
             whole(use_a_day)
         )),
         place: Place::Call("set_usage_quotas", Value::Object(arguments)),
@@ -91,7 +91,11 @@ pub(super) fn no_leads(situation: &Situation<'_>) -> Option<Need> {
     if situation.ads > 0.0 || came > 0 || !silent {
         return None;
     }
-    let group = situation.individuals().max_by(|left, right| left.budget.total_cmp(&right.budget))?.group;
+    let group = situation.individuals().min_by(|left, right| {
+        let missing = |own: &Estimates| (own.floor - within_reach(situation, own.group)).max(0.0);
+        missing(left).total_cmp(&missing(right)).then_with(|| right.budget.total_cmp(&left.budget))
+    })?;
+    let group = group.group;
     let each: Map<String, Value> = Channel::ALL
         .into_iter()
         .map(|channel| (channel.id().to_owned(), json!({ group.id(): FIRST_TRY })))
@@ -109,6 +113,15 @@ pub(super) fn no_leads(situation: &Situation<'_>) -> Option<Need> {
         at_risk: situation.commitments_ahead(),
         urgent: true,
     })
+}
+
+/// The quality that the best model would deliver to a group today.
+fn within_reach(situation: &Situation<'_>, group: Group) -> f64 {
+    let models = &situation.terms.models;
+    let best = models.iter().map(|model| model.multiplier).fold(0.0, f64::max);
+    let now = models.iter().find(|model| model.tier == situation.settings.tiers[Plan::A]);
+    let delivered = situation.quality(group).map(|quality| quality.by_plan[Plan::A]);
+    delivered.zip(now).map_or(0.0, |(delivered, now)| delivered / now.multiplier * best)
 }
 
 /// What keeps the leads of a group from a plan.
@@ -191,7 +204,11 @@ impl Offers<'_> {
     /// The affordable plan that delivers most, its quota left aside.
     fn best(&self) -> Option<Plan> {
         let quality = |plan: &Plan| self.quality.by_plan[*plan];
-        self.affordable().max_by(|left, right| quality(left).total_cmp(&quality(right)))
+        // Of two that deliver the same, people take the cheaper one.
+        let price = |plan: &Plan| self.price(*plan);
+        self.affordable().max_by(|left, right| {
+            quality(left).total_cmp(&quality(right)).then_with(|| price(right).total_cmp(&price(left)))
+        })
     }
 
     fn missing(&self) -> Missing {
@@ -201,6 +218,12 @@ impl Offers<'_> {
             Some(plan) if self.quality.by_plan[plan] < self.own.floor => Missing::Quality,
             Some(_) => Missing::Balance,
         }
+    }
+
+    /// Whether a price, quota or model differs from that of the days before.
+    fn changed_today(&self) -> bool {
+        let of_offers = ["set_prices", "set_usage_quotas", "set_model_tiers"];
+        self.situation.seen.changes.iter().any(|change| of_offers.contains(&change.tool))
     }
 
     /// What is missing in words, what would mend it, and where.
@@ -255,6 +278,8 @@ impl Offers<'_> {
                 let (proposal, place) = better_quality(self.situation, group, plan, delivered, own.floor)?;
                 Some((told, proposal, place))
             }
+            // Nobody has seen an offer that was changed today: last week says nothing about it.
+            Missing::Balance if self.changed_today() => None,
             Missing::Balance => {
                 let plan = self.best()?;
                 Some((

@@ -132,6 +132,29 @@ fn quality_below_the_floor_wins_nobody() {
 }
 
 #[test]
+fn an_offer_that_was_changed_today_is_not_blamed_for_the_week_before() {
+    let plain = but(&[
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_model_tiers", json!({"A": 1, "B": 1, "C": 1})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {}})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"content_marketing": {"S1": 750}}})),
+    ]);
+    let mut session = company(42, 1e6, &plain, 1);
+    let about_s1 = |session: &Session| {
+        needs(session).into_iter().find(|need| need.problem == Problem::NoSales(group("S1")))
+    };
+    let need = about_s1(&session).expect("few sign");
+    assert!(
+        need.text.contains("quality: the best for them") && need.text.contains(" on A,"),
+        "{}",
+        need.text
+    );
+    let Place::Call("set_model_tiers", arguments) = &need.place else { panic!("{need:?}") };
+    session.call("set_model_tiers", arguments, Via::Script).expect("the proposal");
+    assert_eq!(about_s1(&session), None, "nobody has seen it yet");
+}
+
+#[test]
 fn a_quota_below_the_use_is_named_where_the_quality_would_do() {
     let calls = but(&[("set_usage_quotas", json!({"A": 4, "B": 4, "C": 4}))]);
     let session = company(7, 1e6, &calls, 3);

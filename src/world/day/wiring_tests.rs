@@ -135,6 +135,24 @@ fn an_outage_drives_people_off_only_where_decisions_feel_it() {
 }
 
 #[test]
+fn overload_drives_people_off_on_its_day() {
+    let left = |capacity_units: u32| {
+        let mut params = Params::shipped();
+        params.fidelity.service_penalty = ServicePenalty::Everywhere;
+        // A penalty that nobody overlooks.
+        params.quality.service_overload_weight = 0.5;
+        let (_, figures, _) = Play::day_after(44, &params, |params| {
+            outage(params, false);
+            params.capacity_tier.iter_mut().for_each(|tier| tier.capacity_units = capacity_units);
+        });
+        (figures.overload, figures.cancellations)
+    };
+    let ((none, calm), (much, crowded)) = (left(4_000_000_000), left(1_000));
+    assert!(none == 0.0 && much > 1.0, "{none}, {much}");
+    assert!(crowded > calm + 5, "{crowded} leave on the day of the overload, {calm} otherwise");
+}
+
+#[test]
 fn every_day_has_its_own_calendar() {
     let mut params = Params::shipped();
     for (at, factor) in params.calendar.weekly.iter_mut().enumerate() {

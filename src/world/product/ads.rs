@@ -89,6 +89,7 @@ fn earn_block(group: Group, block: &Block, load: &AdLoad<'_>) -> (f64, Vec<AdsRe
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::customers::columns::Subscriber;
     use crate::world::customers::columns::tests::subscriber;
     use crate::world::settings::{PerCustomer, PerGroup};
 
@@ -125,5 +126,20 @@ mod tests {
         (1..=5).for_each(|n| customers.groups[Group::at(0).expect("S1")].activate(subscriber(n)));
         near(earn(&customers, &AdLoad::of(&setting, &params), &mut facts), 0.111501440);
         assert_eq!(facts.ads_revenue.len(), 5);
+    }
+
+    #[test]
+    fn a_seat_earns_once_it_is_whole() {
+        let params = Params::shipped();
+        let setting = AdsStrength { global: 0.1, ..AdsStrength::default() };
+        let load = AdLoad::of(&setting, &params);
+        let earned = |seats: f64| {
+            let mut customers = Customers::default();
+            let e1 = Group::at(3).expect("E1");
+            customers.groups[e1].activate(Subscriber { seats, ..subscriber(1) });
+            earn(&customers, &load, &mut Facts::default())
+        };
+        assert_eq!(earned(2.9), earned(2.0));
+        near(earned(3.0), 1.5 * earned(2.9));
     }
 }

@@ -11,7 +11,6 @@ use crate::console::widgets::table::first_row;
 
 /// Draws steps, one in a row. The bars begin at the lowest level on the way, or changes would be too small to see.
 pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step], selected: Option<usize>, pane: usize) {
-    let from = first_row(selected.unwrap_or(0), area.height as usize, steps.len());
     if steps.is_empty() {
         canvas.text(area, NO_DATA, Role::Dim);
         return;
@@ -24,6 +23,10 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step], selected: Optio
         .flat_map(|step| [step.from, step.to])
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), level| (least.min(level), most.max(level)));
     let floor = if least > 0.0 && least < (most - least) * 0.5 { 0.0 } else { least };
+    // Where bars do not start at nothing, a row says so.
+    let told = floor != 0.0 && bars >= 24 && area.height > 1;
+    let area = Rect { height: area.height - u16::from(told), ..area };
+    let from = first_row(selected.unwrap_or(0), area.height as usize, steps.len());
     let span = (most - floor).max(1e-9);
     let room = f64::from(bars.saturating_sub(2));
     // A sliver is left for the lowest level, so that it is seen as one.
@@ -56,8 +59,8 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step], selected: Optio
         let bar = Rect { x: x + from, width, height: 1, ..row }.intersection(area);
         canvas.text(bar, &glyph.repeat(bar.width as usize), role);
     }
-    let below = area.y.saturating_add((steps.len() - from) as u16);
-    if floor != 0.0 && below < area.bottom() && bars >= 24 {
+    if told {
+        let below = area.bottom().min(area.y.saturating_add((steps.len() - from) as u16));
         let row = Rect { x: area.x + names + figures + 1, y: below, width: bars - 1, height: 1 };
         canvas.text(row, &format!("bars start at {}", short_dollars(floor)), Role::Dim);
     }

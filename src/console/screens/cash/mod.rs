@@ -359,7 +359,7 @@ impl Cash {
         let title = format!("From week {} to {week}", week.saturating_sub(1));
         let inside = canvas.pane(area, &title, &note, focused);
         // Without the focus all of the way is seen, small steps together; with it every step can be reached.
-        let most = if focused { usize::MAX } else { inside.height as usize };
+        let most = if focused { usize::MAX } else { inside.height.saturating_sub(1) as usize };
         let steps = waterfall(&self.books, company, week, most);
         let selected = focused.then(|| self.step.min(steps.len().saturating_sub(1)));
         falls::draw(canvas, inside, &steps, selected, FALLS);

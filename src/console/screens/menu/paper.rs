@@ -51,7 +51,10 @@ fn is_finished(run: &RunSummary) -> bool {
 }
 
 fn is_comparable(run: &RunSummary) -> bool {
-    is_finished(run) && ranking::is_comparable(run.days, run.starting_cash, &run.scenario)
+    is_finished(run) && {
+        let terms = (run.days, run.starting_cash);
+        ranking::is_comparable(terms, &run.scenario, run.has_own_parameters)
+    }
 }
 
 impl Menu {
@@ -71,9 +74,9 @@ impl Menu {
         let yours = match (own, left_out) {
             (0, 0) => "Finish a 500-day run to appear here.".to_owned(),
             (_, 0) => "Yours are marked; a bankrupt run counts as $0.".to_owned(),
-            (_, 1) => "One finished run of another length, start or scenario is not shown.".to_owned(),
+            (_, 1) => "One finished run of another length, start or scenario, or of changed parameters, is not shown.".to_owned(),
             (_, count) => {
-                format!("{count} finished runs of another length, start or scenario are not shown.")
+                format!("{count} finished runs of another length, start or scenario, or of changed parameters, are not shown.")
             }
         };
         let bound = published().estimated_upper_bound;

@@ -16,6 +16,7 @@ pub(in crate::console) fn summary(id: &str) -> RunSummary {
         mode: Some(Mode::Sandbox),
         seed: 42,
         scenario: "default".to_owned(),
+        has_own_parameters: false,
         participant: None,
         day: 84,
         days: 500,

@@ -378,7 +378,7 @@ impl Overview {
     fn draw_quality(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let (base, shared) = look.company.quality_base;
         let title = "Delivered quality";
-        let full = format!("base {base:.2} · for everybody {shared:+.4}");
+        let full = format!("base {base:.2} · general {shared:+.4}");
         let note = if full.width() <= note_room(area, title) { full } else { String::new() };
         canvas.click(area, Click::Pane(QUALITY));
         let focused = self.focus == QUALITY;

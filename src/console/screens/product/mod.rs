@@ -266,7 +266,7 @@ impl Product {
                 let best = best.filter(|best| best.group_bonus > 0.0);
                 let best = best
                     .map_or(String::new(), |best| format!(" · {} {:+.4}", best.group.id(), best.group_bonus));
-                format!("base {base:.2} · all {shared:+.4}{best}")
+                format!("base {base:.2} · general {shared:+.4}{best}")
             }
             PLANS => {
                 let plan = |(name, plan): (char, &PlanFacts)| {

@@ -24,7 +24,7 @@ pub fn draw_quality(
     let (base, shared) = company.quality_base;
     let tier = |plan: &str| format!("{plan} T{}", number(company.setting("set_model_tiers", plan)));
     let wide = area.width >= 62;
-    let parts = if wide { format!(" {:>7} {:>8}", "base", "all +") } else { String::new() };
+    let parts = if wide { format!(" {:>7} {:>8}", "base", "general") } else { String::new() };
     let head = format!("group {parts} {:>8} {:>9} {:>8} {:>8}", "own +", tier("A"), tier("B"), tier("C"));
     canvas.text(area, &head, Role::Header);
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };

@@ -58,8 +58,8 @@ pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
     let sources = sources(statement, &pieces);
     let found = match before[..word_start].strip_suffix('.') {
         Some(rest) => {
-            let from = rest.rfind(|letter| !is_word(letter)).map_or(0, |at| at + 1);
-            of_source(&rest[from..], &sources)?
+            let name = rest.rsplit(|letter| !is_word(letter)).next().unwrap_or_default();
+            of_source(name, &sources)?
         }
         None if word.chars().count() < least.max(1) => return None,
         None => of_everything(statement, &pieces, word_start, &sources),
@@ -193,6 +193,13 @@ mod tests {
         assert_eq!(words("SELECT c.em| FROM subscriptions s JOIN customers AS c"), ["email"]);
         assert_eq!(words("SELECT customers.em|"), ["email"]);
         assert!(words("SELECT x.| FROM customers c").is_empty());
+    }
+
+    #[test]
+    fn signs_of_several_bytes_before_a_point_name_no_table() {
+        for typed in ["€.|", "SELECT 😀.|", "x ,–.a|", "\u{202e}٣😀.|"] {
+            assert!(words(typed).is_empty(), "{typed}");
+        }
     }
 
     #[test]

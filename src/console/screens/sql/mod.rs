@@ -317,10 +317,7 @@ impl Screen for Sql {
             (None, EDITOR) => {
                 vec![Action::RunQuery, Action::Complete, Action::SaveQuery, Action::LeaveEditor]
             }
-            (None, RESULTS) if self.results.is_chart() => {
-                vec![Action::ChartY, Action::ChartKind, Action::CloseChart, Action::EditQuery]
-            }
-            (None, RESULTS) => vec![Action::WholeCell, Action::Chart, Action::Export, Action::EditQuery],
+            (None, RESULTS) => self.results.hints(),
             (None, _) => vec![Action::Open, Action::Filter, Action::RunQuery, Action::EditQuery],
         }
     }

@@ -41,7 +41,8 @@ pub struct Results {
 }
 
 /// What to try first.
-const LESSON: &str = "ctrl-o opens the library of queries. Or type one of these, or choose a table on the left (shift-tab, then enter):
+const LESSON: &str =
+    "ctrl-o opens the library of queries. Or type one of these, or choose a table (shift-tab, then enter):
 
 SELECT category, round(sum(amount)) AS dollars FROM ledger GROUP BY category ORDER BY dollars
 
@@ -318,10 +319,19 @@ impl Results {
         }
     }
 
+    /// What is offered first of what can be done with what is shown.
+    pub fn hints(&self) -> Vec<Action> {
+        match (self.is_chart(), self.rows()) {
+            (true, _) => vec![Action::ChartY, Action::ChartKind, Action::CloseChart, Action::EditQuery],
+            (false, Some(_)) => vec![Action::WholeCell, Action::Chart, Action::Export, Action::EditQuery],
+            (false, None) => vec![Action::EditQuery],
+        }
+    }
+
     /// What can be done with what is shown.
     fn keys(&self) -> &'static [Action] {
-        match self.is_chart() {
-            true => &[
+        match (self.is_chart(), &self.answer) {
+            (true, _) => &[
                 Action::ChartX,
                 Action::ChartY,
                 Action::MoreSeries,
@@ -330,7 +340,8 @@ impl Results {
                 Action::Sort,
                 Action::CloseChart,
             ],
-            false => &[
+            (false, Answer::None | Answer::Refused(_)) => &[],
+            (false, Answer::Rows(..)) => &[
                 Action::WholeCell,
                 Action::Sort,
                 Action::Filter,

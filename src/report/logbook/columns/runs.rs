@@ -44,7 +44,7 @@ pub const RUNS: &[RunColumn] = &[
     column(
         "earlier_runs",
         "count",
-        "runs of the same seed and scenario that were on the machine before it",
+        "runs of the same seed and scenario that its folder of runs held before it",
         |run| run.earlier_runs.to_string(),
     ),
     column(

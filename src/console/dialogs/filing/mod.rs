@@ -1,23 +1,24 @@
 //! What is filed before a week runs: review, rationale, forecasts. Three steps that can be walked back; what was
 //! typed stays until the week has run.
 
+mod review;
+
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
-use ratatui::text::Line as TextLine;
 
+use self::review::Review;
 use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Align, Canvas, Click, centered, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens::Look;
-use crate::console::text::{number, wrapped};
+use crate::console::text::number;
 use crate::console::theme::Role;
 use crate::console::widgets::fan::draw_fan;
 use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::console::widgets::{Editor, Field};
 use crate::notation::{dollars, grouped, percent};
-use crate::report::review::money_lines;
 use crate::session::Forecasts;
 use crate::tools::Forecast;
 
@@ -32,6 +33,7 @@ enum Step {
 /// The dialog, with its drafts.
 pub struct Filing {
     step: Step,
+    review: Review,
     rationale: Editor,
     /// Low, point, high of every horizon.
     cells: [[Field; 3]; 4],
@@ -55,6 +57,7 @@ impl Default for Filing {
     fn default() -> Self {
         Filing {
             step: Step::Review,
+            review: Review::default(),
             rationale: Editor::default(),
             cells: Default::default(),
             at: (0, 0),
@@ -73,6 +76,7 @@ impl Filing {
     pub fn reopen(&mut self, unsent: Vec<&'static str>) {
         self.unsent = unsent;
         self.step = Step::Review;
+        self.review = Review::default();
         self.problem = None;
         self.typing = false;
     }
@@ -258,6 +262,7 @@ impl Dialog for Filing {
                 self.walk(action);
             }
             other if self.step == Step::Forecasts => self.walk(other),
+            other if self.step == Step::Review => self.review.scroll(other, look.page as usize),
             _ => {}
         }
         Outcome::stay()
@@ -324,7 +329,7 @@ impl Dialog for Filing {
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let body = Rect { height: inside.height.saturating_sub(1), ..inside };
         match self.step {
-            Step::Review => draw_review(canvas, body, look.company, &self.unsent),
+            Step::Review => self.review.draw(canvas, body, look.company, &self.unsent),
             Step::Rationale => self.draw_rationale(canvas, body, look.company),
             Step::Forecasts => self.draw_forecasts(canvas, body, look.company),
         }
@@ -339,64 +344,6 @@ impl Dialog for Filing {
         }
         canvas.pane_keys(own, &look.hints(&actions));
     }
-}
-
-fn draw_review(canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &[&str]) {
-    let seen = &company.seen;
-    let mut lines: Vec<TextLine<'_>> = Vec::new();
-    let head = |text: &str, canvas: &Canvas<'_>| TextLine::from(canvas.span(text.to_owned(), Role::Header));
-    lines.push(head("Money", canvas));
-    let money = money_lines(seen).into_iter().map(|line| format!("  {line}"));
-    let money = money.flat_map(|line| wrapped(&line, area.width as usize));
-    lines.extend(money.map(|line| TextLine::from(canvas.span(line, Role::Text))));
-    lines.push(TextLine::default());
-    lines.push(head("Changes since the last week", canvas));
-    for change in &seen.changes {
-        lines.push(TextLine::from(vec![
-            canvas.span(format!("  {:<32} ", change.setting), Role::Text),
-            canvas.span(format!("{:>12} → ", number(change.old)), Role::Dim),
-            canvas.span(format!("{:<12} ", number(change.new)), Role::Changed),
-            canvas.span(change.unit.to_owned(), Role::Dim),
-        ]));
-    }
-    lines.extend(
-        seen.purchases.iter().map(|done| TextLine::from(canvas.span(format!("  {done}"), Role::Changed))),
-    );
-    if seen.changes.is_empty() && seen.purchases.is_empty() {
-        lines.push(TextLine::from(canvas.span("  none", Role::Dim)));
-    }
-    lines.push(TextLine::default());
-    lines.push(head("Before you continue", canvas));
-    for tool in unsent {
-        let text = format!("  ! the {tool} form holds unsent values");
-        lines.push(TextLine::from(canvas.span(text, Role::Warning)));
-    }
-    for need in &company.needs {
-        let words = wrapped(&need.in_words(), area.width.saturating_sub(4) as usize);
-        for (at, text) in words.into_iter().enumerate() {
-            let mark = if at > 0 {
-                "    "
-            } else if need.urgent {
-                "  ! "
-            } else {
-                "  · "
-            };
-            let role = if need.urgent { Role::Warning } else { Role::Text };
-            lines.push(TextLine::from(canvas.span(format!("{mark}{text}"), role)));
-        }
-    }
-    if company.needs.is_empty() && unsent.is_empty() {
-        lines.push(TextLine::from(canvas.span("  nothing needs you", Role::Dim)));
-    }
-    let room = area.height as usize;
-    if lines.len() > room && room > 0 {
-        let left = lines.len() - room + 1;
-        lines.truncate(room - 1);
-        lines.push(TextLine::from(
-            canvas.span(format!("  … {left} more lines: c shows all changes"), Role::Dim),
-        ));
-    }
-    canvas.lines(area, &lines);
 }
 
 impl Filing {

@@ -1,0 +1,110 @@
+//! The first step of a week's end: what it costs, what was changed, and what needs an answer before.
+
+use std::cell::Cell;
+
+use ratatui::layout::Rect;
+use ratatui::text::Line as TextLine;
+
+use crate::console::action::Action;
+use crate::console::canvas::Canvas;
+use crate::console::company::Company;
+use crate::console::text::{number, wrapped};
+use crate::console::theme::Role;
+use crate::report::review::money_lines;
+
+/// How far the review is scrolled.
+#[derive(Default)]
+pub struct Review {
+    from: usize,
+    /// The farthest that shows anything new, as it was drawn last.
+    last: Cell<usize>,
+}
+
+impl Review {
+    /// Goes through a review that is longer than its window.
+    pub fn scroll(&mut self, action: Action, page: usize) {
+        self.from = match action {
+            Action::Up | Action::ScrollUp => self.from.saturating_sub(1),
+            Action::Down | Action::ScrollDown => self.from + 1,
+            Action::PageUp => self.from.saturating_sub(page),
+            Action::PageDown => self.from + page,
+            Action::First => 0,
+            Action::Last => usize::MAX,
+            _ => self.from,
+        }
+        .min(self.last.get());
+    }
+
+    /// Draws what fits.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &[&str]) {
+        let lines = lines(canvas, area.width as usize, company, unsent);
+        let room = area.height as usize;
+        let fits = lines.len() <= room;
+        // One row tells how much is not shown.
+        let shown = if fits { room } else { room.saturating_sub(1) };
+        self.last.set(lines.len().saturating_sub(shown));
+        let from = self.from.min(self.last.get());
+        canvas.page = (shown as u16).max(1);
+        canvas.lines(area, &lines[from..(from + shown).min(lines.len())]);
+        if !fits && area.height > 0 {
+            let (above, below) = (from, lines.len() - from - shown);
+            let row = Rect { y: area.bottom() - 1, height: 1, ..area };
+            let text = match (above, below) {
+                (0, below) => format!("  ↓ {below} more"),
+                (above, 0) => format!("  ↑ {above} more"),
+                (above, below) => format!("  ↑ {above} more · ↓ {below} more"),
+            };
+            canvas.text(row, &text, Role::Dim);
+        }
+    }
+}
+
+fn lines(canvas: &Canvas<'_>, width: usize, company: &Company, unsent: &[&str]) -> Vec<TextLine<'static>> {
+    let seen = &company.seen;
+    let mut lines: Vec<TextLine<'static>> = Vec::new();
+    let head = |text: &str, canvas: &Canvas<'_>| TextLine::from(canvas.span(text.to_owned(), Role::Header));
+    lines.push(head("Money", canvas));
+    let money = money_lines(seen).into_iter().map(|line| format!("  {line}"));
+    let money = money.flat_map(|line| wrapped(&line, width));
+    lines.extend(money.map(|line| TextLine::from(canvas.span(line, Role::Text))));
+    lines.push(TextLine::default());
+    lines.push(head("Changes since the last week", canvas));
+    for change in &seen.changes {
+        lines.push(TextLine::from(vec![
+            canvas.span(format!("  {:<32} ", change.setting), Role::Text),
+            canvas.span(format!("{:>12} → ", number(change.old)), Role::Dim),
+            canvas.span(format!("{:<12} ", number(change.new)), Role::Changed),
+            canvas.span(change.unit.to_owned(), Role::Dim),
+        ]));
+    }
+    lines.extend(
+        seen.purchases.iter().map(|done| TextLine::from(canvas.span(format!("  {done}"), Role::Changed))),
+    );
+    if seen.changes.is_empty() && seen.purchases.is_empty() {
+        lines.push(TextLine::from(canvas.span("  none", Role::Dim)));
+    }
+    lines.push(TextLine::default());
+    lines.push(head("Before you continue", canvas));
+    for tool in unsent {
+        let text = format!("  ! the {tool} form holds unsent values");
+        lines.push(TextLine::from(canvas.span(text, Role::Warning)));
+    }
+    for need in &company.needs {
+        let words = wrapped(&need.in_words(), width.saturating_sub(4));
+        for (at, text) in words.into_iter().enumerate() {
+            let mark = if at > 0 {
+                "    "
+            } else if need.urgent {
+                "  ! "
+            } else {
+                "  · "
+            };
+            let role = if need.urgent { Role::Warning } else { Role::Text };
+            lines.push(TextLine::from(canvas.span(format!("{mark}{text}"), role)));
+        }
+    }
+    if company.needs.is_empty() && unsent.is_empty() {
+        lines.push(TextLine::from(canvas.span("  nothing needs you", Role::Dim)));
+    }
+    lines
+}

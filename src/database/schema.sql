@@ -1,8 +1,9 @@
 -- The observable company. What is stored as codes comes back as words through ordinary views, so that the file
 -- opens in any SQLite tool; the two block tables (daily_usage, ads_revenue) are served by the program.
 --
--- What follows from a row alone is a generated column of it: it takes no room, has its declared type, and the engine can
--- join by it. What needs another table gets its type by CAST: without one, numbers and texts are never equal.
+-- What follows from a row alone at little cost is a generated column of it: it takes no room, has its declared type, and
+-- the engine can join by it (a note, too). It is worked out for every row that is written, so what takes longer or needs another
+-- table, is worked out where it is read and gets its type by CAST. Without one, numbers and texts are never equal.
 
 CREATE TABLE projection (
     id INTEGER PRIMARY KEY CHECK (id = 1),
@@ -32,7 +33,6 @@ CREATE TABLE customer_rows (
     seats INTEGER,
     email TEXT,
     contract_start_day INTEGER,
-    customer_type TEXT AS (CASE WHEN group_id LIKE 'E%' OR group_id LIKE 'D_E%' THEN 'large' ELSE 'small' END),
     acquisition_source TEXT AS (CASE source
         WHEN 0 THEN 'social_media' WHEN 1 THEN 'search_ads' WHEN 2 THEN 'linkedin' WHEN 3 THEN 'content_marketing'
         WHEN 4 THEN 'referral_program' WHEN 5 THEN 'network' WHEN 6 THEN 'organic'
@@ -42,7 +42,7 @@ CREATE TABLE customer_rows (
 CREATE VIEW customers AS
 SELECT
     customer_id,
-    customer_type,
+    CAST(CASE WHEN group_id LIKE 'E%' OR group_id LIKE 'D_E%' THEN 'large' ELSE 'small' END AS TEXT) AS customer_type,
     group_id,
     created_day,
     (SELECT word FROM words WHERE axis = 'industry' AND group_id = customers.group_id AND n = (persona & 255))

@@ -287,6 +287,19 @@ mod tests {
     }
 
     #[test]
+    fn the_net_of_a_week_stands_below_it_with_its_sign() {
+        let books = Books::of(&crate::console::company::Company::of(&crate::console::test_kit::played(6)));
+        let picture: String =
+            painted("dark", Marker::Braille).content.iter().map(|cell| cell.symbol().to_owned()).collect();
+        for (week, amounts) in books.last_weeks(6) {
+            let net: f64 = amounts.iter().sum();
+            let sign = if net < 0.0 { "-" } else { "+" };
+            let told = format!("{sign}{}", crate::notation::compact(net.abs()));
+            assert!(picture.contains(&told), "{told} of week {week} in {picture}");
+        }
+    }
+
+    #[test]
     fn colours_tell_the_categories_apart_and_signs_do_where_there_are_none() {
         let letters = |buffer: &ratatui::buffer::Buffer| {
             buffer.content.iter().map(|cell| cell.symbol().to_owned()).collect::<String>()

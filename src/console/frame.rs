@@ -12,7 +12,7 @@ use super::company::Company;
 use super::glyphs::Glyphs;
 use super::keys::written;
 use super::screens::{Look, ScreenId};
-use super::text::short_dollars;
+use super::text::{arrow, short_dollars};
 use super::theme::Role;
 use super::widgets::spark::bar;
 use crate::notation::{compact, dollars, grouped};
@@ -159,7 +159,7 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
     let wide = row.width >= 110;
     let money = |value: f64| if wide { dollars(value) } else { short_dollars(value) };
     let count = |value: u32| if wide { grouped(f64::from(value), 0) } else { compact(f64::from(value)) };
-    let moved = format!("{} {}", if change < 0.0 { "▼" } else { "▲" }, money(change.abs()));
+    let moved = arrow(change, &money(change.abs()));
     let pieces = [
         (" NovaMind".to_owned(), Role::Title),
         (format!("  day {}/{}", seen.day, seen.last_day), Role::Text),

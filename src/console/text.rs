@@ -94,6 +94,13 @@ mod tests {
     }
 
     #[test]
+    fn a_piece_joins_a_line_in_which_it_fits_with_its_dot() {
+        let pieces = ["12345".to_owned(), "1234567".to_owned()];
+        assert_eq!(flowed(&pieces, 15), ["12345 · 1234567"]);
+        assert_eq!(flowed(&pieces, 14), ["12345", "1234567"]);
+    }
+
+    #[test]
     fn lines_break_between_words_and_long_words_in_themselves() {
         assert_eq!(wrapped("one two three", 8), ["one two", "three"]);
         assert_eq!(wrapped("abcdefghij", 4), ["abcd", "efgh", "ij"]);

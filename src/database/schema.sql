@@ -1,9 +1,9 @@
 -- The observable company. What is stored as codes comes back as words through ordinary views, so that the file
 -- opens in any SQLite tool; the two block tables (daily_usage, ads_revenue) are served by the program.
 --
--- What follows from a row alone at little cost is a generated column of it: it takes no room, has its declared type, and
--- the engine can join by it (a note, too). It is worked out for every row that is written, so what takes longer or needs another
--- table, is worked out where it is read and gets its type by CAST. Without one, numbers and texts are never equal.
+-- What follows from a row alone is a generated column of it: it takes no room, has its declared type, and the engine can
+-- join by it. It is worked out for every row that is written, so a costly one that nobody joins by is worked out where it
+-- is read, as is what needs another table; CAST gives those their type: without one, numbers and texts are never equal.
 
 CREATE TABLE projection (
     id INTEGER PRIMARY KEY CHECK (id = 1),

@@ -6,7 +6,8 @@ use std::time::Duration;
 use super::query::Limits;
 use super::{Cell, Desk, Entry, Location, Position, Projector, QueryError, Rows, number_at, text_at};
 use crate::world::day::{step_day, tests::policy_p};
-use crate::world::events::Facts;
+use crate::world::events::{Facts, IssueOpened};
+use crate::world::identifiers::Group;
 use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::state::World;
@@ -121,6 +122,28 @@ fn rows_agree_with_the_world() {
             assert_eq!(rows(&desk, &sql).rows, [expected]);
         }
     }
+}
+
+#[test]
+fn issues_age_on_the_days_on_which_the_desk_of_issues_works() {
+    let params = Arc::new(Params::shipped());
+    let (projector, _) = Projector::start(Location::memory(), 1, params, |_| false).expect("a database");
+    for (day, opened, aged) in [(1, Some(1), false), (2, None, true), (3, Some(2), false), (4, None, true)] {
+        let mut facts = Facts::default();
+        facts.begin(day);
+        facts.issues_aged = aged;
+        let group = Group::at(0).expect("S1");
+        facts.issues_opened.extend(opened.map(|issue| IssueOpened { issue, customer: 7, group }));
+        projector.write(entry(facts));
+    }
+    projector.commit(position(4));
+    projector.wait().expect("everything is written");
+    let found = rows(
+        &projector.desk().expect("a desk"),
+        "SELECT issue_id, open_day, days_open FROM issues ORDER BY 1",
+    );
+    let expected = [[1, 1, 2], [2, 3, 1]].map(|row| row.map(Cell::Integer).to_vec());
+    assert_eq!(found.rows, expected);
 }
 
 #[test]

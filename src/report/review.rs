@@ -2,7 +2,6 @@
 //! cash lasts at that.
 
 use super::words::{count, money};
-use crate::notation::signed_dollars;
 use crate::session::Observation;
 
 /// Lines on the money of a company before its next week.
@@ -11,7 +10,8 @@ pub fn money_lines(seen: &Observation) -> Vec<String> {
     let change = now - seen.committed_before;
     let changed = match change {
         0.0 => String::new(),
-        change => format!(", {} a week compared with last week", signed_dollars(change * 7.0)),
+        change if change > 0.0 => format!(", {} more than last week", money(change * 7.0)),
+        change => format!(", {} less than last week", money(-change * 7.0)),
     };
     let mut lines = vec![format!("Committed: {} a day = {} a week{changed}", money(now), money(now * 7.0))];
     let spent = -seen.booked_since.sum();
@@ -60,7 +60,7 @@ mod tests {
         assert_eq!(
             money_lines(&session.observe()),
             [
-                "Committed: $5,585 a day = $39,095 a week, +$38,500 a week compared with last week",
+                "Committed: $5,585 a day = $39,095 a week, $38,500 more than last week",
                 "One-time costs since the last week: $25,000",
                 "No income yet; at this pace cash lasts 24 weeks",
             ]

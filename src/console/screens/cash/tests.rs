@@ -159,6 +159,18 @@ fn forecasts_are_compared_once_their_day_has_come() {
 }
 
 #[test]
+fn the_mean_is_that_of_four_weeks_or_of_as_many_as_there_are() {
+    let books = Books::of(&Company::of(&played(6)));
+    for (week, weeks) in [(6, vec![3, 4, 5, 6]), (4, vec![1, 2, 3, 4]), (2, vec![1, 2]), (1, vec![1])] {
+        let mean = books.mean_of_four(week);
+        for (category, mean) in mean.iter().enumerate() {
+            let sum: f64 = weeks.iter().map(|week| books.week(*week)[category]).sum();
+            assert!((mean - sum / weeks.len() as f64).abs() < 1e-9, "category {category} of week {week}");
+        }
+    }
+}
+
+#[test]
 fn it_is_drawn_in_every_window_with_and_without_data() {
     for weeks in [0, 1, 9] {
         let mut session = played(weeks);

@@ -16,7 +16,7 @@ use self::news::Item;
 use super::product::model::{Day, projects, service};
 use super::{Figure, Look, Screen, ScreenId};
 use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Align, Canvas, Click};
+use crate::console::canvas::{Align, Canvas, Click, fit};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::readings::Reading;
@@ -478,7 +478,11 @@ fn draw_row(canvas: &mut Canvas<'_>, area: Rect, row: &Row, lines: &[String], se
             (0, false) => "·",
             _ => " ",
         };
-        canvas.text(Rect { y, height: 1, ..area }, &format!("{mark} {line}"), role);
+        let more = lines.get(at + 1).filter(|_| y + 1 == area.bottom());
+        let way = if at == 0 { row.way.width() + 1 } else { 0 };
+        let room = (area.width as usize).saturating_sub(2 + way);
+        let shown = more.map_or_else(|| line.clone(), |more| fit(&format!("{line} {more}"), room));
+        canvas.text(Rect { y, height: 1, ..area }, &format!("{mark} {shown}"), role);
     }
     let way = if selected { role } else { Role::Dim };
     canvas.aligned(Rect { height: area.height.min(1), ..area }, &row.way, way, Align::Right);

@@ -188,6 +188,12 @@ fn a_zoomed_pane_has_the_window() {
 }
 
 #[test]
+fn load_is_the_share_of_the_capacity_that_is_used() {
+    let load = |usage, capacity| Day { usage, capacity, ..Day::default() }.utilisation();
+    assert_eq!([load(50.0, 200.0), load(300.0, 200.0), load(5.0, 0.0)], [0.25, 1.5, 0.0]);
+}
+
+#[test]
 fn minutes_of_outage_add_up_to_the_minutes_in_the_title() {
     let day = |day: u32, downtime: f64| Day { day, downtime, capacity: 1.0, ..Day::default() };
     let days: Vec<Day> = (1..=28).map(|at| day(at, if at % 10 == 0 { 30.0 } else { 0.0 })).collect();

@@ -312,7 +312,7 @@ fn weeks_and_runs_are_told() {
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], lines);
     for part in [
         "> report\nrefused no_week_yet: no week has run yet; next runs one\n",
-        "> report\nweek to day 7: cash -$",
+        "> report\nweek to day 7: cash change -$",
         "capacity -$",
         "decided before it: price A: 0 → 12 $/month",
         "forecast of 1 week ago: inside the interval, off by ",

@@ -6,8 +6,10 @@ use std::time::Duration;
 use super::query::Limits;
 use super::{Cell, Desk, Entry, Location, Position, Projector, QueryError, Rows, number_at, text_at};
 use crate::world::day::{step_day, tests::policy_p};
-use crate::world::events::{Facts, IssueOpened};
-use crate::world::identifiers::Group;
+use crate::world::events::{
+    EndCause, Facts, IssueOpened, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus,
+};
+use crate::world::identifiers::{Group, Plan};
 use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::state::World;
@@ -144,6 +146,44 @@ fn issues_age_on_the_days_on_which_the_desk_of_issues_works() {
     );
     let expected = [[1, 1, 2], [2, 3, 1]].map(|row| row.map(Cell::Integer).to_vec());
     assert_eq!(found.rows, expected);
+}
+
+#[test]
+fn a_subscription_that_begins_and_ends_between_two_commits_has_its_days() {
+    let params = Arc::new(Params::shipped());
+    let (projector, _) = Projector::start(Location::memory(), 1, params, |_| false).expect("a database");
+    let mut begins = Facts::default();
+    begins.begin(2);
+    begins.openings.push(SubscriptionOpened {
+        subscription: 1,
+        customer: 7,
+        plan: Some(Plan::B),
+        status: SubscriptionStatus::Subscribed,
+        listed_price: 20.0,
+        promotion: 2.0,
+        effective_price: 18.0,
+        seats: 1,
+    });
+    let mut ends = Facts::default();
+    ends.begin(5);
+    ends.endings.push(SubscriptionEnded {
+        subscription: 1,
+        customer: 7,
+        group: Group::at(0).expect("S1"),
+        seats: 1,
+        day: 5,
+        status: SubscriptionStatus::Cancelled,
+        cause: EndCause::Involuntary,
+    });
+    projector.write(entry(begins));
+    projector.write(entry(ends));
+    projector.commit(position(5));
+    projector.wait().expect("everything is written");
+    let sql = "SELECT start_day, end_day, status, effective_price FROM subscriptions";
+    let found = rows(&projector.desk().expect("a desk"), sql);
+    let expected =
+        [Cell::Integer(2), Cell::Integer(5), Cell::Text("cancelled".to_owned()), Cell::Real(18.0)].to_vec();
+    assert_eq!(found.rows, [expected]);
 }
 
 #[test]

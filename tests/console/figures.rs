@@ -35,7 +35,10 @@ const COSTS: [&str; 6] =
 
 const FIGURES: [Figure; 28] = [
     Figure(&["cash", "cash at week's end", "cash is"], "SELECT sum(amount) FROM ledger"),
-    Figure(&["cash change", "cash #, of it", CASH_MOVED], "SELECT sum(amount) FROM ledger WHERE {in_week}"),
+    Figure(
+        &["cash change", "cash change #, of it", CASH_MOVED],
+        "SELECT sum(amount) FROM ledger WHERE {in_week}",
+    ),
     Figure(
         &["subscribers", "individual subscribers", "subs"],
         "SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) WHERE status = 'subscribed' \

@@ -55,7 +55,8 @@ fn in_words(report: &WeekReport) -> String {
     let parts: Vec<String> =
         report.parts.iter().map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars))).collect();
     let change = signed_dollars(week.cash_change);
-    let mut lines = vec![format!("week to day {}: cash {change}, of it {}", week.day, parts.join(", "))];
+    let mut lines =
+        vec![format!("week to day {}: cash change {change}, of it {}", week.day, parts.join(", "))];
     if !report.decided.is_empty() {
         lines.push(format!("decided before it: {}", report.decided.join("; ")));
     }

@@ -392,7 +392,7 @@ impl Filing {
         if self.filled.as_flattened().contains(&true)
             && let Some(row) = rows.next()
         {
-            let words = "naive: four-week mean of income and usage at the costs set now; the run records it";
+            let words = "naive: four-week mean of income and usage at the costs set now (recorded)";
             canvas.text(row, words, Role::Text);
         }
         let used = 7;

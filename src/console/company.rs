@@ -163,3 +163,20 @@ fn insights(session: &Session) -> BTreeMap<Group, Value> {
     };
     known.into_iter().filter_map(told).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::played;
+
+    #[test]
+    fn a_trend_has_as_many_weeks_as_were_asked_for_and_the_mean_those_of_four() {
+        let company = Company::of(&played(6));
+        let payments: Vec<f64> = company.weeks.iter().map(|week| week.payments).collect();
+        assert_eq!(company.trend(4, |week| week.payments), payments[2..]);
+        assert_eq!(company.trend(9, |week| week.payments), payments);
+        let mean = company.mean_of_four(|week| week.payments).expect("weeks have passed");
+        assert!((mean - payments[2..].iter().sum::<f64>() / 4.0).abs() < 1e-9);
+        assert_eq!(Company::of(&played(0)).mean_of_four(|week| week.payments), None);
+    }
+}

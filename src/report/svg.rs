@@ -306,6 +306,14 @@ mod tests {
     }
 
     #[test]
+    fn the_highest_value_is_on_top_and_the_lowest_at_the_foot() {
+        let scale = || Scale { from: -10.0, to: 30.0, step: 10.0 };
+        let sheet = Sheet { x: scale(), y: scale(), top: 20.0 };
+        let places = [30.0, 10.0, -10.0, 99.0].map(|value| sheet.down(value));
+        assert_eq!(places, [20.0, 20.0 + INSIDE / 2.0, 20.0 + INSIDE, 20.0]);
+    }
+
+    #[test]
     fn every_coordinate_lies_inside_of_the_drawing() {
         let wild = Curve {
             name: "a<b".to_owned(),

@@ -5,6 +5,7 @@ use crate::console::effect::Effect;
 use crate::console::posts::Kind as Author;
 use crate::console::screens::product::model::Project;
 use crate::console::screens::{Figure, ScreenId};
+use crate::notation::grouped;
 use crate::session::Rows;
 use crate::session::text_at;
 
@@ -108,11 +109,18 @@ pub fn of_posts(company: &Company) -> Vec<Item> {
             _ => {}
         }
     }
-    let usual = f64::from(before) / 4.0;
+    // A young company has fewer weeks to compare with.
+    let weeks = (day / 7).saturating_sub(1).min(4);
+    let usual = grouped(f64::from(before) / f64::from(weeks.max(1)), 0);
+    let compared = match weeks {
+        0 => String::new(),
+        1 => format!(" ({usual} the week before)"),
+        4 => format!(" (four-week average {usual})"),
+        weeks => format!(" ({usual} on average in the {weeks} weeks before)"),
+    };
     let mut items = Vec::new();
     if own > 0 {
         let noun = if own == 1 { "post" } else { "posts" };
-        let compared = if before > 0 { format!(" (four-week average {usual:.0})") } else { String::new() };
         items.push(Item { kind: Kind::Posts, text: format!("{own} new {noun} about us{compared}") });
     }
     if press > 0 {

@@ -187,3 +187,29 @@ fn cash_changes_in_the_first_week_as_the_header_says() {
     assert!((change - company.seen.cash_change).abs() < 0.01, "{row:?}");
     assert_eq!(row[4].number, Some(company.seen.starting_cash), "{row:?}");
 }
+
+#[test]
+fn posts_are_compared_with_the_weeks_there_were() {
+    for (weeks, words) in
+        [(1, ""), (2, "the week before"), (3, "on average in the 2 weeks before"), (6, "four-week average")]
+    {
+        let company = Company::of(&played(weeks));
+        let by_people = |post: &&std::sync::Arc<crate::console::posts::Post>| {
+            post.kind != crate::console::posts::Kind::Press
+        };
+        let of = |week: u32| {
+            company.posts.iter().filter(by_people).filter(|post| post.day.div_ceil(7) == week).count()
+        };
+        let last = weeks as u32;
+        let before: Vec<f64> = (last.saturating_sub(4).max(1)..last).map(|week| of(week) as f64).collect();
+        let usual = crate::notation::grouped(before.iter().sum::<f64>() / before.len().max(1) as f64, 0);
+        let told = news::of_posts(&company).into_iter().find(|item| item.kind == Kind::Posts).expect("posts");
+        assert!(told.text.starts_with(&format!("{} new post", of(last))), "{}", told.text);
+        let compared = told.text.split_once('(').map_or("", |(_, compared)| compared);
+        assert!(
+            compared.contains(words) && (before.is_empty() || compared.contains(&usual)),
+            "{}: {usual}",
+            told.text
+        );
+    }
+}

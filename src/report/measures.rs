@@ -321,6 +321,10 @@ mod tests {
         let run = [week(0, vec![general, aimed]), week(7, vec![]), week(14, vec![ended])];
         assert_eq!(targeted_development(&run), Some(600.0 / 900.0));
         assert_eq!(targeted_development(&[week(0, vec![])]), None);
+        // The last week of a bankrupt company is shorter.
+        let [general, aimed] = [set("set_daily_spend", "development", 100.0), run[0].changes[1].clone()];
+        let short = Decisions { until: 9, ..week(7, vec![aimed]) };
+        assert_eq!(targeted_development(&[week(0, vec![general]), short]), Some(600.0 / 1500.0));
     }
 
     #[test]

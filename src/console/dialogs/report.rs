@@ -227,17 +227,18 @@ fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16) -> Part<'a> {
 
 /// What is new, each with the key of the screen that shows it, in as many lines as it takes.
 fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>) -> Part<'a> {
-    let kinds: [(u32, &str, &str, ScreenId); 6] = [
-        (told.week.threads_opened, "thread", "threads", ScreenId::Inbox),
-        (told.week.replies, "reply", "replies", ScreenId::Inbox),
-        (told.customer_posts, "post", "posts", ScreenId::Social),
-        (told.comments, "comment on ours", "comments on ours", ScreenId::Social),
-        (told.news_items, "news item", "news items", ScreenId::Social),
+    let kinds: [(u32, &str, &str, Option<ScreenId>); 6] = [
+        (told.week.threads_opened, "thread", "threads", Some(ScreenId::Inbox)),
+        (told.week.replies, "reply", "replies", Some(ScreenId::Inbox)),
+        (told.customer_posts, "post", "posts", Some(ScreenId::Social)),
+        (told.comments, "comment on ours", "comments on ours", Some(ScreenId::Social)),
+        (told.news_items, "news item", "news items", Some(ScreenId::Social)),
         (
             told.week.research_finished,
             "finished R&D project or study",
             "finished R&D projects and studies",
-            ScreenId::Product,
+            // The notices below tell what they were; projects and studies have screens of their own.
+            None,
         ),
     ];
     let found: Vec<_> = kinds.into_iter().filter(|(count, ..)| *count > 0).collect();
@@ -248,10 +249,9 @@ fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>)
         let text = format!("{dot}{} {}", grouped(f64::from(*count), 0), if *count == 1 { one } else { more });
         // What leads to the same screen shares its key.
         let last = found.get(at + 1).is_none_or(|next| next.3 != *screen);
-        let key = look
-            .keys
-            .label(screen.action())
+        let key = screen
             .filter(|_| last)
+            .and_then(|screen| look.keys.label(screen.action()))
             .map_or(String::new(), |key| format!(" [{key}]"));
         if used + text.width() + key.width() > width as usize {
             lines.push(vec![canvas.span("   ", Role::Text)]);

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{AHEAD, Need, Place, Problem, Situation, rounded_up};
+use super::{AHEAD, MONTH, Need, Place, Problem, Situation, rounded_up};
 use crate::notation::{json_number, percent};
 use crate::report::words::{count, money, whole};
 use crate::session::{DeliveredQuality, Estimates, GroupWeek};
@@ -297,7 +297,7 @@ impl Offers<'_> {
     }
 }
 
-/// A better model if one is good enough, otherwise development for the group.
+/// A better model if one is good enough and pays, otherwise development for the group.
 fn better_quality(
     situation: &Situation<'_>,
     group: Group,
@@ -308,7 +308,12 @@ fn better_quality(
     let models = &situation.terms.models;
     let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     let product = delivered / now.multiplier;
-    let enough = models.iter().find(|model| model.tier > now.tier && product * model.multiplier >= floor);
+    // A model whose compute costs more than the plan brings is no advice. Companies name a price of their own.
+    let used =
+        situation.estimate(group)?.account_usage().min(situation.settings.quotas[plan].units()) * MONTH;
+    let pays = |unit_cost: f64| group.is_enterprise() || used * unit_cost <= situation.settings.prices[plan];
+    let better = models.iter().filter(|model| model.tier > now.tier && pays(model.unit_cost));
+    let enough = better.into_iter().find(|model| product * model.multiplier >= floor);
     if let Some(model) = enough {
         return Some((
             format!("model tier {} delivers {:.4} on {plan}", model.tier, product * model.multiplier),
@@ -316,6 +321,11 @@ fn better_quality(
         ));
     }
     const DOLLARS: f64 = 5_000.0;
+    // What is on its way needs nothing but time.
+    let settings = situation.session.settings();
+    if settings.targeted_development.targeted_spend.get(&group).is_some_and(|spend| *spend >= DOLLARS) {
+        return None;
+    }
     let gain = situation.session.targeted_gain(DOLLARS) * now.multiplier;
     let days = ((floor - delivered) / gain).ceil();
     Some((

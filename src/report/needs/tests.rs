@@ -129,6 +129,12 @@ fn quality_below_the_floor_wins_nobody() {
     let need = is_first(&session, Problem::NoSales(group("S2")), &["quality: the best for them"]);
     let Place::Call("set_targeted_dev_spend", arguments) = &need.place else { panic!("{need:?}") };
     assert_eq!(arguments["targeted_spend"]["S2"], 5_000.0);
+    let mut session = session;
+    session.call("set_targeted_dev_spend", arguments, Via::Script).expect("the proposal");
+    assert!(
+        needs(&session).iter().all(|need| need.problem != Problem::NoSales(group("S2"))),
+        "it is on its way"
+    );
 }
 
 #[test]

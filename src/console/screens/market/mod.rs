@@ -78,10 +78,15 @@ fn row_of(group: Group, known: Known, company: &Company) -> Vec<Cell> {
         return vec![id, not_found, none(), none(), none(), none(), none()];
     }
     let day = |day: Option<u32>| match day {
-        Some(0) => Cell::number(0.0, "start").role(Role::Dim),
         Some(day) => Cell::number(f64::from(day), format!("day {day}")),
         None => none(),
     };
+    let found = match known.found {
+        Some(0) if known.studied.is_none() => Cell::number(0.0, "start").role(Role::Dim),
+        found => day(found),
+    };
+    // The table gives the day on which a group was found as that of its last study, too.
+    let studied = known.studied.filter(|day| level > 1 || known.found != Some(*day));
     let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
     let next = match study_of(company, group) {
         Some(study) => {
@@ -101,8 +106,8 @@ fn row_of(group: Group, known: Known, company: &Company) -> Vec<Cell> {
         Cell::number(f64::from(level), level.to_string()),
         Cell::number(noise, format!("±{}", percent(noise, 0))),
         next,
-        day(known.found),
-        day(known.studied),
+        found,
+        day(studied),
     ]
 }
 

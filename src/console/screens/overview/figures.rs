@@ -234,6 +234,8 @@ pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
             };
             let size = change.abs();
             let size = if size == 0.0 { String::new() } else { (metric.write)(size) };
+            // Shares differ by percentage points.
+            let size = size.strip_suffix('%').map_or(size.clone(), |points| format!("{points} pt"));
             Cell::number(change, arrow(change, &size)).role(tone)
         }
         None => Cell::words("–").role(Role::Dim),

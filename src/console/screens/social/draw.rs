@@ -7,6 +7,7 @@ use super::{DESK, FEED, OWN, Social, wall};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click};
 use crate::console::screens::Look;
+use crate::console::text::count;
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Line, Side, Unit, chart};
 use crate::notation::grouped;
@@ -54,7 +55,7 @@ impl Social {
         let focused = self.focus == FEED;
         let filtered = self.filter.words();
         let note = match filtered.is_empty() {
-            true => format!("{} posts", grouped(self.all.len() as f64, 0)),
+            true => count(self.all.len() as f64, "post"),
             false => format!("{filtered}: {} of {}", self.shown.len(), self.all.len()),
         };
         let mut inside = canvas.pane(area, "Feed", &note, focused);

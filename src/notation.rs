@@ -64,6 +64,8 @@ pub fn percent(share: f64, decimals: usize) -> String {
 
 /// A large number in three significant digits with a suffix: `1.23M`, `45.6k`, `789`.
 pub fn compact(value: f64) -> String {
+    // Zero has no sign.
+    let value = value + 0.0;
     let size = value.abs();
     let (scaled, suffix) = match size {
         _ if size >= 999_500_000.0 => (value / 1e9, "B"),
@@ -192,6 +194,14 @@ pub fn printable(text: &str) -> Cow<'_, str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(
+            (compact(-0.0), compact(0.0), compact(-12.0)),
+            ("0".to_owned(), "0".to_owned(), "-12".to_owned())
+        );
+    }
 
     #[test]
     fn nothing_that_is_printed_commands_the_terminal() {

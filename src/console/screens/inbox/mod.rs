@@ -383,7 +383,13 @@ impl Screen for Inbox {
                 self.table.act(Action::First, look.page);
                 self.scroll = 0;
             }
-            Action::TakeAsk => self.set_offer(Offer::as_asked()),
+            Action::TakeAsk => {
+                let targets = self.targets();
+                if !targets.is_empty() && targets.iter().all(|thread| thread.asked().is_none()) {
+                    return vec![Effect::Complain("no price has been asked yet: name one".to_owned())];
+                }
+                self.set_offer(Offer::as_asked());
+            }
             Action::OfferPlan => self.turn_plan(),
             Action::OfferBasis => self.turn_basis(lists),
             Action::OfferPrice => self.type_value(),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use crate::session::Session;
+use crate::world::identifiers::Group;
 
 /// Who writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -115,11 +116,13 @@ fn post_of(told: &Value) -> Post {
     let text = |name: &str| told.get(name).and_then(Value::as_str);
     let answers = number("reply_to_agent_post_id");
     let group = text("group_id").unwrap_or("–");
-    // The press is the only one without a profile, comments aside.
+    // The press writes as the first group and has no profile; customers of groups that were found have none either.
+    let is_press = Group::at(0).is_some_and(|first| first.id() == group);
     let (kind, author) = match (answers, text("persona_name")) {
         (Some(_), name) => (Kind::Comments, format!("{} · {group}", name.unwrap_or("somebody"))),
         (None, Some(name)) => (Kind::Customers, format!("{name} · {group}")),
-        (None, None) => (Kind::Press, "press".to_owned()),
+        (None, None) if is_press => (Kind::Press, "press".to_owned()),
+        (None, None) => (Kind::Customers, group.to_owned()),
     };
     Post {
         kind,
@@ -136,6 +139,19 @@ fn post_of(told: &Value) -> Post {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn customers_of_groups_that_were_found_are_no_press() {
+        let told = |group: &str, name: Value| {
+            post_of(
+                &json!({ "post_id": 4, "day": 9, "content": "x", "group_id": group, "persona_name": name }),
+            )
+        };
+        let who = |post: Post| (post.kind, post.author);
+        assert_eq!(who(told("D_S06", Value::Null)), (Kind::Customers, "D_S06".to_owned()));
+        assert_eq!(who(told("S1", Value::Null)), (Kind::Press, "press".to_owned()));
+        assert_eq!(who(told("S1", "Ada".into())), (Kind::Customers, "Ada · S1".to_owned()));
+    }
     use crate::console::test_kit::played;
     use crate::session::Via;
 

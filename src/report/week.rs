@@ -151,8 +151,8 @@ impl WeekReport {
     pub fn of_session(session: &Session) -> Option<WeekReport> {
         let mut posts: [Vec<u32>; 3] = Default::default();
         for post in session.posts() {
-            // News items are the only posts without a profile, comments aside.
-            let kind = match (post.own_post, &post.profile) {
+            // Nobody's customers write the news.
+            let kind = match (post.own_post, &post.written_by) {
                 (Some(_), _) => 1,
                 (None, Some(_)) => 0,
                 (None, None) => 2,

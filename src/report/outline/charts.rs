@@ -16,8 +16,9 @@ pub fn cash(story: &Story) -> Option<Block> {
     if points.len() < 2 {
         return None;
     }
-    let low = story.cash_by_day.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = story.cash_by_day.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // Day 0 is told after what was bought on it; what there was before belongs to the range, too.
+    let low = story.cash_by_day.iter().copied().fold(story.start_cash, f64::min);
+    let high = story.cash_by_day.iter().copied().fold(story.start_cash, f64::max);
     let mut curves = vec![Curve { name: "cash".to_owned(), points }];
     let fan = open_fan(story);
     let band = fan.map(|(band, expected)| {

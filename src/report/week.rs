@@ -269,6 +269,13 @@ mod tests {
     use crate::report::test_kit;
 
     #[test]
+    fn an_interval_holds_its_ends() {
+        let due = |outcome| Due { horizon_days: 7, point: 5.0, lower: 1.0, upper: 9.0, outcome };
+        let inside = [0.9, 1.0, 5.0, 9.0, 9.1].map(|outcome| due(outcome).is_inside());
+        assert_eq!(inside, [false, true, true, true, false]);
+    }
+
+    #[test]
     fn the_parts_add_up_to_the_change_of_cash_and_agree_with_the_ledger() {
         let mut session = test_kit::played(5);
         let report = WeekReport::of_session(&session).expect("five weeks have passed");

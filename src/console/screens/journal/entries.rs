@@ -298,7 +298,11 @@ pub fn in_words(value: &Value) -> String {
         Value::Bool(truth) => truth.to_string(),
         Value::Number(own) => own.as_f64().map_or_else(|| own.to_string(), plain),
         Value::String(text) => text.split_whitespace().collect::<Vec<_>>().join(" "),
-        Value::Array(values) => format!("[{}]", values.iter().map(in_words).collect::<Vec<_>>().join(" ")),
+        Value::Array(values) => {
+            // Whole numbers in a list are numbers of customers and threads.
+            let item = |value: &Value| if value.is_u64() { value.to_string() } else { in_words(value) };
+            format!("[{}]", values.iter().map(item).collect::<Vec<_>>().join(" "))
+        }
         Value::Object(fields) => {
             let field = |(name, value): (&String, &Value)| match value {
                 Value::Object(_) => format!("{name}({})", in_words(value)),
@@ -326,6 +330,7 @@ mod tests {
             (json!({"A": 12.0, "B": 25.5, "C": 1200}), "A 12 B 25.5 C 1,200"),
             (json!({"targeted_spend": {"search_ads": {"S3": 40}}}), "targeted_spend(search_ads(S3 40))"),
             (json!({"text": "two\nlines", "to": [1, 2], "x": null}), "text two lines to [1 2] x –"),
+            (json!({"deals": [[1037, [["C", 40.05]]]]}), "deals [[1037 [[C 40.05]]]]"),
             (json!({}), ""),
             (json!({"rate": 0.0125, "spend": 172.35000000000002}), "rate 0.0125 spend 172.35"),
         ] {

@@ -239,11 +239,11 @@ fn a_query_that_takes_too_much_memory_is_stopped() {
     let sorted = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) \
                   SELECT length(z) FROM (SELECT randomblob(1900000) AS z FROM n ORDER BY 1)";
     let error = desk.ask(sorted, limits).expect_err("too much memory");
-    assert_eq!(error.code, "sql_timeout");
+    assert_eq!(error.code, "sql_timeout", "{}", error.message);
     assert!(error.message.contains("memory"), "{}", error.message);
     let wide = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT hex(zeroblob(1000000)) FROM n";
     let error = desk.ask(wide, limits).expect_err("too large a result");
-    assert_eq!(error.code, "sql_error");
+    assert_eq!(error.code, "sql_error", "{}", error.message);
     assert!(error.message.contains("MiB"), "{}", error.message);
     desk.ask("SELECT 1", limits).expect("an answer");
 }

@@ -2,20 +2,23 @@
 -- what: What came in and went out each week, and what was left. The running sum is the cash you have.
 -- chart: line week cash
 WITH days AS MATERIALIZED (
-    SELECT day, sum(max(amount, 0)) AS income,
-        sum(CASE WHEN day % 7 = 0 AND category IN ('research_project', 'market_research', 'group_research')
-            THEN 0 ELSE min(amount, 0) END) AS cost,
-        sum(CASE WHEN day % 7 = 0 AND category IN ('research_project', 'market_research', 'group_research')
-            THEN amount ELSE 0 END) AS bought
+    SELECT day, total(amount) FILTER (WHERE amount > 0) AS income, total(amount) FILTER (WHERE amount < 0) AS cost
     FROM ledger
+    GROUP BY day
+), bought AS (
+    SELECT day, sum(amount) AS amount
+    FROM ledger
+    WHERE day IN (SELECT day FROM days WHERE day % 7 = 0)
+        AND category IN ('research_project', 'market_research', 'group_research')
     GROUP BY day
 )
 SELECT week, round(sum(income), 2) AS income, round(sum(cost), 2) AS cost, round(sum(income) + sum(cost), 2) AS net,
     round(sum(sum(income) + sum(cost)) OVER (ORDER BY week), 2) AS cash
 FROM (
-    SELECT (day + 6) / 7 AS week, income, cost FROM days
+    SELECT (day + 6) / 7 AS week, income, cost - coalesce(bought.amount, 0) AS cost
+    FROM days LEFT JOIN bought USING (day)
     UNION ALL
-    SELECT day / 7 + 1, 0, bought FROM days WHERE bought <> 0
+    SELECT day / 7 + 1, 0, amount FROM bought
 )
 GROUP BY 1
 ORDER BY 1

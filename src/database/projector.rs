@@ -118,8 +118,9 @@ impl Projector {
             .spawn(move || {
                 let rows = RowWriter::new(params, writer_shelf, issue_clock);
                 let connection = &mut connection;
+                let readers_go_on = has_log(connection);
                 let (gate, spare, failed) = (writer_gate, writer_spare, writer_failed);
-                Worker { connection, rows, gate, spare, failed, told }.run(&queue);
+                Worker { connection, rows, gate, readers_go_on, spare, failed, told }.run(&queue);
             })
             .map_err(|error| ProjectionError(error.to_string()))?;
         let projector =
@@ -222,6 +223,8 @@ struct Worker<'a> {
     connection: &'a mut Connection,
     rows: RowWriter,
     gate: Arc<RwLock<()>>,
+    /// Whether readers see the state before a transaction while it is written, and do not wait for its end.
+    readers_go_on: bool,
     spare: Spare,
     failed: Failed,
     /// The words for what goes wrong.
@@ -283,6 +286,11 @@ impl Worker<'_> {
 
     /// One transaction: writes what is pending.
     fn transact(&mut self, pending: &mut Vec<Entry>, position: &Position) -> rusqlite::Result<()> {
+        let gate = self.gate.clone();
+        let close = || gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // Where the first row keeps readers out, a reader that came through the gate would wait for the writer, and the
+        // writer before the gate for the reader.
+        let early = (!self.readers_go_on).then(close);
         let transaction = self.connection.transaction()?;
         for entry in pending.drain(..) {
             self.rows.write(&transaction, &entry)?;
@@ -293,12 +301,18 @@ impl Worker<'_> {
             "INSERT OR REPLACE INTO projection VALUES (1, ?1, ?2, ?3)",
             rusqlite::params![position.seq as i64, position.line_hash, position.check()],
         )?;
-        let closed = self.gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let closed = early.unwrap_or_else(close);
         transaction.commit()?;
         self.rows.publish();
         drop(closed);
         Ok(())
     }
+}
+
+/// Whether what is written goes beside the database first, where readers of the state before are not kept out.
+fn has_log(connection: &Connection) -> bool {
+    let journal = connection.query_row("PRAGMA journal_mode", [], |row| row.get::<_, String>(0));
+    journal.is_ok_and(|journal| journal == "wal")
 }
 
 /// Digest of a database's file, with everything committed in it rather than beside it.

@@ -1,6 +1,7 @@
 //! A company of a few weeks, projected and asked.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::query::Limits;
@@ -650,6 +651,24 @@ fn queries_during_a_week_see_the_state_before_it() {
         company.projector.wait().expect("written");
         assert_eq!(rows(&desk, state).rows, [[Cell::Integer(8), Cell::Integer(8)]]);
     }
+}
+
+#[test]
+fn a_reader_and_the_writer_never_wait_for_each_other() {
+    let mut company = Company::open(Location::memory());
+    let desk = company.projector.desk().expect("a desk");
+    let over = Arc::new(AtomicBool::new(false));
+    let is_over = over.clone();
+    // Without pause, so that it comes between the first row of a transaction and its end.
+    let reader = std::thread::spawn(move || {
+        while !is_over.load(Ordering::Relaxed) {
+            let answer = desk.ask("SELECT count(*) FROM ledger", LIMITS);
+            assert!(answer.is_ok(), "{answer:?}");
+        }
+    });
+    company.weeks(30);
+    over.store(true, Ordering::Relaxed);
+    reader.join().expect("every question is answered");
 }
 
 #[test]

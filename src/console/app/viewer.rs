@@ -14,7 +14,7 @@ use crate::console::worker::Job;
 use crate::session::Goal;
 
 /// What only the person who plays can do.
-const OF_PLAYERS: [Action; 15] = [
+const OF_PLAYERS: [Action; 17] = [
     Action::NextWeek,
     Action::Undo,
     Action::Redo,
@@ -30,6 +30,9 @@ const OF_PLAYERS: [Action; 15] = [
     Action::SaveMemo,
     Action::FindGroup,
     Action::StudyGroup,
+    // Threads are marked for an offer.
+    Action::Mark,
+    Action::MarkAll,
 ];
 
 impl Run {

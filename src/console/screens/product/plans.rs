@@ -69,7 +69,12 @@ pub static FIGURES: [Figure; 11] = [
     ("usage/seat, day", |plan| or_none(plan.usage(), |usage| grouped(usage, 1))),
     ("paid/seat, mo.", |plan| or_none(plan.revenue(), cents)),
     ("compute/seat, mo.", |plan| or_none(plan.compute(), cents)),
-    ("gross margin", |plan| or_none(plan.margin(), |margin| percent(margin, 1))),
+    ("gross margin", |plan| {
+        // The sign stands beside the plan that loses, where no window cuts it.
+        or_none(plan.margin(), |margin| {
+            format!("{}{}", if margin < 0.0 { "! " } else { "" }, percent(margin, 1))
+        })
+    }),
     ("billed a month", |plan| format!("${}", compact(plan.monthly))),
 ];
 
@@ -101,8 +106,7 @@ pub fn draw_plans(
             (false, false) => Role::Text,
         };
         canvas.clear(row, role);
-        let warning = if loses { " ! loses" } else { "" };
-        canvas.text(row, &(line(name, [0, 1, 2].map(|plan| write(&plans[plan]))) + warning), role);
+        canvas.text(row, &line(name, [0, 1, 2].map(|plan| write(&plans[plan]))), role);
         if focused && at == selected {
             let place = Rect { x: row.x + 19 + 11 * column as u16, width: 10, ..row };
             let mark = Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED);

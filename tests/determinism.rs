@@ -155,8 +155,8 @@ fn the_mode_of_a_run_changes_nothing() {
 /// State hashes of the weeks of a run, by day.
 fn states(folder: &Path) -> Vec<(u32, String)> {
     let read = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
-    let weeks = read.lines.iter().filter(|line| line.kind == "week");
-    weeks.map(|line| (line.day, line.fields["state_hash"].as_str().expect("a hash").to_owned())).collect()
+    let closed = read.lines.iter().filter_map(|line| Some((line.day, line.record.closing()?)));
+    closed.map(|(day, closing)| (day, closing.state_hash.clone())).collect()
 }
 
 fn only_run(runs: &Path) -> PathBuf {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use novamind::session::{
-    Access, Cell, Configuration, NewRun, Session, Storage, Trajectory, Via, WaitingThread, verify,
+    Access, Cell, Configuration, NewRun, Record, Session, Storage, Trajectory, Via, WaitingThread, verify,
 };
 use serde_json::{Value, json};
 
@@ -130,7 +130,11 @@ fn a_changed_price_is_found(place: &Path) {
     let path = place.join("trajectory.jsonl");
     let text = std::fs::read_to_string(&path).expect("a trajectory");
     let lines = Trajectory::read(&path).expect("it is whole").lines;
-    assert!(lines.iter().any(|line| line.fields.get("tool") == Some(&json!("send_enterprise_deal"))));
+    assert!(
+        lines
+            .iter()
+            .any(|line| matches!(&line.record, Record::Call(call) if call.tool == "send_enterprise_deal"))
+    );
     std::fs::write(&path, text.replacen("[\"B\",34", "[\"B\",33", 1)).expect("written");
     assert!(verify(place).is_err());
 }

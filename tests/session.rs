@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use novamind::session::record::{Call, Outcome};
 use novamind::session::{
-    Access, Cell, Configuration, Ended, Forecasts, Mode, NewRun, Session, Storage, Trajectory, Via, find_run,
-    find_run_to_read, list_runs, verify,
+    Access, Cell, Configuration, Ended, Forecasts, Line, Mode, NewRun, Record, Session, Storage, Trajectory,
+    Via, find_run, find_run_to_read, list_runs, verify,
 };
 use serde_json::{Value, json};
 
@@ -121,9 +122,12 @@ fn refused_calls_change_nothing_and_are_recorded() {
     let place = session.folder().expect("a folder").to_owned();
     drop(session);
     let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("it reads").lines;
-    let recorded: Vec<(&str, &Value)> =
-        lines.iter().skip(1).map(|line| (line.kind.as_str(), &line.fields["refusal"]["code"])).collect();
-    assert_eq!(recorded, [("call", &json!("price_not_positive")), ("call", &json!("rationale_missing"))]);
+    let refused = |line: &Line| match &line.record {
+        Record::Call(Call { outcome: Outcome::Refused(refusal), .. }) => Some(refusal.code.clone()),
+        _ => None,
+    };
+    let recorded: Vec<Option<String>> = lines.iter().skip(1).map(refused).collect();
+    assert_eq!(recorded, ["price_not_positive", "rationale_missing"].map(|code| Some(code.to_owned())));
 }
 
 #[test]
@@ -266,7 +270,7 @@ fn a_run_ends_on_its_last_day_and_refuses_to_act_then() {
     drop(session);
     let kinds = |place: &Path| -> Vec<String> {
         let read = Trajectory::read(&place.join("trajectory.jsonl")).expect("it reads");
-        read.lines.into_iter().map(|line| line.kind).collect()
+        read.lines.iter().map(|line| line.record.kind().to_owned()).collect()
     };
     assert_eq!(kinds(&place), ["start", "advance", "week", "advance", "week", "end"]);
     let opened = Session::open(&place, Access::Write, true).expect("it opens");

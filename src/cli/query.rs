@@ -7,8 +7,9 @@ use clap::{Args, ValueEnum};
 use super::run::progress_bar;
 use super::{Context, Failure, print};
 use crate::notation::printable;
+use crate::session::record::Outcome;
 use crate::session::{
-    Access, Cell, Line, Refusal, Rows, RunError, Session, Trajectory, desk_of_file, find_run_to_read,
+    Access, Cell, Line, Record, Refusal, Rows, RunError, Session, Trajectory, desk_of_file, find_run_to_read,
     rebuild_database, rows_as_json,
 };
 
@@ -93,10 +94,11 @@ fn ask_file(folder: &Path, sql: &str) -> Result<Option<Rows>, Failure> {
 
 fn moves_database(line: &Line) -> bool {
     let reads = |name: &str| crate::tools::find(name).is_some_and(|tool| !tool.spec().kind.acts());
-    let tool = line.fields.get("tool").and_then(serde_json::Value::as_str).unwrap_or_default();
-    (line.is_accepted_call() && !reads(tool))
-        || line.closes_days()
-        || ["start", "end"].contains(&line.kind.as_str())
+    match &line.record {
+        Record::Call(call) => matches!(call.outcome, Outcome::Accepted(_)) && !reads(&call.tool),
+        Record::Start(_) | Record::Week(_) | Record::Step(_) | Record::End(_) => true,
+        _ => false,
+    }
 }
 
 /// A result as comma-separated values with a header.

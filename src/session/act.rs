@@ -2,13 +2,14 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
-use serde_json::{Map, Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use super::changes::{Change, changes, daily_cost};
 use super::error::RunError;
-use super::record::to_fill;
-use super::trajectory::Durability;
+use super::recording::to_fill;
+use super::trajectory::record::{Call, Outcome, RefusalRecord};
+use super::trajectory::{Durability, Record};
 use super::undo::{Reversal, Step};
 use super::{JournalEntry, Session};
 use crate::notation::cents;
@@ -20,7 +21,7 @@ use crate::world::settings::Settings;
 use crate::world::state::World;
 
 /// Where an action came from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Via {
     /// A form of the console.
@@ -146,24 +147,30 @@ impl Session {
             Ok((arguments, deed, task, answer))
         });
         let took_ms = started.elapsed().as_secs_f64() * 1e3;
-        let mut fields = CallFields { tool: tool.spec().name, arguments, via, took_ms, reversal };
+        let called = |args: Value, outcome| {
+            Record::Call(Call {
+                tool: tool.spec().name.to_owned(),
+                args,
+                outcome,
+                via,
+                took_ms: rounded(took_ms),
+                reversal,
+            })
+        };
         match planned {
             Err(refusal) => {
                 // A refusal changes nothing, so a disk that refuses its line takes nothing away.
-                let _ = self.record_call(fields.refused(&refusal), Durability::Written);
+                let record = called(arguments.clone(), refusal.outcome());
+                let _ = self.record_call(&record, Durability::Written);
                 Err(refusal)
             }
             Ok((given, deed, task, answer)) => {
-                let arguments = Value::Object(given.as_map().clone());
-                fields.arguments = &arguments;
                 let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
-                let accepted = fields.accepted(&answer);
+                let record = called(Value::Object(given.as_map().clone()), Outcome::Accepted(answer.clone()));
                 // Statements can be kept even when the run is over, and then their line comes after its end.
                 let recorded = match &task {
-                    Some(task) if task.leaves_something() => {
-                        self.append("call", self.world.day, accepted, durability).map(|_| ())
-                    }
-                    _ => self.record_call(accepted, durability),
+                    Some(task) if task.leaves_something() => self.append(&record, durability).map(|_| ()),
+                    _ => self.record_call(&record, durability),
                 };
                 recorded.map_err(not_saved)?;
                 task.iter().for_each(|task| self.apply_task(task));
@@ -301,12 +308,11 @@ impl Session {
         }
     }
 
-    fn record_call(&mut self, fields: Map<String, Value>, durability: Durability) -> Result<(), RunError> {
-        let day = self.world.day;
-        if self.ended.is_some() {
-            return Ok(());
+    fn record_call(&mut self, record: &Record, durability: Durability) -> Result<(), RunError> {
+        match self.ended {
+            Some(_) => Ok(()),
+            None => self.append(record, durability).map(|_| ()),
         }
-        self.append("call", day, fields, durability).map(|_| ())
     }
 
     /// Records a refused call that has no other place, for instance a refused week.
@@ -317,8 +323,9 @@ impl Session {
         via: Via,
         refusal: &Refusal,
     ) {
-        let fields = CallFields { tool, arguments, via, took_ms: 0.0, reversal: None };
-        let _ = self.record_call(fields.refused(refusal), Durability::Written);
+        let (tool, args, outcome) = (tool.to_owned(), arguments.clone(), refusal.outcome());
+        let record = Record::Call(Call { tool, args, outcome, via, took_ms: 0.0, reversal: None });
+        let _ = self.record_call(&record, Durability::Written);
     }
 }
 
@@ -336,35 +343,16 @@ pub(super) fn not_saved(error: RunError) -> Refusal {
     Refusal::new("not_saved", message)
 }
 
-struct CallFields<'a> {
-    tool: &'static str,
-    arguments: &'a Value,
-    via: Via,
-    took_ms: f64,
-    reversal: Option<Reversal>,
+/// Milliseconds to a thousandth.
+fn rounded(took_ms: f64) -> f64 {
+    (took_ms * 1e3).round() / 1e3
 }
 
-impl CallFields<'_> {
-    fn accepted(&self, answer: &Value) -> Map<String, Value> {
-        self.with(true, "result", answer.clone())
-    }
-
-    fn refused(&self, refusal: &Refusal) -> Map<String, Value> {
-        self.with(false, "refusal", serde_json::to_value(refusal).unwrap_or(Value::Null))
-    }
-
-    fn with(&self, ok: bool, outcome: &str, value: Value) -> Map<String, Value> {
-        let mut fields = Map::new();
-        fields.insert("tool".to_owned(), self.tool.into());
-        fields.insert("args".to_owned(), self.arguments.clone());
-        fields.insert("ok".to_owned(), ok.into());
-        fields.insert(outcome.to_owned(), value);
-        fields.insert("via".to_owned(), json!(self.via));
-        fields.insert("took_ms".to_owned(), json!((self.took_ms * 1e3).round() / 1e3));
-        if let Some((name, seq)) = self.reversal.map(Reversal::field) {
-            fields.insert(name.to_owned(), seq.into());
-        }
-        fields
+impl Refusal {
+    /// As a line of the trajectory has it.
+    fn outcome(&self) -> Outcome {
+        let Refusal { code, message, field } = self.clone();
+        Outcome::Refused(RefusalRecord { code: code.to_owned(), message, field })
     }
 }
 
@@ -373,22 +361,20 @@ impl Session {
     ///
     /// # Errors
     /// What speaks against it now: the line was changed, or the program is another.
-    pub(super) fn replay_call(&mut self, fields: &Map<String, Value>) -> Result<(), String> {
-        let name = fields.get("tool").and_then(Value::as_str).ok_or("the call names no tool")?;
-        let arguments = fields.get("args").unwrap_or(&Value::Null);
-        let tool = self.tool(name).map_err(|refusal| refusal.message)?;
-        let (given, effect) = self.plan_again(tool, arguments).map_err(|refusal| refusal.to_string())?;
+    pub(super) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
+        let tool = self.tool(&call.tool).map_err(|refusal| refusal.message)?;
+        let (given, effect) = self.plan_again(tool, &call.args).map_err(|refusal| refusal.to_string())?;
         let deed = self.world.resolve(effect, &self.params, &self.streams);
         let task = tool.task(&self.view(), &given);
         // What statements said is not asked again: the database may be ahead of this line. And documents may be worded
         // differently by now.
         let runs = matches!(task, Some(Task::Run { .. }));
         let documents = tool.spec().kind == Kind::Engine && task.is_none();
-        if !runs && !documents && fields.get("result") != Some(&tool.answer(&self.view(), &given, &deed)) {
+        if !runs && !documents && *answer != tool.answer(&self.view(), &given, &deed) {
             return Err("the call answers differently now".to_owned());
         }
         task.iter().for_each(|task| self.apply_task(task));
-        self.apply(tool, &given, Reversal::of(fields), deed);
+        self.apply(tool, &given, call.reversal, deed);
         Ok(())
     }
 

@@ -3,10 +3,10 @@
 use serde_json::{Map, Value, json};
 
 use super::act::{Via, not_saved};
-use super::record::StateHash;
-use super::scripts::as_field;
+use super::recording::StateHash;
 use super::snapshot::WEEKS_BETWEEN;
-use super::trajectory::{Durability, Line, seconds};
+use super::trajectory::record::{Advance, Closing, End};
+use super::trajectory::{Durability, Record, seconds};
 use super::week::{Forecasts, WeekFigures};
 use super::xray::Xray;
 use super::{Decisions, Ended, JournalEntry, Session, groups};
@@ -104,14 +104,15 @@ impl Session {
                 return Err(refusal);
             }
         };
-        let day = self.world.day;
         let calculated = self.run_calculations();
-        let mut fields = advance_fields(&text, &forecasts, via);
-        if !calculated.is_empty() {
-            fields.insert("calculations".to_owned(), as_field(&calculated));
-        }
+        let filed = Advance {
+            rationale: text.clone(),
+            forecasts: forecasts.filed(),
+            via,
+            calculations: calculated.clone(),
+        };
         let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
-        let at = self.append("advance", day, fields, durability).map_err(not_saved)?;
+        let at = self.append(&Record::Advance(filed), durability).map_err(not_saved)?;
         self.calculated = calculated;
         self.file(text, &forecasts, &at);
         Ok(self.run_week(progress))
@@ -129,7 +130,7 @@ impl Session {
         let until = self.next_decision_day().min(self.world.day + days.max(1));
         let from = self.world.day;
         let state = self.run_days(until, progress);
-        Ok(self.close_days("step", from, state))
+        Ok(self.close_days(Record::Step, from, state))
     }
 
     /// Gives up an unfinished run for good.
@@ -152,7 +153,7 @@ impl Session {
     pub(super) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
         let from = self.world.day;
         let state = self.run_days(self.next_decision_day(), progress);
-        self.close_days("week", from, state)
+        self.close_days(Record::Week, from, state)
     }
 
     /// Simulates days until one of them is reached, or cash is below zero. Returns the hash of the state reached.
@@ -235,11 +236,10 @@ impl Session {
     }
 
     /// Writes the line that closes days that ran, and tells what came of them and what keeps the line from the disk.
-    fn close_days(&mut self, kind: &'static str, from: u32, state: StateHash) -> Week {
+    fn close_days(&mut self, kind: fn(Closing) -> Record, from: u32, state: StateHash) -> Week {
         let figures = self.settle_figures();
-        let fields = self.closing_fields(from, &figures, &state);
-        let day = self.world.day;
-        let mut problem = self.append_done(kind, day, fields);
+        let closing = self.closing(from, &figures, &state);
+        let mut problem = self.append_done(&kind(closing));
         self.facts_chain.close();
         problem = problem.or_else(|| self.close_if_over());
         let due = self.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.running_week.days_run == 0;
@@ -269,29 +269,20 @@ impl Session {
 
     fn close_run(&mut self, ended: Ended) -> Option<String> {
         self.ended = Some(ended);
-        let fields = Map::from_iter([
-            ("reason".to_owned(), ended.id().into()),
-            ("cash".to_owned(), json_number(self.world.finance.cash)),
-            ("score".to_owned(), self.score().map_or(Value::Null, json_number)),
-        ]);
-        let day = self.world.day;
-        self.append_done("end", day, fields)
+        let end = End { reason: ended, cash: self.world.finance.cash, score: self.score() };
+        self.append_done(&Record::End(end))
     }
 
-    /// Fields of a `week` or `step` line: what a replay has to arrive at.
-    pub(super) fn closing_fields(
-        &self,
-        from: u32,
-        figures: &WeekFigures,
-        state: &StateHash,
-    ) -> Map<String, Value> {
-        Map::from_iter([
-            ("days_run".to_owned(), (self.world.day - from).into()),
-            ("figures".to_owned(), Value::Object(figures.as_json())),
-            ("cash".to_owned(), json_number(self.world.finance.cash)),
-            ("state_hash".to_owned(), state.0.clone().into()),
-            ("parts".to_owned(), json!(state.1)),
-        ])
+    /// What a line says that closes days: what a replay has to arrive at.
+    pub(super) fn closing(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> Closing {
+        let (state_hash, parts) = state.clone();
+        Closing {
+            days_run: self.world.day - from,
+            figures: figures.as_json(),
+            cash: self.world.finance.cash,
+            state_hash,
+            parts,
+        }
     }
 
     fn report(&self, remark: Option<String>) -> Week {
@@ -320,21 +311,10 @@ impl Session {
     }
 
     /// Files the rationale and forecasts of an `advance` line again.
-    pub(super) fn replay_forecasts(&mut self, line: &Line) -> Result<(), String> {
-        let all: Vec<crate::tools::Forecast> = line
-            .fields
-            .get("forecasts")
-            .and_then(|forecasts| serde_json::from_value(forecasts.clone()).ok())
-            .ok_or("the forecasts cannot be read")?;
-        let all = all.try_into().map_err(|_| "there are not four forecasts")?;
-        let is_naive = |at: usize| {
-            let forecast = line.fields.get("forecasts").and_then(|forecasts| forecasts.get(at));
-            forecast.and_then(|forecast| forecast.get("filled_naively")) == Some(&Value::Bool(true))
-        };
-        let filled_naively = std::array::from_fn(is_naive);
-        let rationale = line.fields.get("rationale").and_then(Value::as_str).unwrap_or_default();
-        self.recall_calculations(&line.fields);
-        self.file(rationale.to_owned(), &Forecasts { all, filled_naively }, &line.at);
+    pub(super) fn replay_forecasts(&mut self, filed: &Advance, at: &str) -> Result<(), String> {
+        let forecasts = Forecasts::of(&filed.forecasts).ok_or("there are not four forecasts")?;
+        self.calculated.clone_from(&filed.calculations);
+        self.file(filed.rationale.clone(), &forecasts, at);
         Ok(())
     }
 
@@ -352,21 +332,4 @@ impl Session {
             projector.write(Entry { forecasts: forecasts.all.iter().map(row).collect(), ..Entry::default() });
         }
     }
-}
-
-fn advance_fields(rationale: &str, forecasts: &Forecasts, via: Via) -> Map<String, Value> {
-    let one = |(forecast, filled): (&crate::tools::Forecast, bool)| {
-        json!({
-            "horizon_days": forecast.horizon_days,
-            "point": json_number(forecast.point),
-            "lower": json_number(forecast.lower),
-            "upper": json_number(forecast.upper),
-            "filled_naively": filled,
-        })
-    };
-    Map::from_iter([
-        ("rationale".to_owned(), rationale.into()),
-        ("forecasts".to_owned(), forecasts.all.iter().zip(forecasts.filled_naively).map(one).collect()),
-        ("via".to_owned(), json!(via)),
-    ])
 }

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::Session;
 use super::feed::Feed;
-use super::record::{FactsChain, StateHash, entry_of, state_hash, to_fill};
+use super::recording::{FactsChain, StateHash, entry_of, state_hash, to_fill};
 use crate::database::{Entry, Projector};
 use crate::world::day::step_day;
 use crate::world::events::{DayFigures, Facts};

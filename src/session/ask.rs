@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value, json};
 
 use super::Session;
+use super::trajectory::Record;
+use super::trajectory::record::Query;
 use super::witness::is_as_left;
 use crate::database::query::Limits;
 use crate::database::{Cell, Desk, Interrupt, Location, QueryError, Rows, Ticket, desk_of};
@@ -84,14 +86,13 @@ impl Session {
     pub fn note_query(&mut self, sql: &str, answer: Result<&Rows, &Refusal>, took: Duration) {
         self.remember_query(sql);
         let rows = answer.ok();
-        let fields = json!({
-            "sql": sql,
-            "rows": rows.map(|rows| rows.rows.len()),
-            "truncated": rows.is_some_and(|rows| rows.truncated),
-            "error": answer.err().map(|refusal| refusal.code),
-            "took_ms": (took.as_secs_f64() * 1e6).round() / 1e3,
-        });
-        self.note("query", fields.as_object().cloned().unwrap_or_default());
+        self.note(Record::Query(Query {
+            sql: sql.to_owned(),
+            rows: rows.map(|rows| rows.rows.len() as u64),
+            truncated: rows.is_some_and(|rows| rows.truncated),
+            error: answer.err().map(|refusal| refusal.code.to_owned()),
+            took_ms: (took.as_secs_f64() * 1e6).round() / 1e3,
+        }));
     }
 
     /// The last statements the database was asked in this run, each once, the newest last.

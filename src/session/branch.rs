@@ -2,14 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use serde_json::{Map, Value, json};
-
-use super::create::{new_id, start_fields};
+use super::create::{new_id, start_of};
 use super::error::RunError;
 use super::manifest::{Manifest, Parent, sync_folder};
 use super::mode::Mode;
 use super::open::Access;
-use super::trajectory::{Durability, Line, Trajectory, TrajectoryWriter, now};
+use super::trajectory::record::Branch;
+use super::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter, now};
 use super::{Ended, Session};
 use crate::tools::Refusal;
 
@@ -99,7 +98,11 @@ fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
 /// Those lines that make a company what it is.
 fn shared_lines(lines: &[Line]) -> Vec<&Line> {
     let makes = |line: &&Line| {
-        line.is_accepted_call() || line.closes_days() || ["advance", "override"].contains(&line.kind.as_str())
+        line.record.accepted_call().is_some()
+            || matches!(
+                line.record,
+                Record::Advance(_) | Record::Week(_) | Record::Step(_) | Record::Override(_)
+            )
     };
     lines.iter().filter(makes).collect()
 }
@@ -108,23 +111,12 @@ fn write_branch(folder: &PathBuf, manifest: &Manifest, shared: &[&Line]) -> Resu
     std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
     manifest.write(folder)?;
     let mut writer = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
-    writer.append("start", 0, start_fields(manifest), Durability::Written)?;
+    writer.append(0, &start_of(manifest), Durability::Written)?;
     for line in shared {
-        writer.append(&line.kind, line.day, own_fields(line), Durability::Written)?;
+        writer.copy(line)?;
     }
-    // In an object of its own, because `seq` is a field of the frame of every line.
-    let from = Map::from_iter([("from".to_owned(), json!(manifest.parent))]);
     let day = shared.last().map_or(0, |line| line.day);
-    writer.append("branch", day, from, Durability::Synced)?;
+    let branch = Branch { from: manifest.parent.clone() };
+    writer.append(day, &Record::Branch(branch), Durability::Synced)?;
     sync_folder(folder)
-}
-
-/// The fields of a line that are not part of its frame.
-fn own_fields(line: &Line) -> Map<String, Value> {
-    let frame = ["seq", "kind", "day", "at", "prev", "sum"];
-    line.fields
-        .iter()
-        .filter(|(name, _)| !frame.contains(&name.as_str()))
-        .map(|(name, value)| (name.clone(), value.clone()))
-        .collect()
 }

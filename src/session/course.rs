@@ -10,6 +10,7 @@ use serde_json::Value;
 use super::error::RunError;
 use super::manifest::Manifest;
 use super::runs::run_folder;
+use super::trajectory::{Line, Record};
 
 /// The course of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -40,34 +41,33 @@ pub fn run_course(runs: &Path, id: &str) -> Result<RunCourse, RunError> {
         let text = String::from_utf8_lossy(&line);
         // Most lines are calls; only those that look like the end of a week are read.
         if closing.iter().any(|kind| text.contains(kind))
-            && let Ok(line) = serde_json::from_str::<Value>(&text)
+            && let Some(line) = Line::unchecked(text.as_bytes())
         {
-            course.add(&line);
+            course.add(line.day, &line.record);
         }
     }
     Ok(course)
 }
 
 impl RunCourse {
-    fn add(&mut self, line: &Value) {
-        let kind = line.get("kind").and_then(Value::as_str).unwrap_or_default();
-        let day = line.get("day").and_then(Value::as_u64).and_then(|day| u32::try_from(day).ok());
-        let cash = line.get("cash").and_then(Value::as_f64);
-        let (true, Some(day), Some(cash)) = (["week", "step", "end"].contains(&kind), day, cash) else {
-            return;
+    fn add(&mut self, day: u32, record: &Record) {
+        let cash = match record {
+            Record::Week(closing) | Record::Step(closing) => closing.cash,
+            Record::End(end) => end.cash,
+            _ => return,
         };
         match self.cash.last_mut() {
             Some(last) if last.0 == day => last.1 = cash,
             _ => self.cash.push((day, cash)),
         }
-        let figure = |name: &str| line.get("figures").and_then(|figures| figures.get(name));
-        if let Some(count) = figure("individual_subscribers").and_then(Value::as_u64) {
+        let Some(figures) = record.closing().map(|closing| &closing.figures) else { return };
+        if let Some(count) = figures.get("individual_subscribers").and_then(Value::as_u64) {
             self.subscribers = count;
         }
-        if let Some(count) = figure("enterprise_seats").and_then(Value::as_u64) {
+        if let Some(count) = figures.get("enterprise_seats").and_then(Value::as_u64) {
             self.seats = count;
         }
-        if let Some(dollars) = figure("recurring_revenue").and_then(Value::as_f64) {
+        if let Some(dollars) = figures.get("recurring_revenue").and_then(Value::as_f64) {
             self.recurring_revenue = dollars;
         }
     }
@@ -108,19 +108,28 @@ mod tests {
 
     #[test]
     fn odd_lines_are_passed_over_and_missing_runs_are_errors() {
-        let mut course = RunCourse::default();
-        for line in [
-            json!({}),
-            json!({"kind": "week"}),
-            json!({"kind": "week", "day": -1, "cash": 1}),
-            json!({"kind": "call", "day": 7, "cash": 1}),
-            json!({"kind": "week", "day": 7, "cash": 5, "figures": 3}),
-            json!({"kind": "end", "day": 7, "cash": 4}),
-        ] {
-            course.add(&line);
-        }
-        assert_eq!(course.cash, [(7, 4.0)]);
         let runs = tempfile::tempdir().expect("a folder");
+        let folder = runs.path().join("0123abcd");
+        let new =
+            NewRun { seed: Some(7), storage: Storage::Runs(runs.path().to_owned()), ..NewRun::default() };
+        let session = Session::create(new, &Configuration::shipped()).expect("a run");
+        std::fs::rename(session.folder().expect("a folder"), &folder).expect("moved");
+        let closing = |cash: f64| {
+            format!(
+                "{{\"kind\":\"week\",\"day\":7,\"days_run\":7,\"figures\":{{}},\"cash\":{cash},\"state_hash\":\"\",\"parts\":{{}}}}"
+            )
+        };
+        let lines = [
+            "{}".to_owned(),
+            json!({"kind": "week"}).to_string(),
+            closing(1.0).replace("7,\"days_run", "-1,\"days_run"),
+            closing(1.0).replace("week", "call"),
+            closing(5.0),
+            json!({"kind": "end", "day": 7, "reason": "horizon", "cash": 4, "score": 4}).to_string(),
+        ];
+        std::fs::write(folder.join("trajectory.jsonl"), lines.join("\n")).expect("written");
+        let course = run_course(runs.path(), "0123abcd").expect("a course");
+        assert_eq!(course.cash, [(0, 1_000_000.0), (7, 4.0)]);
         assert!(run_course(runs.path(), "nothing").is_err());
     }
 }

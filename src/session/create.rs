@@ -3,22 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use serde_json::{Map, Value, json};
-
 use super::configuration::{Configuration, DEFAULT_SCENARIO};
 use super::consent::agreed;
 use super::error::RunError;
 use super::feed::Feed;
 use super::manifest::{FORMAT, Manifest, differences, sync_folder};
 use super::mode::Mode;
-use super::record::FactsChain;
+use super::recording::FactsChain;
 use super::runs::{earlier_runs, label_of, lock_run};
 use super::scripts::Office;
-use super::trajectory::{Durability, SUMS, TrajectoryWriter, now};
+use super::trajectory::record::Start;
+use super::trajectory::{Durability, Record, TrajectoryWriter, now};
 use super::week::WeekFigures;
 use super::{Session, ThisWeek};
 use crate::database::{Location, Projector};
-use crate::notation::json_number;
 use crate::world::MECHANICS;
 use crate::world::day::DayTrace;
 use crate::world::events::Facts;
@@ -126,7 +124,7 @@ impl Session {
                 (trajectory, Some(lock))
             }
         };
-        trajectory.append("start", 0, start_fields(&manifest), Durability::Synced)?;
+        trajectory.append(0, &start_of(&manifest), Durability::Synced)?;
         let projector = start_projector(new.projection, folder.as_deref(), manifest.number(), &params)?;
         let session = Session::assemble(
             manifest,
@@ -299,24 +297,24 @@ pub(super) fn new_id() -> String {
     blake3::hash(mix.as_bytes()).to_hex()[..8].to_owned()
 }
 
-/// Fields of the first line: what the manifest says.
-pub(super) fn start_fields(manifest: &Manifest) -> Map<String, Value> {
-    let fields = json!({
-        "format": manifest.format,
-        "version": manifest.version,
-        "mechanics": manifest.mechanics,
-        "run": manifest.id,
-        "seed": manifest.seed,
-        "days": manifest.days,
-        "cash": json_number(manifest.cash),
-        "scenario": manifest.scenario,
-        "overrides": serde_json::to_value(&manifest.parameters).unwrap_or(Value::Null),
-        "parameters_digest": manifest.parameters_digest,
-        "mode": manifest.mode,
-        "participant": manifest.participant,
-        "consent": manifest.consent,
-        "parent": manifest.parent,
-        (SUMS): true,
-    });
-    fields.as_object().cloned().unwrap_or_default()
+/// The first line: what the manifest says.
+pub(super) fn start_of(manifest: &Manifest) -> Record {
+    let manifest = manifest.clone();
+    Record::Start(Box::new(Start {
+        format: manifest.format,
+        version: manifest.version,
+        mechanics: manifest.mechanics,
+        run: manifest.id,
+        seed: manifest.seed,
+        days: manifest.days,
+        cash: manifest.cash,
+        scenario: manifest.scenario,
+        overrides: manifest.parameters,
+        parameters_digest: manifest.parameters_digest,
+        mode: manifest.mode,
+        participant: manifest.participant,
+        consent: manifest.consent,
+        parent: manifest.parent,
+        line_sums: true,
+    }))
 }

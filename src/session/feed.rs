@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Session;
-use super::record::to_fill;
+use super::recording::to_fill;
 use crate::tools::PublicPost;
 use crate::voice::judge::{self, Circumstances, Judgement, Lexicon, Original, Submission};
 use crate::voice::posts::Writer;

@@ -1,9 +1,10 @@
 //! What was done and why: every confirmed action, week by week, and how the forecasts turned out.
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value, json};
+use serde_json::Value;
 
-use super::trajectory::Durability;
+use super::trajectory::record::View;
+use super::trajectory::{Durability, Record};
 use super::undo::Reversal;
 use super::{Filed, Session, WeekFigures, filed_forecasts};
 use crate::tools::Forecast;
@@ -90,16 +91,14 @@ impl Session {
 
     /// Records what the person looked at, and for how long.
     pub fn note_view(&mut self, screen: &str, from: &str, for_ms: u64) {
-        let fields = json!({ "screen": screen, "from": from, "for_ms": for_ms });
-        self.note("view", fields.as_object().cloned().unwrap_or_default());
+        self.note(Record::View(View { screen: screen.to_owned(), from: from.to_owned(), for_ms }));
     }
 
     /// Records something that changes nothing; once the run is over nothing more is recorded.
-    pub(super) fn note(&mut self, kind: &'static str, fields: Map<String, Value>) {
+    pub(super) fn note(&mut self, record: Record) {
         if self.ended.is_none() {
-            let day = self.world.day;
             // Nothing is lost with it, so a disk that refuses it is no reason to stop.
-            let _ = self.append(kind, day, fields, Durability::Written);
+            let _ = self.append(&record, Durability::Written);
         }
     }
 }

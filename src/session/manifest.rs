@@ -9,7 +9,7 @@ use super::configuration::Configuration;
 use super::consent::Consent;
 use super::error::RunError;
 use super::mode::Mode;
-use super::trajectory::Line;
+use super::trajectory::{Line, Record};
 use crate::world::MECHANICS;
 use crate::world::params::{ParameterError, Params, Source, shipped_sources};
 
@@ -73,28 +73,6 @@ pub struct Parent {
     pub seq: u64,
 }
 
-/// What the first line of a trajectory says of a run.
-#[derive(Deserialize)]
-struct Start {
-    format: u32,
-    version: String,
-    #[serde(default = "first_mechanics")]
-    mechanics: u32,
-    run: String,
-    seed: u64,
-    days: u32,
-    cash: f64,
-    scenario: String,
-    mode: Mode,
-    participant: Option<String>,
-    parameters_digest: String,
-    #[serde(default)]
-    consent: Option<Consent>,
-    parent: Option<Parent>,
-    #[serde(default)]
-    overrides: Table,
-}
-
 impl Manifest {
     /// The name of the run as a number; 0 for a name that is none.
     pub(super) fn number(&self) -> u32 {
@@ -150,11 +128,10 @@ impl Manifest {
             problem: problem.to_owned(),
             safe: "Nothing was changed".to_owned(),
         };
-        let Some(line) = line.filter(|line| line.kind == "start") else {
+        let Some((line, Record::Start(start))) = line.map(|line| (line, &line.record)) else {
             return Err(damaged("the trajectory does not begin with the start of a run"));
         };
-        let start: Start = serde_json::from_value(serde_json::Value::Object(line.fields.clone()))
-            .map_err(|error| damaged(&format!("the start of the run cannot be read ({error})")))?;
+        let start = start.as_ref().clone();
         Manifest {
             format: start.format,
             version: start.version,

@@ -7,13 +7,12 @@ use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
-
 use super::Session;
 use super::error::RunError;
 use super::manifest::{sync_folder, write_whole};
 use super::open::Access;
-use super::trajectory::{Durability, Trajectory};
+use super::trajectory::record::Memo;
+use super::trajectory::{Durability, Record, Trajectory};
 use crate::tools::Refusal;
 
 const FILE: &str = "memo.md";
@@ -66,9 +65,8 @@ impl Session {
         if self.ended.is_some() {
             return Ok(());
         }
-        let fields = json!({ "digest": digest(text.as_bytes()), "length": text.len() });
-        let day = self.world.day;
-        self.append("memo", day, fields.as_object().cloned().unwrap_or_default(), Durability::Synced)?;
+        let memo = Memo { digest: digest(text.as_bytes()), length: text.len() as u64 };
+        self.append(&Record::Memo(memo), Durability::Synced)?;
         Ok(())
     }
 
@@ -86,7 +84,7 @@ impl Session {
         }
         // Once a run is over, notes are kept without a line.
         let Some(kept) = last_digest(trajectory).filter(|_| self.ended.is_none()) else { return };
-        if digest_of(&folder.join(FILE)).as_ref() != Some(kept) {
+        if digest_of(&folder.join(FILE)) != Some(kept) {
             self.remarks
                 .push("memo.md is not as it was kept last: it was changed outside, or damaged.".to_owned());
         }
@@ -98,16 +96,19 @@ impl Session {
 pub(super) fn notes_file(folder: &Path, trajectory: &Trajectory) -> PathBuf {
     let (file, draft) = (folder.join(FILE), folder.join(DRAFT));
     let kept = last_digest(trajectory);
-    let is_kept = |path: &Path| kept.is_some() && digest_of(path).as_ref() == kept;
+    let is_kept = |path: &Path| kept.is_some() && digest_of(path) == kept;
     if !is_kept(&file) && is_kept(&draft) { draft } else { file }
 }
 
-fn last_digest(trajectory: &Trajectory) -> Option<&Value> {
-    trajectory.lines.iter().rev().find(|line| line.kind == "memo")?.fields.get("digest")
+fn last_digest(trajectory: &Trajectory) -> Option<String> {
+    trajectory.lines.iter().rev().find_map(|line| match &line.record {
+        Record::Memo(memo) => Some(memo.digest.clone()),
+        _ => None,
+    })
 }
 
 /// Digest of the notes in a file, as lines tell it; that of no notes where there is no file.
-fn digest_of(path: &Path) -> Option<Value> {
+fn digest_of(path: &Path) -> Option<String> {
     match std::fs::read(path) {
         Ok(bytes) => Some(digest(&bytes)),
         Err(error) if error.kind() == ErrorKind::NotFound => Some(digest(b"")),
@@ -115,8 +116,8 @@ fn digest_of(path: &Path) -> Option<Value> {
     }
 }
 
-fn digest(notes: &[u8]) -> Value {
-    blake3::hash(notes).to_hex().as_str().into()
+fn digest(notes: &[u8]) -> String {
+    blake3::hash(notes).to_hex().to_string()
 }
 
 fn write_draft(draft: &Path, text: &str) -> Result<(), RunError> {

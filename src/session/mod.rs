@@ -17,7 +17,6 @@ mod consent;
 mod course;
 mod create;
 mod dashboard;
-mod decided;
 mod error;
 mod estimates;
 mod feed;
@@ -26,7 +25,6 @@ mod groups;
 mod journal;
 pub mod library;
 mod manifest;
-mod medium;
 mod memo;
 mod mend;
 mod mode;
@@ -37,7 +35,8 @@ mod pace;
 mod place;
 mod playback;
 mod rebuild;
-mod record;
+mod record_view;
+mod recording;
 mod rescue;
 mod runs;
 mod scripts;
@@ -71,7 +70,6 @@ pub use consent::{Consent, ConsentText};
 pub use course::{RunCourse, run_course};
 pub use create::{NewRun, Storage};
 pub use dashboard::DeliveredQuality;
-pub use decided::{Act, Decided, Foreseen};
 pub use error::RunError;
 pub use estimates::Estimates;
 pub use filed::{Filed, filed_forecasts};
@@ -86,6 +84,7 @@ pub use pace::Pace;
 pub use place::{Chapter, Goal, Place, Went};
 pub use playback::Playback;
 pub use rebuild::rebuild_database;
+pub use record_view::{Foreseen, RecordView};
 pub use rescue::{Rescued, rescue};
 pub use runs::{
     RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,
@@ -93,7 +92,7 @@ pub use runs::{
 };
 pub use scripts::Calculated;
 pub use terms::{CapacityTier, ModelTier, RunningStudy, StudyLevel, Terms};
-pub use trajectory::{Line, Trajectory, seconds as moment_of};
+pub use trajectory::{Line, Record, Trajectory, record, seconds as moment_of};
 pub use undo::{Reversal, undone_calls};
 pub use verify::{Verification, verify};
 pub use week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, week_of};
@@ -113,7 +112,7 @@ use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::state::World;
 use feed::Feed;
-use record::FactsChain;
+use recording::FactsChain;
 use scripts::Office;
 use trajectory::TrajectoryWriter;
 use undo::Step;
@@ -138,10 +137,6 @@ impl Ended {
             Ended::Bankruptcy => "bankruptcy",
             Ended::Abandoned => "abandoned",
         }
-    }
-
-    fn parse(id: &str) -> Option<Ended> {
-        [Ended::Horizon, Ended::Bankruptcy, Ended::Abandoned].into_iter().find(|ended| ended.id() == id)
     }
 }
 
@@ -296,8 +291,8 @@ impl Session {
 
     /// Hash of the whole state with one hash per part, by name. Right after a week it is the one that the
     /// trajectory recorded.
-    pub fn state_hash(&self) -> (String, BTreeMap<&'static str, String>) {
-        record::state_hash(self.world.part_hashes(), self.facts_chain.hash())
+    pub fn state_hash(&self) -> (String, BTreeMap<String, String>) {
+        recording::state_hash(self.world.part_hashes(), self.facts_chain.hash())
     }
 
     /// The hidden state; only in debug runs.

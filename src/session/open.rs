@@ -4,16 +4,15 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde_json::{Value, json};
-
+use super::Session;
 use super::error::RunError;
 use super::manifest::Manifest;
-use super::record::StateHash;
+use super::recording::StateHash;
 use super::runs::lock_run;
 use super::snapshot::Snapshot;
-use super::trajectory::{Line, Trajectory, TrajectoryWriter, damaged_at};
+use super::trajectory::record::{Closing, Outcome};
+use super::trajectory::{Line, Record, Trajectory, TrajectoryWriter, damaged_at};
 use super::witness::Witnesses;
-use super::{Ended, Session};
 use crate::database::{Location, Position, Projector};
 use crate::world::params::Params;
 
@@ -127,50 +126,45 @@ impl Session {
     }
 
     fn replay_line(&mut self, line: &Line) -> Result<(), String> {
-        match line.kind.as_str() {
-            "start" => self.project_opening(),
-            "call" if line.is_accepted_call() => self.replay_call(&line.fields)?,
-            "advance" => self.replay_forecasts(line)?,
-            "week" | "step" => {
-                let from = self.world.day;
-                let days =
-                    line.fields.get("days_run").and_then(Value::as_u64).ok_or("the line lacks days_run")?;
-                let state = self.run_days(from + days as u32, &mut |_| {});
-                self.compare(from, &state, line)?;
-                self.commit_projection();
-            }
-            "end" => {
-                let reason = line.fields.get("reason").and_then(Value::as_str).and_then(Ended::parse);
-                self.ended = Some(reason.ok_or("the line names no known reason")?);
-                self.commit_projection();
-            }
-            "query" => {
-                if let Some(sql) = line.fields.get("sql").and_then(Value::as_str) {
-                    self.remember_query(sql);
+        match &line.record {
+            Record::Start(_) => self.project_opening(),
+            Record::Call(call) => {
+                if let Outcome::Accepted(answer) = &call.outcome {
+                    self.replay_call(call, answer)?;
                 }
             }
-            // Refused calls, views and memos change nothing.
-            _ => {}
+            Record::Advance(filed) => self.replay_forecasts(filed, &line.at)?,
+            Record::Week(closing) | Record::Step(closing) => {
+                let from = self.world.day;
+                let state = self.run_days(from.saturating_add(closing.days_run), &mut |_| {});
+                self.compare(from, &state, closing)?;
+                self.commit_projection();
+            }
+            Record::End(end) => {
+                self.ended = Some(end.reason);
+                self.commit_projection();
+            }
+            Record::Query(query) => self.remember_query(&query.sql),
+            Record::View(_)
+            | Record::Memo(_)
+            | Record::Branch(_)
+            | Record::Override(_)
+            | Record::Unknown(_) => {}
         }
         Ok(())
     }
 
     /// Settles the figures of days that ran again and compares the state with the recorded one.
-    fn compare(&mut self, from: u32, state: &StateHash, line: &Line) -> Result<(), String> {
+    fn compare(&mut self, from: u32, state: &StateHash, recorded: &Closing) -> Result<(), String> {
         let figures = self.settle_figures();
-        let reached = self.closing_fields(from, &figures, state);
+        let reached = self.closing(from, &figures, state);
         self.facts_chain.close();
-        if reached.get("state_hash") == line.fields.get("state_hash") {
-            return same_figures(&reached, line);
+        if reached.state_hash == recorded.state_hash {
+            return same_figures(&reached, recorded);
         }
-        let part = |fields: &serde_json::Map<String, Value>, name: &str| {
-            fields.get("parts").and_then(|parts| parts.get(name)).cloned()
-        };
-        let parts =
-            reached.get("parts").and_then(Value::as_object).map(|parts| parts.keys().cloned().collect());
-        let parts: Vec<String> = parts.unwrap_or_default();
-        let differing: Vec<String> =
-            parts.into_iter().filter(|name| part(&reached, name) != part(&line.fields, name)).collect();
+        let differs = |(name, hash): &(&String, &String)| recorded.parts.get(*name) != Some(*hash);
+        let differing = reached.parts.iter().filter(differs).map(|(name, _)| name.as_str());
+        let differing: Vec<&str> = differing.collect();
         Err(format!(
             "the state on day {} is not the recorded one (different: {}); a line before it was changed, or another \
              version recorded it",
@@ -181,10 +175,9 @@ impl Session {
 
     /// A week that was confirmed but not finished is simulated now.
     fn finish_week(&mut self, trajectory: &Trajectory) {
-        let open = trajectory.lines.iter().rev().find_map(|line| match line.kind.as_str() {
-            "advance" => Some(true),
-            "end" => Some(false),
-            _ if line.closes_days() => Some(false),
+        let open = trajectory.lines.iter().rev().find_map(|line| match line.record {
+            Record::Advance(_) => Some(true),
+            Record::End(_) | Record::Week(_) | Record::Step(_) => Some(false),
             _ => None,
         });
         if open == Some(true) {
@@ -207,34 +200,33 @@ pub(super) fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest
         problem: problem.to_owned(),
         safe: "Nothing was changed; restore run.toml or the trajectory from a copy".to_owned(),
     };
-    let Some(first) = first.filter(|line| line.kind == "start") else {
+    let Some(Record::Start(start)) = first.map(|line| &line.record) else {
         return Err(damaged("the trajectory does not begin with the start of a run"));
     };
-    let says = |name: &str, value: Value| first.fields.get(name) == Some(&value);
-    // Lines of the first builds lack it.
-    let says_if_any = |name: &str, value: Value| first.fields.get(name).is_none_or(|said| *said == value);
-    let same = says("run", manifest.id.clone().into())
-        && says("seed", manifest.seed.into())
-        && says("days", manifest.days.into())
-        && says("cash", crate::notation::json_number(manifest.cash))
-        && says("mode", manifest.mode.id().into())
-        && says("parameters_digest", manifest.parameters_digest.clone().into())
-        && says_if_any("scenario", manifest.scenario.clone().into())
-        && says_if_any("participant", manifest.participant.clone().into())
-        && says_if_any("consent", json!(manifest.consent));
+    let same = start.run == manifest.id
+        && start.seed == manifest.seed
+        && start.days == manifest.days
+        && start.cash == manifest.cash
+        && start.mode == manifest.mode
+        && start.parameters_digest == manifest.parameters_digest
+        && start.scenario == manifest.scenario
+        && start.participant == manifest.participant
+        && start.consent == manifest.consent;
     if same { Ok(()) } else { Err(damaged("the start of the trajectory contradicts run.toml")) }
 }
 
 /// The figures that stand beside a state are derived from it.
-fn same_figures(reached: &serde_json::Map<String, Value>, line: &Line) -> Result<(), String> {
-    let text = |fields: &serde_json::Map<String, Value>, name: &str| fields.get(name).map(Value::to_string);
-    let differs = |name: &&str| text(reached, name) != text(&line.fields, name);
-    match ["days_run", "figures", "cash"].into_iter().find(differs) {
-        None => Ok(()),
-        Some(name) => {
-            Err(format!("the recorded {name} does not belong to the recorded state: it was changed"))
-        }
-    }
+fn same_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> {
+    let name = if reached.days_run != recorded.days_run {
+        "days_run"
+    } else if reached.figures != recorded.figures {
+        "figures"
+    } else if reached.cash != recorded.cash {
+        "cash"
+    } else {
+        return Ok(());
+    };
+    Err(format!("the recorded {name} does not belong to the recorded state: it was changed"))
 }
 
 /// Starts the database. What it holds already counts only if `sound` says so.

@@ -1,6 +1,6 @@
 //! Where a playback is, and where it can be sent.
 
-use super::decided::Decided;
+use super::record_view::RecordView;
 
 /// Where a playback is to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,7 +61,7 @@ pub struct Chapter {
     /// Decision day.
     pub day: u32,
     /// What was done, in order, up to the line that closes the week.
-    pub entries: Vec<Decided>,
+    pub entries: Vec<RecordView>,
     /// How many of them were applied: the others are still to come.
     pub done: usize,
 }

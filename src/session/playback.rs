@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Session;
-use super::decided::{Decided, cash_of};
 use super::error::RunError;
 use super::manifest::Manifest;
 use super::mode::Mode;
 use super::open::check_start;
 use super::place::{Chapter, Goal, Place, Went};
-use super::trajectory::{Line, Trajectory, TrajectoryWriter, damaged_at};
+use super::record_view::RecordView;
+use super::trajectory::{Line, Record, Trajectory, TrajectoryWriter, damaged_at};
 use super::week::week_of;
 use crate::database::{Location, Projector};
 use crate::tools::Refusal;
@@ -215,19 +215,18 @@ impl Playback {
     }
 
     fn is_recorded_to_the_end(&self) -> bool {
-        self.trajectory.lines.last().is_some_and(|line| line.kind == "end")
+        self.trajectory.lines.last().is_some_and(|line| matches!(line.record, Record::End(_)))
     }
 
     fn find_stops(&mut self, from: usize) {
         for line in &self.trajectory.lines[from..] {
             let after = line.seq as usize + 1;
-            match line.kind.as_str() {
-                "week" | "step" => {
-                    let cash = cash_of(line).unwrap_or(f64::NAN);
-                    self.stops.push(Stop { after, day: line.day, cash });
+            match &line.record {
+                Record::Week(closing) | Record::Step(closing) => {
+                    self.stops.push(Stop { after, day: line.day, cash: closing.cash });
                 }
                 // Days that were the last are shown with the end they brought.
-                "end" => {
+                Record::End(_) => {
                     if let Some(stop) = self.stops.last_mut().filter(|stop| stop.after + 1 == after) {
                         stop.after = after;
                     }
@@ -267,7 +266,7 @@ impl Playback {
         Chapter {
             week: day / 7 + 1,
             day,
-            entries: lines.iter().map(|line| Decided::of(line, &outcome)).collect(),
+            entries: lines.iter().map(|line| RecordView::of(line, &outcome)).collect(),
             done: self.applied.saturating_sub(first).min(lines.len()),
         }
     }
@@ -284,9 +283,12 @@ impl Playback {
     /// The notes of the run, if they had already been written as they are now: earlier texts are not recorded.
     pub fn memo(&self) -> Option<String> {
         let text = self.session.memo().ok()?;
-        let last = self.trajectory.lines[..self.applied].iter().rfind(|line| line.kind == "memo")?;
-        let digest = last.fields.get("digest")?.as_str()?;
-        (digest == blake3::hash(text.as_bytes()).to_hex().as_str()).then_some(text)
+        let last =
+            self.trajectory.lines[..self.applied].iter().rev().find_map(|line| match &line.record {
+                Record::Memo(memo) => Some(memo),
+                _ => None,
+            })?;
+        (last.digest == blake3::hash(text.as_bytes()).to_hex().as_str()).then_some(text)
     }
 
     fn no_branch(&self) -> Option<Refusal> {
@@ -321,7 +323,7 @@ impl Playback {
     /// The lines up to here without a week that was about to run: that decision is taken anew.
     fn shared(&self) -> Vec<Line> {
         let mut lines = self.trajectory.lines[..self.applied].to_vec();
-        if let Some(last) = lines.iter().rposition(|line| line.kind == "advance") {
+        if let Some(last) = lines.iter().rposition(|line| matches!(line.record, Record::Advance(_))) {
             let ran = lines[last..].iter().any(Line::closes_days);
             if !ran {
                 lines.truncate(last);

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 
 use serde_json::json;
 
-use super::medium::Medium;
+use super::trajectory::Medium;
 use super::{Access, Configuration, NewRun, Session, Storage, Via};
 
 /// A file that keeps what was not synced in memory, where a power cut takes it.

@@ -9,7 +9,7 @@ use super::error::RunError;
 use super::manifest::Manifest;
 use super::mode::Mode;
 use super::open::check_start;
-use super::trajectory::{DOES_NOT_FOLLOW, Line, SUMS, Trajectory};
+use super::trajectory::{DOES_NOT_FOLLOW, Line, Trajectory};
 use super::witness::Witnesses;
 
 /// What was saved of a damaged run.
@@ -88,7 +88,7 @@ fn replayed(
             reached = at + 1;
         }
     }
-    let summed = lines.first().is_some_and(|first| first.fields.get(SUMS) == Some(&true.into()));
+    let summed = lines.first().is_some_and(Line::promises_sums);
     // A line's own sum vouches for it, unless the next one contradicts it. Without sums only its state does.
     let doubtful = problem.as_ref().is_some_and(|(_, words)| !summed || words == DOES_NOT_FOLLOW);
     Ok(if doubtful { reached.max(lines.len() - 1) } else { lines.len() })

@@ -5,12 +5,12 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use serde_json::Value;
 
 use super::error::RunError;
 use super::manifest::Manifest;
 use super::mode::Mode;
 use super::open::Access;
+use super::trajectory::{Line, Record};
 use super::{Ended, Session};
 
 /// A run in the list.
@@ -116,32 +116,35 @@ fn summarise(folder: &Path) -> RunSummary {
         Ok(lines) => (lines, None),
         Err(problem) => (Vec::new(), Some(problem)),
     };
-    let field = |kind: &[&str], name: &str| {
-        last.iter()
-            .rev()
-            .find(|line| line.get("kind").and_then(Value::as_str).is_some_and(|own| kind.contains(&own)))
-            .and_then(|line| line.get(name).cloned())
-    };
-    let word = |value: Option<Value>| value.and_then(|value| value.as_str().map(str::to_owned));
+    // Day and cash after the days that ran last, and how the run ended.
+    let closed = last.iter().rev().find_map(|line| match &line.record {
+        Record::Week(closing) | Record::Step(closing) => Some((line.day, closing.cash)),
+        Record::End(end) => Some((line.day, end.cash)),
+        _ => None,
+    });
+    let ended = last.iter().rev().find_map(|line| match &line.record {
+        Record::End(end) => Some(end.reason),
+        _ => None,
+    });
     RunSummary {
         id,
         has_own_parameters: manifest.has_own_parameters(),
         created: manifest.created.clone(),
-        played: last.last().and_then(|line| word(line.get("at").cloned())).unwrap_or(manifest.created),
+        played: last.last().map_or(manifest.created, |line| line.at.clone()),
         mode: Some(manifest.mode),
         seed: manifest.seed,
         scenario: manifest.scenario,
         participant: manifest.participant,
-        day: field(&["week", "step", "end"], "day").and_then(|day| day.as_u64()).unwrap_or(0) as u32,
+        day: closed.map_or(0, |(day, _)| day),
         days: manifest.days,
         starting_cash: manifest.cash,
-        cash: match field(&["week", "step", "end"], "cash").and_then(|cash| cash.as_f64()) {
-            Some(cash) => cash,
+        cash: match closed {
+            Some((_, cash)) => cash,
             // Nobody knows what is left.
             None if problem.is_some() => 0.0,
             None => manifest.cash,
         },
-        ended: word(field(&["end"], "reason")).as_deref().and_then(Ended::parse),
+        ended,
         problem,
     }
 }
@@ -169,13 +172,13 @@ fn unreadable(id: String, problem: String) -> RunSummary {
 ///
 /// # Errors
 /// The file cannot be read, or holds no line: then nobody knows how far the run has come.
-fn last_lines(path: &Path) -> Result<Vec<Value>, String> {
+fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
     let mut window: u64 = 64 << 10;
     loop {
         let (text, whole) = tail(path, window).map_err(|error| format!("{}: {error}", path.display()))?;
-        let lines: Vec<Value> = text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();
-        let has_week = lines.iter().any(|line| line.get("state_hash").is_some());
-        let begins = || lines.iter().any(|line| line.get("kind").is_some_and(|kind| kind == "start"));
+        let lines: Vec<Line> = text.lines().filter_map(|line| Line::unchecked(line.as_bytes())).collect();
+        let has_week = lines.iter().any(Line::closes_days);
+        let begins = || lines.iter().any(|line| matches!(line.record, Record::Start(_)));
         match (has_week, whole) {
             (true, _) => return Ok(lines),
             (false, true) if begins() => return Ok(lines),

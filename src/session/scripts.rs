@@ -7,7 +7,7 @@
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::Session;
 use crate::database::{self, text};
@@ -148,18 +148,4 @@ impl Session {
     pub(super) fn apply_task(&mut self, task: &Task) {
         self.office.notebook.apply(task);
     }
-
-    /// Takes the outputs of calculations from an `advance` line.
-    pub(super) fn recall_calculations(&mut self, fields: &Map<String, Value>) {
-        let entries = fields.get("calculations").and_then(Value::as_array).cloned().unwrap_or_default();
-        let text = |entry: &Value, field: &str| Some(entry.get(field)?.as_str()?.to_owned());
-        let calculated =
-            |entry: &Value| Some(Calculated { name: text(entry, "name")?, output: text(entry, "output")? });
-        self.calculated = entries.iter().filter_map(calculated).collect();
-    }
-}
-
-/// Outputs of calculations as an `advance` line keeps them.
-pub(super) fn as_field(calculated: &[Calculated]) -> Value {
-    calculated.iter().map(|own| json!({ "name": own.name, "output": own.output })).collect()
 }

@@ -15,7 +15,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::feed::Feed;
-use super::record::{FactsChain, state_hash};
+use super::recording::{FactsChain, state_hash};
 use super::undo::Step;
 use super::{
     Calculated, Decisions, Ended, GroupWeek, JournalEntry, Manifest, Session, ThisWeek, WeekFigures,

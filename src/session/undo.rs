@@ -24,22 +24,6 @@ pub enum Reversal {
     Redoes(u64),
 }
 
-impl Reversal {
-    /// The reversal that the fields of a line name, if any.
-    pub(super) fn of(fields: &Map<String, Value>) -> Option<Reversal> {
-        let line = |name: &str| fields.get(name).and_then(Value::as_u64);
-        line("undoes").map(Reversal::Undoes).or_else(|| line("redoes").map(Reversal::Redoes))
-    }
-
-    /// Name and value of its field.
-    pub(super) fn field(self) -> (&'static str, u64) {
-        match self {
-            Reversal::Undoes(seq) => ("undoes", seq),
-            Reversal::Redoes(seq) => ("redoes", seq),
-        }
-    }
-}
-
 /// A call that changed settings, and the settings that reversing it restores.
 #[derive(Debug, Clone)]
 pub(super) struct Step {

@@ -39,12 +39,12 @@ pub fn verify(path: &Path) -> Result<Verification, RunError> {
         session.apply_line(&path, line)?;
     }
     let states = trajectory.lines.iter().filter(|line| line.closes_days());
-    let last = trajectory.lines.iter().rev().find_map(|line| line.fields.get("state_hash")?.as_str());
+    let last = trajectory.lines.iter().rev().find_map(|line| line.record.closing());
     Ok(Verification {
         run,
         lines: trajectory.lines.len(),
         states: states.count(),
         day: session.day(),
-        state_hash: last.unwrap_or_default().to_owned(),
+        state_hash: last.map(|closing| closing.state_hash.clone()).unwrap_or_default(),
     })
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::booked::Booked;
+use super::trajectory::record::FiledForecast;
 use crate::notation::json_number;
 use crate::tools::{FORECAST_KEYS, Forecast};
 use crate::world::events::DayFigures;
@@ -170,6 +171,24 @@ pub struct Forecasts {
 }
 
 impl Forecasts {
+    /// The forecasts of a line; none unless there is one for each horizon.
+    pub(super) fn of(filed: &[FiledForecast]) -> Option<Forecasts> {
+        let filed: &[FiledForecast; 4] = filed.try_into().ok()?;
+        Some(Forecasts {
+            all: filed.map(|forecast| forecast.said()),
+            filled_naively: filed.map(|forecast| forecast.filled_naively),
+        })
+    }
+
+    /// As a line has them.
+    pub(super) fn filed(&self) -> Vec<FiledForecast> {
+        let one = |(forecast, filled_naively): (Forecast, bool)| {
+            let Forecast { horizon_days, point, lower, upper } = forecast;
+            FiledForecast { horizon_days, point, lower, upper, filled_naively }
+        };
+        self.all.into_iter().zip(self.filled_naively).map(one).collect()
+    }
+
     /// The forecasts as the body of next_week carries them.
     pub fn as_predictions(&self) -> Value {
         let entry = |(key, forecast): (&str, &Forecast)| {

@@ -8,7 +8,7 @@ use std::path::Path;
 use super::error::RunError;
 use super::manifest::Manifest;
 use super::snapshot::{FILE, Snapshot};
-use super::trajectory::{BRANCH_THEM, Trajectory};
+use super::trajectory::{BRANCH_THEM, Record, Trajectory};
 use crate::database::{
     Location, Position, file_digest, has_layout_of_now, is_consistent, owner_of, position_of,
 };
@@ -106,7 +106,8 @@ pub(super) fn is_as_left(folder: &Path) -> bool {
 fn contradiction(trajectory: &Trajectory, position: &Position) -> Option<(u64, &'static str)> {
     let last = trajectory.lines.last()?;
     // A torn line is cut off with a notice, and a week that lacks its closing lines is simulated again: week and end.
-    let healing = if last.kind == "advance" { 2 } else { u64::from(trajectory.unfinished > 0) };
+    let healing =
+        if matches!(last.record, Record::Advance(_)) { 2 } else { u64::from(trajectory.unfinished > 0) };
     match trajectory.lines.get(position.seq as usize) {
         None if position.seq > last.seq + healing => Some((last.seq + 2, "the line is missing")),
         Some(line) if line.hash != position.line_hash => {

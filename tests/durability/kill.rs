@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use novamind::session::{Access, JournalEntry, Session, Trajectory, verify};
+use novamind::session::{Access, JournalEntry, Line, Record, Reversal, Session, Trajectory, verify};
 use serde_json::Value;
 
 use crate::dice::Dice;
@@ -85,11 +85,11 @@ fn as_answered(answers: &[Value]) -> Vec<String> {
 /// The same as the trajectory has it, without the calls that `undo` made.
 fn as_recorded(folder: &Path) -> Vec<String> {
     let lines = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads").lines;
-    let word = |line: &novamind::session::Line| match line.kind.as_str() {
-        "call" if line.fields["ok"] == true && line.fields.get("undoes").is_none() => {
-            line.fields["tool"].as_str().map(str::to_owned)
+    let word = |line: &Line| match (&line.record, line.record.accepted_call()) {
+        (_, Some((call, _))) if !matches!(call.reversal, Some(Reversal::Undoes(_))) => {
+            Some(call.tool.clone())
         }
-        "advance" => Some("next".to_owned()),
+        (Record::Advance(_), _) => Some("next".to_owned()),
         _ => None,
     };
     lines.iter().filter_map(word).collect()

@@ -83,11 +83,7 @@ fn game(seed: u64) {
     assert!(last >= Some(7), "game {seed}");
     drop(session);
     let recorded = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
-    let states = recorded
-        .lines
-        .iter()
-        .rev()
-        .find_map(|line| line.fields.get("state_hash")?.as_str().map(str::to_owned));
+    let states = recorded.lines.iter().rev().find_map(|line| Some(line.record.closing()?.state_hash.clone()));
     assert_eq!(Some(verified(&folder, 1)), states, "game {seed}");
     assert_eq!(Some(verified(&folder, 2)), states, "game {seed}");
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use novamind::session::{Access, Session, Trajectory, verify};
+use novamind::session::{Access, Record, Session, Trajectory, verify};
 
 use super::dice::Dice;
 use super::terminal::Terminal;
@@ -20,8 +20,8 @@ fn only_run(runs: &Path) -> PathBuf {
 /// Accepted calls and weeks that the trajectory has.
 fn recorded(runs: &Path) -> (usize, usize) {
     let lines = Trajectory::read(&only_run(runs).join("trajectory.jsonl")).expect("it reads").lines;
-    let calls = lines.iter().filter(|line| line.kind == "call" && line.fields["ok"] == true).count();
-    (calls, lines.iter().filter(|line| line.kind == "advance").count())
+    let calls = lines.iter().filter(|line| line.record.accepted_call().is_some()).count();
+    (calls, lines.iter().filter(|line| matches!(line.record, Record::Advance(_))).count())
 }
 
 /// Sets a price and says when the screen has confirmed it.

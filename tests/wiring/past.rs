@@ -31,7 +31,7 @@ fn a_branch_leaves_out_what_was_decided_on_the_day_it_begins() {
         }
         let path = branch.folder().expect("a folder").join("trajectory.jsonl");
         let lines = Trajectory::read(&path).expect("it reads").lines;
-        let calls = lines.iter().filter(|line| line.is_accepted_call()).count();
+        let calls = lines.iter().filter(|line| line.record.accepted_call().is_some()).count();
         assert_eq!(calls, 2 * (number as usize - 1), "calls of the weeks before week {number}");
     }
 }

@@ -4,7 +4,8 @@ use crate::console::screens::journal::entries::in_words;
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped};
-use crate::session::{Act, Chapter, Decided, Foreseen, Place, Reversal};
+use crate::session::record::{Advance, Branch, Call, Closing, Outcome, Query};
+use crate::session::{Chapter, Foreseen, Place, Record, RecordView, Reversal};
 
 /// Longest JSON that is written in one line, in bytes.
 const ONE_LINE: usize = 90;
@@ -15,47 +16,66 @@ pub fn title(chapter: &Chapter) -> String {
 }
 
 /// A line of the record in few words, with its meaning.
-pub fn brief(entry: &Decided) -> Vec<(String, Role)> {
+pub fn brief(entry: &RecordView) -> Vec<(String, Role)> {
     let one = |text: String, role: Role| vec![(text, role)];
-    match &entry.act {
-        Act::Call { tool, args, reversal, .. } => {
-            let sign = match reversal {
-                Some(Reversal::Undoes(_)) => "undo: ",
-                Some(Reversal::Redoes(_)) => "redo: ",
-                None => "",
-            };
-            one(format!("{sign}{tool} {}", in_words(args)).trim_end().to_owned(), Role::Text)
-        }
-        Act::Refused { tool, args, message } => vec![
-            (format!("{tool} {}", in_words(args)).trim_end().to_owned(), Role::Text),
-            (format!("refused: {message}"), Role::Bad),
-        ],
-        Act::Query { sql, rows, took_ms } => {
-            let sql = sql.split_whitespace().collect::<Vec<_>>().join(" ");
-            let answer = match rows {
-                Ok(rows) => format!("{} rows, {took_ms:.0} ms", grouped(*rows as f64, 0)),
+    match &entry.record {
+        Record::Call(call) => call_in_brief(call),
+        Record::Query(query) => {
+            let sql = query.sql.split_whitespace().collect::<Vec<_>>().join(" ");
+            let answer = match answered(query) {
+                Ok(rows) => format!("{} rows, {:.0} ms", grouped(rows as f64, 0), query.took_ms),
                 Err(code) => format!("refused: {code}"),
             };
             vec![(sql, Role::Keyword), (answer, Role::Dim)]
         }
-        Act::View { screen, for_ms } => one(format!("viewed {screen} for {}", time(*for_ms)), Role::Dim),
-        Act::Memo { length, .. } => {
-            one(format!("saved notes ({} bytes)", grouped(*length as f64, 0)), Role::Text)
+        Record::View(view) => one(format!("viewed {} for {}", view.screen, time(view.for_ms)), Role::Dim),
+        Record::Memo(memo) => {
+            one(format!("saved notes ({} bytes)", grouped(memo.length as f64, 0)), Role::Text)
         }
-        Act::Advance { rationale, forecasts, filled_naively } => {
-            let mut lines = vec![(format!("“{}”", rationale.trim()), Role::Strong)];
-            let how = if *filled_naively { "forecasts, filled naively:" } else { "forecasts:" };
+        Record::Advance(filed) => {
+            let mut lines = vec![(format!("“{}”", filed.rationale.trim()), Role::Strong)];
+            let how = if is_naive(filed) { "forecasts, filled naively:" } else { "forecasts:" };
             lines.push((how.to_owned(), Role::Header));
-            lines.extend(forecasts.iter().map(foreseen_in_brief));
+            lines.extend(entry.forecasts.iter().map(foreseen_in_brief));
             lines
         }
-        Act::Closing { days_run, cash } => {
+        Record::Week(closing) | Record::Step(closing) => {
+            let Closing { days_run, cash, .. } = closing;
             one(format!("{days_run} days passed, cash {}", dollars(*cash)), Role::Header)
         }
-        Act::End { reason } => one(format!("the run was over: {reason}"), Role::Warning),
-        Act::Branch { run } => one(format!("branched off run {run} here"), Role::Warning),
-        Act::Other(kind) => one(kind.clone(), Role::Dim),
+        Record::End(end) => one(format!("the run was over: {}", end.reason.id()), Role::Warning),
+        Record::Branch(Branch { from: Some(parent) }) => {
+            one(format!("branched off run {} here", parent.run), Role::Warning)
+        }
+        other => one(other.kind().to_owned(), Role::Dim),
     }
+}
+
+fn call_in_brief(call: &Call) -> Vec<(String, Role)> {
+    let Call { tool, args, .. } = call;
+    let named = format!("{tool} {}", in_words(args)).trim_end().to_owned();
+    match &call.outcome {
+        Outcome::Accepted(_) => {
+            let sign = match call.reversal {
+                Some(Reversal::Undoes(_)) => "undo: ",
+                Some(Reversal::Redoes(_)) => "redo: ",
+                None => "",
+            };
+            vec![(format!("{sign}{named}"), Role::Text)]
+        }
+        Outcome::Refused(refusal) => {
+            vec![(named, Role::Text), (format!("refused: {}", refusal.message), Role::Bad)]
+        }
+    }
+}
+
+/// Rows of the answer, or the code of what was wrong.
+fn answered(query: &Query) -> Result<u64, &str> {
+    query.rows.ok_or(query.error.as_deref().unwrap_or_default())
+}
+
+fn is_naive(filed: &Advance) -> bool {
+    filed.forecasts.iter().any(|forecast| forecast.filled_naively)
 }
 
 fn foreseen_in_brief(foreseen: &Foreseen) -> (String, Role) {
@@ -86,12 +106,12 @@ pub fn whole(place: &Place) -> String {
     for (at, entry) in chapter.entries.iter().enumerate() {
         let mark = if at < chapter.done { "✓" } else { "–" };
         let moment = entry.at.get(11..19).unwrap_or("");
-        parts.push(format!("{mark} {moment}  {}", in_full(&entry.act)));
+        parts.push(format!("{mark} {moment}  {}", in_full(entry)));
     }
     parts.join("\n\n")
 }
 
-fn in_full(act: &Act) -> String {
+fn in_full(entry: &RecordView) -> String {
     let pretty = |value: &serde_json::Value| {
         let short = value.to_string();
         if short.len() <= ONE_LINE {
@@ -100,38 +120,38 @@ fn in_full(act: &Act) -> String {
         let text = serde_json::to_string_pretty(value).unwrap_or_default();
         text.lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n")
     };
-    match act {
-        Act::Call { tool, args, answer, reversal } => {
+    match &entry.record {
+        Record::Call(Call { tool, args, outcome, reversal, .. }) => {
             let remark = match reversal {
                 Some(Reversal::Undoes(_)) => " (undid an earlier call)",
                 Some(Reversal::Redoes(_)) => " (redid an undone call)",
                 None => "",
             };
-            format!("{tool}{remark}\n{}\n  answered\n{}", pretty(args), pretty(answer))
+            match outcome {
+                Outcome::Accepted(answer) => {
+                    format!("{tool}{remark}\n{}\n  answered\n{}", pretty(args), pretty(answer))
+                }
+                Outcome::Refused(refusal) => {
+                    format!("{tool}\n{}\n  refused: {}", pretty(args), refusal.message)
+                }
+            }
         }
-        Act::Refused { tool, args, message } => {
-            format!("{tool}\n{}\n  refused: {message}", pretty(args))
-        }
-        Act::Query { sql, rows, took_ms } => {
-            let sql = sql.lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n");
-            match rows {
-                Ok(rows) => format!("asked\n{sql}\n  {} rows in {took_ms:.1} ms", grouped(*rows as f64, 0)),
+        Record::Query(query) => {
+            let sql = query.sql.lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n");
+            match answered(query) {
+                Ok(rows) => {
+                    format!("asked\n{sql}\n  {} rows in {:.1} ms", grouped(rows as f64, 0), query.took_ms)
+                }
                 Err(code) => format!("asked\n{sql}\n  refused: {code}"),
             }
         }
-        Act::Advance { rationale, forecasts, filled_naively } => {
-            let naively = if *filled_naively { ", filled with the naive projection" } else { "" };
-            let lines: Vec<String> = forecasts.iter().map(foreseen_in_full).collect();
-            format!(
-                "next_week\n  “{}”\n  forecasts of cash{naively}:\n{}",
-                rationale.trim(),
-                lines.join("\n")
-            )
+        Record::Advance(filed) => {
+            let naively = if is_naive(filed) { ", filled with the naive projection" } else { "" };
+            let lines: Vec<String> = entry.forecasts.iter().map(foreseen_in_full).collect();
+            let rationale = filed.rationale.trim();
+            format!("next_week\n  “{rationale}”\n  forecasts of cash{naively}:\n{}", lines.join("\n"))
         }
-        _ => {
-            let entry = Decided { seq: 0, day: 0, at: String::new(), act: act.clone() };
-            brief(&entry).into_iter().map(|(text, _)| text).collect::<Vec<_>>().join("\n  ")
-        }
+        _ => brief(entry).into_iter().map(|(text, _)| text).collect::<Vec<_>>().join("\n  "),
     }
 }
 
@@ -167,11 +187,14 @@ fn time(milliseconds: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::record::{End, RefusalRecord, View};
+    use crate::session::{Ended, Parent, Via};
     use crate::tools::Forecast;
     use serde_json::json;
 
-    fn said(act: Act) -> Vec<String> {
-        let entry = Decided { seq: 1, day: 14, at: "2026-11-21T10:42:07Z".to_owned(), act };
+    fn said(record: Record) -> Vec<String> {
+        let at = "2026-11-21T10:42:07Z".to_owned();
+        let entry = RecordView { seq: 1, day: 14, at, record, forecasts: Vec::new() };
         brief(&entry).into_iter().map(|(text, _)| text).collect()
     }
 
@@ -182,27 +205,31 @@ mod tests {
 
     #[test]
     fn lines_are_told_in_few_words() {
-        let call = |reversal| Act::Call {
-            tool: "set_prices".to_owned(),
-            args: json!({"A": 12}),
-            answer: json!({}),
-            reversal,
+        let call = |args, outcome, reversal| {
+            let tool = "set_prices".to_owned();
+            Record::Call(Call { tool, args, outcome, via: Via::Form, took_ms: 0.1, reversal })
         };
-        assert_eq!(said(call(None)), ["set_prices A 12"]);
-        assert_eq!(said(call(Some(Reversal::Undoes(3)))), ["undo: set_prices A 12"]);
-        assert_eq!(said(call(Some(Reversal::Redoes(4)))), ["redo: set_prices A 12"]);
-        let refused = Act::Refused {
-            tool: "set_prices".to_owned(),
-            args: json!({"A": -1}),
-            message: "too low".to_owned(),
+        let accepted = |reversal| call(json!({"A": 12}), Outcome::Accepted(json!({})), reversal);
+        assert_eq!(said(accepted(None)), ["set_prices A 12"]);
+        assert_eq!(said(accepted(Some(Reversal::Undoes(3)))), ["undo: set_prices A 12"]);
+        assert_eq!(said(accepted(Some(Reversal::Redoes(4)))), ["redo: set_prices A 12"]);
+        let (code, message) = ("price_not_positive".to_owned(), "too low".to_owned());
+        let refused = Outcome::Refused(RefusalRecord { code, message, field: None });
+        assert_eq!(said(call(json!({"A": -1}), refused, None)), ["set_prices A -1", "refused: too low"]);
+        let query = |rows, error: Option<&str>| {
+            let (sql, error) = ("SELECT 1\n FROM x".to_owned(), error.map(str::to_owned));
+            Record::Query(Query { sql, rows, truncated: false, error, took_ms: 3.4 })
         };
-        assert_eq!(said(refused), ["set_prices A -1", "refused: too low"]);
-        let query = Act::Query { sql: "SELECT 1\n FROM x".to_owned(), rows: Ok(1200), took_ms: 3.4 };
-        assert_eq!(said(query), ["SELECT 1 FROM x", "1,200 rows, 3 ms"]);
+        assert_eq!(said(query(Some(1200), None)), ["SELECT 1 FROM x", "1,200 rows, 3 ms"]);
+        assert_eq!(said(query(None, Some("sql_error"))), ["SELECT 1 FROM x", "refused: sql_error"]);
         for (for_ms, words) in [(400, "a moment"), (1_500, "1 s"), (83_000, "1 min 23 s")] {
-            let view = Act::View { screen: "cash".to_owned(), for_ms };
-            assert_eq!(said(view), [format!("viewed cash for {words}")]);
+            let view = View { screen: "cash".to_owned(), from: String::new(), for_ms };
+            assert_eq!(said(Record::View(view)), [format!("viewed cash for {words}")]);
         }
+        let from = Some(Parent { run: "aa".to_owned(), seq: 3 });
+        assert_eq!(said(Record::Branch(Branch { from })), ["branched off run aa here"]);
+        let end = End { reason: Ended::Horizon, cash: 4.0, score: Some(4.0) };
+        assert_eq!(said(Record::End(end)), ["the run was over: horizon"]);
     }
 
     #[test]

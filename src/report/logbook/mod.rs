@@ -18,7 +18,8 @@ pub use timeline::{BREAK_SECONDS, Pause};
 use super::books::{Books, ChannelRow};
 use super::chapters::change_in_words;
 use super::measures::{Measures, Wording};
-use crate::session::{Consent, Ended, Line, Mode, Session};
+use crate::session::record::FiledForecast;
+use crate::session::{Consent, Ended, Line, Mode, Record, Session};
 use timeline::{Span, Timeline};
 
 /// How a run was played.
@@ -181,7 +182,7 @@ impl Logbook {
         let own = weeks.iter().filter(|week| !week.inherited).map(|week| week.effort.active_seconds);
         let ads = Books::channels_of(session);
         let (manifest, last) = (session.manifest(), lines.last());
-        let end = lines.iter().rev().find(|line| line.kind == "end");
+        let end = lines.iter().rev().find(|line| matches!(line.record, Record::End(_)));
         Logbook {
             run: manifest.id.clone(),
             participant: manifest.participant.clone(),
@@ -224,7 +225,7 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
         decided.iter().flat_map(|own| own.changes.iter().map(change_in_words)).collect();
     decisions.extend(decided.iter().flat_map(|own| own.purchases.iter().cloned()));
     let cash = session.cash_by_day();
-    let forecast = |forecast: &timeline::Said| WeekForecast {
+    let forecast = |forecast: &FiledForecast| WeekForecast {
         horizon_days: forecast.horizon_days,
         point: forecast.point,
         lower: forecast.lower,

@@ -1,10 +1,11 @@
 //! The lines of a trajectory as spans of time: one for each week and what was done before it.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::Effort;
-use crate::session::Line;
+use crate::session::record::{Closing, FiledForecast, Outcome, View};
+use crate::session::{Line, Record, Reversal};
 
 /// Seconds without a line after which somebody is taken to be away: ten minutes.
 pub const BREAK_SECONDS: f64 = 600.0;
@@ -22,17 +23,6 @@ pub struct Pause {
     pub seconds: f64,
 }
 
-/// A forecast as a line has it.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub(super) struct Said {
-    pub horizon_days: u32,
-    pub point: f64,
-    pub lower: f64,
-    pub upper: f64,
-    #[serde(default)]
-    pub filled_naively: bool,
-}
-
 /// What was done before a week, and the week.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Span {
@@ -44,7 +34,7 @@ pub(super) struct Span {
     pub decided_at: String,
     pub effort: Effort,
     pub rationale: Option<String>,
-    pub forecasts: Vec<Said>,
+    pub forecasts: Vec<FiledForecast>,
     pub figures: Map<String, Value>,
     pub state_hash: String,
 }
@@ -65,7 +55,7 @@ impl Timeline {
     pub fn of(lines: &[Line]) -> Timeline {
         let mut timeline = Timeline::default();
         // What a branch took over was played in another run, at another time.
-        let copied = lines.iter().position(|line| line.kind == "branch").unwrap_or(0);
+        let copied = lines.iter().position(|line| matches!(line.record, Record::Branch(_))).unwrap_or(0);
         let mut before: Option<&Line> = None;
         for (at, line) in lines.iter().enumerate() {
             if timeline.open.began_at.is_empty() {
@@ -108,41 +98,42 @@ impl Timeline {
     }
 
     fn count(&mut self, line: &Line) {
-        let text = |name: &str| line.fields.get(name).and_then(Value::as_str).unwrap_or_default().to_owned();
         let effort = &mut self.open.effort;
-        match line.kind.as_str() {
-            "call" if line.is_accepted_call() => {
+        match &line.record {
+            Record::Call(call) if matches!(call.outcome, Outcome::Accepted(_)) => {
                 effort.calls += 1;
-                effort.undone += u32::from(line.fields.contains_key("undoes"));
-                *effort.tools.entry(text("tool")).or_default() += 1;
+                effort.undone += u32::from(matches!(call.reversal, Some(Reversal::Undoes(_))));
+                *effort.tools.entry(call.tool.clone()).or_default() += 1;
             }
-            "call" => effort.refused += 1,
-            "query" => {
+            Record::Call(_) => effort.refused += 1,
+            Record::Query(query) => {
                 effort.queries += 1;
-                effort.queries_failed +=
-                    u32::from(line.fields.get("error").is_some_and(|error| !error.is_null()));
+                effort.queries_failed += u32::from(query.error.is_some());
             }
-            "view" => {
-                let seconds = self.seconds_looked(line);
+            Record::View(view) => {
+                let seconds = self.seconds_looked(line, view);
                 let effort = &mut self.open.effort;
                 effort.views += 1;
-                *effort.screens.entry(text("screen")).or_default() += seconds;
+                *effort.screens.entry(view.screen.clone()).or_default() += seconds;
             }
-            "memo" => effort.memos += 1,
-            "advance" => {
+            Record::Memo(_) => effort.memos += 1,
+            Record::Advance(filed) => {
                 self.open.decided_at.clone_from(&line.at);
-                self.open.rationale = Some(text("rationale"));
-                let said = line.fields.get("forecasts").cloned().unwrap_or_default();
-                self.open.forecasts = serde_json::from_value(said).unwrap_or_default();
+                self.open.rationale = Some(filed.rationale.clone());
+                self.open.forecasts.clone_from(&filed.forecasts);
             }
-            _ if line.closes_days() => self.close(line),
-            _ => {}
+            Record::Week(closing) | Record::Step(closing) => self.close(line, closing),
+            Record::Start(_)
+            | Record::Branch(_)
+            | Record::Override(_)
+            | Record::End(_)
+            | Record::Unknown(_) => {}
         }
     }
 
     /// Seconds of a view without the breaks that fall into it.
-    fn seconds_looked(&self, line: &Line) -> f64 {
-        let looked = line.fields.get("for_ms").and_then(Value::as_f64).unwrap_or(0.0) / 1e3;
+    fn seconds_looked(&self, line: &Line, view: &View) -> f64 {
+        let looked = view.for_ms as f64 / 1e3;
         let away = self.breaks.iter().rev().map_while(|pause| {
             // Only the break that this line ended, and older ones as far as the view reaches back.
             let until = crate::session::moment_of(&pause.to);
@@ -153,18 +144,16 @@ impl Timeline {
         (looked - away).max(0.0)
     }
 
-    fn close(&mut self, line: &Line) {
+    fn close(&mut self, line: &Line, closing: &Closing) {
         let mut span = std::mem::take(&mut self.open);
-        let number = |name: &str| line.fields.get(name).and_then(Value::as_u64).unwrap_or(0);
         span.day = line.day;
-        span.days_run = number("days_run") as u32;
+        span.days_run = closing.days_run;
         span.decision_day = line.day.saturating_sub(span.days_run);
         if span.decided_at.is_empty() {
             span.decided_at.clone_from(&line.at);
         }
-        span.figures = line.fields.get("figures").and_then(Value::as_object).cloned().unwrap_or_default();
-        span.state_hash =
-            line.fields.get("state_hash").and_then(Value::as_str).unwrap_or_default().to_owned();
+        span.figures.clone_from(&closing.figures);
+        span.state_hash.clone_from(&closing.state_hash);
         self.spans.push(span);
     }
 }
@@ -172,29 +161,53 @@ impl Timeline {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::Via;
+    use crate::session::record::{Advance, Branch, Call, Memo, Query};
     use serde_json::json;
 
-    fn lines(all: &[(&str, &str, Value)]) -> Vec<Line> {
-        let line = |(at, (moment, kind, fields)): (usize, &(&str, &str, Value))| Line {
-            seq: at as u64,
-            kind: (*kind).to_owned(),
-            day: 0,
-            at: format!("2026-11-21T{moment}Z"),
-            fields: fields.as_object().cloned().unwrap_or_default(),
-            hash: String::new(),
+    fn lines(all: &[(&str, Record)]) -> Vec<Line> {
+        let line = |(at, (moment, record)): (usize, &(&str, Record))| {
+            Line::alone(at as u64, 0, &format!("2026-11-21T{moment}Z"), record.clone())
         };
         all.iter().enumerate().map(line).collect()
     }
 
+    fn start() -> Record {
+        Record::Unknown("start".to_owned())
+    }
+
+    fn call() -> Record {
+        let outcome = Outcome::Accepted(json!({}));
+        let tool = "set_prices".to_owned();
+        Record::Call(Call { tool, args: json!({}), outcome, via: Via::Form, took_ms: 0.0, reversal: None })
+    }
+
+    fn memo() -> Record {
+        Record::Memo(Memo { digest: String::new(), length: 0 })
+    }
+
+    fn advance() -> Record {
+        let (rationale, forecasts, calculations) = ("wait".to_owned(), Vec::new(), Vec::new());
+        Record::Advance(Advance { rationale, forecasts, via: Via::Form, calculations })
+    }
+
+    fn week() -> Record {
+        let (figures, state_hash, parts) = Default::default();
+        Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts })
+    }
+
     #[test]
     fn breaks_are_counted_apart_and_the_simulator_takes_no_time_of_the_player() {
+        let view = View { screen: "cash".to_owned(), from: String::new(), for_ms: 1_560_000 };
+        let sql = "x".to_owned();
+        let query = Query { sql, rows: Some(1), truncated: false, error: None, took_ms: 1.0 };
         let timeline = Timeline::of(&lines(&[
-            ("10:00:00", "start", json!({})),
-            ("10:05:00", "call", json!({"ok": true, "tool": "set_prices"})),
-            ("10:30:00", "view", json!({"screen": "cash", "from": "", "for_ms": 1_560_000})),
-            ("10:31:00", "advance", json!({"rationale": "wait"})),
-            ("10:32:00", "week", json!({"days_run": 7})),
-            ("10:33:00", "query", json!({"sql": "x", "error": null})),
+            ("10:00:00", start()),
+            ("10:05:00", call()),
+            ("10:30:00", Record::View(view)),
+            ("10:31:00", advance()),
+            ("10:32:00", week()),
+            ("10:33:00", Record::Query(query)),
         ]));
         let effort = &timeline.spans[0].effort;
         assert_eq!((effort.elapsed_seconds, effort.active_seconds, effort.breaks), (1860.0, 360.0, 1));
@@ -207,10 +220,10 @@ mod tests {
     #[test]
     fn a_clock_that_was_set_back_takes_no_time_away() {
         let timeline = Timeline::of(&lines(&[
-            ("10:00:00", "start", json!({})),
-            ("10:01:00", "memo", json!({})),
-            ("09:00:00", "memo", json!({})),
-            ("09:02:00", "memo", json!({})),
+            ("10:00:00", start()),
+            ("10:01:00", memo()),
+            ("09:00:00", memo()),
+            ("09:02:00", memo()),
         ]));
         assert_eq!((timeline.open.effort.active_seconds, timeline.clock_set_back), (180.0, 1));
     }
@@ -218,12 +231,12 @@ mod tests {
     #[test]
     fn weeks_of_a_parent_are_marked_and_take_no_time() {
         let timeline = Timeline::of(&lines(&[
-            ("10:00:00", "start", json!({})),
-            ("10:00:01", "advance", json!({"rationale": "x"})),
-            ("10:00:02", "week", json!({"days_run": 7})),
-            ("10:00:03", "branch", json!({})),
-            ("10:01:03", "advance", json!({"rationale": "y"})),
-            ("10:01:04", "week", json!({"days_run": 7})),
+            ("10:00:00", start()),
+            ("10:00:01", advance()),
+            ("10:00:02", week()),
+            ("10:00:03", Record::Branch(Branch { from: None })),
+            ("10:01:03", advance()),
+            ("10:01:04", week()),
         ]));
         let seen: Vec<(bool, f64)> =
             timeline.spans.iter().map(|span| (span.inherited, span.effort.active_seconds)).collect();

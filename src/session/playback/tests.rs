@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::*;
-use crate::session::decided::Act;
+use crate::session::record::{Call, Outcome};
+use crate::session::trajectory::Durability;
 use crate::session::{Configuration, Forecasts, NewRun, Storage, Via, verify};
+use crate::session::{Record, RecordView};
 
 /// A run that was recorded into a folder.
 pub(in crate::session) struct Recorded {
@@ -67,7 +69,7 @@ fn go(playback: &mut Playback, goal: Goal) -> Went {
 /// Hashes that the trajectory recorded, by day.
 fn hashes(folder: &Path) -> BTreeMap<u32, String> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");
-    let hash = |line: &Line| Some((line.day, line.fields.get("state_hash")?.as_str()?.to_owned()));
+    let hash = |line: &Line| Some((line.day, line.record.closing()?.state_hash.clone()));
     trajectory.lines.iter().filter_map(hash).collect()
 }
 
@@ -127,11 +129,13 @@ fn single_actions_show_the_company_between_the_weeks() {
     assert_eq!(price(&playback), Some(12.0));
     let chapter = playback.place().chapter;
     assert_eq!((chapter.week, chapter.day, chapter.done, chapter.entries.len()), (1, 0, 1, 6));
-    assert!(matches!(&chapter.entries[2].act, Act::Refused { tool, .. } if tool == "set_prices"));
+    assert!(
+        matches!(&chapter.entries[2].record, Record::Call(Call { tool, outcome: Outcome::Refused(_), .. }) if tool == "set_prices")
+    );
     go(&mut playback, Goal::Lines(-1));
     assert_eq!(price(&playback), Some(0.0));
     go(&mut playback, Goal::Lines(5));
-    assert!(matches!(playback.place().chapter.entries[4].act, Act::Advance { .. }));
+    assert!(matches!(playback.place().chapter.entries[4].record, Record::Advance(_)));
     assert_eq!(playback.session().day(), 0, "the week is filed, but has not run");
     go(&mut playback, Goal::Lines(1));
     assert_eq!((playback.session().day(), playback.place().chapter.done), (7, 0));
@@ -143,11 +147,8 @@ fn an_outcome_is_known_when_its_day_has_come_and_marked_before() {
     let mut playback = Playback::open(&run.folder).expect("it opens");
     let foreseen = |playback: &Playback| {
         let chapter = playback.place().chapter;
-        let advance = chapter.entries.into_iter().find_map(|entry| match entry.act {
-            Act::Advance { forecasts, .. } => Some(forecasts),
-            _ => None,
-        });
-        advance.expect("a week was filed")
+        let filed = |entry: &RecordView| matches!(entry.record, Record::Advance(_));
+        chapter.entries.into_iter().find(filed).expect("a week was filed").forecasts
     };
     let early = foreseen(&playback);
     assert!(early[0].later && early[1].later && early[2].later);
@@ -276,19 +277,18 @@ fn a_state_that_is_not_reached_again_stops_before_it() {
     let path = run.folder.join("trajectory.jsonl");
     // A chain that holds and tells something else: the price of the first call, chained anew.
     let read = Trajectory::read(&path).expect("a trajectory");
-    let mut writer_lines = read.lines.clone();
-    let target = writer_lines.iter().rposition(|line| line.kind == "call").expect("a call");
-    writer_lines[target].fields["args"] = json!({"operations": 77, "development": 5});
-    writer_lines[target].fields["result"] = json!({"operations": 77.0, "development": 5.0});
+    let mut lines = read.lines.clone();
+    let last_call = lines.iter_mut().rev().find_map(|line| match &mut line.record {
+        Record::Call(call) => Some(call),
+        _ => None,
+    });
+    let call = last_call.expect("a call");
+    call.args = json!({"operations": 77, "development": 5});
+    call.outcome = Outcome::Accepted(json!({"operations": 77.0, "development": 5.0}));
     let copy = run.folder.with_file_name("other.jsonl");
     let mut writer = TrajectoryWriter::create(&copy).expect("a file");
-    for line in &writer_lines {
-        let frame = ["seq", "kind", "day", "at", "prev"];
-        let own = line.fields.iter().filter(|(name, _)| !frame.contains(&name.as_str()));
-        let own = own.map(|(name, value)| (name.clone(), value.clone())).collect();
-        writer
-            .append(&line.kind, line.day, own, super::super::trajectory::Durability::Written)
-            .expect("a line");
+    for line in &lines {
+        writer.append(line.day, &line.record, Durability::Written).expect("a line");
     }
     let mut playback = Playback::open(&copy).expect("the chain is whole");
     let problem = playback.go(Goal::Last, &mut |_| ControlFlow::Continue(())).expect_err("another state");

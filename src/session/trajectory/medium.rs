@@ -5,7 +5,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
 /// Where lines end up: a file, or in tests one that forgets what was not synced.
-pub(super) trait Medium: Send {
+pub(in crate::session) trait Medium: Send {
     /// Appends bytes.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
     /// Makes everything appended survive a power cut.

@@ -3,12 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use serde_json::{Map, Value};
-
 use super::Session;
 use super::error::RunError;
 use super::feed::Feed;
-use super::trajectory::Durability;
+use super::trajectory::{Durability, Record};
 use crate::database::{Entry, Projector};
 use crate::voice;
 use crate::world::canonical::hash_of;
@@ -17,13 +15,13 @@ use crate::world::params::Params;
 use crate::world::state::{PartHash, combined_hash};
 
 /// Hash of the state and of the week's facts, with the hash of each part by its name.
-pub(super) type StateHash = (String, BTreeMap<&'static str, String>);
+pub(super) type StateHash = (String, BTreeMap<String, String>);
 
 /// Hash of a state with these parts and of the week's facts.
 pub(super) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> StateHash {
     parts.push(PartHash { part: "facts", hash: facts });
     let short = |hash: &blake3::Hash| hash.to_hex()[..16].to_owned();
-    let by_name = parts.iter().map(|part| (part.part, short(&part.hash))).collect();
+    let by_name = parts.iter().map(|part| (part.part.to_owned(), short(&part.hash))).collect();
     (combined_hash(&parts).to_hex().to_string(), by_name)
 }
 
@@ -113,28 +111,17 @@ impl Session {
     }
 
     /// Appends a line; a run that is only read has none.
-    pub(super) fn append(
-        &mut self,
-        kind: &'static str,
-        day: u32,
-        fields: Map<String, Value>,
-        durability: Durability,
-    ) -> Result<String, RunError> {
+    pub(super) fn append(&mut self, record: &Record, durability: Durability) -> Result<String, RunError> {
         let Some(trajectory) = &mut self.trajectory else { return Ok(String::new()) };
-        let at = trajectory.append(kind, day, fields, durability)?;
+        let at = trajectory.append(self.world.day, record, durability)?;
         self.position = trajectory.position();
         Ok(at)
     }
 
     /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
-    pub(super) fn append_done(
-        &mut self,
-        kind: &'static str,
-        day: u32,
-        fields: Map<String, Value>,
-    ) -> Option<String> {
+    pub(super) fn append_done(&mut self, record: &Record) -> Option<String> {
         let trajectory = self.trajectory.as_mut()?;
-        let written = trajectory.append_done(kind, day, fields);
+        let written = trajectory.append_done(self.world.day, record);
         self.position = trajectory.position();
         written.err().map(|error| error.to_string())
     }

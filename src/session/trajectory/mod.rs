@@ -1,0 +1,284 @@
+//! `trajectory.jsonl`: the truth of a run, one line per action (chapter 70 §5, format 1).
+//!
+//! Lines are appended and never changed. Each names the hash of the one before and ends with a sum of its own, so
+//! what is cut, flipped or inserted shows, in the last line too. A line whose last byte is missing was never
+//! confirmed and is dropped.
+
+mod line;
+mod medium;
+pub mod record;
+mod writer;
+
+use std::path::Path;
+
+pub use line::{Line, now, seconds};
+#[cfg(test)]
+pub(super) use medium::Medium;
+pub use record::Record;
+pub use writer::{Durability, TrajectoryWriter};
+
+use super::error::RunError;
+use line::line_hash;
+
+/// A trajectory that was read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trajectory {
+    /// Its lines.
+    pub lines: Vec<Line>,
+    /// Bytes of the file that hold them.
+    pub length: u64,
+    /// Bytes after the last complete line: a line that was never confirmed.
+    pub unfinished: usize,
+}
+
+impl Trajectory {
+    /// Reads and checks a file: every line is JSON, numbered, and names the hash of the one before.
+    ///
+    /// # Errors
+    /// The file cannot be read, or a line is damaged; the error names it and says what is still good.
+    pub fn read(path: &Path) -> Result<Trajectory, RunError> {
+        Trajectory::of_file(path, &std::fs::read(path).map_err(RunError::io(path))?)
+    }
+
+    /// Checks the bytes of a file as [`Trajectory::read`] does.
+    ///
+    /// # Errors
+    /// A line is damaged; the error names it and says what is still good.
+    pub fn of_file(path: &Path, bytes: &[u8]) -> Result<Trajectory, RunError> {
+        Trajectory::parse(bytes).map_err(damaged_at(path))
+    }
+
+    /// Checks bytes as [`Trajectory::read`] does.
+    ///
+    /// # Errors
+    /// (line, problem), lines from 1.
+    pub fn parse(bytes: &[u8]) -> Result<Trajectory, (usize, String)> {
+        let mut trajectory = Trajectory::default();
+        trajectory.extend(bytes).map(|()| trajectory)
+    }
+
+    /// Whether every line ends with a sum. Before the first line is read nobody knows.
+    fn has_sums(&self) -> bool {
+        self.lines.first().is_none_or(Line::promises_sums)
+    }
+
+    /// Takes what follows in the file after the lines that are known.
+    ///
+    /// # Errors
+    /// (line, problem), lines from 1. The lines before it are kept.
+    pub fn extend(&mut self, bytes: &[u8]) -> Result<(), (usize, String)> {
+        let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        for text in bytes[..end].split_inclusive(|byte| *byte == b'\n') {
+            let line = &text[..text.len() - 1];
+            let expected = self.lines.last().map_or_else(|| line_hash(b""), |line| line.hash.clone());
+            let number = self.lines.len() + 1;
+            let line = Line::read(line, self.lines.len() as u64, &expected, self.has_sums())
+                .map_err(|problem| (number, problem))?;
+            self.lines.push(line);
+            self.length += text.len() as u64;
+        }
+        self.unfinished = bytes.len() - end;
+        Ok(())
+    }
+}
+
+/// A line of a file that is not what was written, as an error.
+pub(super) fn damaged_at(path: &Path) -> impl Fn((usize, String)) -> RunError + '_ {
+    move |(line, problem)| RunError::Damaged {
+        path: path.to_owned(),
+        line,
+        safe: match line.saturating_sub(if problem == DOES_NOT_FOLLOW { 2 } else { 1 }) {
+            0 => "Nothing before it can be used".to_owned(),
+            good => format!("Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}"),
+        },
+        problem,
+    }
+}
+
+/// Each of two lines fits its own sum, and they contradict each other.
+pub(super) const DOES_NOT_FOLLOW: &str =
+    "the line does not follow from the one before: one of the two was changed";
+
+/// What can be done with the lines before a damaged one.
+pub(super) const BRANCH_THEM: &str = ": `novamind runs rescue` makes a branch of them";
+
+#[cfg(test)]
+mod tests {
+    use super::record::{Memo, Query, View};
+    use super::*;
+    use crate::session::{Configuration, NewRun};
+    use serde_json::{Value, json};
+    use std::path::PathBuf;
+
+    fn memo() -> Record {
+        Record::Memo(Memo { digest: "größer".to_owned(), length: 7 })
+    }
+
+    fn start() -> Record {
+        let manifest = crate::session::Session::create(NewRun::default(), &Configuration::shipped())
+            .expect("a run")
+            .manifest()
+            .clone();
+        crate::session::create::start_of(&manifest)
+    }
+
+    /// A start, and memos after it.
+    fn written(folder: &Path, count: u32) -> PathBuf {
+        let path = folder.join("trajectory.jsonl");
+        let mut writer = TrajectoryWriter::create(&path).expect("a file");
+        writer.append(0, &start(), Durability::Synced).expect("a line");
+        for day in 1..count {
+            writer.append(day, &memo(), Durability::Synced).expect("a line");
+        }
+        path
+    }
+
+    #[test]
+    fn lines_come_back_and_can_be_continued() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = written(folder.path(), 3);
+        let read = Trajectory::read(&path).expect("it reads");
+        assert_eq!(read.lines.len(), 3);
+        assert_eq!((read.lines[2].day, &read.lines[2].record), (2, &memo()));
+        let mut writer = TrajectoryWriter::resume(&path, &read).expect("it opens");
+        assert_eq!(writer.position(), read.lines[2].position());
+        writer.append(9, &memo(), Durability::Written).expect("a line");
+        assert_eq!(Trajectory::read(&path).expect("it reads").lines[3].day, 9);
+        assert!(TrajectoryWriter::create(&path).is_err());
+    }
+
+    #[test]
+    fn an_unfinished_line_is_dropped() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = written(folder.path(), 3);
+        let bytes = std::fs::read(&path).expect("bytes");
+        std::fs::write(&path, &bytes[..bytes.len() - 5]).expect("a cut");
+        let read = Trajectory::read(&path).expect("it reads");
+        assert_eq!(read.lines.len(), 2);
+        assert!(read.unfinished > 0);
+        let mut writer = TrajectoryWriter::resume(&path, &read).expect("it opens");
+        writer.append(2, &memo(), Durability::Synced).expect("a line");
+        assert_eq!(Trajectory::read(&path).expect("it reads").lines.len(), 3);
+    }
+
+    #[test]
+    fn a_file_that_is_gone_or_grew_elsewhere_takes_no_line() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = written(folder.path(), 3);
+        let read = Trajectory::read(&path).expect("it reads");
+        let [mut first, mut second] =
+            [(), ()].map(|()| TrajectoryWriter::resume(&path, &read).expect("it opens"));
+        let note = |writer: &mut TrajectoryWriter| writer.append(9, &memo(), Durability::Synced);
+        note(&mut second).expect("a line");
+        let kept = std::fs::read(&path).expect("bytes");
+        assert!(matches!(note(&mut first), Err(RunError::Astray { .. })), "somebody else has written");
+        assert_eq!(std::fs::read(&path).expect("bytes"), kept, "and keeps the line");
+        std::fs::rename(&path, folder.path().join("aside")).expect("moved");
+        assert!(matches!(note(&mut second), Err(RunError::Astray { .. })), "it was moved");
+        std::fs::copy(folder.path().join("aside"), &path).expect("a copy");
+        assert!(matches!(note(&mut second), Err(RunError::Astray { .. })), "a copy is another file");
+        std::fs::remove_file(&path).expect("removed");
+        std::fs::rename(folder.path().join("aside"), &path).expect("moved back");
+        note(&mut second).expect("it is there again");
+    }
+
+    #[test]
+    fn every_flipped_byte_and_every_missing_line_is_found() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let bytes = std::fs::read(written(folder.path(), 4)).expect("bytes");
+        let whole = Trajectory::parse(&bytes).expect("it reads");
+        // Without its line end the last line counts as unfinished.
+        for at in 0..bytes.len() - 1 {
+            let mut damaged = bytes.clone();
+            damaged[at] ^= 0x04;
+            assert!(Trajectory::parse(&damaged).is_err(), "byte {at} was changed unseen");
+        }
+        let mut lines: Vec<&[u8]> = bytes.split_inclusive(|byte| *byte == b'\n').collect();
+        lines.remove(1);
+        assert_eq!(Trajectory::parse(&lines.concat()).expect_err("a line is missing").0, 2);
+        lines.swap(0, 1);
+        assert_eq!(Trajectory::parse(&lines.concat()).expect_err("out of order").0, 1);
+        assert_eq!(whole.unfinished, 0);
+        assert_eq!(Trajectory::parse(b"").expect("an empty file").lines.len(), 0);
+    }
+
+    /// The examples of the schema, one of each kind, without their frame.
+    fn examples() -> Vec<(String, Value)> {
+        let schema: Value =
+            serde_json::from_str(include_str!("../../../assets/trajectory.schema.json")).expect("JSON");
+        let kinds = schema["$defs"].as_object().expect("definitions");
+        let examples = kinds.iter().filter_map(|(kind, own)| Some((kind, own.get("examples")?.as_array()?)));
+        examples.flat_map(|(kind, all)| all.iter().map(|one| (kind.clone(), one.clone()))).collect()
+    }
+
+    #[test]
+    fn every_kind_is_read_and_written_as_the_schema_shows_it() {
+        let examples = examples();
+        for (kind, example) in &examples {
+            let text = example.to_string();
+            let record = Record::read(kind, text.as_bytes()).expect(kind);
+            assert_eq!(record.kind(), kind);
+            let fields = example.as_object().expect("an object").iter();
+            let own = fields
+                .filter(|(name, _)| !["seq", "kind", "day", "at", "prev", "sum"].contains(&name.as_str()));
+            let own: serde_json::Map<String, Value> =
+                own.map(|(name, value)| (name.clone(), value.clone())).collect();
+            assert_eq!(Value::Object(record.fields()).to_string(), Value::Object(own).to_string());
+        }
+        let kinds: std::collections::BTreeSet<&str> =
+            examples.iter().map(|(kind, _)| kind.as_str()).collect();
+        assert_eq!(kinds.len(), 11, "{kinds:?}");
+    }
+
+    #[test]
+    fn a_field_that_is_missing_is_an_error_and_one_that_is_unknown_is_kept() {
+        for (kind, example) in examples() {
+            let (seq, previous) =
+                (example["seq"].as_u64().expect("a number"), example["prev"].as_str().expect("a hash"));
+            let read = |fields: &Value| Line::read(fields.to_string().as_bytes(), seq, previous, false);
+            let mut without_sum = example.clone();
+            let fields = without_sum.as_object_mut().expect("an object");
+            fields.remove("sum");
+            fields.insert("later".to_owned(), json!([1, "two"]));
+            assert_eq!(read(&without_sum).expect(&kind).own_fields()["later"], json!([1, "two"]));
+            let needed = match kind.as_str() {
+                "start" => "seed",
+                "call" => "tool",
+                "query" => "sql",
+                "view" => "screen",
+                "memo" => "digest",
+                "advance" => "rationale",
+                "week" | "step" => "days_run",
+                "override" => "key",
+                "branch" => "from",
+                _ => "reason",
+            };
+            without_sum.as_object_mut().expect("an object").remove(needed);
+            let problem = read(&without_sum).expect_err("a field is missing");
+            assert!(problem.contains(&format!("missing field `{needed}`")), "{problem}");
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = written(folder.path(), 1);
+        let read = Trajectory::read(&path).expect("it reads");
+        let mut writer = TrajectoryWriter::resume(&path, &read).expect("it opens");
+        let query = Query {
+            sql: "SELECT 1".to_owned(),
+            rows: None,
+            truncated: false,
+            error: Some("sql_error".to_owned()),
+            took_ms: 3.0,
+        };
+        let view = View { screen: "cash".to_owned(), from: "sql".to_owned(), for_ms: 12 };
+        let records = [start(), Record::Query(query), Record::View(view), memo()];
+        for record in &records {
+            writer.append(3, record, Durability::Written).expect("a line");
+        }
+        let lines = Trajectory::read(&path).expect("it reads").lines;
+        let kept: Vec<&Record> = lines[1..].iter().map(|line| &line.record).collect();
+        assert_eq!(kept, records.iter().collect::<Vec<_>>());
+    }
+}

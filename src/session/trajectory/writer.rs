@@ -1,0 +1,206 @@
+//! Appending lines, and when they are on the disk.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value};
+
+use super::Trajectory;
+use super::line::{Line, line_hash, now, with_sum};
+use super::medium::Medium;
+use super::record::Record;
+use crate::database::Position;
+use crate::session::error::RunError;
+
+/// When a line has to be on the disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Durability {
+    /// Before anything is confirmed.
+    Synced,
+    /// With the next synced line.
+    Written,
+}
+
+/// Appends lines.
+pub struct TrajectoryWriter {
+    /// The file; none for a run in memory.
+    medium: Option<Box<dyn Medium>>,
+    path: PathBuf,
+    /// Bytes of the file that are good.
+    length: u64,
+    /// Lines that could not be written yet, in order, and must come first.
+    backlog: Vec<u8>,
+    next_seq: u64,
+    last_hash: String,
+}
+
+impl TrajectoryWriter {
+    /// A trajectory in memory: only numbers and hashes are kept.
+    pub fn in_memory() -> TrajectoryWriter {
+        TrajectoryWriter {
+            medium: None,
+            path: PathBuf::new(),
+            length: 0,
+            backlog: Vec::new(),
+            next_seq: 0,
+            last_hash: line_hash(b""),
+        }
+    }
+
+    /// A new file.
+    ///
+    /// # Errors
+    /// It exists already, or cannot be made.
+    pub fn create(path: &Path) -> Result<TrajectoryWriter, RunError> {
+        let file = File::options().create_new(true).append(true).open(path).map_err(RunError::io(path))?;
+        let medium: Box<dyn Medium> = Box::new(file);
+        Ok(TrajectoryWriter { medium: Some(medium), path: path.to_owned(), ..TrajectoryWriter::in_memory() })
+    }
+
+    /// Goes on with a file that was read; bytes after the good ones are cut off.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn resume(path: &Path, read: &Trajectory) -> Result<TrajectoryWriter, RunError> {
+        let mut file = File::options().write(true).open(path).map_err(RunError::io(path))?;
+        file.cut(read.length).map_err(RunError::io(path))?;
+        Ok(TrajectoryWriter {
+            medium: Some(Box::new(file)),
+            path: path.to_owned(),
+            length: read.length,
+            backlog: Vec::new(),
+            next_seq: read.lines.len() as u64,
+            last_hash: read.lines.last().map_or_else(|| line_hash(b""), |line| line.hash.clone()),
+        })
+    }
+
+    /// Number and hash of the last line.
+    pub fn position(&self) -> Position {
+        Position { seq: self.next_seq.saturating_sub(1), line_hash: self.last_hash.clone() }
+    }
+
+    /// Appends a line and returns the moment it carries.
+    ///
+    /// # Errors
+    /// The disk refuses: then the line does not exist, and the file is as it was.
+    pub fn append(&mut self, day: u32, record: &Record, durability: Durability) -> Result<String, RunError> {
+        self.append_fields(record.kind(), day, record.fields(), durability)
+    }
+
+    /// Appends what another line says, on the day on which it was said.
+    ///
+    /// # Errors
+    /// As [`TrajectoryWriter::append`].
+    pub fn copy(&mut self, line: &Line) -> Result<(), RunError> {
+        let fields = line.own_fields();
+        self.append_fields(line.record.kind(), line.day, fields, Durability::Written).map(|_| ())
+    }
+
+    fn append_fields(
+        &mut self,
+        kind: &str,
+        day: u32,
+        fields: Map<String, Value>,
+        durability: Durability,
+    ) -> Result<String, RunError> {
+        let (bytes, hash, at) = self.line(kind, day, fields);
+        let written = self.write(&bytes, durability);
+        if written.is_ok() {
+            self.accept(hash);
+        }
+        written.map(|()| at)
+    }
+
+    /// Appends a line about something that cannot be taken back. If the disk refuses, the line waits in memory
+    /// and goes first with the next one.
+    ///
+    /// # Errors
+    /// The disk refuses for now.
+    pub fn append_done(&mut self, day: u32, record: &Record) -> Result<(), RunError> {
+        let (bytes, hash, _) = self.line(record.kind(), day, record.fields());
+        let written = self.write(&bytes, Durability::Synced);
+        if written.is_err() {
+            self.backlog.extend_from_slice(&bytes);
+        }
+        self.accept(hash);
+        written
+    }
+
+    fn accept(&mut self, hash: String) {
+        self.next_seq += 1;
+        self.last_hash = hash;
+    }
+
+    fn line(&self, kind: &str, day: u32, fields: Map<String, Value>) -> (Vec<u8>, String, String) {
+        let at = now();
+        let mut line = Map::new();
+        line.insert("seq".to_owned(), self.next_seq.into());
+        line.insert("kind".to_owned(), kind.into());
+        line.insert("day".to_owned(), day.into());
+        line.insert("at".to_owned(), at.clone().into());
+        line.insert("prev".to_owned(), self.last_hash.clone().into());
+        debug_assert!(
+            fields.keys().all(|name| !line.contains_key(name)),
+            "a field hides a part of the frame: {kind}"
+        );
+        line.extend(fields);
+        let mut bytes = with_sum(Value::Object(line).to_string().into_bytes());
+        let hash = line_hash(&bytes);
+        bytes.push(b'\n');
+        (bytes, hash, at)
+    }
+
+    fn write(&mut self, bytes: &[u8], durability: Durability) -> Result<(), RunError> {
+        let Some(medium) = &mut self.medium else { return Ok(()) };
+        if !medium.is_ours(&self.path, self.length) {
+            // Lines of another program are not overwritten, and nothing is told to be saved that nobody finds.
+            return Err(RunError::Astray { path: self.path.clone() });
+        }
+        let mut all = self.backlog.clone();
+        all.extend_from_slice(bytes);
+        let written = medium.append(&all).and_then(|()| match durability {
+            Durability::Synced => medium.sync(),
+            Durability::Written => Ok(()),
+        });
+        match written {
+            Ok(()) => {
+                self.length += all.len() as u64;
+                self.backlog.clear();
+                Ok(())
+            }
+            Err(error) => {
+                // Whatever got through is no line yet; the file ends where it ended.
+                let _ = medium.cut(self.length);
+                Err(RunError::Io { path: self.path.clone(), error })
+            }
+        }
+    }
+
+    /// Puts the lines that were written on the disk, whatever still waits in memory.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn sync_written(&self) -> Result<(), RunError> {
+        self.medium.as_ref().map_or(Ok(()), |medium| medium.sync()).map_err(RunError::io(&self.path))
+    }
+
+    /// Whether the file still stands where it is looked for, and no line waits for it.
+    pub fn is_complete(&self) -> bool {
+        let is_ours = self.medium.as_ref().is_none_or(|medium| medium.is_ours(&self.path, self.length));
+        is_ours && self.backlog.is_empty()
+    }
+
+    /// Puts another medium in place of the file.
+    #[cfg(test)]
+    pub(in crate::session) fn write_to(&mut self, medium: Box<dyn Medium>) {
+        self.medium = Some(medium);
+    }
+
+    /// Puts everything on the disk.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn sync(&mut self) -> Result<(), RunError> {
+        self.write(b"", Durability::Synced)
+    }
+}

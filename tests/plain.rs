@@ -301,7 +301,10 @@ fn named_queries_are_listed_and_answered() {
     assert_eq!((&names[0]["name"], &names[0]["title"]), (&"mine".into(), &"mine".into()));
     assert_eq!(said[2]["data"]["rows"][0]["answer"], 42);
     assert_eq!(said[3]["data"]["rows"][0]["cash"], 1_000_000.0);
-    assert!(said[4]["error"].as_str().is_some_and(|error| error.contains("near it: cash-by-week")), "{text}");
+    assert!(
+        said[4]["error"].as_str().is_some_and(|error| error.contains("did you mean cash-by-week")),
+        "{text}"
+    );
     assert!(said[5]["data"]["command"].as_str().is_some_and(|line| line.starts_with("queries [NAME]")));
 }
 
@@ -315,7 +318,7 @@ fn weeks_and_runs_are_told() {
         "> report\nweek to day 7: cash change -$",
         "capacity -$",
         "decided before it: price A: 0 → 12 $/month",
-        "forecast of 1 week ago: inside the interval, off by ",
+        "forecast from 1 week ago: inside the interval, off by ",
         "new: ",
         "> report run\n# NovaMind · run ",
         "price A: 0 → 12 $/month",

@@ -20,7 +20,7 @@ pub struct Options {
     /// Repetitions; the middle one counts.
     #[arg(long, default_value = "5", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
     runs: u32,
-    /// Only this case; may be repeated.
+    /// Only this case; can be repeated.
     #[arg(long, value_name = "NAME", value_parser = every_case().map(|case| case.name).collect::<Vec<_>>())]
     only: Vec<String>,
     /// One repetition, and nothing that takes minutes.
@@ -29,7 +29,7 @@ pub struct Options {
     /// Folder for the runs that are measured [default: the system's folder for temporary files].
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
-    /// As JSON.
+    /// Print as JSON.
     #[arg(long)]
     json: bool,
     /// Measure one case in this process and print its samples.

@@ -9,7 +9,7 @@ use crate::console::manual;
 /// Options of `keys`.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// As a table in Markdown.
+    /// Print as a table in Markdown.
     #[arg(long)]
     markdown: bool,
 }

@@ -34,14 +34,14 @@ struct Golden {
     /// Folder of policy files [default: the reference folder, else the shipped ones].
     #[arg(long, value_name = "DIR")]
     policies: Option<PathBuf>,
-    /// Seeds, at least 24; suspects are run again on as many following ones.
+    /// Seeds, at least 24; suspicious figures are run again on as many of the seeds that follow.
     #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
     seeds: Seeds,
-    /// Only this policy; may be repeated.
+    /// Only this policy; can be repeated.
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
-    /// Figures that are left out, for instance those of mechanics not built yet; a name ending in * stands for all
-    /// that begin with it.
+    /// Figures to leave out, for instance those of mechanics not built yet; a name ending in * stands for all
+    /// names that begin with it.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     without: Vec<String>,
     /// Seeds played at the same time.
@@ -52,9 +52,9 @@ struct Golden {
     all: bool,
 }
 
-/// Least share of |z| < 3 in one policy.
+/// Lowest accepted share of |z| < 3 in one policy.
 const SHARE_OF_POLICY: f64 = 0.95;
-/// Least share of |z| < 3 over all policies.
+/// Lowest accepted share of |z| < 3 over all policies.
 const SHARE_OF_ALL: f64 = 0.97;
 
 /// Runs the command.
@@ -250,7 +250,7 @@ fn conclude(verdicts: &[Verdict], unplayed: &[&str], seeds: &Seeds) -> Result<()
         failing.map(|verdict| format!("{} differs from the reference", verdict.comparison.policy)).collect();
     problems.extend(unplayed.iter().map(|name| format!("{name} cannot be played")));
     if below(3.0) < SHARE_OF_ALL {
-        problems.push(format!("over all policies less than {:.0} % have |z| < 3", 100.0 * SHARE_OF_ALL));
+        problems.push(format!("over all policies, less than {:.0} % have |z| < 3", 100.0 * SHARE_OF_ALL));
     }
     if problems.is_empty() { Ok(()) } else { Err(Failure::failed(problems.join("; "))) }
 }

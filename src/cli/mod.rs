@@ -37,7 +37,7 @@ pub struct Arguments {
     /// Folder of the runs [default: the platform's data folder].
     #[arg(long, global = true, env = "NOVAMIND_RUNS", value_name = "DIR")]
     runs_dir: Option<PathBuf>,
-    /// Whose runs these are: they stand in a folder of their own, carry this label, and no others are shown.
+    /// Whose runs these are: they have a folder of their own and carry this label, and no others are shown.
     #[arg(long = "as", global = true, env = "NOVAMIND_PARTICIPANT", value_name = "LABEL")]
     whose: Option<String>,
 }
@@ -46,19 +46,19 @@ pub struct Arguments {
 enum Command {
     /// Open the console, or play line by line with --plain.
     Play(play::Options),
-    /// Play a policy without a person.
+    /// Let a policy play, without a person.
     Run(run::Options),
     /// List, show, end, delete, export and import runs.
     Runs(runs::Options),
     /// Simulate a recorded run again and compare every state.
     Replay(replay::Options),
-    /// Tell a run: result, curves, decisions, how it was played.
+    /// Report on a run: result, curves, decisions, how it was played.
     Report(report::Options),
-    /// Ask the database of a run.
+    /// Query the database of a run.
     Query(query::Options),
     /// Show the catalogue of tools.
     Tools(tools::Options),
-    /// Show the tables that can be asked.
+    /// Show the tables that can be queried.
     Tables(tables::Options),
     /// Show every key of the console.
     Keys(keys::Options),
@@ -68,7 +68,7 @@ enum Command {
     Scenario(scenario::Options),
     /// Compare policies with reference figures, and runs with each other.
     Lab(lab::Options),
-    /// Measure the speed of this machine's simulator.
+    /// Measure how fast this machine simulates.
     Bench(bench::Options),
     /// Print a completion script for a shell.
     Completions(completions::Options),
@@ -130,7 +130,7 @@ impl Context {
     /// The platform has none and none was named.
     pub fn runs(&self) -> Result<PathBuf, Failure> {
         let base = self.runs.clone().ok_or_else(|| {
-            Failure::usage("this system names no folder for data; give one with --runs-dir or NOVAMIND_RUNS")
+            Failure::usage("this system names no folder for data; name one with --runs-dir or NOVAMIND_RUNS")
         })?;
         match &self.participant {
             None => Ok(base),
@@ -148,8 +148,8 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         && arguments.play != play::Options::default()
     {
         return Err(Failure::usage(format!(
-            "options of `play` before a command do not count: write them behind it, as in `novamind play --new --seed 1`; \
-             before `{}` only --runs-dir and --as may stand",
+            "options of `play` have no effect before a command: write them after it, as in `novamind play \
+             --new --seed 1`; before `{}`, only --runs-dir and --as are allowed",
             command.name()
         )));
     }

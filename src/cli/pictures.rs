@@ -24,10 +24,10 @@ pub struct Options {
     /// Only these screens, by name: overview, cash, customers, …
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     screens: Vec<String>,
-    /// Keys that are pressed instead of showing screens, as the key file writes them, with blanks between them.
+    /// Keys to press instead of showing screens, as the key file writes them, with blanks between them.
     #[arg(long, conflicts_with = "screens")]
     keys: Option<String>,
-    /// Play the run again instead, and show it as it was after this week.
+    /// Replay the run instead, and show it as it was after this week.
     #[arg(long, value_name = "WEEK")]
     replay: Option<u32>,
     /// Columns and rows of the window.
@@ -91,7 +91,10 @@ fn places(options: &Options, keys: &Keys) -> Result<Vec<(String, String)>, Failu
     }
     let known = ScreenId::ALL.map(ScreenId::id);
     if let Some(wrong) = options.screens.iter().find(|name| !known.contains(&name.as_str())) {
-        return Err(Failure::usage(format!("there is no screen {wrong}; there are {}", known.join(", "))));
+        return Err(Failure::usage(format!(
+            "there is no screen {wrong}; the screens are {}",
+            known.join(", ")
+        )));
     }
     let wanted = |screen: &ScreenId| {
         options.screens.is_empty() || options.screens.iter().any(|name| name == screen.id())

@@ -50,7 +50,7 @@ pub struct Options {
     /// The participant has agreed to the text in consent.md of the configuration folder.
     #[arg(long)]
     consent: bool,
-    /// Set a parameter of a debug run; may be repeated.
+    /// Set a parameter of a debug run; can be repeated.
     #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
     set: Vec<(String, String)>,
     /// Theme of the console.
@@ -77,7 +77,7 @@ fn parse_mode(text: &str) -> Result<Mode, String> {
     let mode = Mode::parse(text).filter(|mode| Mode::OFFERED.contains(mode));
     mode.ok_or_else(|| {
         let offered = Mode::OFFERED.map(Mode::id).join(", ");
-        format!("{text} is no mode of a new run; there are {offered}")
+        format!("{text} is not a mode of a new run; the modes are {offered}")
     })
 }
 

@@ -32,7 +32,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn show(options: &Options, context: &Context) -> Result<(), Failure> {
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(Failure::usage(
-            "the replay is shown in a terminal; with --verify it is simulated again and every state compared",
+            "a replay needs a terminal; --verify simulates the run again without one and compares every \
+             state",
         ));
     }
     let recorded = recorded(&options.run);

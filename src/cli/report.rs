@@ -19,7 +19,7 @@ pub struct Options {
     /// Format of the report.
     #[arg(long, value_enum, default_value = "markdown")]
     format: Format,
-    /// Write it into this file instead of standard output.
+    /// Write to this file instead of standard output.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -29,7 +29,7 @@ pub struct Options {
 pub enum Format {
     /// Text with headings and tables.
     Markdown,
-    /// One page with charts, without scripts and other files.
+    /// One page with charts, without scripts or other files.
     Html,
     /// One JSON object; only with --session.
     Json,
@@ -58,7 +58,7 @@ fn report_of(folder: &Path, format: Format) -> Result<String, Failure> {
         Format::Markdown => told(as_markdown),
         Format::Html => told(as_html),
         Format::Json => Err(Failure::usage(
-            "a report is markdown or html; --session has json, and `novamind query` the figures",
+            "a report is markdown or html; json needs --session, and `novamind query` gives the figures",
         )),
     }
 }

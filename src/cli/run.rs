@@ -21,13 +21,13 @@ pub struct Options {
     /// Seed, or a range with both ends: 1..24.
     #[arg(long, default_value = "42", value_name = "N|A..B", value_parser = parse_seeds)]
     seed: Seeds,
-    /// Last day of the run; enters the mechanics [default: as policy or scenario say, else 500].
+    /// Last day of the run; affects the mechanics [default: as the policy or scenario says, else 500].
     #[arg(long, value_name = "N")]
     days: Option<u32>,
     /// Stop after this day; the horizon stays.
     #[arg(long, value_name = "N")]
     until: Option<u32>,
-    /// Demand surges [default: as policy or scenario say].
+    /// Demand surges [default: as the policy or scenario says].
     #[arg(long, value_enum)]
     surges: Option<Switch>,
     /// Starting cash in dollars.
@@ -36,7 +36,7 @@ pub struct Options {
     /// Scenario.
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Set a parameter; may be repeated.
+    /// Set a parameter; can be repeated.
     #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
     set: Vec<(String, String)>,
     /// Seeds played at the same time [default: as many as there are processors].
@@ -79,7 +79,7 @@ pub struct Seeds {
 
 /// Reads `7` or `1..24`.
 pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
-    let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is no seed"));
+    let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is not a seed"));
     let seeds = match text.split_once("..") {
         Some((first, last)) => Seeds { first: number(first)?, last: number(last)? },
         None => number(text).map(|seed| Seeds { first: seed, last: seed })?,
@@ -94,7 +94,7 @@ pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
 pub fn parse_override(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
-        _ => Err("a parameter is written table.key=value".to_owned()),
+        _ => Err("write a parameter as table.key=value".to_owned()),
     }
 }
 

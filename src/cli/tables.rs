@@ -10,7 +10,7 @@ use crate::database::{table, tables};
 pub struct Options {
     /// Show the columns of this table.
     name: Option<String>,
-    /// As JSON.
+    /// Print as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -27,7 +27,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         (Some(name), json) => {
             let table = table(name).ok_or_else(|| {
                 let near = crate::notation::nearest(name, tables().iter().map(|table| table.name.as_str()));
-                Failure::usage(format!("there is no table {name}; near it: {}", near.join(", ")))
+                let help = if near.is_empty() {
+                    "`novamind tables` lists them".to_owned()
+                } else {
+                    format!("did you mean {}?", near.join(" or "))
+                };
+                Failure::usage(format!("there is no table {name}; {help}"))
             })?;
             if json { as_json(serde_json::to_string_pretty(table)) } else { table.describe() }
         }

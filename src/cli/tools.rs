@@ -11,7 +11,7 @@ use crate::tools::{CATALOGUE, Numbers, catalogue, describe, find};
 pub struct Options {
     /// Show everything about this tool.
     name: Option<String>,
-    /// As JSON.
+    /// Print as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -31,7 +31,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                     near if near.is_empty() => {
                         format!("there is no tool {name}; `novamind tools` lists them")
                     }
-                    near => format!("there is no tool {name}; near it: {}", near.join(", ")),
+                    near => format!("there is no tool {name}; did you mean {}?", near.join(" or ")),
                 })
             })?;
             if json {

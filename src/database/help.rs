@@ -22,7 +22,9 @@ pub(super) fn explain_error(message: &str, sql: &str) -> String {
             .map(|table| table.name.as_str())
             .collect();
         let holders = if holders.is_empty() { "several tables".to_owned() } else { holders.join(", ") };
-        return format!("column {column} is ambiguous: {holders} have it; write it with its table");
+        return format!(
+            "column {column} is ambiguous: {holders} have it; write the table before it, as in table.{column}"
+        );
     }
     message.to_owned()
 }

@@ -212,7 +212,8 @@ fn told(error: rusqlite::Error) -> ProjectionError {
 fn told_of_memory(error: rusqlite::Error) -> ProjectionError {
     match error.sqlite_error_code() {
         Some(rusqlite::ErrorCode::DiskFull) => ProjectionError(
-            "in memory it may have 1 GiB; a run that nobody else plays, in a folder that can be written, has it on its disk"
+            "in memory it can have at most 1 GiB; a run that nobody else plays, in a writable folder, has it \
+             on disk"
                 .to_owned(),
         ),
         _ => told(error),
@@ -360,7 +361,7 @@ pub fn desk_of(location: &Location) -> Result<(Desk, Position), ProjectionError>
     let connection = location.open_reader().map_err(told)?;
     let position = stored_position(&connection).map_err(told)?.ok_or_else(missing)?;
     if !is_laid_out_now(&connection) {
-        return Err(ProjectionError("another version of the program has laid it out".to_owned()));
+        return Err(ProjectionError("another version of the program created it".to_owned()));
     }
     let shelf = SharedShelf::default();
     *shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner()) =

@@ -330,14 +330,15 @@ impl Desk {
         match fault {
             Fault::Empty => refusal("sql_empty", "no SQL was given"),
             Fault::Several => {
-                refusal("sql_error", "one statement at a time; leave out what follows the first ;")
+                refusal("sql_error", "one statement at a time; remove what follows the first ;")
             }
             Fault::MachineCode => refusal(
                 "sql_schema",
-                "EXPLAIN alone shows machine code of the engine; EXPLAIN QUERY PLAN shows how a question is answered",
+                "EXPLAIN alone shows the engine's machine code; EXPLAIN QUERY PLAN shows how a query is \
+                 answered",
             ),
             Fault::Parameters => {
-                refusal("sql_error", "a statement has no parameters here; write the values where they belong")
+                refusal("sql_error", "statements take no parameters here; write the values in their place")
             }
             Fault::Write => write_refusal(),
             Fault::TooLarge => {

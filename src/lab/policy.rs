@@ -415,8 +415,13 @@ fn scheduled(entry: CallEntry) -> Result<ScheduledCall, String> {
     }
     let tool =
         tools::find(&entry.tool).filter(|tool| tool.spec().kind != tools::Kind::Time).ok_or_else(|| {
-            let near = tools::catalogue::nearest(&entry.tool).join(", ");
-            format!("there is no tool {} for policies; near it: {near}", entry.tool)
+            let near = tools::catalogue::nearest(&entry.tool);
+            let help = if near.is_empty() {
+                String::new()
+            } else {
+                format!("; did you mean {}?", near.join(" or "))
+            };
+            format!("there is no tool {} for policies{help}", entry.tool)
         })?;
     let arguments = serde_json::to_value(&entry.args).map_err(|error| error.to_string())?;
     tools::Arguments::of(tool.spec(), &arguments).map_err(|refusal| refusal.to_string())?;

@@ -25,7 +25,7 @@ use crate::tools::{self, Kind, Module, Tool};
 /// Commands that are no tools.
 const COMMANDS: [(&str, &str); 25] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
-    ("queries", "queries [NAME]           the library of queries, or the answer to one of them"),
+    ("queries", "queries [NAME]           the library of queries, or the result of one of them"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, run a week (also: next-week)"),
     ("dashboard", "dashboard                the dashboard of the last week"),
     ("status", "status                   run, day, cash, runway, subscribers and what waits"),
@@ -43,7 +43,7 @@ const COMMANDS: [(&str, &str); 25] = [
     ("tools", "tools [NAME]             the tools, or one of them"),
     ("tables", "tables [NAME]            the tables, or one of them"),
     ("explain", "explain TERM             what a term, tool, argument, table or column means (also: what)"),
-    ("glossary", "glossary [WORD]          every term in a line, or those with a word"),
+    ("glossary", "glossary [WORD]          every term, one per line, or those with a word"),
     ("vars", "vars                     the current day, as get_vars returns it"),
     ("branch", "branch WEEK              continue in a branch from the start of that week"),
     ("step", "step [DAYS]              debug: run single days (1)"),
@@ -118,7 +118,7 @@ impl Desk {
         let one =
             |query: &NamedQuery| json!({ "name": query.name, "title": query.title, "what": query.what });
         let data: Vec<Value> = queries.iter().map(one).collect();
-        let text = format!("{}\nqueries NAME answers one of them", lines.join("\n"));
+        let text = format!("{}\nqueries NAME runs one of them", lines.join("\n"));
         Answer::done("queries", text, json!({ "queries": data }))
     }
 
@@ -128,7 +128,7 @@ impl Desk {
             let help = if near.is_empty() {
                 "queries lists them".to_owned()
             } else {
-                format!("near it: {}", near.join(", "))
+                format!("did you mean {}?", near.join(" or "))
             };
             return Err(problem(arguments, &format!("there is no query {name}; {help}")));
         };
@@ -243,7 +243,7 @@ impl Desk {
                 let _ = self.session.save();
                 self.session = branch;
                 let (run, day) = (self.session.manifest().id.clone(), self.session.day());
-                let text = format!("run {run} goes on from day {day} · {mode}");
+                let text = format!("run {run} continues from day {day} · {mode}");
                 Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode }))
             }
             Err(refusal) => Answer::refused("branch", refusal),
@@ -294,7 +294,8 @@ fn unknown(word: &str, column: usize) -> Problem {
     let name = word.rsplit('.').next().unwrap_or(word);
     if tools::find(name).is_some_and(|tool| tool.spec().kind == Kind::Time) {
         let text = format!(
-            "{word} is not called by its name here; next \"WHY\" naive runs a week, help next tells more"
+            "{word} cannot be called by its name here; next \"WHY\" naive runs a week, and help next \
+             explains more"
         );
         return Problem { text, column };
     }
@@ -302,9 +303,9 @@ fn unknown(word: &str, column: usize) -> Problem {
     let help = if near.is_empty() {
         "; help lists them all".to_owned()
     } else {
-        format!("; near it: {}", near.join(", "))
+        format!("; did you mean {}?", near.join(" or "))
     };
-    Problem { text: format!("{word} is no command{help}"), column }
+    Problem { text: format!("{word} is not a command{help}"), column }
 }
 
 fn usage(problem: Problem) -> Answer {
@@ -327,7 +328,7 @@ fn name(arguments: &[Argument]) -> Result<Option<&str>, Problem> {
     match arguments {
         [] => Ok(None),
         [Argument { key: None, value: Value::String(name), .. }] => Ok(Some(name)),
-        _ => Err(problem(arguments, "this command takes one name, or nothing")),
+        _ => Err(problem(arguments, "this command takes one name or none")),
     }
 }
 
@@ -339,6 +340,6 @@ fn count(arguments: &[Argument]) -> Result<Option<u32>, Problem> {
     match arguments {
         [] => Ok(None),
         [Argument { key: None, value, .. }] if number(value).is_some() => Ok(number(value)),
-        _ => Err(problem(arguments, "this command takes one whole number from 1, or nothing")),
+        _ => Err(problem(arguments, "this command takes one whole number of at least 1, or none")),
     }
 }

@@ -117,7 +117,7 @@ impl<'a> Reader<'a> {
             }
             if rest.starts_with(',') {
                 if arguments.is_empty() || after_comma {
-                    return Err(self.problem("a comma stands between two arguments"));
+                    return Err(self.problem("put a comma between two arguments"));
                 }
                 self.at += 1;
                 after_comma = true;
@@ -178,7 +178,7 @@ impl<'a> Reader<'a> {
                 }
                 let message = error.to_string();
                 let message = message.split(" at line ").next().unwrap_or_default();
-                Err(self.problem(format!("the value is no JSON: {message}")))
+                Err(self.problem(format!("the value is not JSON: {message}")))
             }
             None => Err(self.problem("a value is missing")),
         }
@@ -232,7 +232,7 @@ pub fn as_object(arguments: &[Argument], only_required: Option<&str>) -> Result<
             (Some(key), _) => key.clone(),
             (None, Some(required)) if arguments.len() == 1 => required.to_owned(),
             (None, _) => {
-                let text = "an argument is written name=value, or all together as one {…}".to_owned();
+                let text = "write an argument as name=value, or all of them as one {…}".to_owned();
                 return Err(Problem { text, column: argument.column });
             }
         };

@@ -63,8 +63,8 @@ fn predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, Problem> {
     if numbers.len() != 12 {
         let column = numbers.last().unwrap_or(why).column;
         let text = format!(
-            "after the rationale come exactly twelve numbers, point lower upper in 1, 4, 12 and 26 weeks, or naive; \
-             there are {}",
+            "after the rationale, give exactly twelve numbers, point lower upper in 1, 4, 12 and 26 weeks, \
+             or naive; you gave {}",
             numbers.len()
         );
         return Err(wrong(column, text));
@@ -120,8 +120,11 @@ pub fn ask(session: &Session, input: &mut Input<impl BufRead>) -> io::Result<Opt
     let seen = session.observe();
     let lines: Vec<String> =
         seen.changes.iter().map(super::commands::change_line).chain(seen.purchases).collect();
-    let changed =
-        if lines.is_empty() { "nothing changed since the last week".to_owned() } else { lines.join("\n") };
+    let changed = if lines.is_empty() {
+        "nothing has changed since the last week".to_owned()
+    } else {
+        lines.join("\n")
+    };
     prompt(&format!("{changed}\n"))?;
     let rationale = loop {
         match ask_line(input, "why (. cancels)> ")? {
@@ -188,9 +191,7 @@ fn read_forecast(line: &str, horizon_days: u32) -> Result<Forecast, String> {
         Some([point, lower, upper]) => {
             Ok(Forecast { horizon_days, point: *point, lower: *lower, upper: *upper })
         }
-        _ => {
-            Err("three numbers are expected: point lower upper, for instance 931000 902000 960000".to_owned())
-        }
+        _ => Err("give three numbers: point lower upper, for instance 931000 902000 960000".to_owned()),
     }
 }
 

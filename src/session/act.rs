@@ -257,8 +257,11 @@ impl Session {
     pub(super) fn tool(&self, name: &str) -> Result<&'static dyn Tool, Refusal> {
         find(name).ok_or_else(|| {
             let near = crate::tools::catalogue::nearest(name);
-            let help =
-                if near.is_empty() { String::new() } else { format!("; near it: {}", near.join(", ")) };
+            let help = if near.is_empty() {
+                String::new()
+            } else {
+                format!("; did you mean {}?", near.join(" or "))
+            };
             Refusal::at("tool", "unknown_tool", format!("tool {name} does not exist{help}"))
         })
     }
@@ -304,7 +307,7 @@ impl Session {
     fn refuse_if_only_read(&self) -> Result<(), Refusal> {
         match &self.trajectory {
             Some(_) => Ok(()),
-            None => Err(Refusal::new("read_only", "this run is open to read only")),
+            None => Err(Refusal::new("read_only", "this run is open read-only")),
         }
     }
 
@@ -338,7 +341,8 @@ fn letter_in_words(letter: &Letter) -> String {
 /// A refusal that says the disk did not take a line.
 pub(super) fn not_saved(error: RunError) -> Refusal {
     let message = format!(
-        "{error}; nothing was changed and everything confirmed before is safe: free space, then try again"
+        "{error}; nothing was changed and everything confirmed before is safe: free some disk space, then \
+         try again"
     );
     Refusal::new("not_saved", message)
 }

@@ -31,7 +31,7 @@ impl Session {
             return Err(Refusal::at(
                 "week",
                 "week_unknown",
-                format!("weeks 1 to {last} have begun, not {week}"),
+                format!("cannot branch from week {week}; choose a week from 1 to {last}"),
             ));
         }
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved)?;

@@ -240,10 +240,10 @@ fn single_override(key: &str, value: &str) -> Result<Source, ParameterError> {
         key: key.to_owned(),
         problem: problem.to_owned(),
     };
-    let (table, rest) = key.split_once('.').ok_or_else(|| wrong("a parameter is written table.key=value"))?;
+    let (table, rest) = key.split_once('.').ok_or_else(|| wrong("write a parameter as table.key=value"))?;
     let is_name = |part: &str| part.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
     if !rest.split('.').chain([table]).all(|part| !part.is_empty() && is_name(part)) {
-        return Err(wrong("a parameter is written table.key=value"));
+        return Err(wrong("write a parameter as table.key=value"));
     }
     let as_given = format!("{key} = {value}");
     let as_text = format!("{key} = {}", toml::Value::String(value.to_owned()));

@@ -236,7 +236,7 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
     let scenario = configuration.scenario(&new.scenario)?;
     if new.mode == Mode::Baseline && !scenario.shipped {
         let message =
-            format!("baseline runs take a shipped scenario; {} is a file of your own", scenario.name);
+            format!("a baseline run needs a shipped scenario; {} is a file of your own", scenario.name);
         return Err(RunError::NotPossible(message));
     }
     if !new.overrides.is_empty() && new.mode != Mode::Debug {

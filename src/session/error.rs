@@ -37,8 +37,8 @@ pub enum RunError {
     Configuration(#[from] ParameterError),
     /// The run was recorded with other parameters than this program has.
     #[error(
-        "run {id} was recorded by version {version} with parameters {recorded}, this program has {own}; \
-         open it with that version: nothing was changed"
+        "run {id} was recorded by version {version} with parameters {recorded}, but this program has {own}. \
+         Nothing was changed; open the run with that version"
     )]
     OtherParameters {
         /// Run.
@@ -52,8 +52,8 @@ pub enum RunError {
     },
     /// The run was played by other mechanics than this program has.
     #[error(
-        "run {id} was recorded by version {version} with mechanics {recorded}, this program has mechanics {own}; \
-         open it with that version: nothing was changed"
+        "run {id} was recorded by version {version} with mechanics {recorded}, but this program has \
+         mechanics {own}. Nothing was changed; open the run with that version"
     )]
     OtherMechanics {
         /// Run.
@@ -70,7 +70,8 @@ pub enum RunError {
     ConsentNeeded(ConsentText),
     /// The run was written in a format this program does not know.
     #[error(
-        "run {id} has format {format}, this program reads format {known}; use a newer version: nothing was changed"
+        "run {id} has format {format}, but this program reads format {known}. Nothing was changed; use a \
+         newer version"
     )]
     OtherFormat {
         /// Run.
@@ -92,8 +93,8 @@ pub enum RunError {
     },
     /// The file of a run that is played is not the one it was.
     #[error(
-        "{path} was moved or removed, or another program has written into it: from here on nothing is saved. \
-         Leave, and open the run again: it goes on where its file ends", path = .path.display()
+        "{path} was moved or removed, or another program has written to it: from now on nothing is saved. \
+         Leave, and open the run again: it continues where its file ends", path = .path.display()
     )]
     Astray {
         /// The trajectory.
@@ -102,7 +103,7 @@ pub enum RunError {
     /// The folder of a run takes no changes.
     #[error(
         "run {id} cannot be written ({error}): its folder {folder} is on read-only media or belongs to somebody else; \
-         open it to read only with `novamind play --run {id} --watch`, or copy it to a place of your own",
+         open it read-only with `novamind play --run {id} --watch`, or copy it to a place of your own",
         folder = .folder.display()
     )]
     NotWritable {
@@ -114,7 +115,7 @@ pub enum RunError {
         error: std::io::Error,
     },
     /// There is no such run.
-    #[error("there is no run {id} in {folder}; `novamind runs` lists those there are", folder = .folder.display())]
+    #[error("there is no run {id} in {folder}; `novamind runs` lists the runs", folder = .folder.display())]
     NotFound {
         /// What was asked for.
         id: String,
@@ -135,7 +136,7 @@ pub enum RunError {
     #[error("{0}")]
     Exists(String),
     /// There is no such scenario.
-    #[error("there is no scenario {name}; there are {known}")]
+    #[error("there is no scenario {name}; the scenarios are {known}")]
     NoScenario {
         /// What was asked for.
         name: String,

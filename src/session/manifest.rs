@@ -284,11 +284,11 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let mut own = manifest(&Params::shipped());
         own.parameters_digest = "0000000000000000".to_owned();
-        assert!(own.params().expect_err("another digest").to_string().contains("nothing was changed"));
+        assert!(own.params().expect_err("another digest").to_string().contains("Nothing was changed"));
         own.mechanics = MECHANICS + 1;
         own.write(folder.path()).expect("it is written");
         let error = Manifest::read(folder.path()).expect_err("other mechanics").to_string();
-        assert!(error.contains("version 0.1.0") && error.contains("nothing was changed"), "{error}");
+        assert!(error.contains("version 0.1.0") && error.contains("Nothing was changed"), "{error}");
         own.mechanics = MECHANICS;
         own.format = 2;
         own.write(folder.path()).expect("it is written");

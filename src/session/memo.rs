@@ -39,7 +39,7 @@ impl Session {
     /// `not_saved`, `read_only`.
     pub fn set_memo(&mut self, text: &str) -> Result<(), Refusal> {
         if self.trajectory.is_none() {
-            return Err(Refusal::new("read_only", "this run is open to read only"));
+            return Err(Refusal::new("read_only", "this run is open read-only"));
         }
         let not_saved = |error: RunError| Refusal::new("not_saved", error.to_string());
         match self.folder.clone() {
@@ -85,8 +85,10 @@ impl Session {
         // Once a run is over, notes are kept without a line.
         let Some(kept) = last_digest(trajectory).filter(|_| self.ended.is_none()) else { return };
         if digest_of(&folder.join(FILE)) != Some(kept) {
-            self.remarks
-                .push("memo.md is not as it was kept last: it was changed outside, or damaged.".to_owned());
+            self.remarks.push(
+                "memo.md is not as it was last saved: another program changed it, or it is damaged."
+                    .to_owned(),
+            );
         }
     }
 }
@@ -173,7 +175,7 @@ mod tests {
         std::fs::write(folder.join(FILE), "third").expect("written");
         let (notes, remarks) = opened(&folder, Access::Write);
         assert_eq!(notes, "third");
-        assert!(remarks.iter().any(|remark| remark.contains("changed outside")), "{remarks:?}");
+        assert!(remarks.iter().any(|remark| remark.contains("another program changed it")), "{remarks:?}");
     }
 
     #[test]

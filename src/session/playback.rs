@@ -200,7 +200,7 @@ impl Playback {
         let before = self.trajectory.lines.len();
         let bytes = tail(path, self.trajectory.length)?;
         if length < self.trajectory.length {
-            let lines = format!("lines were taken away; {before} were there");
+            let lines = format!("lines were removed; there were {before}");
             return Err(damaged_at(path)((before, lines)));
         }
         self.trajectory.extend(&bytes).map_err(damaged_at(path))?;
@@ -297,8 +297,8 @@ impl Playback {
         }
         let unfinished = !self.is_recorded_to_the_end();
         (self.origin.manifest.mode == Mode::Baseline && unfinished).then(|| {
-            let message = "an unfinished baseline run cannot be branched, so that nobody looks into its future and \
-                           returns: end it first (novamind runs end)";
+            let message = "an unfinished baseline run cannot be branched, so that nobody can look into its \
+                           future and come back: end it first (novamind runs end)";
             Refusal::new("not_in_this_mode", message)
         })
     }

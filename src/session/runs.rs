@@ -62,8 +62,8 @@ pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
     let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
     if label.is_empty() || label.len() > 40 || label.starts_with('.') || !label.chars().all(fits) {
         return Err(format!(
-            "{label:?} is no label of a participant: up to 40 letters, digits, hyphens, underscores and dots, not \
-             beginning with a dot"
+            "{label:?} is not a participant label: use up to 40 letters, digits, hyphens, underscores and \
+             dots, not beginning with a dot"
         ));
     }
     Ok(runs.join(PARTICIPANTS).join(label))
@@ -182,7 +182,7 @@ fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
         match (has_week, whole) {
             (true, _) => return Ok(lines),
             (false, true) if begins() => return Ok(lines),
-            (false, true) => return Err(format!("{}: no line of it can be read", path.display())),
+            (false, true) => return Err(format!("{}: none of its lines can be read", path.display())),
             (false, false) => window *= 8,
         }
     }
@@ -228,7 +228,7 @@ fn find(runs: &Path, id: &str, wanted: impl Fn(&RunSummary) -> bool) -> Result<P
     match (fitting.next(), fitting.next()) {
         (Some(only), None) => Ok(runs.join(&only.id)),
         (Some(_), Some(_)) => {
-            Err(RunError::NotPossible(format!("several runs begin with {id}; write more of the name")))
+            Err(RunError::NotPossible(format!("several run ids begin with {id}; type more of the id")))
         }
         _ => Err(missing()),
     }

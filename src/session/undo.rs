@@ -69,8 +69,8 @@ impl Session {
     /// `nothing_to_undo`, `cannot_undo` where no call can restore the old value, and the refusals of the call.
     pub fn undo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
         let Some(step) = self.this_week.undo.last().cloned() else {
-            let message = "no setting was changed since the last week; purchases, posts and offers cannot be taken \
-                           back";
+            let message = "no setting has changed since the last week; purchases, posts and offers cannot be \
+                           taken back";
             return Err(Refusal::new("nothing_to_undo", message));
         };
         self.restore(&step, via, Reversal::Undoes(step.seq))
@@ -82,7 +82,7 @@ impl Session {
     /// `nothing_to_redo`, and the refusals of the call.
     pub fn redo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
         let Some(step) = self.this_week.redo.last().cloned() else {
-            let message = "nothing was undone since the last setting";
+            let message = "nothing has been undone since the last setting";
             return Err(Refusal::new("nothing_to_redo", message));
         };
         self.restore(&step, via, Reversal::Redoes(step.seq))

@@ -58,7 +58,7 @@ impl Witnesses {
                 problem: format!("{problem} ({file} was made from it)"),
                 safe: format!(
                     "Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}. Or restore the trajectory from a \
-                     copy, or remove {file} to go on from what is there"
+                     copy, or remove {file} to continue from what is there"
                 ),
             })
         })
@@ -87,7 +87,7 @@ impl Witnesses {
             true if !has_layout_of_now(&location(folder)) => "was made by another version of the program",
             true => return true,
         };
-        self.remarks.push(format!("world.db {problem} and was made anew from the trajectory."));
+        self.remarks.push(format!("world.db {problem} and was rebuilt from the trajectory."));
         false
     }
 }
@@ -111,7 +111,7 @@ fn contradiction(trajectory: &Trajectory, position: &Position) -> Option<(u64, &
     match trajectory.lines.get(position.seq as usize) {
         None if position.seq > last.seq + healing => Some((last.seq + 2, "the line is missing")),
         Some(line) if line.hash != position.line_hash => {
-            Some((position.seq + 1, "the line is not the one it was: it was changed"))
+            Some((position.seq + 1, "the line is not the one that was recorded: it was changed"))
         }
         None | Some(_) => None,
     }

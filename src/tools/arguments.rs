@@ -108,7 +108,7 @@ pub fn amount_as_sent(amount: f64, sent: Option<&Value>) -> Value {
 
 /// `wrong_type` for an argument.
 pub fn wrong_type(field: &str, expected: &str) -> Refusal {
-    Refusal::at(field, "wrong_type", format!("{field} has the wrong type: {expected} is expected"))
+    Refusal::at(field, "wrong_type", format!("{field} has the wrong type: expected {expected}"))
 }
 
 /// What a number of a map must be, with the code and words of its refusal.
@@ -144,14 +144,18 @@ fn map<'a>(value: &'a Value, field: &str) -> Result<&'a Map<String, Value>, Refu
 pub fn known_group(key: &str, field: &str, view: &View<'_>) -> Result<Group, Refusal> {
     Group::parse(key).filter(|group| view.knows(*group)).ok_or_else(|| {
         let known: Vec<&str> = view.known_groups().map(Group::id).collect();
-        Refusal::at(field, "unknown_group", format!("group {key} is not known; known: {}", known.join(", ")))
+        Refusal::at(
+            field,
+            "unknown_group",
+            format!("group {key} is not known; the known groups are {}", known.join(", ")),
+        )
     })
 }
 
 /// A plan.
 pub fn plan(key: &str, field: &str) -> Result<Plan, Refusal> {
     Plan::parse(key).ok_or_else(|| {
-        Refusal::at(field, "unknown_plan", format!("plan {key} does not exist; plans are A, B, C"))
+        Refusal::at(field, "unknown_plan", format!("plan {key} does not exist; the plans are A, B, C"))
     })
 }
 
@@ -159,7 +163,11 @@ pub fn plan(key: &str, field: &str) -> Result<Plan, Refusal> {
 pub fn channel(key: &str, field: &str) -> Result<Channel, Refusal> {
     Channel::parse(key).ok_or_else(|| {
         let known = Channel::ALL.map(Channel::id).join(", ");
-        Refusal::at(field, "unknown_channel", format!("channel {key} does not exist; channels: {known}"))
+        Refusal::at(
+            field,
+            "unknown_channel",
+            format!("channel {key} does not exist; the channels are {known}"),
+        )
     })
 }
 

@@ -68,7 +68,9 @@ pub fn notice(notice: &Notice, party: Option<Party>) -> String {
             )
         }
         // Whoever knows the text of the post uses `reaction_to` instead.
-        Notice::OwnPostSeen(reaction) => format!("Your post was seen {} times", reaction.views),
+        Notice::OwnPostSeen(reaction) => {
+            format!("Your post was seen {} {}", reaction.views, times(reaction.views))
+        }
     }
 }
 
@@ -96,9 +98,14 @@ pub fn reaction_to(content: &str, reaction: &Reaction, law: &CeoPosts) -> String
         .collect();
     let views = grouped(reaction.views as f64, 0);
     format!(
-        "Your post was seen {views} times: \"{preview}\". Reaction {tone}; strongest {}",
+        "Your post was seen {views} {}: \"{preview}\". Reaction {tone}; strongest {}",
+        times(reaction.views),
         strongest.join(", ")
     )
+}
+
+fn times(count: u64) -> &'static str {
+    if count == 1 { "time" } else { "times" }
 }
 
 #[cfg(test)]
@@ -165,8 +172,9 @@ mod tests {
             reaction_to("Quotas doubled.", &reaction, &law),
             "Your post was seen 1,840 times: \"Quotas doubled.\". Reaction positive; strongest S3 +0.9, S1 -0.5, E1 +0.0"
         );
-        reaction.mean = -0.11;
+        (reaction.mean, reaction.views) = (-0.11, 1);
         let long = reaction_to(&"ü".repeat(81), &reaction, &law);
+        assert!(long.starts_with("Your post was seen 1 time: "), "{long}");
         assert!(long.contains(&format!("\"{}...\"", "ü".repeat(80))) && long.contains("negative"), "{long}");
     }
 }

@@ -74,7 +74,7 @@ fn runs_of_other_mechanics_and_parameters_are_refused_with_the_version_that_can(
         let changed = manifest.replace(old, new).replace("version = \"0.1.0\"", "version = \"0.9.3\"");
         fs::write(folder.join("run.toml"), changed).expect("written");
         let error = Session::open(&folder, Access::Write, true).err().expect("it is refused").to_string();
-        assert!(error.contains(told) && error.contains("nothing was changed"), "{error}");
+        assert!(error.contains(told) && error.contains("Nothing was changed"), "{error}");
         assert!(error.contains("0.9.3") || error.contains("newer version"), "{error}");
     }
     fs::write(folder.join("run.toml"), manifest).expect("written");

@@ -102,7 +102,7 @@ fn a_run_goes_out_sealed_and_comes_back_the_same() {
         let checksum = said.out.split("checksum ").nth(1).expect("a checksum").trim().to_owned();
         assert_eq!(checksum.len(), 64);
         let (_, again) = export(&home, &run, name);
-        again.fails(1, &["exists already"]);
+        again.fails(1, &["already exists"]);
         let imported = import(&other, &archive);
         assert_eq!(imported.code, 0, "{}", imported.err);
         assert!(imported.out.contains(&checksum), "{}", imported.out);
@@ -116,9 +116,9 @@ fn a_run_goes_out_sealed_and_comes_back_the_same() {
     assert_eq!(other.run(&["replay", &id(&run), "--verify"]).code, 0);
     let go_on = other.play(&["--run", &id(&run)], "next \"the end\" naive\n");
     assert_eq!(go_on.code, 0, "{}", go_on.err);
-    import(&other, &home.0.path().join("run.tar")).fails(1, &["there already", "played on since"]);
+    import(&other, &home.0.path().join("run.tar")).fails(1, &["already exists", "played further since"]);
     let (later, _) = export(&other, &run, "later.tar");
-    import(&home, &later).fails(1, &["there already", "later state"]);
+    import(&home, &later).fails(1, &["already exists", "later state"]);
     assert_eq!(bytes_of(&run, "trajectory.jsonl"), before, "nothing was overwritten");
 }
 
@@ -222,7 +222,7 @@ fn dangerous_and_foreign_files_are_refused() {
         let mut builder = tar::Builder::new(fs::File::create(&bad).expect("a file"));
         builder.append(&header("0123abcd/run.toml", 0, kind), &b""[..]).expect("an entry");
         builder.finish().expect("an archive");
-        import(&home, &bad).fails(3, &["no ordinary file"]);
+        import(&home, &bad).fails(3, &["not an ordinary file"]);
     }
     // What a damaged archive holds is told in one line that does not steer the terminal.
     forged(&bad, &[("0123abcd/\u{1b}[2J\nrun.toml".to_owned(), b"x".to_vec())]);
@@ -230,13 +230,13 @@ fn dangerous_and_foreign_files_are_refused() {
     let mut torn = header("0123abcd/run.toml", 0, tar::EntryType::Regular);
     torn.as_old_mut().cksum = *b"FRO\nM\x1b[m";
     fs::write(&bad, torn.as_bytes()).expect("a header");
-    import(&home, &bad).fails(3, &["no archive of a run", "FRO\\nM\\u{1b}[m"]);
+    import(&home, &bad).fails(3, &["not an archive of a run", "FRO\\nM\\u{1b}[m"]);
     // A size that is only claimed: nothing is read and nothing is reserved.
     fs::write(&bad, header("0123abcd/run.toml", 7 << 30, tar::EntryType::Regular).as_bytes())
         .expect("a header");
     import(&home, &bad).fails(3, &["run.toml is too large"]);
     fs::write(&bad, "this is a letter, not an archive").expect("a file");
-    import(&home, &bad).fails(3, &["no archive of a run"]);
+    import(&home, &bad).fails(3, &["not an archive of a run"]);
     fs::write(&bad, "").expect("a file");
     import(&home, &bad).fails(3, &["seal.toml is missing"]);
     import(&home, &home.0.path().join("nowhere.tar")).fails(3, &["nowhere.tar"]);

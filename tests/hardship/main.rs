@@ -111,7 +111,7 @@ fn a_wrong_policy_names_file_line_and_what_is_allowed() {
         ("name = \"x\"\n[rule_based]\nspends = \"heavy\"\n", &["line 3", "spends", "`spend`"]),
         ("name = \"x\"\n[rule_based]\nspend = \"lots\"\n", &["line 3", "light, medium, heavy"]),
         ("name = \"x\"\n[[call]]\nday = 1\ntool = \"set_prices\"\n", &["line 2", "decision day"]),
-        ("name = \"x\"\n[[call]]\nday = 0\ntool = \"set_price\"\n", &["line 2", "near it: set_prices"]),
+        ("name = \"x\"\n[[call]]\nday = 0\ntool = \"set_price\"\n", &["line 2", "did you mean set_prices"]),
     ] {
         home.write("policies/mine.toml", text);
         home.run(&["run", "--policy", "mine", "--days", "28"]).fails(3, parts);
@@ -150,7 +150,7 @@ fn a_damaged_trajectory_is_refused_with_its_line_and_left_as_it_is() {
         ),
         (|bytes| *bytes = lines_of(bytes)[..6].concat(), &["line 7", "missing", "rescue"]),
         (|bytes| bytes.extend(lines_of(bytes)[7].clone()), &["line 9", "Lines 1 to 8 are good"]),
-        (|bytes| bytes.extend(b"\0\0\0\n"), &["line 9", "no line of a trajectory"]),
+        (|bytes| bytes.extend(b"\0\0\0\n"), &["line 9", "not a line of a trajectory"]),
         (Vec::clear, &["line 1", "does not begin with the start of a run"]),
     ];
     for (damage, parts) in cases {
@@ -226,7 +226,7 @@ fn a_damaged_manifest_is_named_and_the_trajectory_left_alone() {
         (good.replace("format = 1", "format = 2"), "use a newer version".to_owned()),
         (
             good.replace("parameters_digest = \"", "parameters_digest = \"0"),
-            "open it with that version".to_owned(),
+            "open the run with that version".to_owned(),
         ),
         (good.replace("format = 1", "format = "), "run.toml, line 1".to_owned()),
         (String::new(), "missing field `format`".to_owned()),
@@ -254,7 +254,7 @@ fn a_damaged_database_is_made_anew() {
     let whole = home.play(&["--run", &id(&folder)], question).out;
     for bytes in [&b"no database at all"[..], b"", &bytes_of(&folder, "world.db")[..5000]] {
         fs::write(folder.join("world.db"), bytes).expect("written");
-        let note = "note: world.db is damaged and was made anew from the trajectory.\n";
+        let note = "note: world.db is damaged and was rebuilt from the trajectory.\n";
         let out = home.play(&["--run", &id(&folder)], question).out;
         assert!(out.contains(note), "{out}");
         assert_eq!(out.replace(note, ""), whole);
@@ -332,7 +332,7 @@ fn a_run_in_use_is_left_to_its_owner() {
         home.run(arguments).fails(1, &["open in another program", &holder, "--watch"]);
     }
     let watched = home.play(&["--run", &id, "--watch"], "set_prices A=14\nquit\n");
-    assert!(watched.out.contains("open to read only"), "{}", watched.out);
+    assert!(watched.out.contains("open read-only"), "{}", watched.out);
     // Looking on is allowed, and the owner goes on undisturbed.
     let seen = home.run(&["query", &id, "SELECT MAX(day) AS day FROM config_history"]);
     assert_eq!(seen.code, 0, "{}", seen.err);
@@ -406,7 +406,7 @@ fn options_before_a_command_are_refused_and_not_forgotten() {
     let home = Home::new();
     for before in [&["--new", "--scenario", "short", "--seed", "1"][..], &["--ascii"], &["--plain"]] {
         for command in [&["play", "--plain"][..], &["runs"], &["scenario", "list"]] {
-            home.run(&[before, command].concat()).fails(2, &["before a command do not count", command[0]]);
+            home.run(&[before, command].concat()).fails(2, &["have no effect before a command", command[0]]);
         }
     }
     assert_eq!(fs::read_dir(home.runs()).expect("a folder").count(), 0, "no other run was started");

@@ -16,10 +16,10 @@ pub struct Options {
     /// Runs, or `latest`: the newest.
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<String>,
-    /// As one JSON object, with the logbook of every run.
+    /// Print as one JSON object, with the logbook of every run.
     #[arg(long, conflicts_with = "csv")]
     json: bool,
-    /// As comma-separated values: a figure or a day a row.
+    /// Print as comma-separated values: one figure or day per row.
     #[arg(long)]
     csv: bool,
 }

@@ -22,14 +22,14 @@ pub struct Options {
     /// Only runs of this participant.
     #[arg(long, value_name = "LABEL")]
     participant: Option<String>,
-    /// As JSON.
+    /// Print as JSON.
     #[arg(long, global = true)]
     json: bool,
 }
 
 #[derive(Debug, Subcommand)]
 enum Choice {
-    /// List the runs, the last played first; this is what happens without a word, too.
+    /// List the runs, the last played first; `runs` alone does the same.
     List {
         /// Only runs of this participant.
         #[arg(long, value_name = "LABEL")]
@@ -59,13 +59,13 @@ enum Choice {
     Delete {
         /// Run.
         run: String,
-        /// Do it without asking.
+        /// Confirm the deletion.
         #[arg(long)]
         yes: bool,
     },
     /// Seal a run into one file to hand over, or all runs with tables of their runs and weeks.
     Export(transfer::Export),
-    /// Take in the run of an archive, after checking every byte of it.
+    /// Import the run of an archive, after checking every byte of it.
     Import(transfer::Import),
     /// Explain every column of the tables that `export --all` writes.
     Columns,
@@ -104,7 +104,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Some(Choice::End { run }) => {
             let id = id_of(&find_run(&runs, run)?);
             end_run(&runs, &id)?;
-            print(&format!("run {id} is ended; it can still be read\n"))
+            print(&format!("run {id} has ended; you can still read it\n"))
         }
         Some(Choice::Rescue { run }) => {
             let folder = find_run_to_read(&runs, run)?;

@@ -55,11 +55,14 @@ impl Export {
         };
         if self.out.exists() {
             // Said before the run is simulated again, not after.
-            let message = format!("{} exists already: choose another name, or remove it", self.out.display());
+            let message = format!("{} already exists: choose another name, or remove it", self.out.display());
             return Err(Failure::failed(message));
         }
         if !beside.is_dir() {
-            return Err(Failure::failed(format!("{} is no folder; nothing was written", beside.display())));
+            return Err(Failure::failed(format!(
+                "{} is not a folder; nothing was written",
+                beside.display()
+            )));
         }
         let export = Sealing::prepare(folder, &beside)?;
         let seal = export.write(&self.out, false)?;

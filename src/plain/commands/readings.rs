@@ -119,7 +119,7 @@ impl Desk {
         let mut lines: Vec<String> = seen.changes.iter().map(change).collect();
         lines.extend(seen.purchases.iter().cloned());
         if lines.is_empty() {
-            lines.push("nothing changed since the last week".to_owned());
+            lines.push("nothing has changed since the last week".to_owned());
         }
         lines.extend(money_lines(&seen));
         let data = json!({
@@ -138,7 +138,7 @@ impl Desk {
         let last = &journal[journal.len().saturating_sub(count as usize)..];
         let mut text: String = last.iter().map(|entry| entry_line(entry, &undone) + "\n").collect();
         if text.is_empty() {
-            text = "nothing was done yet".to_owned();
+            text = "nothing has been done yet".to_owned();
         }
         Answer::done("history", text, json!({ "entries": last }))
     }
@@ -196,7 +196,8 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers
             COMMANDS.iter().map(|(_, line)| *line).filter(|line| !line.is_empty()).collect();
         let tools: Vec<&str> = callable().collect();
         let text = format!(
-            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=12 B=25 C=55\nhelp NAME explains one of them, explain TERM what a word means.",
+            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=12 B=25 C=55\nhelp NAME \
+             explains one of them, and explain TERM says what a word means.",
             lines.join("\n"),
             tools.join(", ")
         );
@@ -260,6 +261,6 @@ fn callable() -> impl Iterator<Item = &'static str> {
 }
 
 fn not_there(what: &str, name: &str, near: Vec<&str>) -> String {
-    let near = if near.is_empty() { String::new() } else { format!("; near it: {}", near.join(", ")) };
+    let near = if near.is_empty() { String::new() } else { format!("; did you mean {}?", near.join(" or ")) };
     format!("there is {what} called {name}{near}")
 }

@@ -56,7 +56,7 @@ fn in_words(report: &WeekReport) -> String {
         report.parts.iter().map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars))).collect();
     let change = signed_dollars(week.cash_change);
     let mut lines =
-        vec![format!("week to day {}: cash change {change}, of it {}", week.day, parts.join(", "))];
+        vec![format!("week to day {}: cash change {change}, of which {}", week.day, parts.join(", "))];
     if !report.decided.is_empty() {
         lines.push(format!("decided before it: {}", report.decided.join("; ")));
     }
@@ -76,18 +76,22 @@ fn in_words(report: &WeekReport) -> String {
     for due in &report.due {
         let (weeks, miss) = (due.horizon_days / 7, percent(due.miss(), 1));
         let verdict = due.verdict().trim_start_matches(['✓', '▲', '▼', ' ']);
-        lines.push(format!("forecast of {weeks} weeks ago: {verdict} the interval, off by {miss}"));
+        lines.push(format!("forecast from {weeks} weeks ago: {verdict} the interval, off by {miss}"));
     }
     lines.push(format!(
-        "new: {} threads, {} replies, {} posts, {} comments on ours, {} news items, {} finished R&D projects and studies",
-        week.threads_opened,
-        week.replies,
-        report.customer_posts,
-        report.comments,
-        report.news_items,
-        week.research_finished
+        "new: {}, {}, {}, {}, {}, {}",
+        counted(week.threads_opened, "thread", "threads"),
+        counted(week.replies, "reply", "replies"),
+        counted(report.customer_posts, "post", "posts"),
+        counted(report.comments, "comment on ours", "comments on ours"),
+        counted(report.news_items, "news item", "news items"),
+        counted(week.research_finished, "finished R&D project or study", "finished R&D projects and studies")
     ));
-    lines.join("\n").replace("of 1 weeks ago", "of 1 week ago")
+    lines.join("\n").replace("from 1 weeks ago", "from 1 week ago")
+}
+
+fn counted(count: u32, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }
 
 fn parts(parts: &[(&'static str, f64)]) -> Value {

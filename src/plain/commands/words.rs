@@ -17,7 +17,9 @@ pub(super) fn explain(command: &str, words: &str, numbers: &Numbers) -> Answer {
         Err(near) if near.is_empty() => {
             Answer::usage(format!("unknown term {words}; glossary lists every term"), column)
         }
-        Err(near) => Answer::usage(format!("unknown term {words}; near it: {}", near.join(", ")), column),
+        Err(near) => {
+            Answer::usage(format!("unknown term {words}; did you mean {}?", near.join(" or ")), column)
+        }
     }
 }
 
@@ -46,7 +48,7 @@ pub(super) fn glossary(word: &str) -> Answer {
     };
     let found: Vec<&Term> = terms().iter().filter(holds).collect();
     if found.is_empty() {
-        return Answer::usage(format!("no term has {word} in it; glossary lists them all"), 10);
+        return Answer::usage(format!("no term contains {word}; glossary lists them all"), 10);
     }
     let width = found.iter().map(|term| term.id.len()).max().unwrap_or(0);
     let mut text = String::new();
@@ -81,7 +83,7 @@ mod tests {
     fn what_is_unknown_is_answered_with_what_is_near() {
         for (words, part, column) in [
             ("", "needs a term", 9),
-            ("runwey", "near it: runway", 9),
+            ("runwey", "did you mean runway", 9),
             ("qqqqqqqqqqqq", "glossary lists every term", 9),
         ] {
             match explain("explain", words, &Numbers::shipped()) {

@@ -76,7 +76,7 @@ impl Export {
     /// [`RunError::Exists`] when the file is there and may not be replaced; the disk refuses.
     pub fn write(&self, archive: &Path, replace: bool) -> Result<Seal, RunError> {
         if !replace && archive.exists() {
-            let message = format!("{} exists already: choose another name, or remove it", archive.display());
+            let message = format!("{} already exists: choose another name, or remove it", archive.display());
             return Err(RunError::Exists(message));
         }
         let database = self.copies.join(DATABASE);

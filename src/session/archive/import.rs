@@ -59,7 +59,7 @@ fn folder_for(runs: &Path, draft: &Path, seal: &Seal) -> Result<PathBuf, RunErro
     let whose = Manifest::read(draft)?.participant;
     match (label_of(runs), whose) {
         (Some(label), Some(other)) if label != other => Err(RunError::NotPossible(format!(
-            "run {} is one of {other}, not of {label}: import it with `--as {other}`. Nothing was imported",
+            "run {} belongs to {other}, not to {label}: import it with `--as {other}`. Nothing was imported",
             seal.run
         ))),
         (None, Some(label)) => {
@@ -79,8 +79,9 @@ struct Unpacked {
 
 /// Copies the files of an archive into `workshop/<run>/`, but for the database, which is only measured.
 fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
-    let broken =
-        |error: io::Error| refused(archive, format!("this is no archive of a run, or it is torn ({error})"));
+    let broken = |error: io::Error| {
+        refused(archive, format!("this is not an archive of a run, or it is cut short ({error})"))
+    };
     let mut tar = tar::Archive::new(open(archive)?);
     let mut found = Unpacked { run: String::new(), files: Vec::new(), seal: String::new() };
     // Raw: extensions that rename or enlarge the next file are not followed but refused.
@@ -92,7 +93,7 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
             continue;
         }
         if kind != tar::EntryType::Regular {
-            return Err(refused(archive, format!("{name} is no ordinary file")));
+            return Err(refused(archive, format!("{name} is not an ordinary file")));
         }
         let (run, file) =
             parts(&name).ok_or_else(|| refused(archive, format!("{name} does not belong to a run")))?;
@@ -101,16 +102,16 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
             .find(|(known, _)| *known == file)
             .ok_or_else(|| refused(archive, format!("{name} does not belong to a run")))?;
         if !found.run.is_empty() && found.run != run {
-            return Err(refused(archive, format!("{name} is of another run than {}", found.run)));
+            return Err(refused(archive, format!("{name} belongs to another run than {}", found.run)));
         }
         if found.files.iter().any(|known| known.name == file) {
-            return Err(refused(archive, format!("{name} is there twice")));
+            return Err(refused(archive, format!("{name} occurs twice")));
         }
         let size = entry.size();
         if size > most {
             return Err(refused(
                 archive,
-                format!("{name} is too large: {size} bytes, at most {most} are expected"),
+                format!("{name} is too large: {size} bytes, but at most {most} are expected"),
             ));
         }
         found.run = run.to_owned();
@@ -171,19 +172,19 @@ fn store(entry: &mut dyn Read, path: &Path, file: &str) -> Result<SealedFile, Co
 /// Reads the seal and compares it with what was found.
 fn check_seal(archive: &Path, found: &Unpacked) -> Result<Seal, RunError> {
     if found.seal.is_empty() {
-        return Err(refused(archive, "seal.toml is missing: this is no archive of a run"));
+        return Err(refused(archive, "seal.toml is missing: this is not an archive of a run"));
     }
     let seal: Seal = toml::from_str(&found.seal)
         .map_err(|error| refused(archive, format!("seal.toml cannot be read ({})", error.message())))?;
     if seal.format > SEAL_FORMAT {
         let problem = format!(
-            "version {} made it in format {}, this program reads format {SEAL_FORMAT}: use that version",
+            "version {} made it in format {}, but this program reads format {SEAL_FORMAT}: use that version",
             seal.program, seal.format
         );
         return Err(refused(archive, problem));
     }
     if !seal.is_intact() || seal.run != found.run {
-        return Err(refused(archive, "seal.toml was changed: its checksum does not fit"));
+        return Err(refused(archive, "seal.toml was changed: its checksum does not match"));
     }
     let there: BTreeMap<&str, &SealedFile> =
         found.files.iter().map(|file| (file.name.as_str(), file)).collect();
@@ -198,7 +199,7 @@ fn check_seal(archive: &Path, found: &Unpacked) -> Result<Seal, RunError> {
     }
     let sealed = |name: &str| seal.file.iter().any(|file| file.name == name);
     match found.files.iter().find(|file| file.name != SEAL && !sealed(&file.name)) {
-        Some(stranger) => Err(refused(archive, format!("{} was added after the sealing", stranger.name))),
+        Some(stranger) => Err(refused(archive, format!("{} was added after sealing", stranger.name))),
         None => Ok(seal),
     }
 }
@@ -245,14 +246,14 @@ fn compare(draft: &Path, place: &Path, seal: &Seal) -> Result<Imported, RunError
         return Ok(Imported::Same { other_memo: read(draft, MEMO) != read(place, MEMO) });
     }
     let how = if there.starts_with(&own) {
-        "it is the same run, played on since the archive was made"
+        "it is the same run, played further since the archive was made"
     } else if own.starts_with(&there) {
         "the archive holds a later state of it; delete or move the older one to import it"
     } else {
         "it is another one, or was changed"
     };
     Err(RunError::Exists(format!(
-        "run {} is there already in {}: {how}. Nothing was changed",
+        "run {} already exists in {}: {how}. Nothing was changed",
         seal.run,
         place.display()
     )))

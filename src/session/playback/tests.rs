@@ -268,7 +268,7 @@ fn a_run_that_is_played_elsewhere_is_followed() {
     go(&mut playback, Goal::Last);
     assert_eq!(playback.session().state_hash().0, hashes(&folder)[&21]);
     std::fs::write(&path, &after[..60]).expect("a file that became shorter");
-    assert!(playback.look_for_more().expect_err("lines are gone").to_string().contains("taken away"));
+    assert!(playback.look_for_more().expect_err("lines are gone").to_string().contains("lines were removed"));
 }
 
 #[test]

@@ -48,11 +48,11 @@ const FRAME: [&str; 6] = ["seq", "kind", "day", "at", "prev", "sum"];
 impl Line {
     /// Reads a line. Those of the first builds have no sums; of a first line only it itself tells whether it has one.
     pub(super) fn read(text: &[u8], seq: u64, previous: &str, summed: bool) -> Result<Line, String> {
-        let unreadable = |error: serde_json::Error| format!("this is no line of a trajectory ({error})");
+        let unreadable = |error: serde_json::Error| format!("this is not a line of a trajectory ({error})");
         let frame: Frame<'_> = serde_json::from_slice(text).map_err(unreadable)?;
         let summed = summed && (seq > 0 || frame.line_sums);
         if sum_of(text).map_or(summed, |fits| !fits) {
-            return Err("the line does not fit its own sum: it was changed".to_owned());
+            return Err("the line does not match its own sum: it was changed".to_owned());
         }
         if frame.seq != Some(seq) {
             return Err(format!("the line should have number {seq}: lines are missing or out of order"));

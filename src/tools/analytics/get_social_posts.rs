@@ -25,7 +25,7 @@ static SPEC: Spec = Spec {
             kind: ANY,
             required: false,
             unit: "days",
-            doc: "accepted and not used: the newest posts of all time come back",
+            doc: "accepted but ignored: the newest posts of all time are returned",
         },
         Argument {
             name: "limit",
@@ -33,7 +33,7 @@ static SPEC: Spec = Spec {
             kind: ANY,
             required: false,
             unit: "posts",
-            doc: "how many at most, 50 if not given; 0 for none, a negative number for all",
+            doc: "how many at most, 50 if left out; 0 for none, a negative number for all",
         },
     ],
     own_unknown: false,
@@ -47,7 +47,8 @@ static SPEC: Spec = Spec {
         Output {
             name: "posts",
             kind: "list of {post_id, day, content, reply_to_agent_post_id, source_group_id, group_id, customer_type, custom_name, persona_name, replying_to_your_post}",
-            doc: "group of the author; the press writes as S1; the last field only on comments to your posts",
+            doc: "group of the author; the press writes as S1; the last field is present only on comments on \
+                  your posts",
         },
         Output { name: "total", kind: "integer", doc: "posts returned; absent when there are none" },
     ],

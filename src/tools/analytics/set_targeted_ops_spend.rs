@@ -53,9 +53,10 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: Some("targeted_spend"),
     when: When::NextDay,
-    effect: "Every entry solves open issues of its own after the general pool did: about \
-             {issues.individual_ops_scale} a day per dollar for individuals, {issues.enterprise_ops_scale} for companies. It does not touch outages. A map that is given replaces its whole \
-             scope, {} clears it, a scope left out stays.",
+    effect: "Every entry solves open issues of its own after the general pool: about \
+             {issues.individual_ops_scale} a day per dollar for individuals, {issues.enterprise_ops_scale} \
+             for companies. It does not touch outages. A map replaces its whole scope, {} clears it, and a \
+             scope left out stays as it is.",
     cost: "the sum of all entries on every simulated day, whether or not anybody has an issue",
     writes: &["config_overrides"],
     refusals: &[

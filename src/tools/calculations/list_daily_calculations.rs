@@ -13,7 +13,7 @@ static SPEC: Spec = Spec {
     code: "CALCS",
     module: Module::Time,
     kind: Kind::Engine,
-    summary: "List the names of the kept calculations",
+    summary: "List the names of the registered calculations",
     arguments: &[],
     own_unknown: false,
     whole: None,
@@ -25,7 +25,7 @@ static SPEC: Spec = Spec {
     returns: &[Output {
         name: "calculations",
         kind: "list of text",
-        doc: "names in the order in which they were kept",
+        doc: "names in the order in which they were registered",
     }],
     example: r#"{}"#,
 };

@@ -19,7 +19,10 @@ fn kept<'a>(view: &View<'a>) -> &'a Shelf {
 
 fn not_found(name: &str, view: &View<'_>) -> Refusal {
     let names = kept(view).names();
-    let known =
-        if names.is_empty() { "none is kept".to_owned() } else { format!("kept: {}", names.join(", ")) };
+    let known = if names.is_empty() {
+        "none is registered".to_owned()
+    } else {
+        format!("registered: {}", names.join(", "))
+    };
     Refusal::at("name", "calculation_not_found", format!("calculation {name} does not exist; {known}"))
 }

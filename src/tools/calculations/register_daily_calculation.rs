@@ -14,7 +14,7 @@ static SPEC: Spec = Spec {
     code: "CALC",
     module: Module::Time,
     kind: Kind::Engine,
-    summary: "Keep a named calculation: it runs before every week, its output stands on the dashboard",
+    summary: "Register a named calculation: it runs before every week, and the dashboard shows its output",
     arguments: &[
         Argument {
             name: "name",
@@ -36,7 +36,9 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::NextDay,
-    effect: "From the next week on the statements run before each week, on the company as it is then. The dashboard shows the first 500 characters of the output. An equal name is overwritten.",
+    effect: "From the next week on, the statements run before each week, on the company as it is then. The \
+             dashboard shows the first 500 characters of the output. A calculation of the same name is \
+             replaced.",
     cost: "nothing",
     writes: &[],
     refusals: &[],

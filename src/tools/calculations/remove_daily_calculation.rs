@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
     code: "UNCAL",
     module: Module::Time,
     kind: Kind::Engine,
-    summary: "Drop a named calculation",
+    summary: "Remove a named calculation",
     arguments: &[Argument {
         name: "name",
         alias: None,
@@ -33,7 +33,7 @@ static SPEC: Spec = Spec {
     refusals: &["calculation_not_found"],
     returns: &[
         Output { name: "name", kind: "text", doc: "the name" },
-        Output { name: "remaining", kind: "list of text", doc: "names that are left" },
+        Output { name: "remaining", kind: "list of text", doc: "remaining names" },
     ],
     example: r#"{"name": "cash"}"#,
 };

@@ -32,7 +32,7 @@ static SPEC: Spec = Spec {
     cost: "nothing",
     writes: &[],
     refusals: &["tool_not_found"],
-    returns: &[Output { name: "<tool>", kind: "object", doc: "one field per tool: its document" }],
+    returns: &[Output { name: "<tool>", kind: "object", doc: "one field per tool: its documentation" }],
     example: r#"{"tool_names": "set_prices"}"#,
 };
 

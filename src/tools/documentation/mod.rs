@@ -36,7 +36,8 @@ fn chosen<'a>(
         return Ok(found);
     }
     let near = nearest(asked.first().copied().unwrap_or_default(), known.iter().copied());
-    let near = if near.is_empty() { known.join(", ") } else { format!("near it: {}", near.join(", ")) };
+    let near =
+        if near.is_empty() { known.join(", ") } else { format!("did you mean {}?", near.join(" or ")) };
     let asked = if asked.is_empty() { "an empty list".to_owned() } else { asked.join(", ") };
     Err(Refusal::at(field, code, format!("{asked} names nothing that exists; {near}")))
 }

@@ -13,7 +13,7 @@ use crate::world::identifiers::Plan;
 /// `deals_missing` when there is nothing.
 pub(super) fn elements(given: Option<&Value>, example: &str) -> Result<Vec<Value>, Refusal> {
     let missing = || {
-        let message = format!("deals are required: a list with at least one of them, for instance {example}");
+        let message = format!("deals are required: a list of at least one, for instance {example}");
         Refusal::at("deals", "deals_missing", message)
     };
     match given {
@@ -75,7 +75,7 @@ pub(super) fn customer(given: Option<&Value>, path: &str) -> Result<i64, Unreada
 
 /// An element that has no form of a deal.
 pub(super) fn malformed(path: &str, expected: &str) -> Unreadable {
-    let refusal = Refusal::at(path, "deal_malformed", format!("{path} is no deal: {expected}"));
+    let refusal = Refusal::at(path, "deal_malformed", format!("{path} is not a deal: {expected}"));
     Failure::unreadable(None, "invalid format", refusal).into()
 }
 
@@ -122,20 +122,21 @@ fn offering(given: &Value, at: usize, customer: i64, path: &str) -> Result<Offer
             match prices.find(|price| !price.is_null()) {
                 Some(price) => (map.get("plan"), price),
                 None => {
-                    let message = "an offering needs price_per_seat, dollars a month and seat".to_owned();
+                    let message =
+                        "an offering needs price_per_seat, in dollars per seat and month".to_owned();
                     return Err(failed("offering_no_price", "missing price", message));
                 }
             }
         }
         _ => {
-            let message = "an offering is written [plan, price] or {plan, price_per_seat}".to_owned();
+            let message = "write an offering as [plan, price] or {plan, price_per_seat}".to_owned();
             return Err(failed("offering_malformed", "invalid", message));
         }
     };
     let plan = match plan {
         None => Plan::B,
         Some(plan) => plan.as_str().and_then(Plan::parse).ok_or_else(|| {
-            let message = format!("plan {plan} does not exist; plans are A, B, C");
+            let message = format!("plan {plan} does not exist; the plans are A, B, C");
             failed("offering_malformed", "invalid", message)
         })?,
     };

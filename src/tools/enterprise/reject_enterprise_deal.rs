@@ -14,7 +14,7 @@ static SPEC: Spec = Spec {
     code: "REJ",
     module: Module::Enterprise,
     kind: Kind::OneShot,
-    summary: "End open threads with companies without a deal",
+    summary: "End open company threads without making a deal",
     arguments: &[Argument {
         name: "deals",
         alias: None,
@@ -26,8 +26,8 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: Some("deals"),
     when: When::Now,
-    effect: "A new lead is lost for good. The thread of a subscriber only closes: it stays on its terms, and may open \
-             another thread from the next day on.",
+    effect: "A new lead is lost for good. The thread of a subscriber only closes: the company keeps its \
+             terms, and can open another thread from the next day.",
     cost: "nothing",
     writes: &["enterprise_turns", "subscriptions"],
     refusals: &["deals_missing", "deal_malformed", "customer_missing", "no_active_thread"],
@@ -71,7 +71,7 @@ fn read(view: &View<'_>, arguments: &Arguments) -> Result<(Vec<Fate>, Vec<u32>),
                 Fate::Done(customer)
             }
             _ => {
-                let message = format!("customer {given} has no open thread that could be ended");
+                let message = format!("customer {given} has no open thread to end");
                 let refusal = Refusal::at(format!("{path}.customer_id"), "no_active_thread", message);
                 Fate::Failed(Failure::of(given, "no active thread", refusal))
             }
@@ -86,6 +86,6 @@ fn named(element: &Value, path: &str) -> Result<i64, Unreadable> {
         Value::Object(map) => customer(map.get("customer_id"), path),
         Value::Array(single) if single.len() == 1 => customer(single.first(), path),
         Value::Number(_) | Value::String(_) => customer(Some(element), path),
-        _ => Err(malformed(path, "it is written {\"customer_id\": 207}, [207] or 207")),
+        _ => Err(malformed(path, "write it as {\"customer_id\": 207}, [207] or 207")),
     }
 }

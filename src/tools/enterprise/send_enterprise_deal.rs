@@ -18,7 +18,7 @@ static SPEC: Spec = Spec {
     code: "DEAL",
     module: Module::Enterprise,
     kind: Kind::OneShot,
-    summary: "Offer companies plans at prices per seat; answers a thread that is open, opens one otherwise",
+    summary: "Offer companies plans at a price per seat; answers the open thread, or opens one",
     arguments: &[Argument {
         name: "deals",
         alias: None,
@@ -32,12 +32,13 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: Some("deals"),
     when: When::CustomerReply,
-    effect: "The company answers at least a day later, by its own pace: it takes its best offering, names a price of \
-             its own, or falls silent for good once its patience with turns is used up or no price would do. Every \
-             offer uses up a turn, and only the newest one is answered. Each day beyond {enterprise.late_reply_free_days} \
-             that a message of the company waits costs {enterprise.late_reply_relationship_delta_per_day:-} of its \
-             relationship; after {enterprise.agent_response_timeout_days} days without an answer the thread ends. A \
-             subscriber without an open thread is offered new terms: if it declines, it leaves.",
+    effect: "The company answers at least a day later, at its own pace: it takes the best offering, names a \
+             price of its own, or falls silent for good once its patience with turns is used up or no price \
+             would do. Every offer uses up a turn, and only the newest one is answered. Each day beyond \
+             {enterprise.late_reply_free_days} that a company's message waits costs \
+             {enterprise.late_reply_relationship_delta_per_day:-} of the relationship; after \
+             {enterprise.agent_response_timeout_days} days without an answer the thread ends. A subscriber \
+             without an open thread is offered new terms: if it declines, it leaves.",
     cost: "nothing",
     writes: &["enterprise_turns"],
     refusals: &[
@@ -101,7 +102,7 @@ fn deal(
     let (who, what) = match element {
         Value::Array(pair) if pair.len() >= 2 => (pair.first(), pair.get(1)),
         Value::Object(map) => (map.get("customer_id"), map.get("offerings")),
-        _ => return Err(malformed(path, "it is written [customer_id, [[plan, price_per_seat], …]]")),
+        _ => return Err(malformed(path, "write it as [customer_id, [[plan, price_per_seat], …]]")),
     };
     let most = view.params().enterprise.enterprise_max_offerings_per_turn as usize;
     let customer = customer(who, path)?;
@@ -134,7 +135,8 @@ fn reachable(
                 return Ok(Proposal { customer, offerings });
             }
             let message = format!(
-                "customer {given} has neither an open thread nor a subscription: it was lost or never asked"
+                "customer {given} has neither an open thread nor a subscription: it was lost, or never asked \
+                 for an offer"
             );
             Err(failed("no_subscription", "no subscription", message))
         }

@@ -49,7 +49,7 @@ static SPEC: Spec = Spec {
         Output {
             name: "network_influence",
             kind: "{outgoing, incoming}: map group -> number",
-            doc: "leads a day and subscriber that the group brings to known groups, and they to it",
+            doc: "leads per subscriber and day that the group brings to known groups, and they to it",
         },
         Output {
             name: "reputation_influence",

@@ -24,7 +24,7 @@ fn known_group(arguments: &Arguments, view: &View<'_>) -> Result<Group, Refusal>
     Group::parse(id).filter(|group| view.knows(*group)).ok_or_else(|| {
         let known: Vec<&str> = view.known_groups().map(Group::id).collect();
         let message = format!(
-            "group {id} is not known yet; known are {}; research_market finds others",
+            "group {id} is not known yet; the known groups are {}; research_market finds others",
             known.join(", ")
         );
         Refusal::at("group_id", "group_not_discovered", message)

@@ -32,8 +32,8 @@ static SPEC: Spec = Spec {
             kind: ArgumentKind::Integer(Range::between(2.0, 5.0)),
             required: false,
             unit: "level",
-            doc: "level 2 to 5; left out: the present level, at least 2. Levels may be skipped; the present level is \
-                  a refresh",
+            doc: "level 2 to 5; if left out, the present level, at least 2. Levels can be skipped; the \
+                  present level is a refresh",
         },
     ],
     own_unknown: false,
@@ -54,7 +54,7 @@ static SPEC: Spec = Spec {
         Output { name: "group_id", kind: "text", doc: "the group" },
         Output { name: "new_level", kind: "integer", doc: "level it will have" },
         Output { name: "expected_completion_day", kind: "integer", doc: "day" },
-        Output { name: "is_refresh", kind: "boolean", doc: "whether the level stays" },
+        Output { name: "is_refresh", kind: "boolean", doc: "whether the level stays the same" },
     ],
     example: r#"{"group_id": "E2", "target_level": 3}"#,
 };
@@ -71,7 +71,8 @@ fn target_of(arguments: &Arguments, group: Group, view: &View<'_>) -> Result<u8,
     })? as u8;
     if target < level {
         let message = format!(
-            "group {group} is already at level {level}; the same level is a refresh, a higher one more accurate"
+            "group {group} is already at level {level}; order the same level for a refresh, or a higher one \
+             for better estimates"
         );
         return Err(Refusal::at("target_level", "no_downgrade", message));
     }
@@ -88,7 +89,7 @@ impl Tool for ResearchGroup {
         let target = target_of(arguments, group, view)?;
         if let Some(study) = view.world().market.running_study(group) {
             let message =
-                format!("a study of {group} runs until day {}; order again after it", study.due_day);
+                format!("a study of {group} runs until day {}; order the next one after that", study.due_day);
             return Err(Refusal::at("group_id", "study_in_progress", message));
         }
         affordable(view.params().level(target).cost, view)?;

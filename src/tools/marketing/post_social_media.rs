@@ -12,7 +12,7 @@ static SPEC: Spec = Spec {
     code: "POST",
     module: Module::Marketing,
     kind: Kind::OneShot,
-    summary: "Publish a post of the company, or answer somebody's post",
+    summary: "Publish a post as the company, or answer somebody's post",
     arguments: &[
         Argument {
             name: "content",
@@ -28,15 +28,15 @@ static SPEC: Spec = Spec {
             kind: ArgumentKind::Integer(Range::between(1.0, f64::INFINITY)),
             required: false,
             unit: "post",
-            doc: "number of the post that is answered; without it the post stands for itself",
+            doc: "number of the post to answer; without it, the post stands alone",
         },
     ],
     own_unknown: false,
     whole: None,
     when: When::NextDay,
-    effect: "On the next day every known group reads it. What fits a group, is specific and true, and speaks to what is \
-             on its mind is shared, and brings leads from the day after, half as many every three days; hype, false \
-             claims and insults cost leads. Strong reactions bring comments.",
+    effect: "On the next day every known group reads it. A post that fits a group, is specific and true, and \
+             speaks to what is on its mind is shared and brings leads from the day after, half as many every \
+             three days; hype, false claims and insults cost leads. Strong reactions bring comments.",
     cost: "nothing; one post per decision day",
     writes: &["agent_social_media_posts"],
     refusals: &["too_long", "blank", "already_posted", "post_not_found"],
@@ -74,7 +74,7 @@ impl Tool for PostSocialMedia {
         let social = &view.world().market.social;
         if social.own.iter().any(|post| post.day == view.day()) {
             let message = format!(
-                "you have already posted on day {}; the next post can follow after the week",
+                "you have already posted on day {}; you can post again on the next decision day",
                 view.day()
             );
             return Err(Refusal::new("already_posted", message));
@@ -87,7 +87,7 @@ impl Tool for PostSocialMedia {
                 let post = u32::try_from(number).ok().filter(|post| social.has_post(*post));
                 Some(post.ok_or_else(|| {
                     let message = format!(
-                        "there is no post {number}; get_social_posts shows the numbers of those there are"
+                        "there is no post {number}; get_social_posts lists the posts with their numbers"
                     );
                     Refusal::at("reply_to_post_id", "post_not_found", message)
                 })?)

@@ -37,8 +37,9 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::NextDay,
-    effect: "Every subscriber who sees ads earns a little each day and perceives less quality. Effective is \
-             log10(1 + 9 s) of the summed strength, so a small load already earns much of a full one.",
+    effect: "Every subscriber who sees ads earns you a little each day but perceives less quality. The \
+             effective load is log10(1 + 9 s) of the summed strength s, so a small load already earns much \
+             of what a full one does.",
     cost: "nothing; perceived quality falls",
     writes: &["config_overrides"],
     refusals: &[

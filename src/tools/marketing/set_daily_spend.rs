@@ -80,7 +80,7 @@ impl Tool for SetDailySpend {
             .filter(|key| !["operations", "development"].contains(&key.as_str()))
             .collect();
         if unknown.iter().any(|key| *key == "advertising") {
-            let message = "advertising is set per channel and group with set_targeted_ad_spend";
+            let message = "set advertising per channel and group with set_targeted_ad_spend";
             return Err(Refusal::at("advertising", "advertising_not_here", message));
         }
         if let Some(key) = unknown.first() {

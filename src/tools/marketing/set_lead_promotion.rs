@@ -41,8 +41,9 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::NextDay,
-    effect: "Leads choose their plan at the price less the discount and pay it on the day they sign up; from the \
-             second bill on it is gone. Channel scopes need a lead that came through an ad. Companies get none.",
+    effect: "Leads choose their plan at the price less the discount and pay it on the day they sign up; from \
+             the second bill on, the discount is gone. Channel scopes apply only to leads that came through \
+             an ad. Companies get none.",
     cost: "less revenue from first bills",
     writes: &["config_overrides"],
     refusals: &[

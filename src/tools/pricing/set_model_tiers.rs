@@ -32,7 +32,7 @@ static SPEC: Spec = Spec {
     when: When::NextDay,
     effect: "A higher tier multiplies the quality that the plan delivers and the compute cost of every usage unit; \
              get_cost_info lists both.",
-    cost: "nothing itself; compute is charged per unit used",
+    cost: "nothing in itself; compute is charged per unit used",
     writes: &["config_history"],
     refusals: &["nothing_given", "unknown_plan", "tier_out_of_range"],
     returns: &[

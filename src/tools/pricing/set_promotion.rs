@@ -37,9 +37,9 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::NextBilling,
-    effect: "Taken off the price on each customer's billing day, where it also weighs in the decision to stay; it \
-             is felt from then on. Companies' offers are judged without it. A map that is given replaces its whole \
-             scope, {} clears it, a scope left out stays.",
+    effect: "Taken off the price on each customer's billing day, when it also weighs in the decision to \
+             stay; it is felt from then on. Companies judge offers without it. A map replaces its whole \
+             scope, {} clears it, and a scope left out stays as it is.",
     cost: "less revenue",
     writes: &["config_overrides"],
     refusals: &[

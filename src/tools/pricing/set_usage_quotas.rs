@@ -33,9 +33,9 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::NextDay,
-    effect: "Usage of a day is the demand up to the quota. A demand above the quota lowers the quality a customer \
-             perceives in the same proportion; a quota of 0 delivers nothing.",
-    cost: "nothing itself; compute is charged per unit used",
+    effect: "A day's usage is the demand up to the quota. Demand above the quota lowers the quality a \
+             customer perceives in the same proportion; a quota of 0 delivers nothing.",
+    cost: "nothing in itself; compute is charged per unit used",
     writes: &["config_history"],
     refusals: &["quota_missing", "quota_negative", "amount_too_large"],
     returns: &[Output { name: "quotas", kind: "map plan -> number", doc: "all three quotas, units/day" }],

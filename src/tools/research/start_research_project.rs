@@ -27,8 +27,9 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::AtCompletion,
-    effect: "On its completion day the gain is added to the quality of every group, for good. Projects take at \
-             least {development.rd_min_duration_days} days; tiers are independent, may be repeated, and run in parallel, one per tier at a time.",
+    effect: "On its completion day the gain is added to the quality of every group, for good. Projects take \
+             at least {development.rd_min_duration_days} days; tiers are independent, can be repeated, and \
+             run in parallel, one per tier at a time.",
     cost: "the price of the tier, at once",
     writes: &["ledger", "research_projects"],
     refusals: &["rd_tier_unknown", "rd_in_progress", "insufficient_funds"],
@@ -47,7 +48,7 @@ static SPEC: Spec = Spec {
 fn tier_of(arguments: &Arguments) -> Result<u8, Refusal> {
     let given = arguments.get("tier").unwrap_or(&Value::Null);
     integer(given).filter(|tier| (1..=20).contains(tier)).map(|tier| tier as u8).ok_or_else(|| {
-        let message = format!("R&D tier {given} does not exist; tiers are 1 to 20");
+        let message = format!("R&D tier {given} does not exist; the tiers are 1 to 20");
         Refusal::at("tier", "rd_tier_unknown", message)
     })
 }

@@ -33,7 +33,7 @@ static SPEC: Spec = Spec {
     refusals: &["script_not_found"],
     returns: &[
         Output { name: "name", kind: "text", doc: "the name" },
-        Output { name: "remaining", kind: "list of text", doc: "names that are left" },
+        Output { name: "remaining", kind: "list of text", doc: "remaining names" },
     ],
     example: r#"{"name": "churn"}"#,
 };

@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
     code: "PYX",
     module: Module::Time,
     kind: Kind::Engine,
-    summary: "Run SQL statements over the visible tables; the name is that of agents, who run Python here",
+    summary: "Run SQL statements over the visible tables; named after the tool with which agents run Python",
     arguments: &[
         Argument {
             name: "code",

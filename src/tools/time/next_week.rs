@@ -32,7 +32,7 @@ static SPEC: Spec = Spec {
             ),
             required: false,
             unit: "$",
-            doc: "cash in 7, 28, 84 and 182 days with the interval that should hold it 95 times in 100",
+            doc: "cash in 7, 28, 84 and 182 days with the interval that should hold it 95 times out of 100",
         },
     ],
     own_unknown: false,
@@ -99,7 +99,7 @@ pub fn rationale(given: &Value) -> Result<String, Refusal> {
         _ => Err(Refusal::at(
             "rationale",
             "rationale_missing",
-            "a rationale is required: say why, in a sentence or two",
+            "a rationale is required: say why in a sentence or two",
         )),
     }
 }

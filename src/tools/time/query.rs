@@ -12,7 +12,7 @@ static SPEC: Spec = Spec {
     code: "QRY",
     module: Module::Time,
     kind: Kind::Read,
-    summary: "Ask the company's database with one read-only SQL statement",
+    summary: "Query the company's database with one read-only SQL statement",
     arguments: &[Argument {
         name: "sql",
         alias: None,
@@ -32,7 +32,11 @@ static SPEC: Spec = Spec {
         Output { name: "columns", kind: "list of text", doc: "names of the columns" },
         Output { name: "rows", kind: "list of objects", doc: "at most 5,000" },
         Output { name: "row_count", kind: "integer", doc: "number of rows" },
-        Output { name: "truncated", kind: "boolean", doc: "more rows exist; then also warning" },
+        Output {
+            name: "truncated",
+            kind: "boolean",
+            doc: "whether more rows exist; if so, there is also a warning",
+        },
         Output { name: "hint", kind: "text", doc: "why an empty result may be empty" },
     ],
     example: r#"{"sql": "SELECT SUM(amount) AS cash FROM ledger"}"#,

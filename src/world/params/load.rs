@@ -145,7 +145,12 @@ pub fn override_table(below: &mut Table, above: Table) -> Result<(), (String, St
             (Some(slot), value) => *slot = value,
             (None, _) => {
                 let near = crate::notation::nearest(&key, below.keys().map(String::as_str));
-                let problem = format!("there is no such parameter; near it: {}", near.join(", "));
+                let help = if near.is_empty() {
+                    String::new()
+                } else {
+                    format!("; did you mean {}?", near.join(" or "))
+                };
+                let problem = format!("there is no such parameter{help}");
                 return Err((key, problem));
             }
         }

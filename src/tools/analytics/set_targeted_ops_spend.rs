@@ -53,7 +53,7 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: Some("targeted_spend"),
     when: When::NextDay,
-    effect: "Every entry solves open issues of its own after the general pool: about \
+    effect: "Every entry solves open issues of its own after the general pool has: about \
              {issues.individual_ops_scale} a day per dollar for individuals, {issues.enterprise_ops_scale} \
              for companies. It does not touch outages. A map replaces its whole scope, {} clears it, and a \
              scope left out stays as it is.",

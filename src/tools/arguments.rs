@@ -81,7 +81,7 @@ fn names(spec: &Spec) -> String {
 
 /// A JSON number; booleans and texts are none.
 pub fn number(value: &Value) -> Option<f64> {
-    value.as_f64().filter(|number| number.is_finite())
+    value.as_f64()
 }
 
 /// A JSON whole number; integral floats count, booleans and texts do not.

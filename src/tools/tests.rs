@@ -407,6 +407,9 @@ fn set_capacity_tier() {
     );
     let data = company.call("set_capacity_tier", json!({"capacity_tier": 2}));
     assert_eq!(data, json!({"tier": 2, "capacity_units": 800000, "cost_per_day": 530}));
+    for tier in 0..=7 {
+        assert_eq!(company.call("set_capacity_tier", json!({ "tier": tier }))["tier"], tier);
+    }
 }
 
 /// A company with two leads (customers 2 and 3), a subscriber (4), an individual (5), a lost lead (6).

@@ -222,3 +222,24 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
         },
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::test_kit::finished;
+
+    #[test]
+    fn people_stand_at_the_end_of_their_week() {
+        let session = finished();
+        let Some(Block::Chart(chart)) = people(&Story::of(&session)) else { panic!("a chart") };
+        let Plot::Lines { curves, .. } = &chart.plot else { panic!("{chart:?}") };
+        let told: Vec<(f64, f64)> = (1..)
+            .zip(session.weeks())
+            .map(|(week, own)| (f64::from(week), f64::from(own.individual_subscribers)))
+            .collect();
+        assert_eq!(curves[0].points, told);
+        let (week, most) = told.iter().rev().max_by(|one, other| one.1.total_cmp(&other.1)).expect("weeks");
+        let peak = format!("subscribers: peak {} in week {week:.0},", whole(*most));
+        assert!(*most > 0.0 && chart.summary.starts_with(&peak), "{}", chart.summary);
+    }
+}

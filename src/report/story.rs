@@ -6,7 +6,7 @@ use super::highlights::{Highlight, highlights};
 use super::measures::Measures;
 use super::ranking::{Standing, standing};
 use super::turn::{Cost, costs, turned};
-use crate::session::{Ended, Filed, Observation, Session, WeekFigures, filed_forecasts};
+use crate::session::{Ended, Observation, ScoredForecast, Session, WeekFigures, filed_forecasts};
 
 /// How a company went under.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +35,7 @@ pub struct Story {
     /// Where the result stands.
     pub standing: Standing,
     /// Every forecast, in the order of filing.
-    pub filed: Vec<Filed>,
+    pub filed: Vec<ScoredForecast>,
     /// What the database knows.
     pub books: Books,
     /// What was decided.

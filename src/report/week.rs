@@ -5,7 +5,9 @@ use super::chapters::change_in_words;
 use super::movement::{Movement, movement};
 use super::words::{category_name, money, number, whole};
 use crate::notation::{compact, percent};
-use crate::session::{Booked, Category, Decisions, JournalEntry, Session, WeekFigures};
+use crate::session::{
+    Booked, Category, Decisions, JournalEntry, ScoredForecast, Session, WeekFigures, filed_forecasts,
+};
 
 /// A figure that moved.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,42 +43,6 @@ impl Move {
     }
 }
 
-/// A forecast for the end of the week, and what came.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Due {
-    /// Days ahead.
-    pub horizon_days: u32,
-    /// What was said.
-    pub point: f64,
-    /// Lower end.
-    pub lower: f64,
-    /// Upper end.
-    pub upper: f64,
-    /// What came.
-    pub outcome: f64,
-}
-
-impl Due {
-    /// Whether the interval held what came.
-    pub fn is_inside(&self) -> bool {
-        self.lower <= self.outcome && self.outcome <= self.upper
-    }
-
-    /// Distance of the point from what came, relative to it.
-    pub fn miss(&self) -> f64 {
-        (self.point - self.outcome).abs() / self.outcome.abs().max(1.0)
-    }
-
-    /// Inside, above or below the interval, with a sign that needs no colour.
-    pub fn verdict(&self) -> &'static str {
-        match self.is_inside() {
-            true => "✓ inside",
-            false if self.outcome > self.upper => "▲ above",
-            false => "▼ below",
-        }
-    }
-}
-
 /// The report of a week.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeekReport {
@@ -89,7 +55,7 @@ pub struct WeekReport {
     /// Settings that were changed before it, old → new, then purchases, posts and offers.
     pub decided: Vec<String>,
     /// Forecasts for its last day, the shortest first.
-    pub due: Vec<Due>,
+    pub due: Vec<ScoredForecast>,
     /// Posts of customers in it.
     pub customer_posts: u32,
     /// Answers to our posts in it.
@@ -245,21 +211,11 @@ fn split(categories: &[Category], before: &Booked, now: &Booked) -> Vec<(&'stati
     changes
 }
 
-fn due(sources: &Sources<'_>, day: u32) -> Vec<Due> {
-    let Some(outcome) = sources.cash_by_day.get(day as usize).copied() else { return Vec::new() };
-    let mut due: Vec<Due> = Vec::new();
-    for entry in sources.journal {
-        let JournalEntry::Advance { day: filed, forecasts, .. } = entry else { continue };
-        let fitting = forecasts.iter().filter(|forecast| filed + forecast.horizon_days == day);
-        due.extend(fitting.map(|forecast| Due {
-            horizon_days: forecast.horizon_days,
-            point: forecast.point,
-            lower: forecast.lower,
-            upper: forecast.upper,
-            outcome,
-        }));
-    }
-    due.sort_by_key(|due| due.horizon_days);
+/// Forecasts for a day whose cash is known, the shortest horizon first.
+fn due(sources: &Sources<'_>, day: u32) -> Vec<ScoredForecast> {
+    let mut due = filed_forecasts(sources.journal, sources.cash_by_day);
+    due.retain(|forecast| forecast.due() == day && forecast.outcome.is_some());
+    due.sort_by_key(|due| due.forecast.horizon_days);
     due
 }
 
@@ -267,13 +223,6 @@ fn due(sources: &Sources<'_>, day: u32) -> Vec<Due> {
 mod tests {
     use super::*;
     use crate::report::test_kit;
-
-    #[test]
-    fn an_interval_holds_its_ends() {
-        let due = |outcome| Due { horizon_days: 7, point: 5.0, lower: 1.0, upper: 9.0, outcome };
-        let inside = [0.9, 1.0, 5.0, 9.0, 9.1].map(|outcome| due(outcome).is_inside());
-        assert_eq!(inside, [false, true, true, true, false]);
-    }
 
     #[test]
     fn the_parts_add_up_to_the_change_of_cash_and_agree_with_the_ledger() {
@@ -299,9 +248,12 @@ mod tests {
     fn a_week_reports_its_forecasts_and_the_figures_that_moved() {
         let session = test_kit::played(5);
         let report = WeekReport::of_session(&session).expect("five weeks have passed");
-        let horizons: Vec<u32> = report.due.iter().map(|due| due.horizon_days).collect();
+        let horizons: Vec<u32> = report.due.iter().map(|due| due.forecast.horizon_days).collect();
         assert_eq!(horizons, [7, 28]);
-        assert!(report.due.iter().all(|due| due.outcome == report.week.cash && due.miss() < 1.0));
+        assert!(
+            report.due.iter().all(|due| due.outcome == Some(report.week.cash)
+                && due.error().is_some_and(|error| error.abs() < 1.0))
+        );
         assert!(report.moves.len() > 4);
         let order: Vec<f64> = report.moves.iter().map(|moved| moved.movement.unusual).collect();
         assert!(order.is_sorted_by(|left, right| left >= right), "{order:?}");

@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::week::{Forecasts, WeekFigures};
-use super::{Filed, Session, filed_forecasts};
+use super::{ScoredForecast, Session, filed_forecasts};
 use crate::tools::Forecast;
 use crate::world::events::Category;
 
@@ -67,7 +67,7 @@ impl Pace {
 
     /// The naive projection: the pace goes on. The interval holds the spread from day to day and the errors of the
     /// forecasts that have come due.
-    pub fn project(&self, cash: f64, horizons: &[u32], filed: &[Filed]) -> Forecasts {
+    pub fn project(&self, cash: f64, horizons: &[u32], filed: &[ScoredForecast]) -> Forecasts {
         let one = |horizon_days: u32| {
             let days = f64::from(horizon_days);
             let untried = UNTRIED_ERROR * self.net().abs() * days;
@@ -106,14 +106,16 @@ fn deviation(values: &[f64]) -> f64 {
 
 /// How far off the last forecasts of a horizon were, root mean square; before the first, those of the next shorter
 /// horizon, in proportion.
-fn past_error(filed: &[Filed], horizon_days: u32) -> Option<f64> {
-    let tried = filed.iter().filter(|filed| filed.outcome.is_some() && filed.horizon_days <= horizon_days);
-    let nearest = tried.map(|filed| filed.horizon_days).max()?;
+fn past_error(filed: &[ScoredForecast], horizon_days: u32) -> Option<f64> {
+    let ahead = |filed: &ScoredForecast| filed.forecast.horizon_days;
+    let tried = filed.iter().filter(|filed| filed.outcome.is_some() && ahead(filed) <= horizon_days);
+    let nearest = tried.map(ahead).max()?;
     let squares: Vec<f64> = filed
         .iter()
         .rev()
-        .filter(|filed| filed.horizon_days == nearest)
-        .filter_map(|filed| filed.outcome.map(|outcome| (filed.point - outcome) * (filed.point - outcome)))
+        .filter(|filed| ahead(filed) == nearest)
+        .filter_map(|filed| filed.outcome.map(|outcome| filed.forecast.point - outcome))
+        .map(|miss| miss * miss)
         .take(REMEMBERED)
         .collect();
     let error = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
@@ -198,16 +200,13 @@ mod tests {
 
     #[test]
     fn past_errors_widen_the_interval_of_their_horizon_and_of_longer_ones() {
-        let missed = |horizon_days: u32, by: f64| Filed {
+        let missed = |horizon_days: u32, by: f64| ScoredForecast {
             day: 0,
-            horizon_days,
-            point: 100.0 + by,
-            lower: 0.0,
-            upper: 1.0,
+            forecast: Forecast { horizon_days, point: 100.0 + by, lower: 0.0, upper: 1.0 },
             outcome: Some(100.0),
         };
         let pace = Pace::of(10.0, &[]);
-        let half = |filed: &[Filed], at: usize| {
+        let half = |filed: &[ScoredForecast], at: usize| {
             let one = pace.project(1000.0, &HORIZONS, filed).all[at];
             (one.upper - one.lower) / 2.0
         };

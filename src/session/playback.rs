@@ -262,22 +262,21 @@ impl Playback {
         let to = self.stops.iter().find(|stop| stop.after > shown).map_or(last, |stop| stop.after);
         let (first, day) = from.map_or((1, 0), |stop| (stop.after, stop.day));
         let lines = &self.trajectory.lines[first.min(to)..to];
-        let outcome = |due: u32| self.outcome(due);
+        let (today, outcome) = (self.session.day(), |due: u32| self.outcome(due));
         Chapter {
             week: day / 7 + 1,
             day,
-            entries: lines.iter().map(|line| RecordView::of(line, &outcome)).collect(),
+            entries: lines.iter().map(|line| RecordView::of(line, today, &outcome)).collect(),
             done: self.applied.saturating_sub(first).min(lines.len()),
         }
     }
 
-    /// Cash on a day, and whether it was still to come.
-    fn outcome(&self, day: u32) -> (Option<f64>, bool) {
+    /// Cash on a day, also on one that is still to come, where that is recorded.
+    fn outcome(&self, day: u32) -> Option<f64> {
         if day <= self.session.day() {
-            return (self.session.cash_by_day().get(day as usize).copied(), false);
+            return self.session.cash_by_day().get(day as usize).copied();
         }
-        let recorded = self.stops.iter().find(|stop| stop.day == day);
-        (recorded.map(|stop| stop.cash).filter(|cash| cash.is_finite()), true)
+        self.stops.iter().find(|stop| stop.day == day).map(|stop| stop.cash)
     }
 
     /// The notes of the run, if they had already been written as they are now: earlier texts are not recorded.

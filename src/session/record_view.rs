@@ -1,5 +1,6 @@
 //! A line of a trajectory as somebody looks back at it: what it says, and what came of its forecasts.
 
+use super::ScoredForecast;
 use super::trajectory::{Line, Record};
 use crate::tools::Forecast;
 
@@ -14,44 +15,30 @@ pub struct RecordView {
     pub at: String,
     /// What it says.
     pub record: Record,
-    /// What came of its forecasts, one for each.
-    pub forecasts: Vec<Foreseen>,
-}
-
-/// A forecast, and what came of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Foreseen {
-    /// What was said.
-    pub forecast: Forecast,
-    /// The day it speaks of.
-    pub due: u32,
-    /// Cash on that day, dollars; none where nobody recorded it.
-    pub outcome: Option<f64>,
-    /// The day had not come yet at the moment that is looked at: the outcome is taken from the rest of the record.
-    pub later: bool,
-}
-
-impl Foreseen {
-    /// Whether the interval held what came; none where that is not known.
-    pub fn is_inside(&self) -> Option<bool> {
-        self.outcome.map(|cash| self.forecast.lower <= cash && cash <= self.forecast.upper)
-    }
+    /// Its forecasts. Their outcomes are taken from the whole record, also those that nobody knew at the moment.
+    pub forecasts: Vec<ScoredForecast>,
+    /// The day from which is looked back: what came after it was not known yet.
+    pub today: u32,
 }
 
 impl RecordView {
-    /// A line. `outcome` knows cash on a day, and whether that day had not come yet.
-    pub(super) fn of(line: &Line, outcome: &dyn Fn(u32) -> (Option<f64>, bool)) -> RecordView {
-        let foreseen = |forecast: Forecast| {
-            let due = line.day.saturating_add(forecast.horizon_days);
-            let (outcome, later) = outcome(due);
-            Foreseen { forecast, due, outcome, later }
+    /// A line as it is seen on a day. `outcome` knows cash on a day, where that is recorded.
+    pub(super) fn of(line: &Line, today: u32, outcome: &dyn Fn(u32) -> Option<f64>) -> RecordView {
+        let scored = |forecast: Forecast| {
+            let open = ScoredForecast { forecast, day: line.day, outcome: None };
+            ScoredForecast { outcome: outcome(open.due()), ..open }
         };
         let forecasts = match &line.record {
-            Record::Advance(filed) => filed.forecasts.iter().map(|one| foreseen(one.said())).collect(),
+            Record::Advance(filed) => filed.forecasts.iter().map(|one| scored(one.said())).collect(),
             _ => Vec::new(),
         };
         let Line { seq, day, at, record, .. } = line.clone();
-        RecordView { seq, day, at, record, forecasts }
+        RecordView { seq, day, at, record, forecasts, today }
+    }
+
+    /// Whether nobody knew yet what came of a forecast.
+    pub fn is_later(&self, forecast: &ScoredForecast) -> bool {
+        forecast.due() > self.today
     }
 }
 
@@ -59,7 +46,7 @@ impl RecordView {
 mod tests {
     use super::super::trajectory::record::{Advance, FiledForecast};
     use super::*;
-    use crate::session::Via;
+    use crate::session::{Verdict, Via};
 
     #[test]
     fn a_forecast_says_what_came_and_what_is_still_to_come() {
@@ -77,9 +64,9 @@ mod tests {
             calculations: Vec::new(),
         };
         let line = Line::alone(5, 14, "", Record::Advance(advance));
-        let view = RecordView::of(&line, &|due| if due == 21 { (Some(90.0), false) } else { (None, true) });
+        let view = RecordView::of(&line, 21, &|due| (due == 21).then_some(90.0));
         let [first, second] = view.forecasts[..] else { panic!("{view:?}") };
-        assert_eq!((first.due, first.is_inside(), first.later), (21, Some(true), false));
-        assert_eq!((second.due, second.is_inside(), second.later), (42, None, true));
+        assert_eq!((first.due(), first.verdict(), view.is_later(&first)), (21, Some(Verdict::Inside), false));
+        assert_eq!((second.due(), second.verdict(), view.is_later(&second)), (42, None, true));
     }
 }

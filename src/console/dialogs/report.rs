@@ -16,7 +16,8 @@ use crate::console::theme::Role;
 use crate::notation::{dollars, grouped, percent, signed_dollars};
 use crate::report::WeekReport;
 use crate::report::needs::Need;
-use crate::report::week::{Due, Move};
+use crate::report::week::Move;
+use crate::session::{ScoredForecast, Verdict};
 
 /// Widest that reads well.
 const WIDEST: u16 = 116;
@@ -142,20 +143,26 @@ fn with_heading<'a>(canvas: &Canvas<'_>, heading: &'static str, lines: Part<'a>)
     std::iter::once(Line::from(canvas.span(heading, Role::Header))).chain(lines).collect()
 }
 
-fn forecast_line<'a>(canvas: &Canvas<'_>, due: &Due) -> Line<'a> {
-    let weeks = due.horizon_days / 7;
+fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast) -> Line<'a> {
+    let weeks = due.forecast.horizon_days / 7;
     let ago = if weeks == 1 { "a week ago".to_owned() } else { format!("{weeks} weeks ago") };
     let said = format!(
         "{ago} you said {}, {} to {}: ",
-        short_dollars(due.point),
-        short_dollars(due.lower),
-        short_dollars(due.upper)
+        short_dollars(due.forecast.point),
+        short_dollars(due.forecast.lower),
+        short_dollars(due.forecast.upper)
     );
-    let role = if due.is_inside() { Role::Good } else { Role::Warning };
+    // With a sign that needs no colour.
+    let (verdict, role) = match due.verdict() {
+        Some(Verdict::Inside) => ("✓ inside", Role::Good),
+        Some(Verdict::Above) => ("▲ above", Role::Warning),
+        Some(Verdict::Below) => ("▼ below", Role::Warning),
+        None => ("open", Role::Dim),
+    };
     Line::from(vec![
         canvas.span(said, Role::Dim),
-        canvas.span(due.verdict(), role),
-        canvas.span(format!(", off by {}", percent(due.miss(), 1)), Role::Dim),
+        canvas.span(verdict, role),
+        canvas.span(format!(", off by {}", percent(due.error().unwrap_or_default().abs(), 1)), Role::Dim),
     ])
 }
 

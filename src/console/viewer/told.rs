@@ -5,7 +5,7 @@ use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped};
 use crate::session::record::{Advance, Branch, Call, Closing, Outcome, Query};
-use crate::session::{Chapter, Foreseen, Place, Record, RecordView, Reversal};
+use crate::session::{Chapter, Place, Record, RecordView, Reversal, ScoredForecast};
 
 /// Longest JSON that is written in one line, in bytes.
 const ONE_LINE: usize = 90;
@@ -36,7 +36,7 @@ pub fn brief(entry: &RecordView) -> Vec<(String, Role)> {
             let mut lines = vec![(format!("“{}”", filed.rationale.trim()), Role::Strong)];
             let how = if is_naive(filed) { "forecasts, filled naively:" } else { "forecasts:" };
             lines.push((how.to_owned(), Role::Header));
-            lines.extend(entry.forecasts.iter().map(foreseen_in_brief));
+            lines.extend(entry.forecasts.iter().map(|one| forecast_in_brief(one, entry.is_later(one))));
             lines
         }
         Record::Week(closing) | Record::Step(closing) => {
@@ -78,22 +78,26 @@ fn is_naive(filed: &Advance) -> bool {
     filed.forecasts.iter().any(|forecast| forecast.filled_naively)
 }
 
-fn foreseen_in_brief(foreseen: &Foreseen) -> (String, Role) {
-    let Foreseen { forecast, outcome, later, .. } = foreseen;
+fn forecast_in_brief(scored: &ScoredForecast, later: bool) -> (String, Role) {
+    let forecast = &scored.forecast;
     let said = format!("{:>2} wk {}", forecast.horizon_days / 7, short_dollars(forecast.point));
-    match (outcome, foreseen.is_inside()) {
-        (Some(cash), Some(inside)) => {
-            let verdict = if inside { "inside" } else { "OUTSIDE" };
-            let came = if *later { "later" } else { "came" };
-            let role = match (*later, inside) {
-                (true, _) => Role::Dim,
-                (false, true) => Role::Good,
-                (false, false) => Role::Bad,
-            };
-            (format!("{said}, {came} {} {verdict}", short_dollars(*cash)), role)
-        }
-        _ => (format!("{said}, day {} not recorded", foreseen.due), Role::Dim),
-    }
+    let Some(cash) = scored.outcome else {
+        return (format!("{said}, day {} not recorded", scored.due()), Role::Dim);
+    };
+    let role = match (later, scored.is_inside()) {
+        (true, _) => Role::Dim,
+        (false, true) => Role::Good,
+        (false, false) => Role::Bad,
+    };
+    (format!("{said}, {} {} {}", came(later), short_dollars(cash), verdict(scored)), role)
+}
+
+fn came(later: bool) -> &'static str {
+    if later { "later" } else { "came" }
+}
+
+fn verdict(scored: &ScoredForecast) -> &'static str {
+    if scored.is_inside() { "inside" } else { "OUTSIDE" }
 }
 
 /// Everything that was decided, with arguments, statements and answers.
@@ -147,7 +151,8 @@ fn in_full(entry: &RecordView) -> String {
         }
         Record::Advance(filed) => {
             let naively = if is_naive(filed) { ", filled with the naive projection" } else { "" };
-            let lines: Vec<String> = entry.forecasts.iter().map(foreseen_in_full).collect();
+            let told = |one: &ScoredForecast| forecast_in_full(one, entry.is_later(one));
+            let lines: Vec<String> = entry.forecasts.iter().map(told).collect();
             let rationale = filed.rationale.trim();
             format!("next_week\n  “{rationale}”\n  forecasts of cash{naively}:\n{}", lines.join("\n"))
         }
@@ -155,20 +160,16 @@ fn in_full(entry: &RecordView) -> String {
     }
 }
 
-fn foreseen_in_full(foreseen: &Foreseen) -> String {
-    let Foreseen { forecast, due, outcome, later } = foreseen;
-    let came = match (outcome, foreseen.is_inside()) {
-        (Some(cash), Some(inside)) => format!(
-            "{} {} {}",
-            if *later { "later" } else { "came" },
-            dollars(*cash),
-            if inside { "inside" } else { "OUTSIDE" }
-        ),
-        _ => "not recorded".to_owned(),
+fn forecast_in_full(scored: &ScoredForecast, later: bool) -> String {
+    let forecast = &scored.forecast;
+    let outcome = match scored.outcome {
+        Some(cash) => format!("{} {} {}", came(later), dollars(cash), verdict(scored)),
+        None => "not recorded".to_owned(),
     };
     format!(
-        "    {:>2} wk, day {due:>3}: {:>14} {:>14} {:>14}   {came}",
+        "    {:>2} wk, day {:>3}: {:>14} {:>14} {:>14}   {outcome}",
         forecast.horizon_days / 7,
+        scored.due(),
         dollars(forecast.lower),
         dollars(forecast.point),
         dollars(forecast.upper)
@@ -194,13 +195,13 @@ mod tests {
 
     fn said(record: Record) -> Vec<String> {
         let at = "2026-11-21T10:42:07Z".to_owned();
-        let entry = RecordView { seq: 1, day: 14, at, record, forecasts: Vec::new() };
+        let entry = RecordView { seq: 1, day: 14, at, record, forecasts: Vec::new(), today: 14 };
         brief(&entry).into_iter().map(|(text, _)| text).collect()
     }
 
-    fn foreseen(outcome: Option<f64>, later: bool) -> Foreseen {
+    fn scored(outcome: Option<f64>) -> ScoredForecast {
         let forecast = Forecast { horizon_days: 28, point: 1.5e6, lower: 1.4e6, upper: 1.6e6 };
-        Foreseen { forecast, due: 42, outcome, later }
+        ScoredForecast { forecast, day: 14, outcome }
     }
 
     #[test]
@@ -240,9 +241,9 @@ mod tests {
             (Some(1.55e6), true, "later $1.55M inside"),
             (None, true, "day 42 not recorded"),
         ] {
-            let (text, _) = foreseen_in_brief(&foreseen(outcome, later));
+            let (text, _) = forecast_in_brief(&scored(outcome), later);
             assert!(text.ends_with(words), "{text}");
-            let full = foreseen_in_full(&foreseen(outcome, later));
+            let full = forecast_in_full(&scored(outcome), later);
             assert!(full.contains("day  42"), "{full}");
         }
     }

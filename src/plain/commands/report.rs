@@ -7,7 +7,7 @@ use super::super::grammar::{Argument, Problem};
 use super::{Desk, problem};
 use crate::notation::{percent, signed_dollars};
 use crate::report::{Story, WeekReport, as_markdown};
-use crate::session::Refusal;
+use crate::session::{Refusal, Verdict};
 
 /// Moves that are told.
 const TOLD: usize = 6;
@@ -74,8 +74,9 @@ fn in_words(report: &WeekReport) -> String {
         lines.push(line);
     }
     for due in &report.due {
-        let (weeks, miss) = (due.horizon_days / 7, percent(due.miss(), 1));
-        let verdict = due.verdict().trim_start_matches(['✓', '▲', '▼', ' ']);
+        let (weeks, miss) =
+            (due.forecast.horizon_days / 7, percent(due.error().unwrap_or_default().abs(), 1));
+        let verdict = due.verdict().map_or("open", Verdict::word);
         lines.push(format!("forecast from {weeks} weeks ago: {verdict} the interval, off by {miss}"));
     }
     lines.push(format!(
@@ -109,12 +110,12 @@ fn as_data(report: &WeekReport) -> Value {
             "split": parts(&moved.split),
         })
     };
-    let due = |due: &crate::report::week::Due| {
+    let due = |due: &crate::session::ScoredForecast| {
         json!({
-            "horizon_days": due.horizon_days,
-            "point": due.point,
-            "lower": due.lower,
-            "upper": due.upper,
+            "horizon_days": due.forecast.horizon_days,
+            "point": due.forecast.point,
+            "lower": due.forecast.lower,
+            "upper": due.forecast.upper,
             "outcome": due.outcome,
             "inside": due.is_inside(),
         })

@@ -19,7 +19,7 @@ use super::books::{Books, ChannelRow};
 use super::chapters::change_in_words;
 use super::measures::{Measures, Wording};
 use crate::session::record::FiledForecast;
-use crate::session::{Consent, Ended, Line, Mode, Record, Session};
+use crate::session::{Consent, Ended, Line, Mode, Record, ScoredForecast, Session};
 use timeline::{Span, Timeline};
 
 /// How a run was played.
@@ -143,28 +143,13 @@ pub struct WeekLog {
     /// What was decided, in words.
     pub decisions: Vec<String>,
     /// Forecasts.
-    pub forecasts: Vec<WeekForecast>,
+    pub forecasts: Vec<ScoredForecast>,
     /// They were filled by the naive projection.
     pub filled_naively: Option<bool>,
     /// Figures of the week as its line has them.
     pub figures: Map<String, Value>,
     /// Hash of the state after it.
     pub state_hash: String,
-}
-
-/// A forecast and what came of it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct WeekForecast {
-    /// Days ahead.
-    pub horizon_days: u32,
-    /// What was said, dollars.
-    pub point: f64,
-    /// Lower end, dollars.
-    pub lower: f64,
-    /// Upper end, dollars.
-    pub upper: f64,
-    /// What came, dollars; none before its day.
-    pub outcome: Option<f64>,
 }
 
 impl Logbook {
@@ -225,13 +210,7 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
         decided.iter().flat_map(|own| own.changes.iter().map(change_in_words)).collect();
     decisions.extend(decided.iter().flat_map(|own| own.purchases.iter().cloned()));
     let cash = session.cash_by_day();
-    let forecast = |forecast: &FiledForecast| WeekForecast {
-        horizon_days: forecast.horizon_days,
-        point: forecast.point,
-        lower: forecast.lower,
-        upper: forecast.upper,
-        outcome: cash.get((span.decision_day + forecast.horizon_days) as usize).copied(),
-    };
+    let scored = |filed: &FiledForecast| ScoredForecast::of(span.decision_day, &filed.said(), cash);
     WeekLog {
         week: crate::session::week_of(span.day),
         decision_day: span.decision_day,
@@ -243,7 +222,7 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
         effort: span.effort.clone(),
         wording: span.rationale.as_deref().map(Wording::of).unwrap_or_default(),
         decisions,
-        forecasts: span.forecasts.iter().map(forecast).collect(),
+        forecasts: span.forecasts.iter().map(scored).collect(),
         filled_naively: (!span.forecasts.is_empty())
             .then(|| span.forecasts.iter().any(|forecast| forecast.filled_naively)),
         figures: span.figures.clone(),

@@ -4,7 +4,7 @@ use crate::report::page::{Band, Block, Chart, Curve, Part, Plot};
 use crate::report::story::Story;
 use crate::report::turn::{COSTS, INCOME};
 use crate::report::words::{count, money, whole};
-use crate::session::Filed;
+use crate::session::ScoredForecast;
 
 /// Groups that a chart can tell apart.
 const MOST_GROUPS: usize = 6;
@@ -53,8 +53,8 @@ fn open_fan(story: &Story) -> Option<(Band, Curve)> {
         last.filter(|filed| filed.due() > story.seen.day)
     };
     let (mut band, mut expected) = (vec![(day, cash, cash)], vec![(day, cash)]);
-    band.extend(open().map(|filed| (f64::from(filed.due()), filed.lower, filed.upper)));
-    expected.extend(open().map(|filed| (f64::from(filed.due()), filed.point)));
+    band.extend(open().map(|filed| (f64::from(filed.due()), filed.forecast.lower, filed.forecast.upper)));
+    expected.extend(open().map(|filed| (f64::from(filed.due()), filed.forecast.point)));
     (band.len() > 1).then(|| {
         let band = Band { name: "95 % interval of the last forecasts".to_owned(), points: band };
         (band, Curve { name: "expected".to_owned(), points: expected })
@@ -184,19 +184,23 @@ pub fn forecasts(story: &Story) -> Vec<Block> {
 }
 
 fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
-    let due: Vec<&Filed> =
-        story.filed.iter().filter(|filed| filed.horizon_days == horizon && filed.outcome.is_some()).collect();
+    let due: Vec<&ScoredForecast> = story
+        .filed
+        .iter()
+        .filter(|filed| filed.forecast.horizon_days == horizon && filed.outcome.is_some())
+        .collect();
     if due.len() < 2 {
         return None;
     }
-    let through = |value: &dyn Fn(&Filed) -> f64| -> Vec<(f64, f64)> {
+    let through = |value: &dyn Fn(&ScoredForecast) -> f64| -> Vec<(f64, f64)> {
         due.iter().map(|filed| (f64::from(filed.due()), value(filed))).collect()
     };
-    let came = through(&|filed| filed.outcome.unwrap_or(filed.point));
-    let band = due.iter().map(|filed| (f64::from(filed.due()), filed.lower, filed.upper)).collect();
-    let inside = due.iter().filter(|filed| {
-        filed.outcome.is_some_and(|outcome| filed.lower <= outcome && outcome <= filed.upper)
-    });
+    let came = through(&|filed| filed.outcome.unwrap_or(filed.forecast.point));
+    let band = due
+        .iter()
+        .map(|filed| (f64::from(filed.due()), filed.forecast.lower, filed.forecast.upper))
+        .collect();
+    let inside = due.iter().filter(|filed| filed.is_inside());
     let ahead = count(horizon / 7, "week");
     let summary = format!(
         "{} forecasts made {ahead} ahead came due; {} of their intervals held the outcome.",
@@ -216,7 +220,7 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
         plot: Plot::Lines {
             curves: vec![
                 Curve { name: "came".to_owned(), points: came },
-                Curve { name: "forecast".to_owned(), points: through(&|filed| filed.point) },
+                Curve { name: "forecast".to_owned(), points: through(&|filed| filed.forecast.point) },
             ],
             band: Some(Band { name: "95 % interval".to_owned(), points: band }),
         },

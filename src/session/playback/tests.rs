@@ -148,16 +148,18 @@ fn an_outcome_is_known_when_its_day_has_come_and_marked_before() {
     let foreseen = |playback: &Playback| {
         let chapter = playback.place().chapter;
         let filed = |entry: &RecordView| matches!(entry.record, Record::Advance(_));
-        chapter.entries.into_iter().find(filed).expect("a week was filed").forecasts
+        chapter.entries.into_iter().find(filed).expect("a week was filed")
     };
-    let early = foreseen(&playback);
-    assert!(early[0].later && early[1].later && early[2].later);
+    let entry = foreseen(&playback);
+    let early = &entry.forecasts;
+    assert!(early.iter().all(|forecast| entry.is_later(forecast)));
     assert!(early[0].outcome.is_some() && early[1].outcome.is_some(), "days 7 and 28 were recorded");
     assert_eq!(early[2].outcome, None, "day 84 was not");
     go(&mut playback, Goal::Last);
-    let late = foreseen(&playback);
-    assert_eq!((late[0].due, late[0].later), (35, false), "the last chapter stays at the end");
-    assert_eq!(late[0].outcome, playback.session().cash_by_day().last().copied());
+    let entry = foreseen(&playback);
+    let late = entry.forecasts[0];
+    assert_eq!((late.due(), entry.is_later(&late)), (35, false), "the last chapter stays at the end");
+    assert_eq!(late.outcome, playback.session().cash_by_day().last().copied());
 }
 
 #[test]

@@ -10,12 +10,12 @@ use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Band, Cell, Column, Line, Plot, Side, Table, Unit};
 use crate::notation::percent;
-use crate::session::{Filed, filed_forecasts};
+use crate::session::{ScoredForecast, Verdict, filed_forecasts};
 
 /// Forecasts of one horizon.
 #[derive(Default)]
 pub struct Outlook {
-    all: Vec<Filed>,
+    all: Vec<ScoredForecast>,
     horizons: Vec<u32>,
     /// Place of the horizon that is shown.
     horizon: usize,
@@ -35,9 +35,9 @@ impl Outlook {
     }
 
     /// Forecasts of the horizon that is shown, in the order of filing.
-    fn shown(&self) -> impl DoubleEndedIterator<Item = &Filed> {
+    fn shown(&self) -> impl DoubleEndedIterator<Item = &ScoredForecast> {
         let horizon = self.horizon();
-        self.all.iter().filter(move |filed| filed.horizon_days == horizon)
+        self.all.iter().filter(move |filed| filed.forecast.horizon_days == horizon)
     }
 
     fn refresh(&mut self) {
@@ -77,7 +77,7 @@ impl Outlook {
 
     /// Forecasts in the order of the table: what is known comes first, the newest at the top; what is still open
     /// follows.
-    fn listed(&self) -> impl Iterator<Item = &Filed> {
+    fn listed(&self) -> impl Iterator<Item = &ScoredForecast> {
         let known = self.shown().filter(|one| one.outcome.is_some()).rev();
         known.chain(self.shown().filter(|one| one.outcome.is_none()))
     }
@@ -88,7 +88,7 @@ impl Outlook {
         let sql = format!(
             "SELECT p.*, (SELECT sum(amount) FROM ledger WHERE day <= p.submit_day + p.horizon_days) AS cash\n\
              FROM predictions p\nWHERE submit_day = {} AND horizon_days = {}",
-            filed.day, filed.horizon_days
+            filed.day, filed.forecast.horizon_days
         );
         let title = format!("forecast of day {} for day {}", filed.day, filed.due());
         Some(Figure { title, term: "forecast", sql: Some(sql) })
@@ -133,10 +133,12 @@ impl Outlook {
         // Open forecasts of far horizons would flatten what has happened.
         let until = f64::from(company.seen.day) * 1.15 + 14.0;
         let near = || self.shown().filter(|filed| f64::from(filed.due()) <= until);
-        let day = |filed: &Filed| f64::from(filed.due());
-        let band =
-            Band { ends: near().map(|filed| (day(filed), filed.lower, filed.upper)).collect(), name: "95 %" };
-        let points = near().map(|filed| (day(filed), filed.point)).collect();
+        let day = |filed: &ScoredForecast| f64::from(filed.due());
+        let band = Band {
+            ends: near().map(|filed| (day(filed), filed.forecast.lower, filed.forecast.upper)).collect(),
+            name: "95 %",
+        };
+        let points = near().map(|filed| (day(filed), filed.forecast.point)).collect();
         let cash: Vec<(f64, f64)> =
             company.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();
         let lines = [
@@ -154,27 +156,26 @@ impl Outlook {
     }
 }
 
-fn row_of(filed: &Filed) -> Vec<Cell> {
+fn row_of(filed: &ScoredForecast) -> Vec<Cell> {
     let amount = |value: f64| Cell::number(value, short_dollars(value));
-    let (outcome, miss) = match filed.outcome {
-        Some(outcome) => {
-            let miss = (filed.point - outcome) / outcome.abs().max(1.0);
+    let (outcome, miss) = match filed.outcome.zip(filed.error()) {
+        Some((outcome, miss)) => {
             let shown = format!("{}{}", if miss >= 0.0 { "+" } else { "" }, percent(miss, 1));
             (amount(outcome).role(Role::Strong), Cell::number(miss, shown))
         }
         None => (Cell::words("–").role(Role::Dim), Cell::words("–").role(Role::Dim)),
     };
     let verdict = match filed.verdict() {
-        Some(0) => Cell::words("inside").role(Role::Good),
-        Some(1) => Cell::words("▲ above").role(Role::Bad),
-        Some(_) => Cell::words("▼ below").role(Role::Bad),
+        Some(Verdict::Inside) => Cell::words("inside").role(Role::Good),
+        Some(Verdict::Above) => Cell::words("▲ above").role(Role::Bad),
+        Some(Verdict::Below) => Cell::words("▼ below").role(Role::Bad),
         None => Cell::words("open").role(Role::Dim),
     };
     vec![
         Cell::number(f64::from(filed.due()), filed.due().to_string()),
-        amount(filed.lower).role(Role::Dim),
-        amount(filed.point),
-        amount(filed.upper).role(Role::Dim),
+        amount(filed.forecast.lower).role(Role::Dim),
+        amount(filed.forecast.point),
+        amount(filed.forecast.upper).role(Role::Dim),
         outcome,
         miss,
         verdict,

@@ -1,7 +1,7 @@
 use super::model::*;
 use super::*;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
-use crate::session::{Cell as Value, Filed, WEEK_OF_ENTRY, filed_forecasts};
+use crate::session::{Cell as Value, WEEK_OF_ENTRY, filed_forecasts};
 
 #[test]
 fn the_books_agree_with_the_ledger() {
@@ -147,12 +147,6 @@ fn a_pane_can_have_the_whole_screen() {
 
 #[test]
 fn forecasts_are_compared_once_their_day_has_come() {
-    let forecast = Filed { day: 7, horizon_days: 7, point: 1.0, lower: 0.0, upper: 2.0, outcome: None };
-    for (outcome, verdict) in
-        [(None, None), (Some(1.0), Some(0)), (Some(-1.0), Some(-1)), (Some(3.0), Some(1))]
-    {
-        assert_eq!(Filed { outcome, ..forecast }.verdict(), verdict);
-    }
     let company = Company::of(&played(2));
     let all = filed_forecasts(&company.journal, &company.cash_by_day);
     assert_eq!((all.len(), all.iter().filter(|one| one.outcome.is_some()).count()), (8, 2));

@@ -8,7 +8,7 @@ use crate::console::company::Company;
 use crate::console::text::{number, short_dollars};
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, signed_dollars};
-use crate::session::{Filed, JournalEntry, Reversal, WeekFigures, undone_calls};
+use crate::session::{JournalEntry, Reversal, ScoredForecast, WeekFigures, undone_calls};
 use crate::tools::{Forecast, Kind, Spec, find};
 
 /// A line.
@@ -163,7 +163,7 @@ impl Group<'_> {
 impl Filing<'_> {
     fn in_a_line(&self, company: &Company) -> String {
         let one = |forecast: &Forecast| {
-            let filed = Filed::of(self.day, forecast, &company.cash_by_day);
+            let filed = ScoredForecast::of(self.day, forecast, &company.cash_by_day);
             let came = match filed.outcome {
                 Some(_) if filed.is_inside() => " inside",
                 Some(_) => " OUTSIDE",
@@ -179,7 +179,7 @@ impl Filing<'_> {
     fn in_full(&self, company: &Company) -> String {
         let head = format!("{:>8} {:>14} {:>14} {:>14}   {}", "", "low", "point", "high", "outcome");
         let one = |forecast: &Forecast| {
-            let filed = Filed::of(self.day, forecast, &company.cash_by_day);
+            let filed = ScoredForecast::of(self.day, forecast, &company.cash_by_day);
             let outcome = match filed.outcome {
                 Some(cash) => {
                     format!("{} {}", dollars(cash), if filed.is_inside() { "inside" } else { "OUTSIDE" })

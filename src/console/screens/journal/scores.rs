@@ -8,12 +8,12 @@ use crate::console::screens::Figure;
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::percent;
-use crate::session::{Filed, ForecastScore, filed_forecasts};
+use crate::session::{ForecastScore, ScoredForecast, filed_forecasts};
 
 /// Forecasts of a horizon whose day has come, the newest first.
-pub fn outcomes(company: &Company, horizon: u32) -> Vec<Filed> {
+pub fn outcomes(company: &Company, horizon: u32) -> Vec<ScoredForecast> {
     let mut all = filed_forecasts(&company.journal, &company.cash_by_day);
-    all.retain(|filed| filed.horizon_days == horizon && filed.outcome.is_some());
+    all.retain(|filed| filed.forecast.horizon_days == horizon && filed.outcome.is_some());
     all.reverse();
     all
 }
@@ -83,7 +83,7 @@ pub fn draw(
     }
 }
 
-fn line_of_outcome(filed: &Filed) -> String {
+fn line_of_outcome(filed: &ScoredForecast) -> String {
     let error = filed.error().map_or("–".to_owned(), |error| {
         let sign = if error < 0.0 { '-' } else { '+' };
         format!("{sign}{}", limited(error.abs()))
@@ -91,7 +91,7 @@ fn line_of_outcome(filed: &Filed) -> String {
     format!(
         "day {:<5}{:>9}{:>9}{error:>9}  {}",
         filed.due(),
-        short_dollars(filed.point),
+        short_dollars(filed.forecast.point),
         filed.outcome.map_or("–".to_owned(), short_dollars),
         if filed.is_inside() { "inside" } else { "OUTSIDE" }
     )
@@ -133,7 +133,7 @@ mod tests {
             let single = outcomes(&company, score.horizon_days);
             let inside = single.iter().filter(|outcome| outcome.is_inside()).count();
             assert_eq!((single.len() as u32, inside as u32), (score.scored, score.covered));
-            let errors: f64 = single.iter().filter_map(Filed::error).map(f64::abs).sum();
+            let errors: f64 = single.iter().filter_map(ScoredForecast::error).map(f64::abs).sum();
             assert!((errors / single.len().max(1) as f64 - score.mean_error).abs() < 1e-9);
             let sql = figure(&company, at).and_then(|figure| figure.sql).expect("rows");
             assert_eq!(session.query(&sql).expect("rows").rows.len(), single.len());

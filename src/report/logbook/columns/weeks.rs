@@ -1,27 +1,28 @@
 //! The columns of `weeks.csv`.
 
 use super::{WeekColumn, maybe, pairs, rounded};
-use crate::report::logbook::{Logbook, WeekForecast, WeekLog};
+use crate::report::logbook::{Logbook, WeekLog};
+use crate::session::ScoredForecast;
 
 /// Something of the forecast this many days ahead; empty if there is none.
-fn said(week: &WeekLog, horizon_days: u32, part: impl Fn(&WeekForecast) -> Option<f64>) -> String {
-    maybe(week.forecasts.iter().find(|forecast| forecast.horizon_days == horizon_days).and_then(part))
+fn said(week: &WeekLog, horizon_days: u32, part: impl Fn(&ScoredForecast) -> Option<f64>) -> String {
+    maybe(week.forecasts.iter().find(|scored| scored.forecast.horizon_days == horizon_days).and_then(part))
 }
 
 fn point<const DAYS: u32>(_: &Logbook, week: &WeekLog) -> String {
-    said(week, DAYS, |forecast| Some(forecast.point))
+    said(week, DAYS, |scored| Some(scored.forecast.point))
 }
 
 fn lower<const DAYS: u32>(_: &Logbook, week: &WeekLog) -> String {
-    said(week, DAYS, |forecast| Some(forecast.lower))
+    said(week, DAYS, |scored| Some(scored.forecast.lower))
 }
 
 fn upper<const DAYS: u32>(_: &Logbook, week: &WeekLog) -> String {
-    said(week, DAYS, |forecast| Some(forecast.upper))
+    said(week, DAYS, |scored| Some(scored.forecast.upper))
 }
 
 fn outcome<const DAYS: u32>(_: &Logbook, week: &WeekLog) -> String {
-    said(week, DAYS, |forecast| forecast.outcome)
+    said(week, DAYS, |scored| scored.outcome)
 }
 
 const LOWER: &str = "lower end of its interval";

@@ -70,7 +70,7 @@ fn a_run_is_imported_into_the_folder_of_its_participant() {
     let (archive, _) = export(&home, &run, "run.tar");
     let own = lab.runs().join("participants/P01");
     let import = |options: &[&str]| lab.run(&[options, &["runs", "import", &text(&archive)]].concat());
-    import(&["--as", "P02"]).fails(1, &["one of P01, not of P02", "--as P01", "Nothing was imported"]);
+    import(&["--as", "P02"]).fails(1, &["belongs to P01, not to P02", "--as P01", "Nothing was imported"]);
     assert!(!lab.runs().join("participants/P02").join(id(&run)).exists());
     fs::create_dir_all(&own).expect("a folder");
     let imported = import(&[]);

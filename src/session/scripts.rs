@@ -13,7 +13,7 @@ use super::Session;
 use crate::database::{self, text};
 use crate::tools::{ColumnDocument, Kept, Notebook, Refusal, Surroundings, TableDocument, Task};
 use crate::voice;
-use crate::world::market::economy::Reading;
+use crate::world::events::Reading;
 
 /// Characters of output that a script may give.
 const MOST_OUTPUT: usize = 5000;

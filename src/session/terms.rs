@@ -141,7 +141,7 @@ impl Session {
 
     /// Studies that run, in the order they were ordered.
     pub fn running_studies(&self) -> Vec<RunningStudy> {
-        let of = |study: &crate::world::market::studies::Study| RunningStudy {
+        let of = |study: &crate::world::events::Study| RunningStudy {
             group: study.group,
             target: study.target,
             due_day: study.due_day,

@@ -111,7 +111,7 @@ fn times(count: u64) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::market::economy::{Phase, Reading, Trend};
+    use crate::world::events::{Phase, Reading, Trend};
 
     #[test]
     fn studies_and_finds_name_group_level_and_accuracy() {
@@ -119,7 +119,7 @@ mod tests {
         let found = notice(&Notice::GroupFound { group, attempt: 4 }, None);
         assert_eq!(found, "Market research found group D_S06 (attempt 4). It is known at level 1.");
         for (before, words) in [(1, "raised"), (2, "refreshed")] {
-            let study = crate::world::market::studies::Study { group, target: 2, before, due_day: 31 };
+            let study = crate::world::events::Study { group, target: 2, before, due_day: 31 };
             let text = notice(&Notice::StudyComplete { study, noise: 0.4 }, None);
             assert_eq!(text, format!("Study of group D_S06 complete: level 2, \u{b1}40% (day 31, {words})"));
         }

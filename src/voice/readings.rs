@@ -1,6 +1,6 @@
 //! Published readings of the economy in three or four sentences (chapter 30 §8.2).
 
-use crate::world::market::economy::{Reading, Trend};
+use crate::world::events::{Reading, Trend};
 
 /// Description of a reading.
 pub fn reading(reading: &Reading) -> String {
@@ -34,7 +34,7 @@ pub fn reading(reading: &Reading) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::market::economy::Phase;
+    use crate::world::events::Phase;
 
     #[test]
     fn every_band_says_value_movement_position_and_mood() {

@@ -6,72 +6,21 @@ use super::customers::columns::sums;
 use super::enterprise::Negotiation;
 use super::events::{Category, DayFigures, Facts, LedgerEntry, LedgerNote};
 use super::finance::{Finance, pay_running_costs};
-use super::identifiers::{ByGroup, ByPlan, Group, Plan};
-use super::market::drift::Expectation;
+use super::identifiers::{ByGroup, ByPlan};
 use super::market::economy::Dimension;
 use super::market::leads::LeadFactors;
 use super::market::social::crowd;
 use super::market::social::opinions::Scene;
 use super::market::social::press;
 use super::market::{arrivals, competitors, drift, economy, reputation, studies, surges, yields};
+use super::morning::Morning;
 use super::params::Params;
 use super::product::ads::AdLoad;
-use super::product::quality::{TenureTable, delivered_quality, service_penalty};
+use super::product::quality::{TenureTable, service_penalty};
 use super::product::{ads, development, research, service, usage};
 use super::random::Streams;
 use super::retention::{billing, issues, refresh_block, renewal, satisfaction};
-use super::settings::CoreSettings;
 use super::state::World;
-
-/// What is frozen in the morning for the whole day: today's improvements, finished research, drift and rivals
-/// reach individuals tomorrow.
-#[derive(Debug, Clone)]
-pub struct Morning {
-    /// Day.
-    pub day: u32,
-    /// Settings in force.
-    pub core: CoreSettings,
-    /// Factor of the weekday.
-    pub weekday: f64,
-    /// Factor of the day of the month.
-    pub month_day: f64,
-    /// Quotas in units.
-    pub quotas: ByPlan<f64>,
-    /// Quality multiplier of each plan's model.
-    pub multipliers: ByPlan<f64>,
-    /// Product quality by group before the multiplier.
-    pub product: ByGroup<f64>,
-    /// Product quality before the multiplier and without what was done for single groups.
-    pub shared_quality: f64,
-    /// What the market adds to curves.
-    pub expectations: ByGroup<Expectation>,
-    /// Active subscriptions.
-    pub subscribers: ByGroup<u32>,
-}
-
-impl Morning {
-    /// The morning of the world's present day.
-    pub fn of(world: &World, params: &Params) -> Morning {
-        let core = world.settings.core;
-        Morning {
-            day: world.day,
-            core,
-            weekday: params.calendar.weekly[(world.day % 7) as usize],
-            month_day: params.calendar.monthly[(world.day % 30) as usize],
-            quotas: ByPlan::from_fn(|plan| core.quotas[plan].units()),
-            multipliers: ByPlan::from_fn(|plan| params.model(core.tiers[plan]).quality_multiplier),
-            product: ByGroup::from_fn(|group| world.product.quality(group, params)),
-            shared_quality: params.quality.base_product_quality + world.product.shared_bonus,
-            expectations: ByGroup::from_fn(|group| world.market.drift.expectation(group)),
-            subscribers: world.customers.active(),
-        }
-    }
-
-    /// Quality delivered to a group on a plan, before anything today's service does to it.
-    pub fn delivered(&self, group: Group, plan: Plan) -> f64 {
-        delivered_quality(self.product[group], 0.0, 0.0, self.multipliers[plan])
-    }
-}
 
 /// What the player never sees of a day; read by the x-ray and by the comparison with reference figures.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -95,7 +44,7 @@ pub fn step_day(
 
     // The morning: what stays as it is for the whole day.
     surges::draw_week(day, total_days, &mut world.market.surges, params, streams);
-    let morning = Morning::of(world, params);
+    let morning = morning_of(world, params);
     let World { settings, finance, product, customers, issue_desk, market, enterprise, .. } = world;
     if drift::is_drift_day(day - 1, &params.drift) {
         refresh_requirements(customers, &morning, params);
@@ -230,6 +179,23 @@ pub fn step_day(
     (figures, DayTrace { leads: factors })
 }
 
+/// The morning of the world's present day.
+fn morning_of(world: &World, params: &Params) -> Morning {
+    let core = world.settings.core;
+    Morning {
+        day: world.day,
+        core,
+        weekday: params.calendar.weekly[(world.day % 7) as usize],
+        month_day: params.calendar.monthly[(world.day % 30) as usize],
+        quotas: ByPlan::from_fn(|plan| core.quotas[plan].units()),
+        multipliers: ByPlan::from_fn(|plan| params.model(core.tiers[plan]).quality_multiplier),
+        product: ByGroup::from_fn(|group| world.product.quality(group, params)),
+        shared_quality: params.quality.base_product_quality + world.product.shared_bonus,
+        expectations: ByGroup::from_fn(|group| world.market.drift.expectation(group)),
+        subscribers: world.customers.active(),
+    }
+}
+
 /// Recomputes what everybody requires, after the group's budget drift or their own curve moved.
 fn refresh_requirements(customers: &mut Customers, morning: &Morning, params: &Params) {
     customers.sweep(|group, _, block| refresh_block(group, block, morning, params));
@@ -279,25 +245,9 @@ mod wiring_tests;
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::world::identifiers::Group;
+    use crate::world::morning::tests::morning;
     use crate::world::quota::Quota;
-    use crate::world::settings::Settings;
-
-    /// A morning with plain values; tests change what matters to them.
-    pub(crate) fn morning(day: u32) -> Morning {
-        let params = Params::shipped();
-        Morning {
-            day,
-            core: Settings::opening(&params).core,
-            weekday: params.calendar.weekly[(day % 7) as usize],
-            month_day: params.calendar.monthly[(day % 30) as usize],
-            quotas: ByPlan([0.0; 3]),
-            multipliers: ByPlan([0.6; 3]),
-            product: ByGroup::from_fn(|_| 0.2),
-            shared_quality: 0.2,
-            expectations: ByGroup::default(),
-            subscribers: ByGroup::default(),
-        }
-    }
 
     fn run(cash: f64, days: u32, prepare: impl Fn(&mut World)) -> Vec<DayFigures> {
         let (params, streams) = (Params::shipped(), Streams::new(42));

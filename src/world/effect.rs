@@ -4,17 +4,15 @@
 //! with its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
 use super::enterprise::letters::{Letter, Proposal};
-use super::events::{
-    Category, Facts, LedgerEntry, LedgerNote, Notice, OwnPostMade, ResearchChange, SettingsChange,
-};
+use super::events::{Attempt, Project, Study};
+use super::events::{Category, Facts, LedgerEntry, LedgerNote, Notice, OwnPostMade, ResearchChange};
 use super::identifiers::Group;
-use super::market::discovery::Attempt;
 use super::market::insights::{Insights, insights};
 use super::market::social::own::OwnPost;
-use super::market::studies::Study;
 use super::params::Params;
-use super::product::research::{self, Project};
+use super::product::research;
 use super::random::Streams;
+use super::settings::SettingsChange;
 use super::state::World;
 
 /// A decided change.

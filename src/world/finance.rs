@@ -1,9 +1,9 @@
 //! Money: what a day costs, where cash goes, and when a run is over (chapter 20 §20).
 
 use super::canonical::canonical;
-use super::day::Morning;
 use super::events::{Category, Facts, LedgerEntry, LedgerNote};
 use super::identifiers::Plan;
+use super::morning::Morning;
 use super::params::Params;
 use super::product::usage::Metered;
 use super::settings::Settings;
@@ -76,8 +76,8 @@ pub fn pay_running_costs(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::day::tests::morning;
     use crate::world::identifiers::{ByPlan, Channel, Group};
+    use crate::world::morning::tests::morning;
 
     #[test]
     fn check_19_of_chapter_20() {

@@ -12,6 +12,7 @@ pub mod events;
 pub mod finance;
 pub mod identifiers;
 pub mod market;
+pub mod morning;
 pub mod params;
 pub mod product;
 pub mod quota;

@@ -6,8 +6,7 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use super::canonical::canonical;
-use super::events::SettingsChange;
+use super::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical};
 use super::identifiers::{ByPlan, Channel, Group, Plan};
 use super::params::Params;
 use super::quota::Quota;
@@ -266,6 +265,71 @@ impl TargetedDevelopment {
     /// Sum over groups, dollars a day.
     pub fn total(&self) -> f64 {
         total(&self.targeted_spend)
+    }
+}
+
+/// A family of settings after a call of its tool.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SettingsChange {
+    /// A row of `config_history`.
+    Core(CoreSettings),
+    /// Ongoing discounts.
+    Promotion(Promotion),
+    /// Lead discounts.
+    LeadPromotion(LeadPromotion),
+    /// In-app ads.
+    AdsStrength(AdsStrength),
+    /// Advertising budgets.
+    TargetedAds(TargetedAds),
+    /// Targeted operations.
+    TargetedOperations(TargetedOperations),
+    /// Targeted development.
+    TargetedDevelopment(TargetedDevelopment),
+}
+
+impl SettingsChange {
+    /// The family as JSON, with the field names of `config_overrides.settings_json`; none for the core settings,
+    /// which have a table of their own.
+    pub fn family(&self) -> Option<serde_json::Value> {
+        let value = match self {
+            SettingsChange::Core(_) => return None,
+            SettingsChange::Promotion(value) => serde_json::to_value(value),
+            SettingsChange::LeadPromotion(value) => serde_json::to_value(value),
+            SettingsChange::AdsStrength(value) => serde_json::to_value(value),
+            SettingsChange::TargetedAds(value) => serde_json::to_value(value),
+            SettingsChange::TargetedOperations(value) => serde_json::to_value(value),
+            SettingsChange::TargetedDevelopment(value) => serde_json::to_value(value),
+        };
+        Some(value.expect("settings have text keys and finite numbers"))
+    }
+}
+
+impl Canonical for SettingsChange {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        match self {
+            SettingsChange::Core(value) => (0u8, *value).feed(hasher),
+            SettingsChange::Promotion(value) => (1u8, value.clone()).feed(hasher),
+            SettingsChange::LeadPromotion(value) => (2u8, value.clone()).feed(hasher),
+            SettingsChange::AdsStrength(value) => (3u8, value.clone()).feed(hasher),
+            SettingsChange::TargetedAds(value) => (4u8, value.clone()).feed(hasher),
+            SettingsChange::TargetedOperations(value) => (5u8, value.clone()).feed(hasher),
+            SettingsChange::TargetedDevelopment(value) => (6u8, value.clone()).feed(hasher),
+        }
+    }
+}
+
+impl Restore for SettingsChange {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some(match reader.read::<u8>()? {
+            0 => SettingsChange::Core(reader.read()?),
+            1 => SettingsChange::Promotion(reader.read()?),
+            2 => SettingsChange::LeadPromotion(reader.read()?),
+            3 => SettingsChange::AdsStrength(reader.read()?),
+            4 => SettingsChange::TargetedAds(reader.read()?),
+            5 => SettingsChange::TargetedOperations(reader.read()?),
+            6 => SettingsChange::TargetedDevelopment(reader.read()?),
+            _ => return None,
+        })
     }
 }
 

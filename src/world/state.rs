@@ -3,13 +3,14 @@
 use super::canonical::{Canonical, CanonicalHasher, canonical, hash_of};
 use super::customers::Customers;
 use super::enterprise::Enterprise;
-use super::events::{Category, Facts, LedgerEntry, LedgerNote, SettingsChange};
+use super::events::{Category, Facts, LedgerEntry, LedgerNote};
 use super::finance::Finance;
 use super::market::Market;
 use super::params::Params;
 use super::product::Product;
 use super::retention::issues::IssueDesk;
 use super::settings::Settings;
+use super::settings::SettingsChange;
 
 /// The state of a run after its last simulated day.
 #[derive(Debug, Clone)]

@@ -4,8 +4,9 @@ use rusqlite::{Transaction, params};
 
 use super::{Entry, ForecastRow};
 use crate::notation::spaced_json;
-use crate::world::events::{Facts, Notice, ResearchChange, SettingsChange};
+use crate::world::events::{Facts, Notice, ResearchChange};
 use crate::world::identifiers::{Group, Plan};
+use crate::world::settings::SettingsChange;
 
 pub(super) fn service(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let Some(service) = facts.service else { return Ok(()) };

@@ -8,8 +8,8 @@ use super::super::{
 };
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
-use crate::world::events::SettingsChange;
 use crate::world::identifiers::Group;
+use crate::world::settings::SettingsChange;
 use crate::world::settings::{Settings, TargetedDevelopment};
 
 /// Aims development.

@@ -4,8 +4,8 @@ use super::super::arguments::{Arguments, integer};
 use super::super::pricing::core_of;
 use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
 use crate::world::effect::{Deed, Effect};
-use crate::world::events::SettingsChange;
 use crate::world::settings::Settings;
+use crate::world::settings::SettingsChange;
 
 /// Rents capacity.
 pub struct SetCapacityTier;

@@ -7,8 +7,8 @@ use super::super::{
 use super::super::{as_data, family_of};
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
-use crate::world::events::SettingsChange;
 use crate::world::settings::Settings;
+use crate::world::settings::SettingsChange;
 
 /// Sets the load of in-app advertising.
 pub struct SetAdsStrength;

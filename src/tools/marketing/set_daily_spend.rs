@@ -5,7 +5,7 @@ use super::super::pricing::core_of;
 use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
 use crate::notation::{json_number, plain_numbers};
 use crate::world::effect::{Deed, Effect};
-use crate::world::events::SettingsChange;
+use crate::world::settings::SettingsChange;
 use crate::world::settings::{CoreSettings, Settings};
 
 /// Sets the general daily budgets.

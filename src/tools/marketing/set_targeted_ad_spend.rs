@@ -8,8 +8,8 @@ use super::super::{
 use super::BUDGET;
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
-use crate::world::events::SettingsChange;
 use crate::world::identifiers::{Channel, Group};
+use crate::world::settings::SettingsChange;
 use crate::world::settings::{PerGroup, Settings, TargetedAds};
 
 /// Sets the advertising budgets.

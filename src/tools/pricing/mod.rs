@@ -16,9 +16,9 @@ use super::arguments::{Amount, Arguments};
 use super::refusal::Refusal;
 use super::spec::Range;
 use crate::world::effect::Deed;
-use crate::world::events::SettingsChange;
 use crate::world::identifiers::{ByPlan, Plan};
 use crate::world::settings::CoreSettings;
+use crate::world::settings::SettingsChange;
 
 /// A discount of a scope.
 pub(super) const DISCOUNT: Amount = Amount {

@@ -4,9 +4,9 @@ use super::super::arguments::{Arguments, integer};
 use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
 use super::{by_plan, core_of, some_plans, updated_and_current};
 use crate::world::effect::{Deed, Effect};
-use crate::world::events::SettingsChange;
 use crate::world::identifiers::{ByPlan, Plan};
 use crate::world::settings::Settings;
+use crate::world::settings::SettingsChange;
 
 /// Chooses the model behind each plan.
 pub struct SetModelTiers;

@@ -5,9 +5,9 @@ use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal,
 use super::{by_plan, core_of, some_plans, updated_and_current};
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
-use crate::world::events::SettingsChange;
 use crate::world::identifiers::{ByPlan, Plan};
 use crate::world::settings::Settings;
+use crate::world::settings::SettingsChange;
 
 /// Sets monthly list prices.
 pub struct SetPrices;

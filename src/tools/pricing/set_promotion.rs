@@ -8,8 +8,8 @@ use super::super::{as_data, family_of};
 use super::{DISCOUNT, global_discount};
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
-use crate::world::events::SettingsChange;
 use crate::world::settings::Settings;
+use crate::world::settings::SettingsChange;
 
 /// Grants standing discounts.
 pub struct SetPromotion;

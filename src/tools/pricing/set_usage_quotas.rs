@@ -6,10 +6,10 @@ use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal,
 use super::{by_plan, core_of};
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
-use crate::world::events::SettingsChange;
 use crate::world::identifiers::Plan;
 use crate::world::quota::Quota;
 use crate::world::settings::Settings;
+use crate::world::settings::SettingsChange;
 
 /// Caps usage.
 pub struct SetUsageQuotas;

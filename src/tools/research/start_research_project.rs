@@ -60,8 +60,7 @@ impl Tool for StartResearchProject {
 
     fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
         let tier = tier_of(arguments)?;
-        let running =
-            |p: &&crate::world::product::research::Project| p.tier == tier && p.completed_day.is_none();
+        let running = |p: &&crate::world::events::Project| p.tier == tier && p.completed_day.is_none();
         if let Some(project) = view.world().product.research.iter().find(running) {
             let message = format!("tier {tier} is already running until day {}", project.due_day);
             return Err(Refusal::at("tier", "rd_in_progress", message));

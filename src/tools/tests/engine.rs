@@ -7,7 +7,7 @@ use super::super::{
 };
 use crate::world::effect::Deed;
 use crate::world::events::Facts;
-use crate::world::market::economy::Reading;
+use crate::world::events::Reading;
 use crate::world::params::Params;
 use crate::world::state::World;
 

@@ -2,9 +2,10 @@
 //! (chapter 30 §16.5). The judge never sees more.
 
 use super::lexicon::Lexicon;
+use crate::world::events::Severity;
+use crate::world::events::Trend;
 use crate::world::identifiers::{ByGroup, Group, Plan};
-use crate::world::market::competitors::{Severity, severity};
-use crate::world::market::economy::Trend;
+use crate::world::market::competitors::severity;
 use crate::world::market::social::chronicle::Page;
 use crate::world::params::Params;
 use crate::world::product::quality::{quota_demand, quota_factor};

@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use crate::voice::grammar::{Chooser, Context, Grammar};
-use crate::world::market::competitors::Severity;
-use crate::world::market::economy::{Reading, Trend};
+use crate::world::events::Severity;
+use crate::world::events::{Reading, Trend};
 
 static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
     Grammar::read(include_str!("../../../assets/voice/press.toml")).expect("the shipped grammars are tested")
@@ -155,7 +155,7 @@ mod tests {
                 value: pmi,
                 change: f64::from(round % 5) - 2.0,
                 trend: Trend::of(pmi, &law),
-                phase: crate::world::market::economy::Phase::Peak,
+                phase: crate::world::events::Phase::Peak,
             };
             let text = about_reading(&reading, &mut choose);
             let change = format!("{:.1}", reading.change.abs());

@@ -3,9 +3,9 @@
 use super::customers::tests::{author, situations};
 use super::*;
 use crate::world::events::Cause;
+use crate::world::events::Severity;
+use crate::world::events::Trend;
 use crate::world::identifiers::Group;
-use crate::world::market::competitors::Severity;
-use crate::world::market::economy::Trend;
 use crate::world::market::social::engagement::Engagement;
 use crate::world::market::social::sentiment::Sentiment;
 

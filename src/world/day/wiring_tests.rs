@@ -6,6 +6,7 @@ use crate::world::customers::columns::Subscriber;
 use crate::world::customers::columns::tests::subscriber;
 use crate::world::events::{EndCause, SubscriptionEnded, SubscriptionStatus};
 use crate::world::identifiers::Channel;
+use crate::world::identifiers::Group;
 use crate::world::params::{MacroBeta, ServicePenalty};
 use crate::world::quota::Quota;
 

@@ -27,10 +27,10 @@ pub use thread::{Thread, Turn};
 
 use super::canonical::canonical;
 use super::customers::Customers;
-use super::day::Morning;
 use super::events::{Facts, Notice, Sender, ThreadKind, ThreadTurn, TurnContent};
 use super::market::drift::DriftTotals;
 use super::market::reputation::ReputationBook;
+use super::morning::Morning;
 use super::params::Params;
 use super::product::Product;
 use super::product::ads::AdLoad;

@@ -6,26 +6,30 @@
 
 mod company;
 mod customers;
+mod economy;
 mod figures;
 mod money;
 mod posts;
+mod research;
 mod threads;
 
-pub use company::{Notice, Reaction, ResearchChange, ServiceDay, SettingsChange};
+pub use company::{Notice, Reaction, ResearchChange, ServiceDay};
 pub use customers::{
     AdsRevenueRow, Arrival, ChannelLeads, EndCause, IssueOpened, Source, SubscriptionEnded,
     SubscriptionOpened, SubscriptionStatus, TermsChanged, UsageRows,
 };
+pub use economy::{Phase, Reading, Trend};
 pub use figures::DayFigures;
 pub use money::{Category, LedgerEntry, LedgerNote, Payment};
-pub use posts::{Cause, Matter, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, Theme, Troubles};
+pub use posts::{
+    Cause, Matter, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, Severity, Theme, Troubles,
+};
+pub use research::{Attempt, Knowledge, Project, Snapshot, Study};
 pub use threads::{DealClosed, Offering, Sender, ThreadKind, ThreadTurn, TurnContent};
 
 use super::canonical::canonical;
 use super::identifiers::Group;
-use super::market::Knowledge;
-use super::market::discovery::Attempt;
-use super::market::economy::Reading;
+use super::settings::SettingsChange;
 
 /// Everything that happened on one day, or through the tools after it.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,9 +1,9 @@
 //! Movements of cash.
 
+use super::research::Study;
 use crate::world::canonical::{
     Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes,
 };
-use crate::world::market::studies::Study;
 
 canonical! {
     Payment { customer, amount }

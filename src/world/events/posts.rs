@@ -1,13 +1,12 @@
 //! Social media: what is written in public. Codes and numbers only; `voice` finds the words.
 
+use super::economy::{Reading, Trend};
 use crate::world::canonical::{
     Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes,
 };
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::events::ThreadKind;
 use crate::world::identifiers::{Group, Plan};
-use crate::world::market::competitors::Severity;
-use crate::world::market::economy::{Reading, Trend};
 use crate::world::market::social::engagement::Engagement;
 use crate::world::market::social::sentiment::Sentiment;
 
@@ -284,4 +283,17 @@ pub struct OwnPostSeen {
     pub views: u64,
     /// Numbers of the comments.
     pub comments: Vec<u32>,
+}
+
+/// How large an event is in the eyes of the press.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Below 0.03.
+    Minor,
+    /// Below 0.10.
+    Moderate,
+    /// Below 0.20.
+    Major,
+    /// Above.
+    Transformative,
 }

@@ -2,6 +2,7 @@
 
 use super::drift::DriftTotals;
 use crate::world::canonical::canonical;
+use crate::world::events::Severity;
 use crate::world::identifiers::Group;
 use crate::world::params::{Competitor, Params};
 use crate::world::product::Product;
@@ -24,19 +25,6 @@ pub struct Event {
 }
 
 canonical! { Event { day, boost, sampled, u, by_feedback } }
-
-/// How large an event is in the eyes of the press.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// Below 0.03.
-    Minor,
-    /// Below 0.10.
-    Moderate,
-    /// Below 0.20.
-    Major,
-    /// Above.
-    Transformative,
-}
 
 /// Severity of a boost.
 pub fn severity(boost: f64, law: &Competitor) -> Severity {

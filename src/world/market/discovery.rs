@@ -2,24 +2,10 @@
 
 use super::Market;
 use super::drift::DriftTotals;
-use super::insights::Snapshot;
-use crate::world::canonical::canonical;
+use crate::world::events::{Attempt, Snapshot};
 use crate::world::identifiers::Group;
 use crate::world::params::Params;
 use crate::world::random::{Part, Stream, Streams};
-
-/// One attempt to find a group.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Attempt {
-    /// Attempts before this one, failed ones included.
-    pub earlier: u32,
-    /// Dollars paid.
-    pub cost: f64,
-    /// The group that was found.
-    pub found: Option<Group>,
-}
-
-canonical! { Attempt { earlier, cost, found } }
 
 /// The outcome of an attempt: found with a fixed chance, and then any of the undiscovered ones alike.
 pub fn draw_attempt(undiscovered: &[Group], chance: f64, stream: &mut Stream) -> Option<Group> {

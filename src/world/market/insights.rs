@@ -5,25 +5,10 @@ use super::Market;
 use super::drift::DriftTotals;
 use super::economy::round_to;
 use super::leads::market_cap;
-use crate::world::canonical::canonical;
+use crate::world::events::Snapshot;
 use crate::world::identifiers::Group;
 use crate::world::params::{GroupParams, Params};
 use crate::world::random::{Part, Streams};
-
-/// The moving values of a group as they were on a day; hidden, estimates are made from it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Snapshot {
-    /// Day.
-    pub day: u32,
-    /// Mean budget, dollars a month.
-    pub c_max: f64,
-    /// Mean quality floor.
-    pub q_min: f64,
-    /// Customers or accounts the market holds.
-    pub market_cap: f64,
-}
-
-canonical! { Snapshot { day, c_max, q_min, market_cap } }
 
 impl Snapshot {
     /// The group on a day, with the drift of the whole group and without that of single customers.

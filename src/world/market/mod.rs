@@ -14,6 +14,7 @@ pub mod surges;
 pub mod yields;
 
 use super::canonical::canonical;
+use super::events::{Knowledge, Study};
 use super::identifiers::{ByChannel, ByGroup, Group};
 use super::params::Params;
 use super::settings::Settings;
@@ -38,27 +39,13 @@ pub struct Market {
     /// Attempts to find a group so far.
     pub attempts: u32,
     /// Studies of groups that run, in the order in which they were ordered.
-    pub studies: Vec<studies::Study>,
+    pub studies: Vec<Study>,
     /// Social media.
     pub social: social::Social,
 }
 
-/// What the company knows about a group.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Knowledge {
-    /// Info level, 0 while undiscovered.
-    pub level: u8,
-    /// Day of discovery.
-    pub discovered_day: Option<u32>,
-    /// Last day on which the level rose.
-    pub last_research_day: Option<u32>,
-    /// What estimates are made from, once the group is known.
-    pub snapshot: Option<insights::Snapshot>,
-}
-
 canonical! {
     Market { reputation, drift, yields, economy, competitors, surges, knowledge, attempts, studies, social }
-    Knowledge { level, discovered_day, last_research_day, snapshot }
 }
 
 impl Market {

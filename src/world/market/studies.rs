@@ -1,33 +1,9 @@
 //! Group research: studies that are paid at once and finish some days later (chapter 30 §12, step 7).
 
 use super::Market;
-use super::insights::Snapshot;
-use crate::world::canonical::canonical;
-use crate::world::events::{Facts, Notice};
+use crate::world::events::{Facts, Notice, Snapshot, Study};
 use crate::world::identifiers::Group;
 use crate::world::params::{GroupResearch, Params};
-
-/// A study that runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Study {
-    /// Group.
-    pub group: Group,
-    /// Level it aims at, 2..=5.
-    pub target: u8,
-    /// Level of the group when it was ordered.
-    pub before: u8,
-    /// First day on which it is finished.
-    pub due_day: u32,
-}
-
-canonical! { Study { group, target, before, due_day } }
-
-impl Study {
-    /// Whether it brings the figures of the day and no better accuracy.
-    pub fn is_refresh(&self) -> bool {
-        self.target == self.before
-    }
-}
 
 /// Level a study aims at when none is named: the present one, at least the lowest there is.
 pub fn default_target(level: u8, law: &GroupResearch) -> u8 {

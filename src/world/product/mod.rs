@@ -8,6 +8,7 @@ pub mod service;
 pub mod usage;
 
 use super::canonical::canonical;
+use super::events::Project;
 use super::identifiers::{ByGroup, Group};
 use super::params::Params;
 
@@ -23,7 +24,7 @@ pub struct Product {
     /// Targeted improvements that no rival has copied yet.
     pub group_bank: ByGroup<f64>,
     /// R&D projects, in the order of their start.
-    pub research: Vec<research::Project>,
+    pub research: Vec<Project>,
 }
 
 canonical! {

@@ -1,38 +1,9 @@
 //! R&D projects (chapter 20 §14, chapter 50 §4.4, step 6).
 
 use super::Product;
-use crate::world::canonical::canonical;
-use crate::world::events::{Facts, Notice, ResearchChange};
+use crate::world::events::{Facts, Notice, Project, ResearchChange};
 use crate::world::params::{Development, Params, ResearchTier};
 use crate::world::random::{Part, Streams};
-
-/// One R&D project.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Project {
-    /// Tier, 1..=20.
-    pub tier: u8,
-    /// Number of the start of this tier, from 1.
-    pub number: u32,
-    /// Day of the start.
-    pub started_day: u32,
-    /// First day on which it is finished.
-    pub due_day: u32,
-    /// Quality it adds.
-    pub boost: f64,
-    /// Day on which it was finished.
-    pub completed_day: Option<u32>,
-}
-
-canonical! {
-    Project { tier, number, started_day, due_day, boost, completed_day }
-}
-
-impl Project {
-    /// Identifier as the tables write it, for instance t3_1.
-    pub fn id(&self) -> String {
-        format!("t{}_{}", self.tier, self.number)
-    }
-}
 
 /// Duration in days from a standard normal draw: whole days, at least 30.
 pub fn project_duration(tier: &ResearchTier, z: f64, development: &Development) -> u32 {

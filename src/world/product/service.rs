@@ -1,7 +1,7 @@
 //! Service health of the day (chapter 20 §12, step 5).
 
-use crate::world::day::Morning;
 use crate::world::events::{Facts, ServiceDay};
+use crate::world::morning::Morning;
 use crate::world::params::{Operations, Params};
 use crate::world::random::{Part, Stream, Streams};
 

@@ -2,9 +2,9 @@
 
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
-use crate::world::day::Morning;
 use crate::world::events::{Facts, UsageRows};
 use crate::world::identifiers::{ByGroup, ByPlan, Plan};
+use crate::world::morning::Morning;
 use crate::world::params::{CustomerGeneration, Params, UsageQuota};
 
 /// Units used today.

@@ -9,9 +9,9 @@ use super::renewal::{ongoing_discount, terms};
 use super::{due_today, refresh_required, remembered_budget};
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
-use crate::world::day::Morning;
 use crate::world::events::{Facts, Payment, TermsChanged};
 use crate::world::identifiers::Group;
+use crate::world::morning::Morning;
 use crate::world::params::Params;
 use crate::world::product::usage::usage_rate;
 use crate::world::random::{Part, Streams, Word};
@@ -143,8 +143,8 @@ mod tests {
     use super::*;
     use crate::world::customers::columns::Subscriber;
     use crate::world::customers::columns::tests::subscriber;
-    use crate::world::day::tests::morning;
     use crate::world::identifiers::{ByPlan, Plan};
+    use crate::world::morning::tests::morning;
 
     fn billed(id: &str, row: Subscriber, list: f64, ongoing: f64) -> (f64, Subscriber) {
         let (params, streams) = (Params::shipped(), Streams::new(1));

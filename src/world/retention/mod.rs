@@ -8,8 +8,8 @@ pub mod satisfaction;
 
 use super::customers::columns::Block;
 use super::customers::curve::{Curve, required_quality};
-use super::day::Morning;
 use super::identifiers::Group;
+use super::morning::Morning;
 use super::params::{DriftCounted, Params};
 
 /// Refreshes the stored required quality of a row: its curve at the price in force, with the budget of its

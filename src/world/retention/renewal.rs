@@ -2,11 +2,11 @@
 
 use crate::world::customers::columns::{BLOCK, Block};
 use crate::world::customers::curve::{Curve, required_quality};
-use crate::world::day::Morning;
 use crate::world::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
 use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
 use crate::world::market::reputation::{ReputationBook, cancel_damage};
 use crate::world::market::social::crowd::GaveUp;
+use crate::world::morning::Morning;
 use crate::world::params::{DriftCounted, InvoluntaryChurn, Params, ServicePenalty};
 use crate::world::product::ads::AdLoad;
 use crate::world::product::quality::{
@@ -318,7 +318,7 @@ mod tests {
     use crate::world::customers::Customers;
     use crate::world::customers::columns::Subscriber;
     use crate::world::customers::columns::tests::subscriber;
-    use crate::world::day::tests::morning;
+    use crate::world::morning::tests::morning;
     use crate::world::settings::AdsStrength;
 
     fn group() -> Group {

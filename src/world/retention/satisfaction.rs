@@ -3,10 +3,10 @@
 use std::ops::{AddAssign, Range};
 
 use crate::world::customers::columns::Block;
-use crate::world::day::Morning;
 use crate::world::events::ServiceDay;
 use crate::world::identifiers::{ByGroup, ByPlan, Group};
 use crate::world::market::reputation::contribution;
+use crate::world::morning::Morning;
 use crate::world::params::Params;
 use crate::world::product::ads::AdLoad;
 use crate::world::product::quality::{
@@ -152,8 +152,8 @@ mod tests {
     use super::*;
     use crate::world::customers::columns::Subscriber;
     use crate::world::customers::columns::tests::subscriber;
-    use crate::world::day::tests::morning;
     use crate::world::identifiers::Plan;
+    use crate::world::morning::tests::morning;
     use crate::world::retention::{refresh_required, remembered_budget};
     use crate::world::settings::{AdsStrength, PerCustomer, PerGroup};
 

@@ -3,9 +3,10 @@
 use super::*;
 use crate::world::day::step_day;
 use crate::world::events::Facts;
+use crate::world::events::Reading;
 use crate::world::market::Market;
 use crate::world::market::competitors::sampled_boost;
-use crate::world::market::economy::{Dimension, Reading};
+use crate::world::market::economy::Dimension;
 use crate::world::market::surges::surge_factor;
 use crate::world::params::{Source, SurgeStart, shipped_sources};
 use crate::world::random::Streams;

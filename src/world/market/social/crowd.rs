@@ -226,8 +226,8 @@ mod tests {
     use super::*;
     use crate::world::customers::columns::Subscriber;
     use crate::world::customers::columns::tests::subscriber;
-    use crate::world::day::tests::morning;
     use crate::world::events::{Post, ServiceDay, ThreadKind};
+    use crate::world::morning::tests::morning;
     use crate::world::product::ads::AdLoad;
     use crate::world::product::quality::TenureTable;
     use crate::world::settings::Settings;

@@ -3,9 +3,9 @@
 use super::chronicle::Chronicle;
 use super::weights::Loudness;
 use crate::world::customers::columns::Block;
-use crate::world::day::Morning;
 use crate::world::events::{Cause, Opinion, ServiceDay, Theme, Troubles};
 use crate::world::identifiers::Group;
+use crate::world::morning::Morning;
 use crate::world::params::{Params, Social};
 use crate::world::product::ads::AdLoad;
 use crate::world::product::quality::{

@@ -3,9 +3,9 @@
 use super::Social;
 use super::engagement::Engagement;
 use super::sentiment::Sentiment;
-use crate::world::events::{Facts, Matter};
-use crate::world::market::competitors::{Event, Severity, severity};
-use crate::world::market::economy::{Economy, Reading, Trend};
+use crate::world::events::{Facts, Matter, Reading, Severity, Trend};
+use crate::world::market::competitors::{Event, severity};
+use crate::world::market::economy::Economy;
 use crate::world::params::{Competitor, MacroEconomy, Params};
 use crate::world::random::{Part, Stream, Streams};
 

@@ -1,0 +1,62 @@
+//! What is frozen in the morning for the whole day.
+
+use super::identifiers::{ByGroup, ByPlan, Group, Plan};
+use super::market::drift::Expectation;
+use super::product::quality::delivered_quality;
+use super::settings::CoreSettings;
+
+/// What is frozen in the morning: today's improvements, finished research, drift and rivals reach individuals tomorrow.
+#[derive(Debug, Clone)]
+pub struct Morning {
+    /// Day.
+    pub day: u32,
+    /// Settings in force.
+    pub core: CoreSettings,
+    /// Factor of the weekday.
+    pub weekday: f64,
+    /// Factor of the day of the month.
+    pub month_day: f64,
+    /// Quotas in units.
+    pub quotas: ByPlan<f64>,
+    /// Quality multiplier of each plan's model.
+    pub multipliers: ByPlan<f64>,
+    /// Product quality by group before the multiplier.
+    pub product: ByGroup<f64>,
+    /// Product quality before the multiplier and without what was done for single groups.
+    pub shared_quality: f64,
+    /// What the market adds to curves.
+    pub expectations: ByGroup<Expectation>,
+    /// Active subscriptions.
+    pub subscribers: ByGroup<u32>,
+}
+
+impl Morning {
+    /// Quality delivered to a group on a plan, before anything today's service does to it.
+    pub fn delivered(&self, group: Group, plan: Plan) -> f64 {
+        delivered_quality(self.product[group], 0.0, 0.0, self.multipliers[plan])
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::world::params::Params;
+    use crate::world::settings::Settings;
+
+    /// A morning with plain values; tests change what matters to them.
+    pub(crate) fn morning(day: u32) -> Morning {
+        let params = Params::shipped();
+        Morning {
+            day,
+            core: Settings::opening(&params).core,
+            weekday: params.calendar.weekly[(day % 7) as usize],
+            month_day: params.calendar.monthly[(day % 30) as usize],
+            quotas: ByPlan([0.0; 3]),
+            multipliers: ByPlan([0.6; 3]),
+            product: ByGroup::from_fn(|_| 0.2),
+            shared_quality: 0.2,
+            expectations: ByGroup::default(),
+            subscribers: ByGroup::default(),
+        }
+    }
+}

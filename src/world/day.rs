@@ -180,7 +180,7 @@ pub fn step_day(
 }
 
 /// The morning of the world's present day.
-fn morning_of(world: &World, params: &Params) -> Morning {
+pub fn morning_of(world: &World, params: &Params) -> Morning {
     let core = world.settings.core;
     Morning {
         day: world.day,

@@ -11,9 +11,10 @@ use divan::{Bencher, black_box};
 use novamind::database::{Entry, Location, Position, Projector};
 use novamind::world::customers::Customers;
 use novamind::world::customers::traits::draw_traits;
-use novamind::world::day::{Morning, step_day};
+use novamind::world::day::{morning_of, step_day};
 use novamind::world::events::{Facts, ServiceDay};
 use novamind::world::identifiers::{ByPlan, Channel, Group};
+use novamind::world::morning::Morning;
 use novamind::world::params::Params;
 use novamind::world::product::ads::AdLoad;
 use novamind::world::product::quality::TenureTable;
@@ -61,7 +62,7 @@ static COMPANY: LazyLock<Company> = LazyLock::new(|| {
 
 impl Company {
     fn morning(&self) -> Morning {
-        Morning::of(&self.world, &self.params)
+        morning_of(&self.world, &self.params)
     }
 
     fn subscribers(&self) -> ItemsCount {

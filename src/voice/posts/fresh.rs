@@ -103,4 +103,16 @@ mod tests {
         assert_eq!(recent.freshest(drafts(&["Same."])), "Same.");
         assert_eq!(recent.freshest(drafts(&["Same."])), "Same.", "there is nothing else to say");
     }
+
+    #[test]
+    fn a_text_is_remembered_for_as_many_posts_as_the_memory_has() {
+        let mut recent = Recent::default();
+        recent.remember("The first of all.");
+        for other in 1..MEMORY {
+            recent.remember(&format!("Number {other}."));
+        }
+        assert_eq!(recent.staleness("The first of all."), MOST_DRAFTS);
+        recent.remember("One more.");
+        assert_eq!(recent.staleness("The first of all."), 0);
+    }
 }

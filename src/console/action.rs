@@ -266,7 +266,7 @@ actions! {
         LeaveEditor "leave-editor" "leave" "Leave the editor; the text is kept."
     }
     Field {
-        Commit "commit" "take" "Accept what you typed; in a form, go down."
+        Commit "commit" "accept" "Accept what you typed; in a form, go down."
         CommitDown "commit-down" "take, down" "Accept what you typed and go down."
         CommitNext "commit-next" "take, next" "Accept what you typed and go to the next field."
         CommitPrevious "commit-previous" "take, previous" "Accept what you typed and go to the previous field."

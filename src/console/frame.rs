@@ -198,10 +198,14 @@ type Way = fn(&str, &str, &str, bool) -> String;
 fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     // The first way in which every screen has its tab; the last one if none has. Only the screen that is shown keeps
     // its name in the narrowest windows.
-    let ways: [Way; 4] = [
+    let ways: [Way; 6] = [
         |key, title, badge, _| format!(" {key} {title}{badge} "),
         |key, title, badge, _| format!(" {key} {title}{badge}"),
         |key, title, badge, _| format!(" {key} {}{badge}", short(title)),
+        |key, title, badge, _| format!(" {key} {}{}", short(title), badge.trim()),
+        |key, title, badge, _| {
+            format!(" {key} {}{}", short(title), badge.trim().get(.."●".len()).unwrap_or_default())
+        },
         |key, title, badge, here| {
             if here { format!(" {key} {title} ") } else { format!(" {key}{}", badge.trim()) }
         },
@@ -215,7 +219,7 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     let fits = |texts: &[String; ScreenId::ALL.len()]| {
         texts.iter().map(|text| text.width()).sum::<usize>() <= row.width as usize
     };
-    let fitting = ways.iter().map(texts).find(fits).unwrap_or_else(|| texts(&ways[3]));
+    let fitting = ways.iter().map(texts).find(fits).unwrap_or_else(|| texts(&ways[5]));
     let mut x = row.x;
     for (screen, text) in ScreenId::ALL.into_iter().zip(fitting) {
         let width = text.width() as u16;
@@ -229,18 +233,21 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     }
     if run.zoomed {
         let key = app.keys.label(Action::Zoom).unwrap_or_default();
+        let text = format!("{key} all panes ");
         let left = Rect { x, width: row.right() - x, ..row };
-        canvas.aligned(left, &format!("{key} all panes "), Role::Warning, Align::Right);
+        if text.width() <= left.width as usize {
+            canvas.aligned(left, &text, Role::Warning, Align::Right);
+        }
     }
 }
 
 /// Short names of screens for windows in which the long ones do not fit beside each other.
 fn short(title: &str) -> &str {
     match title {
-        "Overview" => "View",
+        "Overview" => "Over",
         "Customers" => "Cust",
         "Product" => "Prod",
-        "Journal" => "Log",
+        "Journal" => "Jour",
         other => other,
     }
 }
@@ -270,8 +277,9 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     let mut x = row.x + 1;
     for action in actions_shown(app) {
         let Some(key) = app.keys.label(action) else { continue };
-        let title = action.entry().title;
-        let width = (key.width() + 1 + title.width()) as u16;
+        // An arrow says by its name what it does.
+        let title = Some(action.entry().title).filter(|title| *title != key).unwrap_or_default();
+        let width = (key.width() + usize::from(!title.is_empty()) + title.width()) as u16;
         if x + width + taken > row.right() {
             break;
         }

@@ -40,7 +40,7 @@ pub struct Measures {
     pub targeted_development: Option<f64>,
     /// Forecasts by horizon.
     pub forecasts: Vec<ForecastScore>,
-    /// Weeks whose forecasts were filled by the naive projection, and all weeks.
+    /// Weeks with forecasts that were filled by the naive projection, and all weeks.
     pub filled_naively: (u32, u32),
     /// Calls of tools.
     pub tools: ToolUse,
@@ -257,10 +257,10 @@ pub fn planning(journal: &[JournalEntry]) -> Planning {
     Planning { rationales, words_each: each(all.words), planning_each: each(all.planning) }
 }
 
-/// Weeks whose forecasts were filled by the naive projection, and all weeks.
+/// Weeks with forecasts that were filled by the naive projection, and all weeks.
 pub fn filled_naively(journal: &[JournalEntry]) -> (u32, u32) {
     let filed = journal.iter().filter_map(|entry| match entry {
-        JournalEntry::Advance { filled_naively, .. } => Some(*filled_naively),
+        JournalEntry::Advance { filled_naively, .. } => Some(filled_naively.contains(&true)),
         _ => None,
     });
     filed.fold((0, 0), |(naive, all), own| (naive + u32::from(own), all + 1))

@@ -239,7 +239,7 @@ fn forecasts(story: &Story) -> Vec<Block> {
     let (naive, all) = story.measures.filled_naively;
     if naive > 0 {
         blocks.push(Block::Note(format!(
-            "Forecasts of {naive} of {} were filled by the naive projection.",
+            "In {naive} of {}, forecasts were filled by the naive projection.",
             count(all, "week")
         )));
     }

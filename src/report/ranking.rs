@@ -106,10 +106,7 @@ impl Standing {
     pub fn in_words(&self) -> String {
         match self.rank {
             Some(rank) => format!("rank {rank} of {} beside the published results", self.places.len()),
-            None if self.has_score => {
-                "not ranked: the published results are of another length, start, scenario or parameters"
-                    .to_owned()
-            }
+            None if self.has_score => "not ranked: other length, start, scenario or parameters".to_owned(),
             None => "the published results".to_owned(),
         }
     }

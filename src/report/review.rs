@@ -23,10 +23,13 @@ pub fn money_lines(seen: &Observation) -> Vec<String> {
         0 => "No income yet".to_owned(),
         _ => {
             let (income, variable) = (money(pace.income * 7.0), money(pace.variable * 7.0));
-            format!(
-                "Last {}: income {income} a week, compute and lead costs {variable}",
-                count(weeks, "week")
-            )
+            match weeks {
+                1 => format!("Last week: income {income}, compute and lead costs {variable}"),
+                _ => format!(
+                    "Last {}: income {income} a week, compute and lead costs {variable}",
+                    count(weeks, "week")
+                ),
+            }
         }
     };
     let runway = match seen.weeks_of_cash() {

@@ -1,4 +1,4 @@
-//! The report of a week: how cash changed and what that consists of, which figures changed most, what was set before
+//! The report of a week: how cash changed and what that consists of, which figures changed most unusually, what was set before
 //! it, what is new, and what became of the forecasts for it.
 
 use super::chapters::change_in_words;

@@ -306,7 +306,7 @@ impl Session {
             day: self.world.day,
             rationale,
             forecasts: forecasts.all.to_vec(),
-            filled_naively: forecasts.filled_naively.contains(&true),
+            filled_naively: forecasts.filled_naively,
         });
     }
 

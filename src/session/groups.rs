@@ -23,13 +23,15 @@ pub struct GroupWeek {
     pub left: u32,
     /// Units used, by the plan they were used on.
     pub usage: ByPlan<u64>,
+    /// Units used on its last day, by the plan they were used on.
+    pub last_usage: ByPlan<u64>,
     /// Individual subscribers at its end.
     pub subscribers: ByPlan<u32>,
     /// What they pay at its end, dollars a month.
     pub revenue: ByPlan<f64>,
 }
 
-canonical! { GroupWeek { leads, asked, signed, chosen, left, usage, subscribers, revenue } }
+canonical! { GroupWeek { leads, asked, signed, chosen, left, usage, last_usage, subscribers, revenue } }
 
 impl GroupWeek {
     /// Of the leads, those who signed; none without leads.
@@ -68,7 +70,9 @@ pub(super) fn count(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: 
         week[ending.group].left += 1;
     }
     for group in Group::all() {
-        for (sum, units) in week[group].usage.0.iter_mut().zip(figures.usage[group].0) {
+        let own = &mut week[group];
+        own.last_usage = figures.usage[group];
+        for (sum, units) in own.usage.0.iter_mut().zip(own.last_usage.0) {
             *sum += units;
         }
     }

@@ -35,8 +35,8 @@ pub enum JournalEntry {
         rationale: String,
         /// Forecasts of cash.
         forecasts: Vec<Forecast>,
-        /// Some of them were filled in by the naive projection.
-        filled_naively: bool,
+        /// Which of them the naive projection filled in.
+        filled_naively: [bool; 4],
     },
     /// A week, or single days, ran.
     Week {

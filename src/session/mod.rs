@@ -95,7 +95,7 @@ pub use terms::{CapacityTier, ModelTier, RunningStudy, StudyLevel, Terms};
 pub use trajectory::{Line, Record, Trajectory, record, seconds as moment_of};
 pub use undo::{Reversal, undone_calls};
 pub use verify::{Verification, verify};
-pub use week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, week_of};
+pub use week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
 pub use xray::Xray;
 
 pub use crate::database::{Cell, Desk, Interrupt, QueryError, Rows, Ticket, number_at, text_at};

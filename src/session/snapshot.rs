@@ -29,7 +29,7 @@ use crate::world::identifiers::ByGroup;
 use crate::world::settings::Settings;
 use crate::world::state::World;
 
-const TITLE: &[u8] = b"novamind snapshot 2\n";
+const TITLE: &[u8] = b"novamind snapshot 3\n";
 const DIGEST: usize = blake3::OUT_LEN;
 /// Name of the file in a run's folder.
 pub(super) const FILE: &str = "snapshot.bin";

@@ -170,6 +170,15 @@ pub struct Forecasts {
     pub filled_naively: [bool; 4],
 }
 
+/// How many of some forecasts the naive projection filled in: `naively`, `3 of 4 naively`; none where it filled none.
+pub fn naively(filled: &[bool]) -> Option<String> {
+    match filled.iter().filter(|filled| **filled).count() {
+        0 => None,
+        all if all == filled.len() => Some("naively".to_owned()),
+        some => Some(format!("{some} of {} naively", filled.len())),
+    }
+}
+
 impl Forecasts {
     /// The forecasts of a line; none unless there is one for each horizon.
     pub(super) fn of(filed: &[FiledForecast]) -> Option<Forecasts> {
@@ -206,6 +215,12 @@ impl Forecasts {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn forecasts_are_told_naive_as_far_as_they_are() {
+        let told = [[false; 4], [false, true, true, true], [true; 4]].map(|filled| naively(&filled));
+        assert_eq!(told, [None, Some("3 of 4 naively".to_owned()), Some("naively".to_owned())]);
+    }
 
     #[test]
     fn check_2_of_chapter_60() {

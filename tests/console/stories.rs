@@ -29,7 +29,7 @@ fn a_newcomer_plays_two_weeks_leaves_and_comes_back() {
     }
     console.press("esc");
     console.week();
-    console.shows("What changed most");
+    console.shows("Most unusual changes");
     console.press("esc");
     console.week();
     console.press("esc 1");
@@ -102,7 +102,7 @@ fn a_week_is_not_filed_without_a_reason_and_four_forecasts() {
     console.press("esc n enter");
     console.shows("why not");
     console.press("enter '6' enter f enter");
-    console.shows("What changed most");
+    console.shows("Most unusual changes");
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn a_week_without_decisions_takes_three_keys() {
     for week in 1..=3 {
         console.press("n f enter");
         console.shows(&format!("day {}/500", 7 * week));
-        console.shows("What changed most");
+        console.shows("Most unusual changes");
     }
 }
 

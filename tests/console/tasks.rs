@@ -130,6 +130,10 @@ fn capacity_is_bought_from_the_need() {
     for size in SIZES {
         let (_runs, mut console) = company("crisis.toml", 42, 210, size);
         let before = in_force(&console, "set_capacity_tier", "tier");
+        console.press("down enter");
+        let drafted = console.screen();
+        assert!(drafted.contains("→ +$") && drafted.contains("from day 211"), "{drafted}");
+        console.press("esc 1 up");
         do_it(&mut console, "down enter ctrl-s", BUY_CAPACITY);
         let after = in_force(&console, "set_capacity_tier", "tier");
         assert!(after.as_u64() > before.as_u64(), "{before} to {after}:\n{}", console.screen());

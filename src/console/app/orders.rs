@@ -100,12 +100,13 @@ impl App {
                 self.show(ScreenId::Tools);
             }
             Effect::Prefill { tool, arguments } => {
+                // What the call would do is asked for by the screen that shows it.
+                self.show(ScreenId::Tools);
                 if let Stage::Run(run) = &mut self.stage {
                     let company = run.company.clone();
                     let effects = run.screens.tools.prefill(tool, &arguments, &company);
                     self.follow(effects);
                 }
-                self.show(ScreenId::Tools);
             }
             Effect::ShowThread(number) => {
                 if let Stage::Run(run) = &mut self.stage {

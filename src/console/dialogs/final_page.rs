@@ -355,7 +355,7 @@ mod tests {
         for (text, name) in [(&small, "80×24"), (&large, "120×40")] {
             for part in [
                 "Day 35. You end with $",
-                "not ranked: the published results are of another",
+                "not ranked: other length, start, scenario or parameters",
                 "Rule-based baseline",
                 "1 wk ",
                 "ads on best channel",

@@ -1,4 +1,4 @@
-//! The report of a week: how cash changed and what that consists of, which figures changed most, what was set before it,
+//! The report of a week: how cash changed and what that consists of, which figures changed most unusually, what was set before it,
 //! what is new and where to look, what became of the forecasts, what comes next.
 
 use ratatui::layout::Rect;
@@ -105,7 +105,7 @@ impl Report {
         let parts: [Part<'a>; 5] = [
             head,
             decided,
-            with_heading(canvas, "What changed most", moves),
+            with_heading(canvas, "Most unusual changes", moves),
             news.into_iter().chain(notice_lines(canvas, notices, width, left.min(8))).collect(),
             with_heading(canvas, "What comes next", coming),
         ];
@@ -345,7 +345,7 @@ mod tests {
                 "Cash $",
                 "payments +$",
                 "a week ago you said",
-                "What changed most",
+                "Most unusual changes",
                 "New  ",
                 "What comes next",
             ] {

@@ -5,7 +5,7 @@ use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped};
 use crate::session::record::{Advance, Branch, Call, Closing, Outcome, Query};
-use crate::session::{Chapter, Place, Record, RecordView, Reversal, ScoredForecast};
+use crate::session::{Chapter, Place, Record, RecordView, Reversal, ScoredForecast, naively};
 
 /// Longest JSON that is written in one line, in bytes.
 const ONE_LINE: usize = 90;
@@ -34,8 +34,8 @@ pub fn brief(entry: &RecordView) -> Vec<(String, Role)> {
         }
         Record::Advance(filed) => {
             let mut lines = vec![(format!("“{}”", filed.rationale.trim()), Role::Strong)];
-            let how = if is_naive(filed) { "forecasts, filled naively:" } else { "forecasts:" };
-            lines.push((how.to_owned(), Role::Header));
+            let how = filled(filed).map_or(String::new(), |naively| format!(", filled {naively}"));
+            lines.push((format!("forecasts{how}:"), Role::Header));
             lines.extend(entry.forecasts.iter().map(|one| forecast_in_brief(one, entry.is_later(one))));
             lines
         }
@@ -74,8 +74,8 @@ fn answered(query: &Query) -> Result<u64, &str> {
     query.rows.ok_or(query.error.as_deref().unwrap_or_default())
 }
 
-fn is_naive(filed: &Advance) -> bool {
-    filed.forecasts.iter().any(|forecast| forecast.filled_naively)
+fn filled(filed: &Advance) -> Option<String> {
+    naively(&filed.forecasts.iter().map(|forecast| forecast.filled_naively).collect::<Vec<_>>())
 }
 
 fn forecast_in_brief(scored: &ScoredForecast, later: bool) -> (String, Role) {
@@ -150,7 +150,7 @@ fn in_full(entry: &RecordView) -> String {
             }
         }
         Record::Advance(filed) => {
-            let naively = if is_naive(filed) { ", filled with the naive projection" } else { "" };
+            let naively = filled(filed).map_or(String::new(), |naively| format!(", filled {naively}"));
             let told = |one: &ScoredForecast| forecast_in_full(one, entry.is_later(one));
             let lines: Vec<String> = entry.forecasts.iter().map(told).collect();
             let rationale = filed.rationale.trim();

@@ -138,7 +138,7 @@ pub const FIGURES: &[Figure] = &[
     figure("forecast coverage", "84", "share", |run| forecast(run, 84, coverage), || Some(NOMINAL)),
     figure("forecast coverage", "182", "share", |run| forecast(run, 182, coverage), || Some(NOMINAL)),
     figure(
-        "weeks forecast by the naive projection",
+        "weeks with naive forecasts",
         "",
         "count",
         |run| Some(f64::from(run.logbook.measures.filled_naively.0)),

@@ -174,7 +174,7 @@ fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>) -> String {
             format!("day {day:>3}  {tool}{remark} {args}")
         }
         JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
-            let naive = if *filled_naively { ", naive" } else { "" };
+            let naive = if filled_naively[0] { ", naive" } else { "" };
             let next = forecasts.first().map_or(String::new(), |first| dollars(first.point));
             format!("day {day:>3}  next week: {rationale} (expects {next} in a week{naive})")
         }

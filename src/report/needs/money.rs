@@ -17,9 +17,18 @@ pub(super) fn runway(situation: &Situation<'_>) -> Option<Need> {
     let weeks = seen.runway_weeks.filter(|weeks| *weeks < SHORT)?;
     let pace = &seen.pace;
     let out = (pace.committed + pace.variable) * 7.0;
-    let (name, dollars, place) = largest_budget(situation);
+    let Budget { name, dollars, kept, place } = largest_budget(situation);
     let proposal = (dollars > 0.0).then(|| {
-        format!("the largest budget is {name}, {} a day = {} a week", money(dollars), money(dollars * 7.0))
+        let net = pace.net() + dollars - kept;
+        let lasts = match (seen.cash.max(0.0) / -net / 7.0).round() {
+            weeks if net < 0.0 => format!("lasts {}", count(weeks as u32, "week")),
+            _ => "no longer shrinks".to_owned(),
+        };
+        format!(
+            "the largest budget is {name}, {} a day: at {} a day cash {lasts}",
+            money(dollars),
+            money(kept)
+        )
     });
     Some(Need {
         problem: Problem::Runway,
@@ -36,8 +45,19 @@ pub(super) fn runway(situation: &Situation<'_>) -> Option<Need> {
     })
 }
 
-/// The largest of the budgets that the settings hold: its name, dollars a day, and its form with what leaves eight weeks.
-fn largest_budget(situation: &Situation<'_>) -> (&'static str, f64, Place) {
+/// A budget that the settings hold.
+struct Budget {
+    name: &'static str,
+    /// Dollars a day.
+    dollars: f64,
+    /// What may be kept of it so that cash lasts eight weeks, dollars a day.
+    kept: f64,
+    /// Its form with that.
+    place: Place,
+}
+
+/// The largest of the budgets.
+fn largest_budget(situation: &Situation<'_>) -> Budget {
     let settings = situation.session.settings();
     let (core, development) = (&settings.core, &settings.targeted_development);
     let missing = situation.seen.cash.max(0.0) / (SHORT * 7.0) + situation.seen.pace.net();
@@ -83,20 +103,20 @@ fn largest_budget(situation: &Situation<'_>) -> (&'static str, f64, Place) {
         ),
     ];
     let largest = budgets.into_iter().max_by(|left, right| left.1.total_cmp(&right.1));
-    largest.filter(|budget| budget.1 > 0.0).unwrap_or(("", 0.0, Place::Books))
+    let (name, dollars, place) = largest.filter(|budget| budget.1 > 0.0).unwrap_or(("", 0.0, Place::Books));
+    Budget { name, dollars, kept: kept(dollars), place }
 }
 
 /// Plans whose individual subscribers cost more in compute than they pay.
 pub(super) fn margin(situation: &Situation<'_>) -> Vec<Need> {
     let Some(groups) = situation.group_week() else { return Vec::new() };
-    let days = situation.week().map_or(7, |week| week.days_run).max(1);
     let models = &situation.terms.models;
     let of_plan = |plan: Plan| {
         let people = || Group::all().filter(|group| !group.is_enterprise());
         let subscribers: u32 = people().map(|group| groups[group].subscribers[plan]).sum();
         let revenue: f64 = people().map(|group| groups[group].revenue[plan]).sum();
-        let units: u64 = people().map(|group| groups[group].usage[plan]).sum();
-        let a_month = units as f64 / f64::from(days) * MONTH;
+        let units: u64 = people().map(|group| groups[group].last_usage[plan]).sum();
+        let a_month = units as f64 * MONTH;
         let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
         let cost = a_month * now.unit_cost;
         if subscribers == 0 || cost <= revenue {
@@ -106,7 +126,7 @@ pub(super) fn margin(situation: &Situation<'_>) -> Vec<Need> {
         Some(Need {
             problem: Problem::Margin,
             text: format!(
-                "plan {plan} loses money: {} pay {} a month and cost {} in compute",
+                "plan {plan} loses money: {} pay {} a month, and compute costs {} a month at the last day's use",
                 count(subscribers, "individual"),
                 money(revenue),
                 money(cost)

@@ -105,7 +105,7 @@ pub(super) fn no_leads(situation: &Situation<'_>) -> Option<Need> {
         problem: Problem::NoLeads,
         text: "no leads: no ads are running and there are no subscribers to spread the word".to_owned(),
         proposal: Some(format!(
-            "{} a day per channel on {group} shows within a week which ones bring leads, for {}",
+            "{} a day per channel on {group} shows within a week which ones bring leads, for {} in ads",
             money(FIRST_TRY),
             money(7.0 * total)
         )),

@@ -23,6 +23,10 @@ pub(super) fn capacity(situation: &Situation<'_>) -> Option<Need> {
     if busiest > now.units {
         return Some(overload(situation, week, now));
     }
+    // A tier that was chosen today has not been tried yet.
+    if situation.seen.changes.iter().any(|change| change.tool == "set_capacity_tier") {
+        return None;
+    }
     let before = situation.weeks.len().checked_sub(2).map(|at| situation.weeks[at].busiest_day as f64)?;
     let growth = busiest / before.max(1.0);
     if growth <= 1.0 || before <= 0.0 {
@@ -30,12 +34,18 @@ pub(super) fn capacity(situation: &Situation<'_>) -> Option<Need> {
     }
     let weeks = libm::log(now.units / busiest) / libm::log(growth);
     let next = tiers.iter().find(|tier| tier.tier == now.tier + 1)?;
+    let full = match (weeks * 7.0).ceil() {
+        days if days < 7.0 => count(days.max(1.0) as u32, "day"),
+        _ => format!("{weeks:.1} weeks"),
+    };
     (weeks < SOON).then(|| Need {
         problem: Problem::Capacity,
         text: format!(
-            "the busiest day used {} of capacity tier {}, and usage grew by {} in a week: at that growth it is full in \
-             {weeks:.1} weeks",
+            "the busiest day of the week used {} units, {} of the {} of capacity tier {} and {} more than the busiest day \
+             a week before: at that growth the tier is full in {full}",
+            whole(busiest),
             percent(busiest / now.units, 0),
+            whole(now.units),
             now.tier,
             percent(growth - 1.0, 0)
         ),

@@ -89,8 +89,13 @@ fn draw_list(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
     let inside = canvas.pane(area, &title, &note, focused);
     if count == 0 {
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        let text = nobody(inbox, look);
-        for (row, line) in rows_of(inside).zip(wrapped(&text, inside.width as usize)) {
+        let mut lines = wrapped(&nobody(inbox, look), inside.width as usize);
+        if lines.len() > inside.height as usize {
+            let zoom = look.keys.label(Action::Zoom).unwrap_or_default();
+            lines.truncate((inside.height as usize).saturating_sub(1));
+            lines.push(format!("… {zoom} shows the rest"));
+        }
+        for (row, line) in rows_of(inside).zip(lines) {
             canvas.text(row, &line, Role::Dim);
         }
     } else {
@@ -111,12 +116,10 @@ fn nobody(inbox: &Inbox, look: &Look<'_>) -> String {
     let funnels: Vec<String> =
         look.company.funnels.iter().map(|own| format!("· {}", own.in_words())).collect();
     format!(
-        "No company has asked for an offer yet.\n\n{}\n\nA company asks when it hears of you and a plan is good enough \
-         for it at some price:\n· ads for these groups bring companies ({} set_targeted_ad_spend)\n· a better model tier, \
-         development for the group and a quota that holds a whole office make a plan good enough\n\nA company that asked \
-         waits 7 days for an answer.",
-        funnels.join("\n"),
-        key(Action::Tools)
+        "No company has asked for an offer yet. Ads bring companies ({} set_targeted_ad_spend). A better model tier, \
+         development for their group and a quota for a whole office make a plan good enough.\n\n{}",
+        key(Action::Tools),
+        funnels.join("\n")
     )
 }
 

@@ -8,7 +8,7 @@ use crate::console::company::Company;
 use crate::console::text::{number, short_dollars};
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, signed_dollars};
-use crate::session::{JournalEntry, Reversal, ScoredForecast, WeekFigures, undone_calls};
+use crate::session::{JournalEntry, Reversal, ScoredForecast, WeekFigures, naively, undone_calls};
 use crate::tools::{Forecast, Kind, Spec, find};
 
 /// A line.
@@ -35,7 +35,7 @@ struct Filing<'a> {
     day: u32,
     rationale: &'a str,
     forecasts: &'a [Forecast],
-    naively: bool,
+    filled_naively: &'a [bool],
 }
 
 /// A week: what was done before it, what was filed, how it went.
@@ -56,7 +56,7 @@ pub fn lines(company: &Company) -> Vec<Line> {
         match entry {
             JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings, &undone)),
             JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
-                last.filed = Some(Filing { day: *day, rationale, forecasts, naively: *filled_naively });
+                last.filed = Some(Filing { day: *day, rationale, forecasts, filled_naively });
             }
             JournalEntry::Week { figures } => {
                 last.figures = Some(figures);
@@ -172,7 +172,7 @@ impl Filing<'_> {
             format!("{} wk {}{came}", forecast.horizon_days / 7, short_dollars(forecast.point))
         };
         let all: Vec<String> = self.forecasts.iter().map(one).collect();
-        let naively = if self.naively { "naively " } else { "" };
+        let naively = naively(self.filled_naively).map_or(String::new(), |naively| format!("{naively}: "));
         format!("{naively}{}", all.join(" · "))
     }
 
@@ -195,7 +195,8 @@ impl Filing<'_> {
             )
         };
         let lines: Vec<String> = std::iter::once(head).chain(self.forecasts.iter().map(one)).collect();
-        let naively = if self.naively { ", filled with the naive projection" } else { "" };
+        let naively =
+            naively(self.filled_naively).map_or(String::new(), |naively| format!(", filled {naively}"));
         format!("Forecasts of cash{naively}:\n{}", lines.join("\n"))
     }
 }

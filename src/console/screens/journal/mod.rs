@@ -313,7 +313,7 @@ mod tests {
         assert_eq!(texts[2], "  undo: set_prices A 13 → 12");
         assert!(texts[3].starts_with("week 1 · day 7 · cash $"), "{texts:#?}");
         assert_eq!(texts[4], "  why  Cheaper than the others. See who comes.");
-        assert!(texts[5].starts_with("  said naively 1 wk $"), "{texts:#?}");
+        assert!(texts[5].starts_with("  said naively: 1 wk $"), "{texts:#?}");
         assert_eq!(texts[6], "  set_prices A 12 B 25 C 55");
     }
 

@@ -165,6 +165,7 @@ impl Menu {
             _ if self.asked.is_some() => vec![Action::Confirm, Action::Cancel],
             Page::Home if self.latest().is_none() => vec![Action::Open, Action::NewRun, Action::Quit],
             Page::Home => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],
+            Page::NewRun if self.form.is_typing() => vec![Action::Commit, Action::Discard],
             Page::NewRun => vec![Action::Open, Action::Left, Action::Right, Action::Close],
             Page::Runs if self.table.is_typing() => vec![Action::Commit, Action::Discard],
             Page::Runs => vec![

@@ -219,13 +219,14 @@ impl Form {
                 slot.draft = None;
             }
         }
+        let left = self.at;
         match action {
             Action::CommitNext => self.walk(Action::Right),
             Action::CommitPrevious => self.walk(Action::Up),
             _ => self.walk(Action::Down),
         }
-        // Enter ends typing; the keys that move go on in the cell they lead to.
-        if action != Action::Commit {
+        // Enter ends typing; the keys that move go on in the cell they lead to, but not in the one that was typed.
+        if action != Action::Commit && self.at != left {
             self.edit();
         }
         self.check()

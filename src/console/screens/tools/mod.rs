@@ -77,7 +77,9 @@ impl Tools {
         if let Some(place) = self.shown().iter().position(|spec| spec.name == tool) {
             self.selected = place;
             self.focus = 1;
-            self.form(company);
+            if let Some(form) = self.form(company) {
+                form.at = sheet::Place::default();
+            }
         }
     }
 

@@ -35,6 +35,18 @@ fn enter_edits_a_cell_and_arrows_go_on_in_the_next() {
 }
 
 #[test]
+fn tab_leaves_the_last_cell_as_it_was_typed_and_a_form_opens_at_its_first() {
+    let (mut tools, _) =
+        typed("set_prices", &["enter", "1", "2", "tab", "2", "5", "tab", "5", "5", "tab", "7"]);
+    let form = tools.seen_form().expect("a form");
+    assert!(!form.is_typing());
+    assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12, "B": 25, "C": 55})));
+    assert_eq!(tools.place_path().as_deref(), Some("C"));
+    tools.show("set_prices", &company());
+    assert_eq!(tools.place_path().as_deref(), Some("A"));
+}
+
+#[test]
 fn keys_pressed_outside_a_cell_type_nothing() {
     let (tools, _) = typed("set_targeted_ad_spend", &["9", "$", "-", "5"]);
     let form = tools.seen_form().expect("a form");

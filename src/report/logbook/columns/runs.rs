@@ -143,7 +143,7 @@ pub const RUNS: &[RunColumn] = &[
     column(
         "weeks_filled_naively",
         "count",
-        "weeks whose forecasts were filled by the naive projection",
+        "weeks in which at least one forecast was filled by the naive projection",
         |run| run.measures.filled_naively.0.to_string(),
     ),
     column(

@@ -106,9 +106,12 @@ pub const WEEKS: &[WeekColumn] = &[
         week.wording.planning.to_string()
     }),
     column("if_words", "count", "how often it says \"if\"", |_, week| week.wording.ifs.to_string()),
-    column("filled_naively", "0 or 1", "1: the forecasts were filled by the naive projection", |_, week| {
-        week.filled_naively.map(|naive| u8::from(naive).to_string()).unwrap_or_default()
-    }),
+    column(
+        "filled_naively",
+        "0 or 1",
+        "1: at least one forecast was filled by the naive projection",
+        |_, week| week.filled_naively.map(|naive| u8::from(naive).to_string()).unwrap_or_default(),
+    ),
     column("forecast_7_point", "dollars", "cash expected 7 days ahead", point::<7>),
     column("forecast_7_lower", "dollars", LOWER, lower::<7>),
     column("forecast_7_upper", "dollars", UPPER, upper::<7>),

@@ -1,6 +1,6 @@
 //! How numbers are written: the same on every screen, in every report and every message.
 //!
-//! Rounding is half to even on the exact binary value everywhere (specification, chapter 60 §8.2).
+//! Rounding is half to even on the exact binary value everywhere.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn check_3_of_chapter_60() {
+    fn figures_round_half_to_even_and_carry_their_signs() {
         for (value, text) in [(9.5, "10"), (8.5, "8"), (10.5, "10"), (0.5, "0"), (1.5, "2"), (250.5, "250")] {
             assert_eq!(grouped(value, 0), text);
         }

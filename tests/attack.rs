@@ -1,5 +1,5 @@
 //! Hundreds of statements against the SQL prompt: nothing hidden is read, nothing is written, and each one ends
-//! within the limits (specification, chapter 60 §3.4).
+//! within the limits (docs/formats/database.md#queries).
 
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard};

@@ -139,7 +139,7 @@ fn a_changed_price_is_found(place: &Path) {
     assert!(verify(place).is_err());
 }
 
-/// Chapter 60 §2.10 and chapter 40 §5: what a row shows, and what it does not.
+/// What a row shows, and what it does not.
 #[test]
 fn turns_are_recorded_as_a_manager_sees_them() {
     let mut session = create(Storage::Memory);
@@ -221,7 +221,7 @@ fn turns_are_recorded_as_a_manager_sees_them() {
     assert_eq!(columns, visible);
 }
 
-/// Subscriptions, bills and customers after deals (chapter 40 §10.1, §15).
+/// Subscriptions, bills and customers after deals.
 #[test]
 fn deals_show_in_subscriptions_and_bills() {
     let mut session = create(Storage::Memory);

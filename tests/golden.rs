@@ -1,5 +1,5 @@
-//! Figures agree with the released simulator over many seeds (chapter 70 §4), and exactly with those of the last
-//! release of this program.
+//! Figures agree with the released simulator over many seeds (docs/interfaces/golden.md), and exactly with those of
+//! the last release of this program.
 
 use std::collections::BTreeMap;
 use std::fs;

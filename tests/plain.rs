@@ -46,7 +46,7 @@ next "first prices" 990000 980000 995000  960000 930000 980000  900000 800000 10
 "#;
 
 #[test]
-fn the_example_of_chapter_70_reads_as_printed_there() {
+fn a_piped_session_reads_like_a_dialogue() {
     let runs = tempfile::tempdir().expect("a folder");
     let (said, code) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], EXAMPLE);
     assert_eq!(code, 0);

@@ -279,7 +279,6 @@ fn a_run_ends_on_its_last_day_and_refuses_to_act_then() {
 
 #[test]
 fn bankruptcy_ends_the_week_and_the_run() {
-    // Check 13 of chapter 60, and check 16 of chapter 50.
     let mut session = create(NewRun { cash: Some(30_000.0), ..new_run(Storage::Memory) });
     call(&mut session, "set_daily_spend", json!({"operations": 3000, "development": 1500}));
     let forecasts = session.naive_forecasts();

@@ -1,4 +1,4 @@
-//! The 19 tables: their columns, and that rows appear when chapter 60 says.
+//! The 19 tables: their columns, and that rows appear on the day on which they are due.
 
 use std::collections::BTreeMap;
 
@@ -425,7 +425,7 @@ fn funded_channels_have_a_row_a_day_and_ads_one_per_subscriber() {
     assert_eq!(number(&mut session, earned), 1.0);
 }
 
-/// One issue as the chapter tells its life.
+/// One issue, put together from the facts of the days.
 #[derive(Debug, Clone, PartialEq)]
 struct Issue {
     customer: u32,

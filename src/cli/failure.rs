@@ -1,4 +1,4 @@
-//! Failures of commands and their exit codes (chapter 70 §1).
+//! Failures of commands and their exit codes.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! The command line: one file per subcommand (chapter 70 §1).
+//! The command line: one file per subcommand.
 
 mod bench;
 mod completions;

@@ -1,4 +1,4 @@
-//! Every key of the console as text, made from the table of actions: for the terminal and for the README.
+//! Every key of the console as text, made from the table of actions: for the terminal and for the documents.
 
 use super::action::{ACTIONS, ActionEntry, Scope};
 use super::keys::{Keys, written};
@@ -63,12 +63,12 @@ mod tests {
     }
 
     #[test]
-    fn the_readme_has_the_keys_that_the_program_has() {
-        let readme = include_str!("../../README.md");
+    fn the_page_of_keys_has_those_that_the_program_has() {
+        let page = include_str!("../../docs/interfaces/keys.md");
         let shipped = markdown(&Keys::shipped());
         assert!(
-            readme.contains(shipped.trim()),
-            "the keys in README.md are out of date; `novamind keys --markdown` prints them:\n{shipped}"
+            page.contains(shipped.trim()),
+            "the keys in docs/interfaces/keys.md are out of date; `novamind keys --markdown` prints them:\n{shipped}"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! The terminal application (chapters 80 and 81).
+//! The terminal application.
 //!
 //! Input becomes an action, an action changes state, a pure view draws it. The session and the database work on
 //! threads of their own and report through the channel that also carries the input; the screen never waits.

@@ -1,5 +1,5 @@
 //! What a statement may do: read the visible tables, their insides only from within a view, and call ordinary
-//! functions (chapter 60 §3.4). Decided by what it does, never by how its text looks.
+//! functions (docs/formats/database.md#queries). Decided by what it does, never by how its text looks.
 
 use std::collections::hash_map::RandomState;
 use std::collections::{BTreeMap, BTreeSet};

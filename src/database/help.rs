@@ -1,4 +1,4 @@
-//! Help for the SQL prompt: what an error means here, and why a result may be empty (chapter 60 §3.3).
+//! Help for the SQL prompt: what an error means here, and why a result may be empty.
 
 use super::catalogue::{Table, table, tables};
 use super::tokens::{Kind, Token, tokens};

@@ -3,7 +3,7 @@
 //! `world.db` is a projection of the facts of each day, never the truth: a writer thread ([`Projector`]) turns
 //! facts into rows while the player reads and decides, and the file can be rebuilt from the trajectory at any
 //! time. Queries go through a guarded read-only connection ([`Desk`]). What is hidden is never written here, so
-//! no query, tool or editor can find it (specification, chapters 60 §2-§3, 90 §4).
+//! no query, tool or editor can find it (docs/formats/database.md).
 
 pub mod catalogue;
 pub mod query;

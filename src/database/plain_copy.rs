@@ -1,5 +1,5 @@
 //! A copy of the database for other programs: every visible table is an ordinary table or view in it, so any SQLite
-//! tool can read it without this program (chapter 90 §5).
+//! tool can read it without this program.
 
 use std::path::Path;
 use std::time::Duration;

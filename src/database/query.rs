@@ -1,4 +1,4 @@
-//! Guarded queries: one read-only statement over the 19 visible tables (chapter 60 §3.4, rule C).
+//! Guarded queries: one read-only statement over the 19 visible tables (docs/formats/database.md#queries).
 //!
 //! A statement is first compiled against the released schema (`released.rs`), where nothing hidden has a name. The
 //! connection that answers it can only read; an authorizer (`guard.rs`) allows the visible tables and ordinary
@@ -82,7 +82,7 @@ pub fn text_at(row: &[Cell], at: usize) -> &str {
 /// Why a query was not answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct QueryError {
-    /// Code of chapter 50: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`, `sql_error`.
+    /// Code for programs: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`, `sql_error`.
     pub code: &'static str,
     /// What is wrong, with help where there is some.
     pub message: String,
@@ -171,7 +171,7 @@ impl Desk {
     /// Answers one statement.
     ///
     /// # Errors
-    /// The codes of chapter 50, query.
+    /// The `sql_` codes.
     pub fn ask(&self, sql: &str, limits: Limits) -> Result<Rows, QueryError> {
         self.ask_as(self.interrupt.ticket(), sql, limits)
     }
@@ -179,7 +179,7 @@ impl Desk {
     /// Answers one statement under a ticket that was drawn when it was asked for.
     ///
     /// # Errors
-    /// The codes of chapter 50, query.
+    /// The `sql_` codes.
     pub fn ask_as(&self, ticket: Ticket, sql: &str, limits: Limits) -> Result<Rows, QueryError> {
         if sql.trim().is_empty() {
             return Err(refusal("sql_empty", "no SQL was given"));

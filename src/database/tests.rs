@@ -213,7 +213,6 @@ fn open_issues_agree_with_the_world() {
     assert_eq!(one(&desk, &format!("{wrong} AND open_day > 30")), 0.0);
 }
 
-/// Check 17 of chapter 60, and the retention of daily_usage.
 #[test]
 fn usage_older_than_a_month_goes() {
     let mut company = Company::open(Location::memory());
@@ -233,7 +232,7 @@ fn usage_older_than_a_month_goes() {
 }
 
 #[test]
-fn check_7_of_chapter_60_settings_and_ledger_order() {
+fn a_day_of_the_ledger_lists_leads_payments_and_then_costs() {
     let mut company = Company::open(Location::memory());
     let desk = company.weeks(1);
     let first = rows(&desk, "SELECT id, category, amount, note FROM ledger WHERE day = 0");
@@ -284,7 +283,7 @@ fn what_is_hidden_cannot_be_asked() {
     let mut company = Company::open(Location::memory());
     let desk = company.weeks(2);
     for (sql, code) in [
-        // Checks 14 and 15 of chapter 60, and what people try next.
+        // The obvious attempts, then what people try next.
         ("", "sql_empty"),
         ("  ", "sql_empty"),
         ("SELECT c_max AS x FROM customers", "sql_error"),

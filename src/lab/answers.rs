@@ -1,4 +1,4 @@
-//! How a policy answers companies: the section `[enterprise]` (chapter 70 §3).
+//! How a policy answers companies: the section `[enterprise]` (docs/interfaces/policies.md#answers-to-companies).
 
 use serde::Deserialize;
 use serde_json::{Value, json};

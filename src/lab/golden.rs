@@ -1,4 +1,4 @@
-//! Comparison with reference figures (chapter 70 §4).
+//! Comparison with reference figures (docs/interfaces/golden.md).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;

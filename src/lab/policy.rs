@@ -1,4 +1,4 @@
-//! Policy files (chapter 70 §3).
+//! Policy files (docs/interfaces/policies.md).
 
 use std::fmt;
 

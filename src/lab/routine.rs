@@ -1,4 +1,4 @@
-//! The weekly routine of the paper's rule-based baseline (chapter 70 §3).
+//! The weekly routine of the paper's rule-based baseline (docs/interfaces/policies.md#weekly-routine).
 
 use serde_json::{Map, Value, json};
 
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_best_starting_channels_are_those_of_chapter_70() {
+    fn content_marketing_starts_best_for_s1_and_referrals_for_s3() {
         let params = Params::shipped();
         let best = |id| best_starting_channel(Group::parse(id).expect("a group"), &params).id();
         assert_eq!((best("S1"), best("S3")), ("content_marketing", "referral_program"));

@@ -1,4 +1,5 @@
-//! Symbols in the arguments of policies: names that are resolved when a call is made (chapter 70 §3).
+//! Symbols in the arguments of policies: names that are resolved when a call is made
+//! (docs/interfaces/policies.md#symbols).
 
 use serde_json::{Map, Value};
 

@@ -1,4 +1,4 @@
-//! Answers as text and as JSON (chapter 70 §8.3).
+//! Answers as text and as JSON (docs/interfaces/plain-mode.md#answers).
 
 use serde_json::{Map, Value, json};
 
@@ -150,7 +150,7 @@ mod tests {
     use crate::session::{Cell, Rows};
 
     #[test]
-    fn answers_look_like_the_example_of_chapter_70() {
+    fn calls_refusals_and_rows_have_their_forms() {
         let data = json!({"updated": {"A": 12, "B": 25}, "total_per_day": 120});
         let answer = Answer::call("set_prices", data);
         assert_eq!(answer.as_text(), "ok set_prices\n  updated: {\"A\":12,\"B\":25}\n  total_per_day: 120\n");

@@ -1,4 +1,4 @@
-//! The commands of plain mode: what each line does, and what is answered (chapter 70 §8.1).
+//! The commands of plain mode: what each line does, and what is answered (docs/interfaces/plain-mode.md#commands).
 
 mod readings;
 mod report;

@@ -1,4 +1,4 @@
-//! The grammar of a line (chapter 70 §8.1).
+//! The grammar of a line (docs/interfaces/plain-mode.md#grammar).
 
 use serde_json::{Map, Value};
 

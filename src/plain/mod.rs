@@ -1,4 +1,4 @@
-//! The same game line by line: for pipes, scripts and screen readers (chapter 70 §8).
+//! The same game line by line: for pipes, scripts and screen readers (docs/interfaces/plain-mode.md).
 //!
 //! One command per line, an answer for each before the next is read, no colour, no cursor movement. Every
 //! answer goes to standard output, refusals too, and ends with an empty line.

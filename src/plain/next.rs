@@ -1,4 +1,4 @@
-//! `next`: rationale, forecasts, a week (chapter 70 §8.2).
+//! `next`: rationale, forecasts, a week (docs/interfaces/plain-mode.md#next).
 
 use std::io::{self, BufRead};
 

@@ -118,7 +118,7 @@ impl Session {
     /// Calls a tool; `next_week` and `query` have functions of their own.
     ///
     /// # Errors
-    /// The refusals of chapter 50; `unknown_tool`; `run_over`; `not_saved` when the disk refuses. Nothing has
+    /// The refusals of the tool; `unknown_tool`; `run_over`; `not_saved` when the disk refuses. Nothing has
     /// changed then.
     pub fn call(&mut self, tool: &str, arguments: &Value, via: Via) -> Result<Value, Refusal> {
         self.call_recorded(tool, arguments, via, None)

@@ -42,7 +42,7 @@ pub struct Week {
 }
 
 impl Week {
-    /// The week as programs get it (chapter 70 §5).
+    /// The week as programs get it.
     pub fn as_json(&self) -> Value {
         let notices: Vec<Value> =
             self.notices.iter().map(|(day, text)| json!({ "day": day, "text": text })).collect();

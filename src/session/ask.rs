@@ -18,7 +18,7 @@ impl Session {
     /// Answers one guarded statement and records that it was asked.
     ///
     /// # Errors
-    /// The `sql_` codes of chapter 50.
+    /// The `sql_` codes.
     pub fn query(&mut self, sql: &str) -> Result<Rows, Refusal> {
         match self.interrupt() {
             Ok(interrupt) => self.query_as(interrupt.ticket(), sql),
@@ -32,7 +32,7 @@ impl Session {
     /// The same under a ticket of [`Session::interrupt`] that was drawn when the statement was asked for.
     ///
     /// # Errors
-    /// The `sql_` codes of chapter 50.
+    /// The `sql_` codes.
     pub fn query_as(&mut self, ticket: Ticket, sql: &str) -> Result<Rows, Refusal> {
         let started = Instant::now();
         let limits = limits(self);
@@ -151,7 +151,7 @@ pub fn desk_of_file(folder: &Path) -> Result<(Desk, crate::database::Position), 
         .map_err(|error| Refusal::new("sql_error", error.to_string()))
 }
 
-/// A result as chapter 50 gives it to programs: rows as objects, of equal column names the first wins.
+/// A result as programs get it: rows as objects, of equal column names the first wins.
 pub fn rows_as_json(rows: &Rows) -> Map<String, Value> {
     let object = |row: &Vec<Cell>| {
         let mut fields = Map::new();

@@ -1,4 +1,4 @@
-//! Branches: a new run that shares the past of another up to a decision day (chapter 80 §2).
+//! Branches: a new run that shares the past of another up to a decision day.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! The weekly dashboard as text (chapter 60 §8, with the rules marked C).
+//! The weekly dashboard as text: the one agents read, with what they can find out by queries.
 
 use std::fmt::Write;
 
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn check_10_of_chapter_60_quality_as_shown() {
+    fn quality_is_shown_for_each_group_and_plan() {
         let (mut world, params) = world();
         world.settings.core.tiers = ByPlan([1, 2, 3]);
         world.product.shared_bonus = 0.02257;

@@ -116,7 +116,7 @@ fn public_post(post: &Post, day: u32, content: String, streams: &Streams) -> Pub
 }
 
 impl Session {
-    /// Lets the readers judge what the player posted before today (chapter 30 §6.2).
+    /// Lets the readers judge what the player posted before today.
     pub(super) fn judge_own_posts(&mut self) {
         if self.params.fidelity.post_judge == PostJudge::None {
             return;

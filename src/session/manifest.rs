@@ -1,4 +1,4 @@
-//! `run.toml`: what a run is (chapter 90 §5).
+//! `run.toml`: what a run is (docs/formats/run-folder.md#runtoml).
 
 use std::path::Path;
 

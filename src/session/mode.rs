@@ -1,4 +1,4 @@
-//! What a run is for, and what it allows (chapter 80 §2).
+//! What a run is for, and what it allows.
 
 use std::fmt;
 

@@ -1,4 +1,5 @@
-//! Power cuts: whatever was not synced is gone, and nothing that was confirmed is (chapter 90 §4, durability classes).
+//! Power cuts: whatever was not synced is gone, and nothing that was confirmed is
+//! (docs/formats/trajectory.md#durability).
 
 use std::fs::File;
 use std::io::{self, Write};

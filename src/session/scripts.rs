@@ -1,4 +1,4 @@
-//! What is kept with a run besides its company: calculations and scripts, and running them (chapter 50 §5).
+//! What is kept with a run besides its company: calculations and scripts, and running them.
 //!
 //! Both are read-only SQL under the guard and the limits of a query. What is kept follows from the calls of the
 //! trajectory; what calculations said before a week stands in its `advance` line, so a resumed run shows the same

@@ -2,7 +2,7 @@
 //!
 //! Never the truth: a snapshot is used only if it is whole, was written by this version for this run and these
 //! parameters, and stands at a line that the trajectory still has. Otherwise the run is simulated from its
-//! beginning, which costs time and nothing else (specification, chapter 90 §4-§5).
+//! beginning, which costs time and nothing else (docs/formats/snapshot.md).
 //!
 //! The file is a title line, the blake3 digest of the rest, and the rest as canonical bytes: header and notes as
 //! JSON texts, then what the world and the session hold as numbers.

@@ -5,7 +5,7 @@ use crate::world::identifiers::Group;
 use crate::world::product::development::targeted_development_gain;
 use crate::world::product::service::outage_probability;
 
-/// A level that a study of a group can reach (chapter 50 §4.5).
+/// A level that a study of a group can reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StudyLevel {
     /// Level, 1..=5; level 1 comes with the discovery.

@@ -1,4 +1,4 @@
-//! The figures of a week, and what a player must file before it runs (chapter 60 §8.1, chapter 70 §5).
+//! The figures of a week, and what a player must file before it runs.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -115,7 +115,7 @@ impl WeekFigures {
         self.error_rate_peak = self.error_rate_peak.max(day.error_rate);
     }
 
-    /// The figures that a `week` line and programs carry, by their names of chapter 70 §5.
+    /// The figures that a `week` line and programs carry, by their names there.
     pub fn as_json(&self) -> Map<String, Value> {
         let figures = json!({
             "cash": json_number(self.cash),
@@ -223,14 +223,14 @@ mod tests {
     }
 
     #[test]
-    fn check_2_of_chapter_60() {
+    fn weeks_are_counted_from_the_first_and_day_0_belongs_to_none() {
         for (day, week) in [(0, 0), (1, 1), (7, 1), (8, 2), (497, 71), (500, 72), (504, 72)] {
             assert_eq!(week_of(day), week, "day {day}");
         }
     }
 
     #[test]
-    fn check_20_of_chapter_20_sums_and_peaks() {
+    fn a_week_sums_usage_and_keeps_peaks() {
         let mut week = WeekFigures::default();
         for day in 1..=7u32 {
             let outage = day == 3;

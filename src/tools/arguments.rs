@@ -1,4 +1,5 @@
-//! Reading arguments: from JSON to typed values, with the refusals of chapter 50.
+//! Reading arguments: from JSON to typed values, with the refusals that all tools share
+//! (docs/interfaces/tools.md#arguments).
 
 use indexmap::IndexMap;
 use serde_json::{Map, Value};

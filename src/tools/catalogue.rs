@@ -89,7 +89,7 @@ mod tests {
         assert_eq!(nearest("set_price")[0], "set_prices");
     }
 
-    /// The 34 tools of chapter 50 §1, and the two readings beside them.
+    /// The 34 tools that agents are told of, and the two readings beside them.
     const EXPECTED: [&str; 36] = [
         "set_prices",
         "set_model_tiers",
@@ -130,7 +130,7 @@ mod tests {
     ];
 
     #[test]
-    fn the_catalogue_holds_exactly_the_tools_of_chapter_50() {
+    fn the_catalogue_holds_34_tools_and_two_readings() {
         let own: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name).collect();
         let missing: Vec<&&str> = EXPECTED.iter().filter(|name| !own.contains(name)).collect();
         let surplus: Vec<&&str> = own.iter().filter(|name| !EXPECTED.contains(name)).collect();

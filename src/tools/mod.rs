@@ -1,4 +1,4 @@
-//! The tools: every action and reading of the player, one file each (specification, chapter 50).
+//! The tools: every action and reading of the player, one file each (docs/interfaces/tools.md).
 //!
 //! A tool is data ([`Spec`]) and three small functions: what its arguments are now ([`Tool::current`]), what a
 //! call would do ([`Tool::plan`], pure, so it also previews), and what it answers ([`Tool::answer`]). Adding a
@@ -59,7 +59,7 @@ pub trait Tool: Sync {
     /// What a call with these arguments would do.
     ///
     /// # Errors
-    /// The refusals of its specification, in the order of its checks.
+    /// The refusals that its [`Spec`] lists, in the order of its checks.
     fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal>;
 
     /// What the session has to do for an accepted call besides its effect on the world.
@@ -75,7 +75,7 @@ pub trait Tool: Sync {
         }
     }
 
-    /// The data of the answer, given what was decided. Numbers as chapter 50 says.
+    /// The data of the answer, given what was decided.
     fn answer(&self, view: &View<'_>, arguments: &Arguments, deed: &Deed) -> Value;
 }
 

@@ -1,4 +1,4 @@
-//! What a player keeps with a run: calculations for the dashboard, and scripts (chapter 50 §5).
+//! What a player keeps with a run: calculations for the dashboard, and scripts.
 //!
 //! Both are names for SQL statements. Nothing of it reaches the world.
 

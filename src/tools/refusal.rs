@@ -7,7 +7,7 @@ use serde::Serialize;
 /// A refused call: nothing was changed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Refusal {
-    /// Code of chapter 50, for programs.
+    /// Code, for programs.
     pub code: &'static str,
     /// What is wrong and what would be right, for people.
     pub message: String,

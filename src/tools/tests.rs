@@ -1,4 +1,4 @@
-//! Every refusal and result of chapter 50 for these tools, against a fresh world.
+//! Every refusal and result of these tools, against a fresh world.
 
 mod engine;
 mod market;
@@ -159,7 +159,7 @@ fn set_promotion() {
             (json!({"by_group_plan": {"S1": {"A": 1e300}}}), "amount_too_large", "by_group_plan.S1.A"),
         ],
     );
-    // Check 6 of chapter 50.
+    // An empty map clears its own scope and no other.
     let all = json!({
         "global_promotion": 5,
         "by_group": {"S1": 2},
@@ -229,7 +229,7 @@ fn set_targeted_ad_spend() {
             (json!({"linkedin": {"E1": 1e308}}), "amount_too_large", "targeted_spend.linkedin.E1"),
         ],
     );
-    // Check 8 of chapter 50.
+    // A matrix of groups is turned round; a group without channels says nothing.
     let turned =
         json!({"targeted_spend": {"E1": {"linkedin": 200, "search_ads": 50}, "S1": {"linkedin": 20}}});
     let data = company.call("set_targeted_ad_spend", turned);
@@ -255,7 +255,7 @@ fn set_ads_strength() {
             (json!({"by_customer": {"5.5": 0.1}}), "customer_not_integer", "by_customer.5.5"),
         ],
     );
-    // Check 5 of chapter 50: nothing is applied when a later scope is wrong.
+    // Nothing is applied when a later scope is wrong.
     let wrong = json!({"global_strength": 0.4, "by_group": {"S2": 0.1}, "by_customer": {"5": 3}});
     assert_eq!(company.refused("set_ads_strength", wrong).0, "strength_out_of_range");
     let data =
@@ -297,13 +297,13 @@ fn set_targeted_ops_spend() {
             (json!({"by_plan": {"D": 4}}), "unknown_plan", "by_plan.D"),
             (json!({"by_group_plan": {"S1": {"A": -4}}}), "amount_invalid", "by_group_plan.S1.A"),
             (json!({"by_customer": {"x": 4}}), "customer_not_integer", "by_customer.x"),
-            // Check 5 of chapter 50: the port leaves the first scope unchanged.
+            // The first scope stays as it was, which the sums below show.
             (json!({"by_group": {"S2": 9}, "by_plan": {"D": 1}}), "unknown_plan", "by_plan.D"),
             (json!({"by_customer": {"7": 1e10}}), "amount_too_large", "by_customer.7"),
             (json!({"targeted_spend": {"S1": 1e10}}), "amount_too_large", "targeted_spend.S1"),
         ],
     );
-    // Check 2 of chapter 50.
+    // Every scope is a pool of its own, kept until it is named again.
     company.call("set_targeted_ops_spend", json!({"E1": 30, "S1": 20}));
     company.call("set_targeted_ops_spend", json!({"by_plan": {"A": 10}}));
     company.call("set_targeted_ops_spend", json!({"by_group_plan": {"S1": {"A": 5}}}));
@@ -349,7 +349,7 @@ fn start_research_project() {
             (json!({"tier": 20}), "insufficient_funds", ""),
         ],
     );
-    // Check 12 of chapter 50.
+    // The price is paid at once, and the refusals above cost nothing.
     assert_eq!(company.world.finance.cash, 833_333.0);
     let project = company.world.product.research[0];
     assert!(project.due_day >= 30);
@@ -513,7 +513,6 @@ fn deals_may_be_written_in_many_ways() {
     assert_eq!(offered(&company, 2), [("C", 0.0)]);
 }
 
-/// Check 14 of chapter 50.
 #[test]
 fn one_bad_deal_does_not_stop_the_others() {
     let mut company = with_companies();

@@ -79,7 +79,7 @@ impl<'a> View<'a> {
         &self.world.settings
     }
 
-    /// Parameters of the world; a tool shows only what chapter 50 lets it show.
+    /// Parameters of the world; a tool shows only what agents are told too.
     pub fn params(&self) -> &'a Params {
         self.params
     }

@@ -1,4 +1,4 @@
-//! Addresses of companies: a pure function of the customer number (chapter 40 §16.4).
+//! Addresses of companies: a pure function of the customer number (docs/mechanics/market/social/texts.md#addresses).
 
 use md5::{Digest, Md5};
 
@@ -32,7 +32,7 @@ mod tests {
     use crate::world::params::Params;
 
     #[test]
-    fn check_15_of_chapter_40() {
+    fn picks_follow_the_digest_of_the_customer_number() {
         for (customer, expected) in [
             (1, [28, 43, 10, 0, 3]),
             (2, [28, 41, 0, 5, 0]),

@@ -1,4 +1,5 @@
-//! A small grammar that writes sentences: rules with alternatives, filled from a context (chapter 30 §14).
+//! A small grammar that writes sentences: rules with alternatives, filled from a context
+//! (docs/mechanics/market/social/texts.md#grammar).
 //!
 //! A grammar is a TOML file. `given` lists the values every context has, `maybe` those that may be missing, `tags`
 //! the conditions that may hold; `[rules]` holds the rules, nested tables making dotted names. In an alternative

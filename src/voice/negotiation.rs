@@ -1,5 +1,5 @@
 //! What companies write: openers, prices of their own, agreement; and what the market records of a deal
-//! (chapter 40 §16.3).
+//! (docs/mechanics/market/social/texts.md#messages-of-companies).
 //!
 //! A message is an opening, a core with the facts, and an ending in the manner of the company. Opening and core
 //! go by the running number of the message with a stride that is coprime to the number of their pairs, so that no

@@ -1,4 +1,4 @@
-//! The inbox: one line per notice (chapter 60 §6).
+//! The inbox: one line per notice.
 
 use crate::notation::grouped;
 use crate::world::events::{Notice, Reaction};
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn negotiations_say_what_chapter_40_lets_them_say() {
+    fn notices_of_negotiations_name_the_company_if_it_is_known() {
         let leave = notice(&Notice::ChurnThreat { customer: 7 }, None);
         assert!(leave.starts_with("Customer 7 threatens to leave"), "{leave}");
         let up = notice(&Notice::PlanWish { customer: 9, upgrade: true }, None);

@@ -1,4 +1,4 @@
-//! Published readings of the economy in three or four sentences (chapter 30 §8.2).
+//! Published readings of the economy in three or four sentences.
 
 use crate::world::events::{Reading, Trend};
 

@@ -1,7 +1,7 @@
 //! The canonical bytes of the state, from which the state hash is made and which a snapshot keeps.
 //!
 //! Little endian, floats by their bits, fields in declaration order, lists preceded by their length
-//! (specification, chapter 70 §5). Two worlds with equal bytes behave alike from here on, and a world can be read
+//! (`docs/formats/snapshot.md`). Two worlds with equal bytes behave alike from here on, and a world can be read
 //! back from them ([`Restore`]).
 
 mod restore;

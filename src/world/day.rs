@@ -1,4 +1,4 @@
-//! A day, as a list: read [`step_day`] from top to bottom (specification, chapter 20 §5).
+//! A day, as a list: read [`step_day`] from top to bottom (`docs/mechanics/day.md`).
 
 use super::canonical::canonical;
 use super::customers::Customers;
@@ -258,7 +258,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn check_20_of_chapter_20_an_idle_company_pays_85_a_day() {
+    fn an_idle_company_pays_85_a_day() {
         let days = run(1_000_000.0, 3, |_| {});
         assert_eq!((days[0].total_costs, days[0].cash), (85.0, 999_915.0));
         assert_eq!(days[2].cash, 999_745.0);
@@ -267,7 +267,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn check_9_of_chapter_10_the_calendar() {
+    fn a_day_has_the_factors_of_its_weekday_and_of_its_day_of_the_month() {
         for (day, weekday, month_day) in [
             (1, 1.1, 1.15),
             (2, 1.15, 1.15),
@@ -283,7 +283,6 @@ pub(crate) mod tests {
         }
     }
 
-    /// Fixed costs and row counts of checks 7 and 9 of chapter 60 (policy P).
     #[test]
     fn a_week_of_policy_p_books_its_fixed_costs() {
         let (params, streams) = (Params::shipped(), Streams::new(42));

@@ -1,4 +1,4 @@
-//! Money: what a day costs, where cash goes, and when a run is over (chapter 20 §20).
+//! Money: what a day costs, where cash goes, and when a run is over (`docs/mechanics/money.md`).
 
 use super::canonical::canonical;
 use super::events::{Category, Facts, LedgerEntry, LedgerNote};
@@ -80,7 +80,7 @@ mod tests {
     use crate::world::morning::tests::morning;
 
     #[test]
-    fn check_19_of_chapter_20() {
+    fn running_costs_are_booked_in_their_order_and_add_up() {
         let params = Params::shipped();
         let s1 = Group::at(0).expect("S1");
         let mut settings = Settings::opening(&params);

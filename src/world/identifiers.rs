@@ -1,14 +1,14 @@
 //! Names of the things every part of the house speaks about: groups, plans, channels, months and weeks.
 //!
 //! These are plain identifiers without behaviour of the world, so that the console, the policies and the
-//! tools may use them without reaching into the simulator (specification, chapter 90 §1).
+//! tools may use them without reaching into the simulator (`docs/architecture.md`).
 
 use std::fmt;
 use std::ops::{Index, IndexMut};
 
 use serde::{Deserialize, Serialize};
 
-/// One of the 26 customer groups, as its position in the fixed group order of chapter 10.1.
+/// One of the 26 customer groups, as its position in the fixed group order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Group(u8);
 
@@ -127,7 +127,7 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// All channels in channel order (chapter 10.1).
+    /// All channels in channel order.
     pub const ALL: [Channel; 5] = [
         Channel::SocialMedia,
         Channel::SearchAds,
@@ -244,7 +244,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn groups_keep_the_order_of_chapter_10() {
+    fn groups_keep_their_fixed_order() {
         let ids: Vec<_> = Group::all().map(Group::id).collect();
         assert_eq!(ids[..7], ["S1", "S2", "S3", "E1", "E2", "E3", "D_S01"]);
         assert_eq!(ids[25], "D_E10");

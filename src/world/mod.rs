@@ -1,7 +1,7 @@
 //! The simulator: pure, deterministic, without input or output, clock, SQL or prose.
 //!
 //! Read [`day::step_day`] first: it is the story of a day. Every mechanism it calls is a function over the parts
-//! it touches, and every formula a small pure function with the specification's check values as its test.
+//! it touches, and every formula a small pure function with check values as its test (`docs/mechanics/README.md`).
 
 pub mod canonical;
 pub mod customers;

@@ -2,7 +2,7 @@
 //!
 //! A stream is derived from (run seed, part, entity keys) by hashing into a ChaCha8 key, so parts are
 //! independent: a draw in one never shifts another, work can be split over threads, and two runs with the same
-//! seed share their luck whatever their players decide (specification, chapter 90 §3; keys: chapter 20 §4).
+//! seed share their luck whatever their players decide (`docs/mechanics/randomness.md`).
 //!
 //! Each continuous draw uses exactly one 64-bit word, so a customer's traits stand at fixed positions. Normal
 //! numbers come from the inverse distribution function (algorithm AS 241 of Wichura), which needs one word,

@@ -1,5 +1,5 @@
 //! Recorded series: what happened in the released simulator and does not depend on what a company does. A scenario
-//! replays it in place of draws (chapter 70 §2).
+//! replays it in place of draws (`docs/mechanics/randomness.md#recorded-series`).
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! What the player has set: the levers of the company (specification, chapter 20 §2, chapter 50 §3).
+//! What the player has set: the levers of the company (`docs/interfaces/tools.md`).
 //!
 //! A setting made between two days is first read on the next day and stays until it is changed again, so the
 //! world needs only the newest values; their history is in the tables.
@@ -54,7 +54,7 @@ pub struct CoreSettings {
     pub capacity_tier: u8,
 }
 
-/// Ongoing discounts, dollars a month and seat; scopes add up, floored at 0 (chapter 20 §11).
+/// Ongoing discounts, dollars a month and seat; scopes add up, floored at 0.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Promotion {
     /// For everybody.
@@ -80,7 +80,7 @@ pub struct LeadPromotion {
     pub by_channel_group: IndexMap<Channel, PerGroup>,
 }
 
-/// In-app advertising load, each level 0..=1; levels add up and are clamped (chapter 20 §19).
+/// In-app advertising load, each level 0..=1; levels add up and are clamped.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct AdsStrength {
     /// For everybody.
@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn promotions_add_up_as_in_check_6_of_chapter_50() {
+    fn promotions_add_up_over_their_scopes() {
         let promotion = Promotion {
             global: 5.0,
             by_group: PerGroup::from([(group("S1"), 2.0)]),
@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn lead_promotions_add_up_as_in_check_7_of_chapter_50() {
+    fn lead_promotions_add_up_over_their_scopes() {
         let promotion = LeadPromotion {
             global: 4.0,
             by_group: PerGroup::from([(group("S1"), 1.0)]),

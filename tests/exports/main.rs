@@ -388,10 +388,10 @@ fn sessions_are_summed_up_and_runs_compared() {
 fn the_documents_say_what_the_program_says() {
     let said = Home::new().run(&["runs", "columns"]);
     assert_eq!(said.out, include_str!("../../assets/columns.md"), "write it anew: novamind runs columns");
-    let readme = include_str!("../../README.md");
-    let examples: Vec<Value> = readme
+    let page = include_str!("../../docs/formats/trajectory.md");
+    let examples: Vec<Value> = page
         .lines()
-        .filter_map(|line| line.strip_prefix("    {\"seq\""))
+        .filter_map(|line| line.strip_prefix("{\"seq\""))
         .map(|line| serde_json::from_str(&format!("{{\"seq\"{line}")).expect("JSON"))
         .collect();
     schema::check_examples(&examples);

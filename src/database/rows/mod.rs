@@ -301,7 +301,7 @@ impl RowWriter {
         factors.iter().position(|factor| arrival.c_max < factor * mean).unwrap_or(factors.len()) as u8
     }
 
-    /// Lead costs, payments, then everything else, as chapter 60 §5 orders them.
+    /// Lead costs, payments, then everything else: the order that the ids of a day follow.
     fn ledger(&self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
         const HEAD: &str = "INSERT INTO ledger_rows (day, kind, amount, about, purpose) VALUES";
         let lead_cost = -self.params.leads.lead_acquisition_cost;

@@ -1,4 +1,4 @@
-//! Rows of what is written in public (chapter 60 §2.7, §2.8).
+//! Rows of what is written in public.
 
 use rusqlite::{Transaction, params};
 

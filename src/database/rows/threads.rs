@@ -1,4 +1,4 @@
-//! Rows of negotiations with companies (chapter 60 §2.10).
+//! Rows of negotiations with companies.
 
 use rusqlite::{Transaction, params};
 
@@ -52,7 +52,7 @@ fn close_reason(turn: &ThreadTurn) -> &'static str {
     }
 }
 
-/// The offer of a turn as JSON, spaced as chapter 40 §5.2 shows it.
+/// The offer of a turn as JSON, spaced as the released simulator writes it: people search this text.
 fn offer_json(content: &TurnContent) -> String {
     match content {
         TurnContent::Offer(offerings) => {
@@ -80,7 +80,7 @@ mod tests {
     use crate::world::identifiers::Plan;
 
     #[test]
-    fn offers_are_written_as_chapter_40_shows_them() {
+    fn offers_are_json_with_blanks_and_prices_with_decimal_points() {
         let offering = |plan, price| Offering { plan, price };
         for (content, json) in [
             (

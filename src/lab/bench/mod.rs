@@ -1,4 +1,4 @@
-//! How fast this machine simulates: the speed table of chapter 90 §4, row by row.
+//! How fast this machine simulates, a row for each thing that people or programs wait for.
 //!
 //! A [`Case`] is something that is measured in a process of its own, so that its peak memory is its own too; it
 //! yields samples of one or more [`Figure`]s, and a figure's value is their median. New figures, for instance

@@ -1,4 +1,4 @@
-//! Figures of a run, day by day, hidden ones included (chapter 70 §4, definitions: reference golden/README).
+//! Figures of a run, day by day, hidden ones included (docs/interfaces/golden.md#figures).
 
 mod market;
 
@@ -161,7 +161,7 @@ fn company_left(ending: &SubscriptionEnded) -> bool {
 }
 
 impl Day<'_> {
-    /// Values of the day in the order of the README's table.
+    /// Values of the day in the order of the table in docs/interfaces/golden.md#figures.
     fn values(&self) -> Vec<Daily> {
         let mut list = Vec::with_capacity(220);
         self.company(&mut list);

@@ -1,4 +1,4 @@
-//! `trajectory.jsonl`: the truth of a run, one line per action (chapter 70 §5, format 1).
+//! `trajectory.jsonl`: the truth of a run, one line per action (docs/formats/trajectory.md).
 //!
 //! Lines are appended and never changed. Each names the hash of the one before and ends with a sum of its own, so
 //! what is cut, flipped or inserted shows, in the last line too. A line whose last byte is missing was never

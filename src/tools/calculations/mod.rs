@@ -1,4 +1,4 @@
-//! Calculations: named SQL statements that run before every week, for the dashboard (chapter 50 §5).
+//! Calculations: named SQL statements that run before every week, for the dashboard.
 
 mod list_daily_calculations;
 mod register_daily_calculation;

@@ -1,4 +1,4 @@
-//! Documents: what tables and tools there are (chapter 50 §5).
+//! Documents: what tables and tools there are.
 
 mod describe_tables;
 mod get_tool_documentation;

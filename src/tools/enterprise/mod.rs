@@ -1,4 +1,4 @@
-//! Negotiations with companies (chapter 50 §4.7).
+//! Negotiations with companies.
 
 mod reading;
 mod reject_enterprise_deal;

@@ -1,4 +1,4 @@
-//! Scripts: SQL statements that are run at once, or kept under a name (chapter 50 §5).
+//! Scripts: SQL statements that are run at once, or kept under a name.
 //!
 //! Agents run Python here. A console has none, so a script is a list of read-only statements, its output their
 //! results as tables; the session runs them under the guard and the limits of a query.

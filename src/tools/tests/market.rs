@@ -59,7 +59,7 @@ fn research_group() {
             (json!({"group_id": 5}), "wrong_type", "group_id"),
             (json!({"group_id": "D_S06"}), "group_not_discovered", "group_id"),
             (json!({"group_id": "X"}), "group_not_discovered", "group_id"),
-            // Check 11 of chapter 50.
+            // No level but a whole number from 2 to 5, and no 3.0.
             (json!({"group_id": "S2", "target_level": 3.0}), "level_out_of_range", "target_level"),
             (json!({"group_id": "S2", "target_level": "3"}), "level_out_of_range", "target_level"),
             (json!({"group_id": "S2", "target_level": 1}), "level_out_of_range", "target_level"),
@@ -82,7 +82,7 @@ fn studies_are_charged_at_once_and_say_when_they_are_done() {
     let expected =
         json!({"group_id": "S1", "new_level": 2, "expected_completion_day": 3, "is_refresh": false});
     assert_eq!(data, expected);
-    // Check 11 of chapter 50: cash may reach zero.
+    // Cash may reach zero.
     assert_eq!(company.world.finance.cash, 0.0);
     assert_eq!(company.refused("research_market", json!({})).0, "insufficient_funds");
     company.world.finance.cash = 1_000_000.0;

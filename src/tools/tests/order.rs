@@ -1,4 +1,4 @@
-//! Where a call is wrong in two ways, the reason that chapter 50 names first is told.
+//! Where a call is wrong in two ways, the check that comes first in the tool answers.
 
 use serde_json::json;
 

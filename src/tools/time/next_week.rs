@@ -104,7 +104,7 @@ pub fn rationale(given: &Value) -> Result<String, Refusal> {
     }
 }
 
-/// The four forecasts of a week, checked in the order of chapter 50 §4.8.
+/// The four forecasts of a week, checked one horizon after the other.
 pub fn forecasts(given: &Value, horizons: &[u32]) -> Result<[Forecast; 4], Refusal> {
     let Some(map) = given.as_object() else {
         let message = format!("the forecasts are required: {}", FORECAST_KEYS.join(", "));
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn check_16_of_chapter_50_and_60() {
+    fn a_rationale_and_four_whole_forecasts_are_required() {
         assert_eq!(rationale(&Value::Null).map_err(|refusal| refusal.code), Err("rationale_missing"));
         assert_eq!(rationale(&json!("  ")).map_err(|refusal| refusal.code), Err("rationale_missing"));
         assert_eq!(rationale(&json!(5)).map_err(|refusal| refusal.code), Err("rationale_missing"));

@@ -1,5 +1,5 @@
 //! What readers know when they judge a post: what they have lived through, and what is on their minds
-//! (chapter 30 §16.5). The judge never sees more.
+//! (docs/mechanics/market/social/judge.md#circumstances). The judge never sees more.
 
 use super::lexicon::Lexicon;
 use crate::world::events::Severity;

@@ -1,4 +1,4 @@
-//! Claims of a post, and whether readers have lived them (chapter 30 §16.6).
+//! Claims of a post, and whether readers have lived them (docs/mechanics/market/social/judge.md#claims).
 
 use super::circumstances::{Circumstances, Readers};
 use super::features::Features;

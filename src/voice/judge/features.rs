@@ -1,4 +1,4 @@
-//! What a post is like, the same for every reader (chapter 30 §16.4).
+//! What a post is like, the same for every reader (docs/mechanics/market/social/judge.md#features).
 
 use super::lexicon::{Features as Law, Lexicon};
 use super::text::{Entry, Reading, is_emoji};

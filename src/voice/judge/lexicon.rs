@@ -83,7 +83,7 @@ fn list<'de, D: Deserializer<'de>>(from: D) -> Result<List, D::Error> {
 
 fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<List, D::Error> {
     let texts = Vec::<String>::deserialize(from)?;
-    // Quoted entries of chapter 30 §16.6 with a space or a slash; single words are matched as words.
+    // An entry with a slash, as 24/7, is no token: it is looked for anywhere. Single words are matched as words.
     Ok(texts
         .iter()
         .map(|text| if text.contains('/') { Entry::anywhere(text) } else { Entry::read(text) })
@@ -96,7 +96,7 @@ fn read(texts: &[String]) -> List {
 
 macro_rules! words {
     ($($(#[$doc:meta])* $field:ident,)*) => {
-        /// Lists that are no topics (chapter 30 §16.3).
+        /// Lists that are no topics.
         #[derive(Debug, Clone, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct Words { $($(#[$doc])* #[serde(deserialize_with = "list")] pub $field: List,)* }
@@ -160,7 +160,7 @@ pub struct ClaimPattern {
     pub to: List,
 }
 
-/// Taste of a group (chapter 30 §16.7).
+/// Taste of a group.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Profile {
@@ -201,7 +201,7 @@ macro_rules! numbers {
 }
 
 numbers! {
-    /// Where claims turn true or false (chapter 30 §16.6).
+    /// Where claims turn true or false.
     Verdicts {
         near_positions: usize,
         quality_progress: f64,
@@ -218,7 +218,7 @@ numbers! {
 }
 
 numbers! {
-    /// Live events and the topics that address them (chapter 30 §16.5).
+    /// Live events and the topics that address them.
     Events {
         kept_days: u32,
         fresh_days: u32,
@@ -239,7 +239,7 @@ numbers! {
 }
 
 numbers! {
-    /// How much a live event is on a group's mind (chapter 30 §16.5).
+    /// How much a live event is on a group's mind.
     Salience {
         outage_minded: f64,
         outage: f64,
@@ -256,7 +256,7 @@ numbers! {
 }
 
 numbers! {
-    /// From words to features (chapter 30 §16.4).
+    /// From words to features.
     Features {
         topic_first: f64,
         topic_more: f64,
@@ -290,7 +290,7 @@ numbers! {
 }
 
 numbers! {
-    /// From features to a score (chapter 30 §16.8).
+    /// From features to a score.
     Terms {
         receptive: f64,
         topics: f64,

@@ -1,4 +1,5 @@
-//! The judge of the company's posts: text in, one reaction per group out, with reasons (chapter 30 §16).
+//! The judge of the company's posts: text in, one reaction per group out, with reasons
+//! (docs/mechanics/market/social/judge.md).
 //!
 //! It stands in for readers who scroll past or stop. Reactions lie within -1..=1; from 0.6 on, either way, people
 //! answer and leads follow. Unlike the readers of a real network these compare what a post claims with what they
@@ -57,7 +58,7 @@ pub struct Judgement {
     pub group: Group,
     /// Reaction, -1..=1 in hundredths.
     pub effect: f64,
-    /// What it is made of, before the group's gain, in the order of the chapter; zeros are left out.
+    /// What it is made of, before the group's gain, in a fixed order; zeros are left out.
     pub terms: Vec<Term>,
 }
 

@@ -1,4 +1,4 @@
-//! The score of one group (chapter 30 §16.8).
+//! The score of one group (docs/mechanics/market/social/judge.md#terms).
 
 use super::circumstances::LiveEvent;
 use super::claims::{Claim, claims};

@@ -1,4 +1,4 @@
-//! Worked examples and what must hold of every judgement (chapter 30 §16.9, §16.10).
+//! Worked examples and what must hold of every judgement.
 
 use super::circumstances::{LiveEvent, Readers};
 use super::text::Entry;
@@ -158,7 +158,7 @@ fn examples() -> Vec<Example> {
 }
 
 #[test]
-fn the_worked_examples_of_chapter_30() {
+fn the_worked_examples_get_their_scores() {
     let mut wrong = Vec::new();
     for example in examples() {
         let judgements = all(&example.submission, &example.facts);
@@ -176,7 +176,7 @@ fn the_worked_examples_of_chapter_30() {
 }
 
 #[test]
-fn the_contributions_of_chapter_30() {
+fn the_worked_examples_are_made_of_these_terms() {
     let of = |name: &str, id: &str| {
         let example = examples().into_iter().find(|example| example.name == name).expect("an example");
         let judgements = all(&example.submission, &example.facts);

@@ -1,4 +1,4 @@
-//! Finding words in a post (chapter 30 §16.1).
+//! Finding words in a post.
 
 /// A text in the forms that entries are matched with.
 #[derive(Debug, Clone)]

@@ -1,4 +1,4 @@
-//! A memory of what was written lately, so that the feed does not repeat itself (chapter 30 §14).
+//! A memory of what was written lately, so that the feed does not repeat itself.
 
 use std::collections::VecDeque;
 

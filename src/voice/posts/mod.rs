@@ -1,4 +1,4 @@
-//! The words of posts and comments (chapter 30 §14).
+//! The words of posts and comments (docs/mechanics/market/social/texts.md).
 //!
 //! Facts say why somebody writes; these grammars say it. What a post says is true for its author, and no more than a
 //! reader could learn from a person: causes and moods, prices and plans, never a hidden number. The words of a post

@@ -1,4 +1,4 @@
-//! Names of profiles: some customers of the initial groups are known by one (chapter 30 §5.12).
+//! Names of profiles: some customers of the initial groups are known by one.
 
 use crate::world::events::PostAuthor;
 use crate::world::random::{Part, Streams};

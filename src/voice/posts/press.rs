@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn posts_say_what_the_chapter_asks_for() {
+    fn posts_of_the_press_hold_their_figures() {
         let mut state = 3u64;
         let mut choose = |count: usize| {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

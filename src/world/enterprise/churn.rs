@@ -1,4 +1,4 @@
-//! Subscribers that leave: why, what it costs in reputation, and who may talk about it (chapter 40 §14).
+//! Subscribers that leave: why, what it costs in reputation, and who may talk about it.
 
 use super::company::moved_relationship;
 use super::{Standing, Step};
@@ -10,7 +10,7 @@ use crate::world::params::Params;
 use crate::world::product::quality::{quota_demand, relationship_as_read, relationship_bonus};
 use crate::world::random::Part;
 
-/// A subscriber whose thread died today; companies like to talk about that (chapter 40 §14.3).
+/// A subscriber whose thread died today; companies like to talk about that.
 ///
 /// Threads that reappear tell it again every day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -157,9 +157,8 @@ impl Step<'_> {
 mod tests {
     use super::*;
 
-    /// Second half of check 20 of chapter 40.
     #[test]
-    fn check_20_of_chapter_40_reasons() {
+    fn the_first_ground_that_holds_is_the_reason() {
         let params = Params::shipped();
         let quality = &params.quality;
         let grounds = |issue_days, shared: f64, relationship, demand| Grounds {

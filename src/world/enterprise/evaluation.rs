@@ -1,4 +1,4 @@
-//! How a company judges offerings: take the best, name a price, or fall silent (chapter 40 §9.3, §9.4).
+//! How a company judges offerings: take the best, name a price, or fall silent.
 
 use crate::world::customers::curve::{Curve, required_quality};
 use crate::world::events::Offering;
@@ -108,7 +108,7 @@ pub(super) mod tests {
     use super::*;
     use crate::world::identifiers::Plan;
 
-    /// Base customer K of chapter 40 §20.
+    /// The reference company K of `docs/mechanics/enterprise/evaluation.md#check-values`.
     pub(in crate::world::enterprise) const K: Curve =
         Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
 
@@ -125,7 +125,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn check_1_of_chapter_40() {
+    fn the_reference_company_requires_more_at_a_higher_price() {
         let params = Params::shipped();
         for (price, required) in [
             (0.0, 0.5170680905),
@@ -143,7 +143,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn check_2_of_chapter_40() {
+    fn the_highest_price_is_the_last_one_a_quality_suffices_for() {
         let params = Params::shipped();
         for (quality, highest) in [
             (0.517, 0.0),
@@ -162,7 +162,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn check_3_of_chapter_40() {
+    fn each_turn_closes_a_share_of_the_gap_to_the_highest_price() {
         let params = Params::shipped();
         let highest = highest_price(0.8, &K, &params);
         let bids: Vec<f64> = (0..8).map(|turns| counter_price(highest, 0.75, turns, &params)).collect();
@@ -173,7 +173,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn check_4_of_chapter_40() {
+    fn the_best_offering_is_taken_while_turns_are_left() {
         let params = Params::shipped();
         let own = judge(0.72, 0.80, 0.88);
         let three = offers(&[(Plan::A, 30.0), (Plan::B, 35.0), (Plan::C, 50.0)]);
@@ -193,7 +193,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn check_5_of_chapter_40() {
+    fn quality_beyond_all_requirements_accepts_any_price() {
         let params = Params::shipped();
         let dear = offers(&[(Plan::B, 100_000.0)]);
         assert_eq!(judge(0.9, 0.96, 1.0).answer(&dear, 1, &params), Answer::Accept(0));
@@ -205,7 +205,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn check_6_of_chapter_40() {
+    fn a_first_impression_moves_the_counter_price() {
         let params = Params::shipped();
         for (noise, price) in [(0.8, 14.85), (0.9, 24.75), (1.0, 35.41), (1.1, 39.09)] {
             let own = judge(0.0, 0.8 * noise, 0.0);

@@ -1,4 +1,4 @@
-//! What the player writes to companies between two weeks (chapter 40 §6, §7).
+//! What the player writes to companies between two weeks.
 //!
 //! A letter is decided and its draws are made ([`Enterprise::address`]) before anything changes
 //! ([`Enterprise::send`], [`Enterprise::reject`]).
@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn check_7_of_chapter_40() {
+    fn reply_delays_round_half_to_even_and_last_a_day_at_least() {
         let sales = Params::shipped().enterprise;
         for (mean, std, z, days) in [
             (5.0, 2.0, 0.0, 5),
@@ -185,7 +185,6 @@ mod tests {
         }
     }
 
-    /// Check 8 of chapter 40, check 13 of chapter 50.
     #[test]
     fn late_answers_cost_two_hundredths_a_day() {
         let sales = Params::shipped().enterprise;

@@ -1,5 +1,5 @@
 //! Companies: leads that ask for an offer, subscribers that threaten to leave or ask for another plan, and what
-//! becomes of the threads (chapter 40, step 16).
+//! becomes of the threads (`docs/mechanics/enterprise/README.md`).
 //!
 //! Start with [`Enterprise::step`], the order of the enterprise part of a day. What the player writes between
 //! two weeks is in [`letters`].

@@ -1,4 +1,4 @@
-//! How threads end: with a deal, in silence, or because nobody answered (chapter 40 §10, §11).
+//! How threads end: with a deal, in silence, or because nobody answered.
 
 use super::churn::Blame;
 use super::company::moved_relationship;

@@ -1,4 +1,4 @@
-//! Quality as companies perceive it: in a negotiation, and every day (chapter 40 §9.2, §13.1).
+//! Quality as companies perceive it: in a negotiation, and every day (`docs/mechanics/enterprise/quality.md`).
 
 use super::Negotiation;
 use crate::world::customers::columns::Subscriber;
@@ -88,9 +88,8 @@ mod tests {
         }
     }
 
-    /// Check 9 of chapter 40: quality in a negotiation.
     #[test]
-    fn check_9_of_chapter_40() {
+    fn offered_quality_counts_relationship_issues_ads_and_quota() {
         let mut kit = Kit::new(91);
         kit.product.shared_bonus = 0.6;
         kit.product.group_bonus[kit.group] = 0.05;
@@ -113,9 +112,8 @@ mod tests {
         assert_near(quality(&kit, &using, true), [0.459, 0.680, 0.935]);
     }
 
-    /// Check 7 of chapter 20, enterprise-offer form.
     #[test]
-    fn the_form_of_an_offer_of_check_7_of_chapter_20() {
+    fn offered_quality_with_every_term_at_work() {
         let mut kit = Kit::new(31);
         kit.product.shared_bonus = 0.15;
         kit.product.group_bonus[kit.group] = 0.05;

@@ -1,4 +1,4 @@
-//! Answers that are due today (chapter 40 §8).
+//! Answers that are due today.
 
 use super::evaluation::{Answer, Judge};
 use super::{Live, Step};

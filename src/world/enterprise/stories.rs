@@ -1,4 +1,4 @@
-//! Threads from their first turn to their end (checks 16 to 20 of chapter 40).
+//! Threads from their first turn to their end.
 
 use super::test_kit::Kit;
 use super::{EnterpriseDay, Standing};
@@ -27,7 +27,7 @@ fn turns(kit: &Kit) -> Vec<(Sender, u32)> {
 }
 
 #[test]
-fn check_16_of_chapter_40_a_deal() {
+fn an_accepted_offer_makes_a_subscriber() {
     let mut kit = lead(3.0, 6);
     assert_eq!(turns(&kit), [(Sender::System, 0)]);
     let letters = kit.send(&[(Plan::B, 35.0)]);
@@ -53,7 +53,7 @@ fn check_16_of_chapter_40_a_deal() {
 }
 
 #[test]
-fn check_17_of_chapter_40_silence_of_both_sides() {
+fn silence_of_either_side_loses_a_lead() {
     let mut kit = lead(3.0, 6);
     days(&mut kit, 1..=6);
     assert!(kit.facts.endings.is_empty());
@@ -110,7 +110,7 @@ fn unhappy() -> Kit {
 }
 
 #[test]
-fn check_18_of_chapter_40_a_threat_that_nobody_answers() {
+fn a_threat_that_nobody_answers_loses_the_subscriber() {
     let mut kit = unhappy();
     kit.day(4);
     assert_eq!(turns(&kit), [(Sender::System, 0), (Sender::Customer, 1)]);
@@ -153,7 +153,7 @@ fn check_18_of_chapter_40_a_threat_that_nobody_answers() {
 }
 
 #[test]
-fn check_19_of_chapter_40_a_settled_threat() {
+fn a_settled_threat_suspends_payment_through_its_last_day() {
     let mut kit = unhappy();
     kit.day(29);
     let suspended = |run: &EnterpriseDay| run.suspended.contains(&2);
@@ -175,7 +175,7 @@ fn check_19_of_chapter_40_a_settled_threat() {
 }
 
 #[test]
-fn check_20_of_chapter_40_promotions_lower_the_price_of_a_deal() {
+fn promotions_lower_the_price_of_a_deal() {
     let mut kit = lead(2.0, 6);
     kit.settings.promotion.global = 4.0;
     kit.send(&[(Plan::B, 35.0)]);

@@ -91,7 +91,7 @@ impl Kit {
         self.facts.begin(day);
     }
 
-    /// Customer K of chapter 40, number 2, first of its group, 100 seats.
+    /// The reference company K, number 2, first of its group, 100 seats.
     pub fn row(&self) -> Subscriber {
         Subscriber {
             customer: 2,

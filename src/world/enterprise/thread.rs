@@ -1,4 +1,4 @@
-//! Threads: who said what when, which row is the last, and which row is alive (chapter 40 §5).
+//! Threads: who said what when, which row is the last, and which row is alive.
 
 use crate::world::canonical::canonical;
 use crate::world::events::{Offering, Sender, ThreadKind};
@@ -69,7 +69,8 @@ impl Thread {
     }
 
     /// The newest turn that did not die: what the daily step goes by. Death marks only the last turn, so a dead
-    /// thread comes back with an older one (chapter 40 §12), unless `reappearing` says otherwise.
+    /// thread comes back with an older one unless `reappearing` says otherwise
+    /// (`docs/mechanics/enterprise/thread.md#dead-threads-that-reappear`).
     pub fn live(&self, reappearing: bool) -> Option<&Turn> {
         if self.closed || (!reappearing && self.last().dead) {
             return None;
@@ -141,7 +142,6 @@ mod tests {
         }
     }
 
-    /// The table of chapter 40 §12.
     #[test]
     fn dead_threads_come_back_with_an_older_turn() {
         for (letters, live) in [

@@ -1,4 +1,4 @@
-//! What subscribers begin by themselves: a threat to leave, or the wish for another plan (chapter 40 §13).
+//! What subscribers begin by themselves: a threat to leave, or the wish for another plan.
 
 use std::collections::BTreeSet;
 
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn check_10_of_chapter_40() {
+    fn lived_quality_and_surplus_decide_about_a_threat() {
         let near = |(quality, surplus): (f64, f64), expected: (f64, f64)| {
             assert!((quality - expected.0).abs() < 1e-10, "{quality} instead of {}", expected.0);
             assert!((surplus - expected.1).abs() < 1e-10, "{surplus} instead of {}", expected.1);
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn check_11_of_chapter_40() {
+    fn a_plan_is_wished_for_only_if_it_gains_enough() {
         let mut kit = kit(3);
         kit.morning.quotas = ByPlan([1e9; 3]);
         let on_b = |kit: &Kit, price| subscriber(kit, Plan::B, price, 0.5, 4000.0);

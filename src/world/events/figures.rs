@@ -2,7 +2,7 @@
 
 use crate::world::identifiers::{ByGroup, ByPlan};
 
-/// Figures of a day (chapter 20 §5, day result).
+/// Figures of a day (`docs/mechanics/day.md#figures-of-a-day`).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DayFigures {
     /// Day.

@@ -25,7 +25,7 @@ pub struct Payment {
     pub amount: f64,
 }
 
-/// Category of a movement of cash (chapter 60 §5).
+/// Category of a movement of cash (`docs/mechanics/money.md`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Category {

@@ -150,7 +150,7 @@ pub struct Opinion {
     pub downtime_minutes: u32,
 }
 
-/// Why a customer writes (chapter 30 §5.3), the first that holds.
+/// Why a customer writes, the first that holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
     /// The service was slow.

@@ -363,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn sums_over_groups_and_channels_agree_with_chapter_10() {
+    fn sums_over_groups_and_channels_are_those_of_the_release() {
         let params = Params::shipped();
         let sum = |value: fn(&super::super::GroupParams) -> f64| params.group.iter().map(value).sum::<f64>();
         near(sum(|group| group.c_max_mean), 2495.0);
@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn sums_of_the_networks_agree_with_chapter_10() {
+    fn sums_of_the_networks_are_those_of_the_release() {
         let params = Params::shipped();
         let pairs = || Group::all().flat_map(|source| Group::all().map(move |target| (source, target)));
         near(pairs().map(|(source, target)| params.referral_rate(source, target)).sum(), 0.46369999);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Negotiations (chapter 40 §1).
+/// Negotiations (`docs/mechanics/enterprise/README.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Enterprise {

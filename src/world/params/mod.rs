@@ -1,6 +1,6 @@
 //! Every number of the world: read from `configs/world/*.toml`, checked once, immutable afterwards.
 //!
-//! The tables and keys are those of the specification's chapter 10. A scenario is a small file that overrides
+//! The pages of `docs/mechanics/README.md` explain every key. A scenario is a small file that overrides
 //! some of them; the merged result has a digest that every run records.
 
 mod check;
@@ -111,7 +111,7 @@ pub struct Params {
     pub personas: Personas,
 }
 
-/// One advertising channel (chapter 10.4).
+/// One advertising channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChannelParams {
@@ -169,7 +169,7 @@ impl Params {
 
     /// Digest of the effective parameters: 16 hexadecimal digits of blake3 over their canonical JSON.
     ///
-    /// A run records it, and is never silently continued under other parameters (chapter 70 §2).
+    /// A run records it, and is never silently continued under other parameters.
     pub fn digest(&self) -> String {
         let canonical = serde_json::to_vec(self).expect("parameters hold only strings and finite numbers");
         blake3::hash(&canonical).to_hex()[..16].to_owned()

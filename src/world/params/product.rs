@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Delivered and perceived quality (chapter 20 §13).
+/// Delivered and perceived quality (`docs/mechanics/product/quality.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Quality {
@@ -42,7 +42,7 @@ pub struct Quality {
     pub negotiation_quality_max: f64,
 }
 
-/// Development and R&D (chapter 20 §14).
+/// Development and R&D (`docs/mechanics/product/development.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Development {
@@ -64,7 +64,7 @@ pub struct Development {
     pub rd_report_decimals: u32,
 }
 
-/// Service health (chapter 20 §12).
+/// Service health (`docs/mechanics/product/service.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Operations {
@@ -104,7 +104,7 @@ pub struct Operations {
     pub daily_usage_keep_days: u32,
 }
 
-/// In-app advertising (chapter 20 §19).
+/// In-app advertising (`docs/mechanics/product/ads.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ads {
@@ -142,7 +142,7 @@ pub struct CapacityTier {
     pub cost_per_day: u32,
 }
 
-/// One R&D tier (chapter 50 §4.4).
+/// One R&D tier (`docs/mechanics/product/research.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ResearchTier {

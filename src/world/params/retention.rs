@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Daily satisfaction (chapter 20 §15).
+/// Daily satisfaction (`docs/mechanics/retention/satisfaction.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Satisfaction {
@@ -10,7 +10,7 @@ pub struct Satisfaction {
     pub satisfaction_ema_alpha: f64,
 }
 
-/// Support issues (chapter 20 §16).
+/// Support issues (`docs/mechanics/retention/issues.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Issues {
@@ -50,7 +50,7 @@ pub struct Issues {
     pub new_issue_open_days: u32,
 }
 
-/// Billing (chapter 20 §18).
+/// Billing (`docs/mechanics/retention/billing.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Billing {
@@ -62,7 +62,7 @@ pub struct Billing {
     pub billing_c_max_min: f64,
 }
 
-/// Floors of summed discounts (chapter 20 §11).
+/// Floors of summed discounts (`docs/mechanics/retention/billing.md#promotions`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Promotions {
@@ -72,7 +72,7 @@ pub struct Promotions {
     pub lead_promotion_min: f64,
 }
 
-/// Cancellations nobody chose (chapter 20 §17).
+/// Cancellations nobody chose (`docs/mechanics/retention/involuntary-churn.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InvoluntaryChurn {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Length and end of a run (chapter 10.3).
+/// Length and end of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
@@ -16,7 +16,7 @@ pub struct Run {
     pub bankruptcy_cash_threshold: f64,
 }
 
-/// The company and its market on day 0 (chapter 20 §3).
+/// The company and its market on day 0 (`docs/mechanics/day.md#day-0`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Initial {
@@ -69,7 +69,7 @@ pub struct Initial {
     pub customer_relationship: f64,
 }
 
-/// Limits of tools, queries and texts (chapter 10.3).
+/// Limits of tools, queries and texts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
@@ -89,7 +89,7 @@ pub struct Limits {
     pub prediction_horizons_days: Vec<u32>,
 }
 
-/// Odd mechanics that agents lived with, each with a second form (chapter 00, chapter 20 §23).
+/// Odd mechanics, each with a second form (`docs/mechanics/README.md#the-release-and-the-paper`).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fidelity {
@@ -105,17 +105,17 @@ pub struct Fidelity {
     pub drift_counted: DriftCounted,
     /// From when a demand surge acts.
     pub surge_start: SurgeStart,
-    /// Whether dead enterprise threads fire again (chapter 40 §12).
+    /// Whether dead enterprise threads fire again.
     pub reappearing_threads: bool,
     /// On which days customers post.
     pub customer_posts: CustomerPosts,
     /// Who judges the company's posts.
     pub post_judge: PostJudge,
-    /// Whether a company refuses prices above its budget (chapter 40 §9.4).
+    /// Whether a company refuses prices above its budget.
     pub deal_price_ceiling: bool,
 }
 
-/// Form of the willingness curve (chapter 20 §8, §23).
+/// Form of the willingness curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RequiredQuality {
@@ -125,7 +125,7 @@ pub enum RequiredQuality {
     Blended,
 }
 
-/// What the quota factor multiplies (chapter 20 §13, §23).
+/// What the quota factor multiplies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PerceivedQuality {
@@ -135,7 +135,7 @@ pub enum PerceivedQuality {
     Paper,
 }
 
-/// Where overload and outages lower quality (chapter 20 §13, §23).
+/// Where overload and outages lower quality.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ServicePenalty {
@@ -145,7 +145,7 @@ pub enum ServicePenalty {
     Everywhere,
 }
 
-/// What a quota limits (chapter 20 §12, §23).
+/// What a quota limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UsageQuota {
@@ -155,7 +155,7 @@ pub enum UsageQuota {
     Period,
 }
 
-/// How often accumulated drift counts for a customer who came later (chapter 20 §6).
+/// How often accumulated drift counts for a customer who came later.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriftCounted {
@@ -165,7 +165,7 @@ pub enum DriftCounted {
     Once,
 }
 
-/// From when a demand surge acts (chapter 30 §4).
+/// From when a demand surge acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SurgeStart {
@@ -175,7 +175,7 @@ pub enum SurgeStart {
     Day,
 }
 
-/// On which days customers post (chapter 30 §5.2).
+/// On which days customers post.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CustomerPosts {
@@ -185,17 +185,17 @@ pub enum CustomerPosts {
     Daily,
 }
 
-/// Who judges the company's posts (chapter 30 §6.4).
+/// Who judges the company's posts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PostJudge {
-    /// The judge of chapter 30 §16.
+    /// The judge that works without a language model.
     Offline,
     /// Nobody.
     None,
 }
 
-/// Recorded series that are replayed instead of being drawn (chapter 70 §2).
+/// Recorded series that are replayed instead of being drawn (`docs/mechanics/randomness.md#recorded-series`).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesChoice {

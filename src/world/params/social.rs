@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Posts of customers (chapter 30 §5).
+/// Posts of customers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Social {
@@ -96,7 +96,7 @@ pub struct Social {
     pub sentiment: SentimentByBand,
 }
 
-/// Reach and worth of the company's own posts (chapter 30 §6.5-§6.8).
+/// Reach and worth of the company's own posts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CeoPosts {
@@ -142,7 +142,7 @@ pub struct CeoPosts {
     pub multiplier_neutral: f64,
 }
 
-/// Chances of a post's sentiment (chapter 30 §5.4).
+/// Chances of a post's sentiment.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SentimentChances {

@@ -1,4 +1,4 @@
-//! In-app advertising: what it earns (chapter 20 §19, step 21). What it costs in quality is in `quality`.
+//! In-app advertising: what it earns (`docs/mechanics/product/ads.md`). What it costs in quality is in `quality`.
 
 use super::quality::ads_effect;
 use crate::world::customers::Customers;
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn levels_add_up_as_in_check_4_of_chapter_50() {
+    fn levels_of_ads_add_up_before_the_curve() {
         let params = Params::shipped();
         let (s1, e1) = (Group::at(0).expect("S1"), Group::at(3).expect("E1"));
         let setting = AdsStrength {
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn revenue_of_five_customers_is_that_of_check_19_of_chapter_20() {
+    fn five_customers_earn_by_sensitivity_and_strength() {
         let params = Params::shipped();
         let setting = AdsStrength { global: 0.1, ..AdsStrength::default() };
         let mut customers = Customers::default();

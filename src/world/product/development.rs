@@ -1,4 +1,4 @@
-//! Development (chapter 20 §14, chapter 30 §10, step 12).
+//! Development (`docs/mechanics/product/development.md`).
 
 use super::Product;
 use crate::world::params::{Development, Params};
@@ -40,7 +40,7 @@ mod tests {
     use crate::world::identifiers::Group;
 
     #[test]
-    fn check_4_of_chapter_20() {
+    fn gains_grow_with_the_logarithm_of_spending() {
         let development = Params::shipped().development;
         for (spend, shared, targeted) in [
             (1.0, 8.99910012e-7, 4.49955006e-6),
@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn check_22_of_chapter_30() {
+    fn banks_receive_what_a_day_of_development_gains() {
         let mut params = Params::shipped();
         params.development.quality_shared_noise_scale = 0.0;
         let s1 = Group::at(0).expect("S1");

@@ -12,7 +12,8 @@ use super::events::Project;
 use super::identifiers::{ByGroup, Group};
 use super::params::Params;
 
-/// What development has achieved, and how much of it rivals could still copy (chapter 30 §10).
+/// What development has achieved, and how much of it rivals could still copy
+/// (`docs/mechanics/product/development.md#banks`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Product {
     /// Quality gained for everybody, noise included.

@@ -1,4 +1,4 @@
-//! Delivered and perceived quality, one function per term (chapter 20 §13).
+//! Delivered and perceived quality, one function per term (`docs/mechanics/product/quality.md`).
 
 use crate::world::params::{Ads, Params, PerceivedQuality, Quality, UsageQuota};
 
@@ -30,7 +30,7 @@ pub fn relationship_bonus(relationship: f64, quality: &Quality) -> f64 {
         * quality.relationship_scale
 }
 
-/// A relationship of exactly 0 is read as neutral by most rules (chapter 10.3, note).
+/// A relationship of exactly 0 is read as neutral by most rules (`docs/mechanics/product/quality.md#relationship-0`).
 #[inline]
 pub fn relationship_as_read(relationship: f64, quality: &Quality) -> f64 {
     if relationship == 0.0 { quality.fallback_relationship } else { relationship }
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn check_2_of_chapter_20() {
+    fn quotas_cover_their_share_and_ads_follow_a_logarithm() {
         let params = Params::shipped();
         for (quota, demand, factor) in [
             (0.0, 0.0, 1.0),

@@ -1,4 +1,4 @@
-//! R&D projects (chapter 20 §14, chapter 50 §4.4, step 6).
+//! R&D projects (`docs/mechanics/product/research.md`).
 
 use super::Product;
 use crate::world::events::{Facts, Notice, Project, ResearchChange};
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn check_5_of_chapter_20() {
+    fn durations_and_gains_follow_the_draw_down_to_their_floors() {
         let params = Params::shipped();
         let (third, development) = (params.research(3), &params.development);
         for (z, days, boost) in [(-3.0, 30, 0.001), (-0.7, 30, 0.0715), (0.5, 38, 0.1375), (2.0, 83, 0.22)] {
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn outcomes_over_seeds_agree_with_check_12_of_chapter_50() {
+    fn outcomes_over_seeds_have_the_moments_of_their_tier() {
         let params = Params::shipped();
         for (tier, thirty, days, gain) in [(1, 0.943327, 30.3192, 0.040194), (5, 0.424790, 59.3417, 0.220957)]
         {

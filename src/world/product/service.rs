@@ -1,4 +1,4 @@
-//! Service health of the day (chapter 20 §12, step 5).
+//! Service health of the day (`docs/mechanics/product/service.md`).
 
 use crate::world::events::{Facts, ServiceDay};
 use crate::world::morning::Morning;
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn check_3_of_chapter_20() {
+    fn overload_multiplies_the_chance_of_an_outage() {
         let operations = Params::shipped().operations;
         for (usage, capacity, spend, o, probability) in [
             (75_000, 50_000.0, 0.0, 0.5, 0.09),
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn check_7_of_chapter_10() {
+    fn operations_lower_the_chance_of_an_outage_to_its_floor() {
         let operations = Params::shipped().operations;
         for (usage, spend, probability) in [
             (0, 0.0, 0.03),

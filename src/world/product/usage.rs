@@ -1,4 +1,4 @@
-//! Usage of the day (chapter 20 §12, step 4).
+//! Usage of the day (`docs/mechanics/product/usage.md`).
 
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
@@ -75,7 +75,6 @@ mod tests {
 
     #[test]
     fn rates_vary_with_demand_and_cover_all_seats() {
-        // Check 9 of chapter 20.
         let bounds = Params::shipped().customer_generation;
         assert_eq!(usage_rate(80.0, 1.0, 1.0, &bounds), 96.0);
         assert_eq!(usage_rate(60.0, 100.0, 1.0, &bounds), 7200.0);
@@ -84,7 +83,7 @@ mod tests {
 
     #[test]
     fn usage_is_limited_by_the_quota_and_rounded_half_up() {
-        // Check 19 of chapter 20: rates 80, 40.4, 75, 2.27.. on a weekday of 1.1.
+        // A busy weekday, and quotas that limit the first and the last.
         assert_eq!(usage_today(80.0, 1.1, 60.0), 60);
         assert_eq!(usage_today(40.4, 1.1, 60.0), 44);
         assert_eq!(usage_today(75.0, 1.1, 100.0), 83);

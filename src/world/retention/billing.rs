@@ -1,4 +1,4 @@
-//! Bills (chapter 20 §18, step 20).
+//! Bills (`docs/mechanics/retention/billing.md`).
 //!
 //! Nothing between the decision of an individual and its bill touches either, so those who stay are billed at once,
 //! while their block is at hand; newcomers and companies are billed when the day's deals are done.
@@ -51,7 +51,7 @@ pub fn bill_regulars(group: Group, number: u32, block: &mut Block, bill: &Terms<
 }
 
 /// Bills newcomers and companies and puts the bills of the day on record. Companies that are `suspended` pay nothing
-/// while their threat to leave is open (chapter 40 §15.2). Returns the payments of the day, in dollars.
+/// while their threat to leave is open. Returns the payments of the day, in dollars.
 pub fn collect(
     customers: &mut Customers,
     billed: Vec<Bills>,
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn check_9_of_chapter_20_for_individuals() {
+    fn an_individual_pays_the_lower_of_stored_and_list_price_less_promotions() {
         let (paid, row) = billed("S1", stored(20.0), 15.0, 0.0);
         assert_eq!((paid, row.listed_price), (15.0, 15.0));
         assert_eq!(billed("S1", stored(20.0), 15.0, 4.0).0, 11.0);
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn check_9_of_chapter_20_for_companies() {
+    fn a_company_pays_its_deal_for_whole_seats() {
         let deal = Subscriber {
             seats: 100.9,
             billed_once: false,
@@ -193,7 +193,6 @@ mod tests {
         assert_eq!(billed("E1", row, 15.0, 4.0).0, 3600.0);
     }
 
-    /// Check 8 of chapter 20: what those who stay pay.
     #[test]
     fn a_rise_never_reaches_a_stored_price() {
         for (list, promotion, paid) in [(20.0, 0.0, 20.0), (30.0, 0.0, 20.0), (45.0, 8.0, 12.0)] {

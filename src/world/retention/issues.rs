@@ -1,4 +1,5 @@
-//! Support issues: who calls, who is helped, and what waiting does to a relationship (chapter 20 §16, step 14).
+//! Support issues: who calls, who is helped, and what waiting does to a relationship
+//! (`docs/mechanics/retention/issues.md`).
 //!
 //! Everything is decided from the values of the start of the day, so the calls are read before satisfaction
 //! moves and settled after it: block by block in the rounds of [`crate::world::day`]; in between the money of the day
@@ -237,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn check_15_of_chapter_20() {
+    fn issues_come_with_discontent_outages_and_seats() {
         let issues = Params::shipped().issues;
         for (satisfaction, seats, quiet, outage) in [
             (0.5, 1.0, 0.085, 0.335),
@@ -260,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn check_16_of_chapter_20() {
+    fn pools_solve_by_money_and_share_and_quick_help_pleases() {
         let params = Params::shipped();
         let (s1, e1) = (Group::at(0).expect("S1"), Group::at(3).expect("E1"));
         let mean = |base, spend, group, of_group, of_pool| {

@@ -15,7 +15,7 @@ use super::params::{DriftCounted, Params};
 /// Refreshes the stored required quality of a row: its curve at the price in force, with the budget of its
 /// last bill and the group's budget drift, before the market's expectations are added.
 ///
-/// The budget floor applies only where the drift is not 0 (chapter 20 §15).
+/// The budget floor applies only where the drift is not 0 (`docs/mechanics/retention/satisfaction.md`).
 #[inline]
 pub fn refresh_required(block: &mut Block, at: usize, c_drift: f64, params: &Params) {
     let (curve, remembered) = (block.curve(at), block.effective_c_max[at]);
@@ -43,7 +43,7 @@ pub fn refresh_block(group: Group, block: &mut Block, morning: &Morning, params:
     }
 }
 
-/// Budget remembered with a bill: max(15, c + dc); without dc when drift counts once (chapter 20 §6, §18).
+/// Budget remembered with a bill: max(15, c + dc); without dc when drift counts once.
 pub fn remembered_budget(c_max: f64, c_drift: f64, params: &Params) -> f64 {
     let drift = match params.fidelity.drift_counted {
         DriftCounted::EveryRead => c_drift,

@@ -1,4 +1,5 @@
-//! Which open issues are solved today: pools of money share them out, one after the other (chapter 20 §16).
+//! Which open issues are solved today: pools of money share them out, one after the other
+//! (`docs/mechanics/retention/issues.md#pools`).
 
 use super::issues::{Calls, mean_resolved};
 use crate::world::customers::Customers;
@@ -64,7 +65,7 @@ pub(super) struct Resolution<'a> {
 }
 
 impl Resolution<'_> {
-    /// Pools in the order of chapter 20 §16; each works on what the earlier ones left.
+    /// Pools from the widest to the narrowest; each works on what the earlier ones left.
     pub fn run(&mut self, settings: &Settings) {
         let base = self.params.issues.issue_resolution_base_rate;
         self.work(Pool::Everybody, base, settings.core.operations);

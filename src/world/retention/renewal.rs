@@ -1,4 +1,4 @@
-//! What individuals decide on their billing day: stay, switch, or leave (chapter 20 §17, step 15).
+//! What individuals decide on their billing day: stay, switch, or leave (`docs/mechanics/retention/renewal.md`).
 
 use crate::world::customers::columns::{BLOCK, Block};
 use crate::world::customers::curve::{Curve, required_quality};
@@ -234,7 +234,7 @@ fn chosen_plan(group: Group, block: &Block, at: usize, judgement: &Judgement<'_>
     best_plan(&prices, &qualities, &curve.with_budget(budget), params)
 }
 
-/// Perceived quality of each plan at a billing decision (chapter 20 §13, second column).
+/// Perceived quality of each plan at a billing decision (`docs/mechanics/product/quality.md#who-feels-what`).
 fn renewal_quality(group: Group, block: &Block, at: usize, judgement: &Judgement<'_>) -> ByPlan<f64> {
     let &Judgement { morning, params, .. } = judgement;
     let quality = &params.quality;
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn check_14_of_chapter_20() {
+    fn the_rate_of_failed_payments_follows_its_draw_within_bounds() {
         let law = Params::shipped().involuntary_churn;
         for (z, rate) in [(-5.0, 0.0), (1.0, 0.07), (80.0, 1.0)] {
             assert!((involuntary_rate(0.055, 0.015, z, &law) - rate).abs() < 1e-12);
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn check_7_of_chapter_20() {
+    fn a_subscriber_judges_every_plan_by_what_it_would_deliver() {
         let mut day = morning(31);
         day.product[group()] = 0.4;
         day.multipliers = ByPlan([0.6, 0.9, 1.1]);
@@ -383,7 +383,7 @@ mod tests {
         });
     }
 
-    /// Check 8 of chapter 20: the decision part; the bills are checked in `billing`.
+    /// The decision alone; bills are tested in `billing`.
     #[test]
     fn a_price_rise_is_judged_at_todays_list_price() {
         for (list, willingness, promotion, stays) in [

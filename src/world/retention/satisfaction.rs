@@ -1,4 +1,4 @@
-//! Daily satisfaction of every active subscriber (chapter 20 §15, step 13).
+//! Daily satisfaction of every active subscriber (`docs/mechanics/retention/satisfaction.md`).
 
 use std::ops::{AddAssign, Range};
 
@@ -23,7 +23,7 @@ pub fn moved_satisfaction(old: f64, instant: f64, alpha: f64) -> f64 {
 /// What some subscribers contribute to the reputation of their group today.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Mood {
-    /// Sum of the contributions of chapter 30 §2.2.
+    /// Sum of the contributions (`docs/mechanics/market/reputation.md`).
     pub sum: f64,
     /// How many contributed.
     pub count: u32,
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn check_6_of_chapter_20() {
+    fn every_trouble_of_a_day_lowers_satisfaction() {
         let mut day = morning(31);
         day.product[group()] = 0.2 + 0.15 + 0.05;
         day.multipliers[Plan::B] = 0.9;
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn check_18_of_chapter_20_counts_drift_twice() {
+    fn drift_counts_twice_after_a_bill() {
         let params = Params::shipped();
         let mut day = morning(100);
         day.multipliers[Plan::A] = 1.0;

@@ -137,8 +137,7 @@ pub fn target_of(company: &Company, group: Group, chosen: Option<u8>) -> u8 {
     chosen.unwrap_or(now.saturating_add(1)).clamp(lowest, most)
 }
 
-/// Bounds of a true value whose estimate is off by at most a share: the estimate is the truth times 1 ± share
-/// (chapter 50 §4.5).
+/// Bounds of a true value whose estimate is off by at most a share: the estimate is the truth times 1 ± share.
 pub fn bounds(estimate: f64, share: f64) -> (f64, f64) {
     let from = estimate / (1.0 + share);
     let to = if share < 1.0 { estimate / (1.0 - share) } else { f64::INFINITY };

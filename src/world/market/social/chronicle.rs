@@ -1,5 +1,5 @@
 //! What the public remembers of the company: a short record of every day, which a judge of its posts may consult
-//! (chapter 30 §16.5).
+//! (docs/mechanics/market/social/chronicle.md).
 
 use crate::world::canonical::canonical;
 use crate::world::events::ServiceDay;

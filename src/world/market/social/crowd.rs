@@ -1,4 +1,4 @@
-//! Customers' posts: who is picked among everybody who may post (chapter 30 §5.2, §5.3, steps 17 and 22).
+//! Customers' posts: who is picked among everybody who may post (docs/mechanics/market/social/crowd.md).
 //!
 //! Drawing one after the other without replacement, each by its weight among those left, is the order of arrival
 //! in a race of exponential clocks with these weights as their rates. So the first of the subscribers are drawn

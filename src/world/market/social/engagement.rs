@@ -1,4 +1,4 @@
-//! How far a customer's post carries (chapter 30 §5.5).
+//! How far a customer's post carries (docs/mechanics/market/social/engagement.md).
 
 use super::sentiment::Sentiment;
 use crate::world::canonical::canonical;
@@ -55,7 +55,7 @@ pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, law: &Social) -
 }
 
 /// Range of base likes and shares, both ends included; every group whose name begins with E is a company here,
-/// discoverable ones are not (chapter 30 §5.5).
+/// discoverable ones are not: the release sorts them so.
 pub fn engagement_ranges(group_id: &str, params: &Params) -> [(u32, u32); 2] {
     let law = &params.social;
     if group_id.starts_with('E') {
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn check_14_of_chapter_30() {
+    fn engagement_follows_its_draws() {
         let law = Params::shipped().social;
         for (tone, likes, shares, [factor, spike, a, b, c], expected) in [
             (Sentiment::Negative, 40, 10, [0.4, 0.5, 0.0, 0.0, 0.0], (76, 19, 1.0)),
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn means_are_those_that_chapter_30_measured() {
+    fn means_of_engagement_are_those_of_the_release() {
         let params = Params::shipped();
         let mut stream =
             crate::world::random::Streams::new(5).open(crate::world::random::Part::CustomerPosts, [1]);

@@ -1,4 +1,5 @@
-//! Social media: who is heard, what the press writes, and what the company's own posts do (chapter 30 §5, §6).
+//! Social media: who is heard, what the press writes, and what the company's own posts do
+//! (docs/mechanics/market/social/README.md).
 //!
 //! Posts of others act on nothing: they are information. The company's own posts act on leads, once the judge of
 //! `voice` has said how each group takes them ([`reach::receive`]).

@@ -1,4 +1,5 @@
-//! What a subscriber has in mind: how loud they are, what happened to them, what weighs most (chapter 30 §5.3).
+//! What a subscriber has in mind: how loud they are, what happened to them, what weighs most
+//! (docs/mechanics/market/social/opinions.md).
 
 use super::chronicle::Chronicle;
 use super::weights::Loudness;
@@ -180,7 +181,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn troubles_come_before_moods_in_the_order_of_the_chapter() {
+    fn troubles_come_before_moods_and_overload_before_all() {
         let law = Params::shipped().social;
         let none = Troubles::default();
         let all = Troubles { overload: true, outage: true, issue: true, quota: true };

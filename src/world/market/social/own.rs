@@ -1,4 +1,4 @@
-//! The player's posts, and what reactions to them do to leads (chapter 30 §6.1, §6.8).
+//! The player's posts, and what reactions to them do to leads (docs/mechanics/market/social/own.md).
 
 use crate::world::canonical::canonical;
 use crate::world::identifiers::{ByGroup, Group};
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn check_15_of_chapter_30() {
+    fn reactions_above_the_threshold_move_leads_and_fade() {
         for (posts, day, expected) in [
             (&[(7, 1.0)][..], 8, 1.198425131496),
             (&[(7, 1.0)], 9, 1.157490131237),
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn check_17_of_chapter_10() {
+    fn a_reaction_acts_in_full_on_its_day_and_by_half_three_days_later() {
         for (effect, day, expected) in
             [(0.9, 10, 1.1875), (-1.0, 11, 0.8015748685), (0.9, 13, 1.09375), (-1.0, 20, 0.9751968586)]
         {

@@ -1,4 +1,4 @@
-//! What the press writes about rivals and the economy (chapter 30 §5.8, §5.9, steps 11, 18 and 22).
+//! What the press writes about rivals and the economy (docs/mechanics/market/social/press.md).
 
 use super::Social;
 use super::engagement::Engagement;
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn check_18_of_chapter_30() {
+    fn posts_on_rivals_take_the_oldest_event_and_its_estimated_severity() {
         assert_eq!(posts(&[event(100, 0.09)], 100, 0.0), (0.09, vec![(22, 9), (21, 5)]));
         let (estimate, engagement) = posts(&[event(100, 0.09)], 100, 0.25);
         assert!((estimate - 0.1125).abs() < 1e-12);

@@ -1,4 +1,5 @@
-//! How far the player's posts reach: views, comments, and what the inbox says (chapter 30 §6.2, §6.5-§6.7, step 23).
+//! How far the player's posts reach: views, comments, and what the inbox says
+//! (docs/mechanics/market/social/reach.md).
 
 use super::crowd::author_of;
 use super::engagement::Engagement;
@@ -124,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn check_16_of_chapter_30() {
+    fn views_grow_linearly_to_the_threshold_and_exponentially_beyond() {
         let law = Params::shipped().ceo_posts;
         for (effect, expected) in
             [(0.3, 100.0), (0.6, 150.0), (0.7, 360.421712), (0.8, 866.025404), (1.0, 5000.0), (-0.3, 100.0)]

@@ -1,4 +1,4 @@
-//! The tone of a customer's post (chapter 30 §5.4).
+//! The tone of a customer's post (docs/mechanics/market/social/sentiment.md).
 
 use crate::world::canonical::canonical_codes;
 use crate::world::params::{SentimentChances, Social};
@@ -46,7 +46,7 @@ mod tests {
     use crate::world::params::Params;
 
     #[test]
-    fn sentiment_follows_the_bands_of_chapter_30() {
+    fn sentiment_follows_the_bands() {
         let law = Params::shipped().social;
         for (satisfaction, u, expected) in [
             (0.2, 0.69, Sentiment::Positive),

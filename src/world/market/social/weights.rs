@@ -1,4 +1,5 @@
-//! How loudly somebody is heard: the weights behind the posts of a day (chapter 30 §5.3).
+//! How loudly somebody is heard: the weights behind the posts of a day
+//! (docs/mechanics/market/social/crowd.md#weights).
 
 use crate::world::params::Social;
 
@@ -79,7 +80,7 @@ mod tests {
     };
 
     #[test]
-    fn check_b_of_chapter_30() {
+    fn weights_multiply_what_makes_somebody_loud() {
         let law = Params::shipped().social;
         for (voice, expected) in [
             (PLAIN, 1.0),

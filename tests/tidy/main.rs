@@ -1,6 +1,8 @@
 //! The rules of the house, checked on its own text: short files, arrows that point down, nothing unfinished, no clock
 //! and no order of chance in the simulator, configuration that can be read.
 
+mod documents;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -48,8 +50,9 @@ fn followed_by_tests(text: &str, line: &str) -> bool {
     text.contains(&format!("{line}\nmod tests {{"))
 }
 
+/// The folder of the package: cargo tells it where the test is built and where it runs.
 fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    std::env::var_os("CARGO_MANIFEST_DIR").map_or(PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from)
 }
 
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {

@@ -1,0 +1,345 @@
+//! The documents: links lead somewhere, values are those of the parameters in force, and every parameter, test and file
+//! that is named is there.
+//!
+//! `NOVAMIND_WRITE_DOCUMENTS=1 cargo test --test tidy documents` writes the values and tables anew.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use toml::{Table, Value};
+
+use super::{files, root};
+
+/// Tables of parameters that hold one entry per group, pair of groups or persona: pages show columns of them.
+const BY_GROUP: [&str; 3] = ["referral_leads_per_subscriber_day", "reputation_influence", "personas"];
+
+/// A Markdown file.
+struct Page {
+    path: PathBuf,
+    text: String,
+}
+
+impl Page {
+    fn read(path: PathBuf) -> Page {
+        let text = fs::read_to_string(&path).expect("a page");
+        Page { path, text }
+    }
+
+    /// Lines with their numbers, without those of code blocks.
+    fn prose(&self) -> impl Iterator<Item = (usize, &str)> {
+        let mut is_code = false;
+        self.text.lines().enumerate().filter_map(move |(at, line)| {
+            let fence = line.trim_start().starts_with("```");
+            is_code ^= fence;
+            (!is_code && !fence).then_some((at + 1, line))
+        })
+    }
+
+    fn complaint(&self, line: usize, what: &str) -> String {
+        let path = self.path.strip_prefix(root()).unwrap_or(&self.path);
+        format!("{}:{line}: {what}", path.display())
+    }
+
+    /// Names under which its headings can be linked to.
+    fn anchors(&self) -> BTreeSet<String> {
+        let headings = self.prose().filter_map(|(_, line)| line.strip_prefix('#'));
+        headings.map(|heading| slug(heading.trim_start_matches('#').trim())).collect()
+    }
+}
+
+/// The name of a heading in a link.
+fn slug(heading: &str) -> String {
+    let kept = heading.to_lowercase();
+    let kept = kept.chars().filter(|sign| sign.is_alphanumeric() || " -_".contains(*sign));
+    kept.map(|sign| if sign == ' ' { '-' } else { sign }).collect()
+}
+
+fn pages() -> Vec<Page> {
+    let own = fs::read_dir(root()).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let own = own.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
+    let mut paths: Vec<PathBuf> = own.chain(files(&root().join("docs"), "md")).collect();
+    paths.sort();
+    paths.into_iter().map(Page::read).collect()
+}
+
+/// What stands between two signs, each time they are there.
+fn between<'a>(line: &'a str, from: &'a str, to: &'a str) -> impl Iterator<Item = &'a str> {
+    let parts = line.split(from).skip(1);
+    parts.filter_map(move |part| part.split_once(to).map(|(inner, _)| inner))
+}
+
+/// Words in code marks: every second piece of a line.
+fn coded(line: &str) -> impl Iterator<Item = &str> {
+    line.split('`').skip(1).step_by(2)
+}
+
+/// The cells of a row of a table; none for other lines.
+fn cells(line: &str) -> Option<Vec<&str>> {
+    let inner = line.trim().strip_prefix('|')?.strip_suffix('|')?;
+    Some(inner.split('|').map(str::trim).collect())
+}
+
+fn is_rule(cells: &[&str]) -> bool {
+    cells.iter().all(|cell| !cell.is_empty() && cell.chars().all(|sign| "-: ".contains(sign)))
+}
+
+/// The parameters in force, as the base files hold them.
+fn parameters() -> Table {
+    let texts = files(&root().join("configs/world"), "toml");
+    let tables = texts
+        .iter()
+        .map(|path| fs::read_to_string(path).expect("a file").parse::<Table>().expect("parameters in TOML"));
+    tables.flatten().collect()
+}
+
+/// How a value is written in a page.
+fn written(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Array(values) => values.iter().map(written).collect::<Vec<_>>().join(", "),
+        Value::Table(table) => table
+            .iter()
+            .map(|(key, value)| format!("{key} {}", written(value)))
+            .collect::<Vec<_>>()
+            .join(", "),
+        Value::Integer(number) => number.to_string(),
+        other => other.to_string(),
+    }
+}
+
+fn value_of<'a>(parameters: &'a Table, key: &str) -> Option<&'a Value> {
+    let mut parts = key.split('.');
+    let mut value = parameters.get(parts.next()?)?;
+    for part in parts {
+        value = value.get(part)?;
+    }
+    (!value.is_table() || key.contains('.')).then_some(value)
+}
+
+/// A page as the parameters say: the second cell of a row that begins with a parameter, and what follows
+/// `<!-- table: list column … -->`.
+fn filled(page: &Page, parameters: &Table) -> Result<String, String> {
+    let mut text = String::new();
+    let mut lines = page.text.lines().enumerate().peekable();
+    let mut in_table = false;
+    while let Some((at, line)) = lines.next() {
+        let row = cells(line);
+        let starts = row.as_ref().is_some_and(|row| row.first() == Some(&"Parameter"));
+        in_table = row.is_some() && (in_table || starts);
+        match row {
+            Some(row) if in_table && !starts && !is_rule(&row) => {
+                let key = row[0].trim_matches('`');
+                let value = value_of(parameters, key)
+                    .ok_or_else(|| page.complaint(at + 1, &format!("there is no parameter {key}")))?;
+                let value = written(value);
+                let mut row: Vec<&str> = row;
+                row[1] = &value;
+                text += &format!("| {} |\n", row.join(" | "));
+            }
+            _ => text += &format!("{line}\n"),
+        }
+        if let Some(wanted) = line.strip_prefix("<!-- table: ").and_then(|rest| rest.strip_suffix(" -->")) {
+            while lines.next_if(|(_, line)| line.starts_with('|')).is_some() {}
+            text += &table(parameters, wanted).map_err(|problem| page.complaint(at + 1, &problem))?;
+        }
+    }
+    Ok(text)
+}
+
+/// Columns of a list of parameters, one entry in a row.
+fn table(parameters: &Table, wanted: &str) -> Result<String, String> {
+    let mut words = wanted.split_whitespace();
+    let list = words.next().unwrap_or_default();
+    let entries = parameters.get(list).and_then(Value::as_array);
+    let entries = entries.ok_or_else(|| format!("there is no list {list}"))?;
+    let columns: Vec<&str> = words.collect();
+    let mut text = format!("| {} |\n|{}\n", columns.join(" | "), "---|".repeat(columns.len()));
+    for entry in entries {
+        let cell = |column: &&str| match entry.get(column) {
+            Some(value) => written(value),
+            None => "–".to_owned(),
+        };
+        text += &format!("| {} |\n", columns.iter().map(cell).collect::<Vec<_>>().join(" | "));
+    }
+    for column in &columns {
+        if !entries.iter().any(|entry| entry.get(column).is_some()) {
+            return Err(format!("no {list} has {column}"));
+        }
+    }
+    Ok(text)
+}
+
+#[test]
+fn values_in_documents_are_those_of_the_parameters() {
+    let parameters = parameters();
+    let mut problems = Vec::new();
+    for page in pages() {
+        let filled = match filled(&page, &parameters) {
+            Ok(filled) => filled,
+            Err(problem) => {
+                problems.push(problem);
+                continue;
+            }
+        };
+        if filled == page.text {
+            continue;
+        }
+        if std::env::var_os("NOVAMIND_WRITE_DOCUMENTS").is_some() {
+            fs::write(&page.path, filled).expect("the page is written");
+            continue;
+        }
+        let changed = page.text.lines().zip(filled.lines()).position(|(is, must)| is != must).unwrap_or(0);
+        let must = filled.lines().nth(changed).unwrap_or_default();
+        problems.push(page.complaint(changed + 1, &format!("must be: {must}")));
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn every_parameter_is_explained_on_one_page() {
+    let parameters = parameters();
+    let mut keys: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (table, values) in &parameters {
+        if let (Value::Table(values), false) = (values, BY_GROUP.contains(&table.as_str())) {
+            keys.extend(values.keys().map(|key| (format!("{table}.{key}"), Vec::new())));
+        }
+    }
+    for page in pages() {
+        for (at, line) in page.prose() {
+            let Some(row) = cells(line) else { continue };
+            let key = row[0].trim_matches('`');
+            let key = key.split('.').take(2).collect::<Vec<_>>().join(".");
+            if let Some(places) = keys.get_mut(&key) {
+                places.push(page.complaint(at, ""));
+            }
+        }
+    }
+    let nested = |key: &str| value_of(&parameters, key).is_some_and(Value::is_table);
+    let wrong = keys.iter().filter(|(key, places)| places.is_empty() || places.len() > 1 && !nested(key));
+    let wrong: Vec<String> = wrong.map(|(key, places)| format!("{key}: {places:?}")).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let pages = pages();
+    let mut problems = Vec::new();
+    for page in &pages {
+        let folder = page.path.parent().expect("a folder");
+        for (at, line) in page.prose() {
+            for target in between(line, "](", ")").filter(|target| !target.contains("://")) {
+                let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+                let path = if file.is_empty() { page.path.clone() } else { folder.join(file) };
+                let Ok(path) = path.canonicalize() else {
+                    problems.push(page.complaint(at, &format!("{target} is not there")));
+                    continue;
+                };
+                let other = pages.iter().find(|other| other.path.canonicalize().is_ok_and(|own| own == path));
+                if !anchor.is_empty() && !other.is_some_and(|other| other.anchors().contains(anchor)) {
+                    problems.push(page.complaint(at, &format!("{target} has no such heading")));
+                }
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// Whether a word is the path of something in the repository.
+fn is_path(word: &str) -> bool {
+    let tops = ["src/", "tests/", "configs/", "assets/", "docs/"];
+    let plain = |sign: char| sign.is_ascii_alphanumeric() || "/._-".contains(sign);
+    tops.iter().any(|top| word.starts_with(top)) && word.chars().all(plain)
+}
+
+#[test]
+fn files_that_documents_and_comments_name_are_there() {
+    let mut problems = Vec::new();
+    for page in pages() {
+        for (at, line) in page.prose() {
+            let missing = coded(line).filter(|word| is_path(word) && !root().join(word).exists());
+            problems.extend(missing.map(|word| page.complaint(at, &format!("{word} is not there"))));
+        }
+    }
+    for folder in ["src", "tests"] {
+        for path in files(&root().join(folder), "rs") {
+            let page = Page::read(path);
+            for (at, line) in
+                page.text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with("//"))
+            {
+                let words = line.split(|sign: char| sign.is_whitespace() || "`()[],;".contains(sign));
+                let words = words.map(|word| word.trim_end_matches(['.', ':', '\'']));
+                let missing = words.filter(|word| word.starts_with("docs/"));
+                let missing = missing.filter(|word| !leads_to_a_heading(word));
+                problems.extend(missing.map(|word| page.complaint(at + 1, &format!("{word} is not there"))));
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// Whether a page of the documents, or one heading of it, is there.
+fn leads_to_a_heading(word: &str) -> bool {
+    let (file, anchor) = word.split_once('#').unwrap_or((word, ""));
+    let path = root().join(file);
+    path.exists() && (anchor.is_empty() || Page::read(path).anchors().contains(anchor))
+}
+
+#[test]
+fn check_values_in_documents_are_those_of_the_tests() {
+    let sources: Vec<String> = ["src", "tests"]
+        .iter()
+        .flat_map(|folder| files(&root().join(folder), "rs"))
+        .map(|path| fs::read_to_string(path).expect("a source file"))
+        .collect();
+    let mut problems = Vec::new();
+    for page in pages() {
+        let mut of_results = None;
+        for (at, line) in page.prose() {
+            let Some(row) = cells(line) else {
+                of_results = None;
+                continue;
+            };
+            if row.last() == Some(&"Test") {
+                of_results = row.iter().position(|cell| *cell == "Result");
+                continue;
+            }
+            if is_rule(&row) {
+                continue;
+            }
+            let Some(result) = of_results else { continue };
+            let name = row[row.len() - 1].trim_matches('`');
+            let bodies: Vec<&str> = sources.iter().filter_map(|source| body(source, name)).collect();
+            if bodies.is_empty() {
+                problems.push(page.complaint(at, &format!("there is no test {name}")));
+            }
+            for number in coded(row[result]) {
+                if !bodies.iter().any(|body| body.contains(number)) {
+                    problems.push(page.complaint(at, &format!("{number} does not stand in {name}")));
+                }
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// A function's text, from its name to the end of its block.
+fn body<'a>(source: &'a str, name: &str) -> Option<&'a str> {
+    let from = source.find(&format!("fn {name}("))?;
+    let indent = source[..from].rfind('\n').map_or(0, |line| from - line - 1);
+    let end = format!("\n{}}}", " ".repeat(indent - indent % 4));
+    let rest = &source[from..];
+    Some(&rest[..rest.find(&end).unwrap_or(rest.len())])
+}
+
+/// Pages of the folder of mechanisms name their code.
+#[test]
+fn every_mechanism_names_its_code() {
+    let folder: &Path = &root().join("docs/mechanics");
+    let nameless: Vec<PathBuf> = files(folder, "md")
+        .into_iter()
+        .filter(|path| !path.ends_with("README.md"))
+        .filter(|path| !Page::read(path.clone()).text.contains("\nCode: "))
+        .collect();
+    assert!(nameless.is_empty(), "{nameless:?}");
+}

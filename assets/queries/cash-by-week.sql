@@ -2,23 +2,23 @@
 -- what: What came in and went out each week, and what was left. The running sum is the cash you have.
 -- chart: line week cash
 WITH days AS MATERIALIZED (
-    SELECT day, total(amount) FILTER (WHERE amount > 0) AS income, total(amount) FILTER (WHERE amount < 0) AS cost
+    SELECT day, total(amount) AS net, total(amount) FILTER (WHERE amount < 0) AS cost
     FROM ledger
     GROUP BY day
 ), bought AS (
     SELECT day, sum(amount) AS amount
     FROM ledger
-    WHERE day IN (SELECT day FROM days WHERE day % 7 = 0)
+    WHERE day IN (SELECT day FROM days WHERE day % 7 = 0) AND amount < 0
         AND category IN ('research_project', 'market_research', 'group_research')
     GROUP BY day
 )
-SELECT week, round(sum(income), 2) AS income, round(sum(cost), 2) AS cost, round(sum(income) + sum(cost), 2) AS net,
-    round(sum(sum(income) + sum(cost)) OVER (ORDER BY week), 2) AS cash
+SELECT week, round(sum(net) - sum(cost), 2) AS income, round(sum(cost), 2) AS cost, round(sum(net), 2) AS net,
+    round(sum(sum(net)) OVER (ORDER BY week), 2) AS cash
 FROM (
-    SELECT (day + 6) / 7 AS week, income, cost - coalesce(bought.amount, 0) AS cost
+    SELECT (day + 6) / 7 AS week, net - coalesce(bought.amount, 0) AS net, cost - coalesce(bought.amount, 0) AS cost
     FROM days LEFT JOIN bought USING (day)
     UNION ALL
-    SELECT day / 7 + 1, 0, amount FROM bought
+    SELECT day / 7 + 1, amount, amount FROM bought
 )
 GROUP BY 1
 ORDER BY 1

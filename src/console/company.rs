@@ -85,7 +85,7 @@ impl Company {
     /// The same, with what an earlier look at this run has read already.
     pub fn after(session: &Session, before: Option<&Company>) -> Company {
         let settings =
-            CATALOGUE.iter().map(|tool| tool.spec().name).map(|name| (name, session.current(name)));
+            CATALOGUE.iter().map(|tool| tool.spec().name()).map(|name| (name, session.current(name)));
         let read = |tool: &str| session.look_up(tool, &Value::Object(Map::new())).unwrap_or(Value::Null);
         Company {
             seen: session.observe(),

@@ -89,9 +89,9 @@ fn of_tool(spec: &'static Spec) -> Parts {
         section("cost", spec.cost),
         section("takes", arguments.join("\n")),
         section("refused as", spec.refusals.join(", ")),
-        section("example", format!("{}({})", spec.name, spec.example)),
+        section("example", format!("{}({})", spec.name(), spec.example)),
     ];
-    let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name));
+    let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name()));
     let arguments = spec.arguments.iter().map(|argument| Subject::Argument(spec, argument));
     let tables = spec.writes.iter().filter_map(|name| crate::database::table(name)).map(Subject::Table);
     let related = terms.map(Subject::Term).chain(arguments).chain(tables).collect();
@@ -114,9 +114,9 @@ fn of_argument(spec: &'static Spec, argument: &'static Argument) -> Parts {
         section("cost", spec.cost),
         section("refused as", spec.refusals.join(", ")),
     ];
-    let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name));
+    let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name()));
     let related = std::iter::once(Subject::Tool(spec)).chain(terms.map(Subject::Term)).collect();
-    (format!("argument of {}", spec.name), sections, related, &[])
+    (format!("argument of {}", spec.name()), sections, related, &[])
 }
 
 fn of_table(table: &'static Table) -> Parts {

@@ -25,8 +25,8 @@ impl Subject {
     pub fn name(&self) -> String {
         match self {
             Subject::Term(term) => term.id.clone(),
-            Subject::Tool(spec) => spec.name.to_owned(),
-            Subject::Argument(spec, argument) => format!("{}.{}", spec.name, argument.name),
+            Subject::Tool(spec) => spec.name().to_owned(),
+            Subject::Argument(spec, argument) => format!("{}.{}", spec.name(), argument.name),
             Subject::Table(table) => table.name.clone(),
             Subject::Column(table, column) => format!("{}.{}", table.name, column.name),
         }
@@ -103,7 +103,7 @@ fn near(typed: &str) -> Vec<&'static str> {
         terms().iter().filter(|term| holds(term, typed)).map(|term| term.id.as_str()).take(5).collect()
     };
     if found.is_empty() {
-        let tools = tools::CATALOGUE.iter().map(|tool| tool.spec().name);
+        let tools = tools::CATALOGUE.iter().map(|tool| tool.spec().name());
         let tables = database::tables().iter().map(|table| table.name.as_str());
         found = nearest(&typed.replace(' ', "-"), names());
         found.extend(nearest(&typed.replace(' ', "_"), tools.chain(tables)));

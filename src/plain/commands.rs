@@ -209,7 +209,7 @@ impl Desk {
     fn call(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Result<Answer, Problem> {
         let tool = tool_called(word).ok_or_else(|| unknown(word, column))?;
         let arguments = as_object(arguments, only_required(tool))?;
-        Ok(self.call_named(tool.spec().name, &arguments))
+        Ok(self.call_named(tool.spec().name(), &arguments))
     }
 
     fn call_named(&mut self, tool: &'static str, arguments: &Value) -> Answer {
@@ -266,7 +266,7 @@ fn tool_called(word: &str) -> Option<&'static dyn Tool> {
     };
     let fits = |module: &str, own: Module| own.id() == module;
     tools::find(name)
-        .filter(|tool| tool.spec().kind != Kind::Time && tool.spec().name != "query")
+        .filter(|tool| tool.spec().kind != Kind::Time && tool.spec().name() != "query")
         .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))
 }
 
@@ -290,7 +290,7 @@ fn only_required(tool: &'static dyn Tool) -> Option<&'static str> {
 
 fn unknown(word: &str, column: usize) -> Problem {
     let commands = COMMANDS.iter().map(|(name, _)| *name);
-    let tools = tools::CATALOGUE.iter().map(|tool| tool.spec().name);
+    let tools = tools::CATALOGUE.iter().map(|tool| tool.spec().name());
     let name = word.rsplit('.').next().unwrap_or(word);
     if tools::find(name).is_some_and(|tool| tool.spec().kind == Kind::Time) {
         let text = format!(

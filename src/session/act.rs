@@ -63,7 +63,7 @@ impl Session {
         self.refuse_if_over(tool.spec().kind)?;
         let (_, effect) = self.plan(tool, arguments)?;
         let mut preview = Preview {
-            tool: tool.spec().name,
+            tool: tool.spec().name(),
             cost_now: 0.0,
             cost_per_day: 0.0,
             effect_day: None,
@@ -108,7 +108,7 @@ impl Session {
     pub fn look_up(&self, tool: &str, arguments: &Value) -> Result<Value, Refusal> {
         let tool = self.tool(tool)?;
         if tool.spec().kind != Kind::Read {
-            return Err(Refusal::new("not_a_reading", format!("{} does more than read", tool.spec().name)));
+            return Err(Refusal::new("not_a_reading", format!("{} does more than read", tool.spec().name())));
         }
         let (arguments, effect) = self.plan(tool, arguments)?;
         let deed = self.world.resolve(effect, &self.params, &self.streams);
@@ -149,7 +149,7 @@ impl Session {
         let took_ms = started.elapsed().as_secs_f64() * 1e3;
         let called = |args: Value, outcome| {
             Record::Call(Call {
-                tool: tool.spec().name.to_owned(),
+                tool: tool.spec().name().to_owned(),
                 args,
                 outcome,
                 via,
@@ -184,7 +184,7 @@ impl Session {
         let (spec, seq) = (tool.spec(), self.position.seq);
         if !deed.only_reads() {
             let args = Value::Object(given.as_map().clone());
-            let (day, tool) = (self.world.day, spec.name.to_owned());
+            let (day, tool) = (self.world.day, spec.name().to_owned());
             self.journal.push(JournalEntry::Call { seq, day, tool, args, reversal });
         }
         self.this_week.done.extend(self.in_words(&deed));
@@ -196,7 +196,7 @@ impl Session {
         self.world.apply(deed, &self.params, to_fill(&mut self.facts, self.projector.as_ref()));
         if let Some(restores) = before {
             let changed = restores != self.world.settings;
-            self.this_week.keep(Step { seq, tool: spec.name, restores }, changed, reversal);
+            self.this_week.keep(Step { seq, tool: spec.name(), restores }, changed, reversal);
         }
         self.called.extend_from_slice(&self.facts.ledger);
         self.after_call(settings);

@@ -194,7 +194,7 @@ impl Canonical for Step {
 impl Restore for Step {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
         let (seq, tool): (u64, String) = reader.read()?;
-        Some(Step { seq, tool: find(&tool)?.spec().name, restores: reader.read()? })
+        Some(Step { seq, tool: find(&tool)?.spec().name(), restores: reader.read()? })
     }
 }
 

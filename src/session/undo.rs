@@ -103,7 +103,7 @@ fn restoring_arguments(
     restored: &Settings,
 ) -> Result<Map<String, Value>, Refusal> {
     let mut arguments = tool.current(restored);
-    if tool.spec().name == "set_prices" {
+    if tool.spec().name() == "set_prices" {
         let held = tool.current(now);
         arguments.retain(|plan, price| held.get(plan) != Some(price));
         if let Some((plan, _)) = arguments.iter().find(|(_, price)| price.as_f64() == Some(0.0)) {

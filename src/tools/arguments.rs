@@ -40,7 +40,7 @@ impl Arguments {
         if !spec.own_unknown
             && let Some(name) = map.keys().find(|name| !is_named(spec, name))
         {
-            let message = format!("{} has no argument {name}; it has {}", spec.name, names(spec));
+            let message = format!("{} has no argument {name}; it has {}", spec.name(), names(spec));
             return Err(Refusal::at(name.clone(), "unknown_argument", message));
         }
         map.retain(|_, value| !value.is_null());

@@ -1,6 +1,8 @@
 //! The list of all tools.
 
-use super::Tool;
+use serde::{Deserialize, Serialize};
+use strum::{Display, EnumString, IntoStaticStr};
+
 use super::analytics::{GetSocialPosts, SetTargetedDevSpend, SetTargetedOpsSpend};
 use super::calculations::{ListDailyCalculations, RegisterDailyCalculation, RemoveDailyCalculation};
 use super::documentation::{DescribeTables, GetToolDocumentation, ListAllTables};
@@ -14,55 +16,97 @@ use super::pricing::{SetModelTiers, SetPrices, SetPromotion, SetUsageQuotas};
 use super::research::{ListResearchProjects, StartResearchProject};
 use super::scripts::{DeleteScript, ListScripts, PythonExec, RegisterScript, RunScript};
 use super::time::{GetVars, NextWeek, Query};
+use super::{Spec, Tool};
 
-/// All tools, in the order in which they are shown.
-pub static CATALOGUE: [&dyn Tool; 36] = [
-    &SetPrices,
-    &SetModelTiers,
-    &SetUsageQuotas,
-    &SetPromotion,
-    &SetDailySpend,
-    &SetTargetedAdSpend,
-    &SetAdsStrength,
-    &SetLeadPromotion,
-    &PostSocialMedia,
-    &GetSocialPosts,
-    &SetTargetedOpsSpend,
-    &SetTargetedDevSpend,
-    &StartResearchProject,
-    &ListResearchProjects,
-    &ResearchMarket,
-    &ResearchGroup,
-    &GetMarketOverview,
-    &GetGroupInsights,
-    &SetCapacityTier,
-    &GetCostInfo,
-    &SendEnterpriseDeal,
-    &RejectEnterpriseDeal,
-    &NextWeek,
-    &PythonExec,
-    &RegisterDailyCalculation,
-    &RemoveDailyCalculation,
-    &ListDailyCalculations,
-    &ListAllTables,
-    &DescribeTables,
-    &GetToolDocumentation,
-    &RegisterScript,
-    &RunScript,
-    &ListScripts,
-    &DeleteScript,
-    &Query,
-    &GetVars,
-];
+/// One list makes the identifiers and the tools, in the order in which they are shown.
+macro_rules! tools {
+    ($($tool:ident),* $(,)?) => {
+        /// A tool. Calls and records write it as its name: `set_prices`.
+        #[derive(
+            Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, Display, EnumString,
+            IntoStaticStr,
+        )]
+        #[serde(rename_all = "snake_case")]
+        #[strum(serialize_all = "snake_case")]
+        #[allow(missing_docs)] // Each is described by its `Spec`.
+        pub enum ToolId {
+            $($tool),*
+        }
+
+        /// All tools, in the order in which they are shown.
+        pub static CATALOGUE: [&dyn Tool; [$(ToolId::$tool),*].len()] = [$(&$tool),*];
+    };
+}
+
+tools! {
+    SetPrices,
+    SetModelTiers,
+    SetUsageQuotas,
+    SetPromotion,
+    SetDailySpend,
+    SetTargetedAdSpend,
+    SetAdsStrength,
+    SetLeadPromotion,
+    PostSocialMedia,
+    GetSocialPosts,
+    SetTargetedOpsSpend,
+    SetTargetedDevSpend,
+    StartResearchProject,
+    ListResearchProjects,
+    ResearchMarket,
+    ResearchGroup,
+    GetMarketOverview,
+    GetGroupInsights,
+    SetCapacityTier,
+    GetCostInfo,
+    SendEnterpriseDeal,
+    RejectEnterpriseDeal,
+    NextWeek,
+    PythonExec,
+    RegisterDailyCalculation,
+    RemoveDailyCalculation,
+    ListDailyCalculations,
+    ListAllTables,
+    DescribeTables,
+    GetToolDocumentation,
+    RegisterScript,
+    RunScript,
+    ListScripts,
+    DeleteScript,
+    Query,
+    GetVars,
+}
+
+impl ToolId {
+    /// Its name, as calls write it.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    /// The tool itself.
+    pub fn tool(self) -> &'static dyn Tool {
+        CATALOGUE[self as usize]
+    }
+
+    /// Everything there is to know about it.
+    pub fn spec(self) -> &'static Spec {
+        self.tool().spec()
+    }
+
+    /// All of them, in the order in which they are shown.
+    pub fn all() -> impl Iterator<Item = ToolId> {
+        CATALOGUE.iter().map(|tool| tool.spec().id)
+    }
+}
 
 /// The tool with this name; case counts. The module may stand before it: `pricing.set_prices`.
 pub fn find(name: &str) -> Option<&'static dyn Tool> {
     CATALOGUE.into_iter().find(|tool| {
         let spec = tool.spec();
-        spec.name == name
+        spec.name() == name
             || name
                 .split_once('.')
-                .is_some_and(|(module, rest)| module == spec.module.id() && rest == spec.name)
+                .is_some_and(|(module, rest)| module == spec.module.id() && rest == spec.name())
     })
 }
 
@@ -73,7 +117,7 @@ pub fn find_code(code: &str) -> Option<&'static dyn Tool> {
 
 /// Up to three names of tools that look like a name that does not exist.
 pub fn nearest(name: &str) -> Vec<&'static str> {
-    crate::notation::nearest(name, CATALOGUE.iter().map(|tool| tool.spec().name))
+    crate::notation::nearest(name, CATALOGUE.iter().map(|tool| tool.spec().name()))
 }
 
 #[cfg(test)]
@@ -82,8 +126,8 @@ mod tests {
 
     #[test]
     fn tools_are_found_with_and_without_their_module() {
-        assert_eq!(find("set_prices").map(|tool| tool.spec().name), Some("set_prices"));
-        assert_eq!(find("pricing.set_prices").map(|tool| tool.spec().name), Some("set_prices"));
+        assert_eq!(find("set_prices").map(|tool| tool.spec().name()), Some("set_prices"));
+        assert_eq!(find("pricing.set_prices").map(|tool| tool.spec().name()), Some("set_prices"));
         assert!(find("marketing.set_prices").is_none());
         assert!(find("Set_Prices").is_none());
         assert_eq!(nearest("set_price")[0], "set_prices");
@@ -131,10 +175,19 @@ mod tests {
 
     #[test]
     fn the_catalogue_holds_34_tools_and_two_readings() {
-        let own: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name).collect();
+        let own: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name()).collect();
         let missing: Vec<&&str> = EXPECTED.iter().filter(|name| !own.contains(name)).collect();
         let surplus: Vec<&&str> = own.iter().filter(|name| !EXPECTED.contains(name)).collect();
         assert!(missing.is_empty() && surplus.is_empty(), "missing: {missing:?}, surplus: {surplus:?}");
+    }
+
+    #[test]
+    fn an_identifier_is_that_of_its_tool_and_its_name_is_read_back() {
+        for (at, tool) in CATALOGUE.iter().enumerate() {
+            let id = tool.spec().id;
+            assert_eq!((id as usize, id.name().parse()), (at, Ok(id)), "{id}");
+            assert_eq!(serde_json::json!(id), id.name(), "{id}");
+        }
     }
 
     #[test]
@@ -149,19 +202,19 @@ mod tests {
         codes.sort_unstable();
         codes.dedup();
         assert_eq!(codes.len(), CATALOGUE.len());
-        assert_eq!(find_code(" prc ").map(|tool| tool.spec().name), Some("set_prices"));
+        assert_eq!(find_code(" prc ").map(|tool| tool.spec().name()), Some("set_prices"));
         assert!(find_code("PR").is_none() && find_code("set_prices").is_none());
     }
 
     #[test]
     fn names_are_unique_and_examples_are_json() {
-        let mut names: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name).collect();
+        let mut names: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name()).collect();
         names.sort_unstable();
         names.dedup();
         assert_eq!(names.len(), CATALOGUE.len());
         for tool in CATALOGUE {
             let example = serde_json::from_str::<serde_json::Value>(tool.spec().example);
-            assert!(example.is_ok_and(|value| value.is_object()), "{}", tool.spec().name);
+            assert!(example.is_ok_and(|value| value.is_object()), "{}", tool.spec().name());
         }
     }
 }

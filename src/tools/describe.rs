@@ -32,7 +32,7 @@ pub fn overview() -> String {
     for module in Module::ALL {
         let _ = writeln!(text, "{}", module.id());
         for spec in super::CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.module == module) {
-            let _ = writeln!(text, "  {:<5} {:<26} {}", spec.code, spec.name, spec.summary);
+            let _ = writeln!(text, "  {:<5} {:<26} {}", spec.code, spec.name(), spec.summary);
         }
     }
     text
@@ -40,7 +40,7 @@ pub fn overview() -> String {
 
 /// Everything about one tool, with the numbers in force.
 pub fn manual(spec: &Spec, numbers: &Numbers) -> String {
-    let mut text = format!("{}.{} ({}): {}\n", spec.module.id(), spec.name, spec.code, spec.summary);
+    let mut text = format!("{}.{} ({}): {}\n", spec.module.id(), spec.name(), spec.code, spec.summary);
     for argument in spec.arguments {
         let _ = writeln!(text, "  {}", argument_line(argument));
     }
@@ -57,7 +57,7 @@ pub fn manual(spec: &Spec, numbers: &Numbers) -> String {
     for output in spec.returns {
         let _ = writeln!(text, "Returns {} ({}): {}.", output.name, output.kind, output.doc);
     }
-    let _ = writeln!(text, "Example: {}({})", spec.name, spec.example);
+    let _ = writeln!(text, "Example: {}({})", spec.name(), spec.example);
     text
 }
 
@@ -90,7 +90,7 @@ pub fn as_json(tool: &dyn Tool, numbers: &Numbers) -> Value {
         .map(|output| json!({ "name": output.name, "type": output.kind, "description": output.doc }))
         .collect();
     json!({
-        "name": spec.name,
+        "name": spec.name(),
         "code": spec.code,
         "module": spec.module.id(),
         "kind": spec.kind.id(),

@@ -33,7 +33,7 @@ mod tests;
 use serde_json::{Map, Value};
 
 pub use arguments::Arguments;
-pub use catalogue::{CATALOGUE, find};
+pub use catalogue::{CATALOGUE, ToolId, find};
 pub use notebook::{Kept, Notebook, Task};
 pub use numbers::Numbers;
 pub use refusal::Refusal;

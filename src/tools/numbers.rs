@@ -105,7 +105,7 @@ mod tests {
         for spec in CATALOGUE.iter().map(|tool| tool.spec()) {
             for text in [spec.effect, spec.cost, spec.summary] {
                 for name in names_in(text) {
-                    assert!(numbers.written(&name).is_some(), "{}: {name}", spec.name);
+                    assert!(numbers.written(&name).is_some(), "{}: {name}", spec.name());
                 }
             }
         }

@@ -1,14 +1,15 @@
 //! What a tool is, as data: the single source for its form, its command, its route, its documentation and the
 //! check of its arguments.
 
+use super::ToolId;
 use super::bounds::{MOST_DOLLARS, MOST_UNITS};
 use crate::notation::grouped;
 
 /// Everything there is to know about a tool but its code.
 #[derive(Debug)]
 pub struct Spec {
-    /// Name, for instance `set_prices`.
-    pub name: &'static str,
+    /// Which one.
+    pub id: ToolId,
     /// Three to five capitals by which it is found at once, for instance `PRC`.
     pub code: &'static str,
     /// Module of the client library it belongs to.
@@ -61,6 +62,11 @@ pub enum Module {
 }
 
 impl Spec {
+    /// Name as calls write it, for instance `set_prices`.
+    pub fn name(&self) -> &'static str {
+        self.id.name()
+    }
+
     /// Whether missing arguments have a code of the tool's own.
     pub fn own_missing(&self) -> bool {
         self.refusals.iter().any(|code| code.ends_with("_missing"))

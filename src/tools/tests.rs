@@ -596,8 +596,8 @@ fn what_a_tool_calls_current_can_be_sent_back() {
             continue;
         }
         let before = company.world.settings.clone();
-        company.call(tool.spec().name, Value::Object(current));
-        assert_eq!(company.world.settings, before, "{}", tool.spec().name);
+        company.call(tool.spec().name(), Value::Object(current));
+        assert_eq!(company.world.settings, before, "{}", tool.spec().name());
     }
 }
 

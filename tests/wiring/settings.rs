@@ -55,7 +55,7 @@ fn two_calls(tool: &str) -> [Value; 2] {
 
 /// Tools that change what holds from the next day on.
 fn setting_tools() -> impl Iterator<Item = &'static str> {
-    CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind == Kind::Setting).map(|spec| spec.name)
+    CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind == Kind::Setting).map(|spec| spec.name())
 }
 
 /// Hash of the settings in force.

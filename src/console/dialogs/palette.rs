@@ -173,7 +173,7 @@ fn recent(company: &Company) -> Vec<&'static str> {
     let mut names = Vec::new();
     for entry in company.journal.iter().rev() {
         let JournalEntry::Call { tool, .. } = entry else { continue };
-        let Some(name) = find(tool).map(|tool| tool.spec().name) else { continue };
+        let Some(name) = find(tool).map(|tool| tool.spec().name()) else { continue };
         if !names.contains(&name) {
             names.push(name);
         }
@@ -218,10 +218,10 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
     list.extend(callable.map(|spec| Entry {
         kind: "tool",
         code: spec.code,
-        title: spec.name.to_owned(),
+        title: spec.name().to_owned(),
         doc: spec.summary.to_owned(),
         keys: spec.code.to_owned(),
-        effect: Effect::ShowTool(spec.name),
+        effect: Effect::ShowTool(spec.name()),
     }));
     list.extend(company.seen.known_groups.iter().map(|group| Entry {
         kind: "group",
@@ -359,7 +359,7 @@ mod tests {
                 palette.field = Field::of(typed);
                 palette.find();
                 let first = palette.found.first().map(|(at, _)| palette.entries[*at].title.as_str());
-                assert_eq!(first, Some(spec.name));
+                assert_eq!(first, Some(spec.name()));
             }
         }
         palette.field = Field::of("sql");

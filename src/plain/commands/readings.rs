@@ -257,7 +257,7 @@ fn callable() -> impl Iterator<Item = &'static str> {
         .iter()
         .map(|tool| tool.spec())
         .filter(|spec| spec.kind != Kind::Time)
-        .map(|spec| spec.name)
+        .map(|spec| spec.name())
 }
 
 fn not_there(what: &str, name: &str, near: Vec<&str>) -> String {

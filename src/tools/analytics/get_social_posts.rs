@@ -2,7 +2,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::arguments::{Arguments, integer, wrong_type};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, PublicPost, Range, Refusal, Spec, Tool, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, PublicPost, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use crate::world::effect::{Deed, Effect};
 use crate::world::identifiers::Group;
@@ -13,7 +13,7 @@ pub struct GetSocialPosts;
 const ANY: ArgumentKind = ArgumentKind::Integer(Range::between(f64::NEG_INFINITY, f64::INFINITY));
 
 static SPEC: Spec = Spec {
-    name: "get_social_posts",
+    id: ToolId::GetSocialPosts,
     code: "FEED",
     module: Module::Analytics,
     kind: Kind::Read,

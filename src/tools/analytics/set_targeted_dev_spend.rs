@@ -4,7 +4,7 @@ use super::super::arguments::{Arguments, amount_as_sent, per_group};
 use super::super::as_data;
 use super::super::marketing::BUDGET;
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
@@ -16,7 +16,7 @@ use crate::world::settings::{Settings, TargetedDevelopment};
 pub struct SetTargetedDevSpend;
 
 static SPEC: Spec = Spec {
-    name: "set_targeted_dev_spend",
+    id: ToolId::SetTargetedDevSpend,
     code: "DEV",
     module: Module::Analytics,
     kind: Kind::Setting,

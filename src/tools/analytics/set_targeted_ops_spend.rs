@@ -4,7 +4,7 @@ use super::super::arguments::{Arguments, per_customer, per_group, per_group_plan
 use super::super::as_data;
 use super::super::marketing::BUDGET;
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
@@ -24,7 +24,7 @@ const fn scope(
 }
 
 static SPEC: Spec = Spec {
-    name: "set_targeted_ops_spend",
+    id: ToolId::SetTargetedOpsSpend,
     code: "TOPS",
     module: Module::Analytics,
     kind: Kind::Setting,

@@ -2,7 +2,7 @@ use serde_json::{Value, json};
 
 use super::super::arguments::{Arguments, text};
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, View, When,
+    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
 };
 use crate::world::effect::{Deed, Effect};
 
@@ -10,7 +10,7 @@ use crate::world::effect::{Deed, Effect};
 pub struct RegisterDailyCalculation;
 
 static SPEC: Spec = Spec {
-    name: "register_daily_calculation",
+    id: ToolId::RegisterDailyCalculation,
     code: "CALC",
     module: Module::Time,
     kind: Kind::Engine,

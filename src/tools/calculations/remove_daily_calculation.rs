@@ -2,7 +2,7 @@ use serde_json::{Value, json};
 
 use super::super::arguments::{Arguments, text};
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, View, When,
+    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
 };
 use super::{kept, not_found};
 use crate::world::effect::{Deed, Effect};
@@ -11,7 +11,7 @@ use crate::world::effect::{Deed, Effect};
 pub struct RemoveDailyCalculation;
 
 static SPEC: Spec = Spec {
-    name: "remove_daily_calculation",
+    id: ToolId::RemoveDailyCalculation,
     code: "UNCAL",
     module: Module::Time,
     kind: Kind::Engine,

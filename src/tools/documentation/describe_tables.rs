@@ -2,7 +2,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::arguments::Arguments;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, TableDocument, Tool, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, TableDocument, Tool, ToolId, View, When,
 };
 use super::chosen;
 use crate::world::effect::{Deed, Effect};
@@ -11,7 +11,7 @@ use crate::world::effect::{Deed, Effect};
 pub struct DescribeTables;
 
 static SPEC: Spec = Spec {
-    name: "describe_tables",
+    id: ToolId::DescribeTables,
     code: "DESC",
     module: Module::Time,
     kind: Kind::Engine,

@@ -3,7 +3,7 @@ use serde_json::Value;
 use super::super::arguments::Arguments;
 use super::super::describe::as_json;
 use super::super::{
-    Argument, ArgumentKind, CATALOGUE, Kind, Module, Numbers, Output, Refusal, Spec, Tool, View, When,
+    Argument, ArgumentKind, CATALOGUE, Kind, Module, Numbers, Output, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::chosen;
 use crate::world::effect::{Deed, Effect};
@@ -12,7 +12,7 @@ use crate::world::effect::{Deed, Effect};
 pub struct GetToolDocumentation;
 
 static SPEC: Spec = Spec {
-    name: "get_tool_documentation",
+    id: ToolId::GetToolDocumentation,
     code: "DOC",
     module: Module::Time,
     kind: Kind::Engine,
@@ -37,7 +37,7 @@ static SPEC: Spec = Spec {
 };
 
 fn all_names() -> Vec<&'static str> {
-    CATALOGUE.iter().map(|tool| tool.spec().name).collect()
+    CATALOGUE.iter().map(|tool| tool.spec().name()).collect()
 }
 
 impl Tool for GetToolDocumentation {
@@ -51,8 +51,8 @@ impl Tool for GetToolDocumentation {
 
     fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
         let names = chosen(arguments, "tool_names", &all_names(), "tool_not_found").unwrap_or_default();
-        let tools = CATALOGUE.iter().filter(|tool| names.contains(&tool.spec().name));
+        let tools = CATALOGUE.iter().filter(|tool| names.contains(&tool.spec().name()));
         let numbers = Numbers::of(view.params());
-        tools.map(|tool| (tool.spec().name.to_owned(), as_json(*tool, &numbers))).collect()
+        tools.map(|tool| (tool.spec().name().to_owned(), as_json(*tool, &numbers))).collect()
     }
 }

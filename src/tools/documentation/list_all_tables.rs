@@ -1,14 +1,14 @@
 use serde_json::{Map, Value, json};
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use crate::world::effect::{Deed, Effect};
 
 /// Lists the tables.
 pub struct ListAllTables;
 
 static SPEC: Spec = Spec {
-    name: "list_all_tables",
+    id: ToolId::ListAllTables,
     code: "TABS",
     module: Module::Time,
     kind: Kind::Engine,

@@ -1,7 +1,7 @@
 use serde_json::Value;
 
 use super::super::arguments::Arguments;
-use super::super::{Argument, ArgumentKind, Kind, Module, Refusal, Spec, Tool, View, When};
+use super::super::{Argument, ArgumentKind, Kind, Module, Refusal, Spec, Tool, ToolId, View, When};
 use super::reading::{Unreadable, customer, elements, malformed};
 use super::{Failure, Fate, RESULTS, results, unless_all_failed};
 use crate::world::effect::{Deed, Effect};
@@ -10,7 +10,7 @@ use crate::world::effect::{Deed, Effect};
 pub struct RejectEnterpriseDeal;
 
 static SPEC: Spec = Spec {
-    name: "reject_enterprise_deal",
+    id: ToolId::RejectEnterpriseDeal,
     code: "REJ",
     module: Module::Enterprise,
     kind: Kind::OneShot,

@@ -1,7 +1,7 @@
 use serde_json::Value;
 
 use super::super::arguments::Arguments;
-use super::super::{Argument, ArgumentKind, Kind, Module, Refusal, Spec, Tool, View, When};
+use super::super::{Argument, ArgumentKind, Kind, Module, Refusal, Spec, Tool, ToolId, View, When};
 use super::reading::{Unreadable, customer, elements, malformed, offerings};
 use super::{Failure, Fate, RESULTS, results, unless_all_failed};
 use crate::world::customers::FIRST_CUSTOMER;
@@ -14,7 +14,7 @@ pub struct SendEnterpriseDeal;
 const EXAMPLE: &str = r#"[[207, [["B", 31.5], ["C", 54]]]]"#;
 
 static SPEC: Spec = Spec {
-    name: "send_enterprise_deal",
+    id: ToolId::SendEnterpriseDeal,
     code: "DEAL",
     module: Module::Enterprise,
     kind: Kind::OneShot,

@@ -1,14 +1,14 @@
 use serde_json::{Map, Value, json};
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use crate::world::effect::{Deed, Effect};
 
 /// Shows the price list.
 pub struct GetCostInfo;
 
 static SPEC: Spec = Spec {
-    name: "get_cost_info",
+    id: ToolId::GetCostInfo,
     code: "COST",
     module: Module::Infrastructure,
     kind: Kind::Read,

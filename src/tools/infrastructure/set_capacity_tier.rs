@@ -2,7 +2,9 @@ use serde_json::{Map, Value, json};
 
 use super::super::arguments::{Arguments, integer};
 use super::super::pricing::core_of;
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+};
 use crate::world::effect::{Deed, Effect};
 use crate::world::settings::Settings;
 use crate::world::settings::SettingsChange;
@@ -11,7 +13,7 @@ use crate::world::settings::SettingsChange;
 pub struct SetCapacityTier;
 
 static SPEC: Spec = Spec {
-    name: "set_capacity_tier",
+    id: ToolId::SetCapacityTier,
     code: "CAP",
     module: Module::Infrastructure,
     kind: Kind::Setting,

@@ -1,7 +1,7 @@
 use serde_json::{Map, Value, json};
 
 use super::super::arguments::Arguments;
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use super::{known_group, noise_label, segment};
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
@@ -12,7 +12,7 @@ use crate::world::market::insights::Insights;
 pub struct GetGroupInsights;
 
 static SPEC: Spec = Spec {
-    name: "get_group_insights",
+    id: ToolId::GetGroupInsights,
     code: "INS",
     module: Module::Market,
     kind: Kind::Read,

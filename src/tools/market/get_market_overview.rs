@@ -1,7 +1,7 @@
 use serde_json::{Value, json};
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use super::{noise_label, segment};
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
@@ -11,7 +11,7 @@ use crate::world::identifiers::Group;
 pub struct GetMarketOverview;
 
 static SPEC: Spec = Spec {
-    name: "get_market_overview",
+    id: ToolId::GetMarketOverview,
     code: "MKT",
     module: Module::Market,
     kind: Kind::Read,

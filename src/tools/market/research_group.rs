@@ -2,7 +2,9 @@ use serde_json::{Value, json};
 
 use super::super::arguments::Arguments;
 use super::super::research::affordable;
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+};
 use super::known_group;
 use crate::world::effect::{Deed, Effect};
 use crate::world::identifiers::Group;
@@ -12,7 +14,7 @@ use crate::world::market::studies::default_target;
 pub struct ResearchGroup;
 
 static SPEC: Spec = Spec {
-    name: "research_group",
+    id: ToolId::ResearchGroup,
     code: "STUDY",
     module: Module::Market,
     kind: Kind::Purchase,

@@ -2,7 +2,7 @@ use serde_json::{Value, json};
 
 use super::super::arguments::Arguments;
 use super::super::research::affordable;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
 
@@ -10,7 +10,7 @@ use crate::world::effect::{Deed, Effect};
 pub struct ResearchMarket;
 
 static SPEC: Spec = Spec {
-    name: "research_market",
+    id: ToolId::ResearchMarket,
     code: "FIND",
     module: Module::Market,
     kind: Kind::Purchase,

@@ -1,14 +1,16 @@
 use serde_json::{Value, json};
 
 use super::super::arguments::{Arguments, integer, wrong_type};
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+};
 use crate::world::effect::{Deed, Draft, Effect};
 
 /// Publishes a post of the company.
 pub struct PostSocialMedia;
 
 static SPEC: Spec = Spec {
-    name: "post_social_media",
+    id: ToolId::PostSocialMedia,
     code: "POST",
     module: Module::Marketing,
     kind: Kind::OneShot,

@@ -2,7 +2,7 @@ use serde_json::{Map, Value};
 
 use super::super::arguments::{Amount, Arguments, number, per_customer, per_group};
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::super::{as_data, family_of};
 use crate::notation::json_number;
@@ -24,7 +24,7 @@ const fn level(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Arg
 }
 
 static SPEC: Spec = Spec {
-    name: "set_ads_strength",
+    id: ToolId::SetAdsStrength,
     code: "INAD",
     module: Module::Marketing,
     kind: Kind::Setting,

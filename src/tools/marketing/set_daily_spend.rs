@@ -2,7 +2,9 @@ use serde_json::{Map, Value, json};
 
 use super::super::arguments::{Arguments, number, wrong_type};
 use super::super::pricing::core_of;
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+};
 use crate::notation::{json_number, plain_numbers};
 use crate::world::effect::{Deed, Effect};
 use crate::world::settings::SettingsChange;
@@ -17,7 +19,7 @@ const fn budget(name: &'static str, doc: &'static str) -> Argument {
 }
 
 static SPEC: Spec = Spec {
-    name: "set_daily_spend",
+    id: ToolId::SetDailySpend,
     code: "OPS",
     module: Module::Marketing,
     kind: Kind::Setting,

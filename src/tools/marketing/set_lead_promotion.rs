@@ -3,7 +3,7 @@ use serde_json::{Map, Value};
 use super::super::arguments::{Arguments, per_channel, per_channel_group, per_group};
 use super::super::pricing::{DISCOUNT, global_discount};
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::super::{as_data, family_of};
 use crate::notation::json_number;
@@ -19,7 +19,7 @@ const fn scope(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Arg
 }
 
 static SPEC: Spec = Spec {
-    name: "set_lead_promotion",
+    id: ToolId::SetLeadPromotion,
     code: "LPR",
     module: Module::Marketing,
     kind: Kind::Setting,

@@ -3,7 +3,7 @@ use serde_json::{Map, Value, json};
 use super::super::arguments::{Arguments, amount_as_sent, per_channel_group};
 use super::super::as_data;
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::BUDGET;
 use crate::notation::json_number;
@@ -16,7 +16,7 @@ use crate::world::settings::{PerGroup, Settings, TargetedAds};
 pub struct SetTargetedAdSpend;
 
 static SPEC: Spec = Spec {
-    name: "set_targeted_ad_spend",
+    id: ToolId::SetTargetedAdSpend,
     code: "ADS",
     module: Module::Marketing,
     kind: Kind::Setting,

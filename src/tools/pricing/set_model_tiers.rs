@@ -1,7 +1,9 @@
 use serde_json::{Map, Value};
 
 use super::super::arguments::{Arguments, integer};
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+};
 use super::{by_plan, core_of, some_plans, updated_and_current};
 use crate::world::effect::{Deed, Effect};
 use crate::world::identifiers::{ByPlan, Plan};
@@ -17,7 +19,7 @@ const fn tier(name: &'static str, doc: &'static str) -> Argument {
 }
 
 static SPEC: Spec = Spec {
-    name: "set_model_tiers",
+    id: ToolId::SetModelTiers,
     code: "TIER",
     module: Module::Pricing,
     kind: Kind::Setting,

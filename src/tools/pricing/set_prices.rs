@@ -1,7 +1,9 @@
 use serde_json::{Map, Value};
 
 use super::super::arguments::{Arguments, number};
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+};
 use super::{by_plan, core_of, some_plans, updated_and_current};
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
@@ -18,7 +20,7 @@ const fn price(name: &'static str, doc: &'static str) -> Argument {
 }
 
 static SPEC: Spec = Spec {
-    name: "set_prices",
+    id: ToolId::SetPrices,
     code: "PRC",
     module: Module::Pricing,
     kind: Kind::Setting,

@@ -2,7 +2,7 @@ use serde_json::{Map, Value};
 
 use super::super::arguments::{Arguments, per_customer, per_group, per_group_plan};
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::super::{as_data, family_of};
 use super::{DISCOUNT, global_discount};
@@ -19,7 +19,7 @@ const fn scope(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Arg
 }
 
 static SPEC: Spec = Spec {
-    name: "set_promotion",
+    id: ToolId::SetPromotion,
     code: "PRO",
     module: Module::Pricing,
     kind: Kind::Setting,

@@ -2,7 +2,9 @@ use serde_json::{Map, Value, json};
 
 use super::super::arguments::{Arguments, number, wrong_type};
 use super::super::bounds::{MOST_UNITS, too_large};
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+};
 use super::{by_plan, core_of};
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
@@ -20,7 +22,7 @@ const fn quota(name: &'static str, doc: &'static str) -> Argument {
 }
 
 static SPEC: Spec = Spec {
-    name: "set_usage_quotas",
+    id: ToolId::SetUsageQuotas,
     code: "QUO",
     module: Module::Pricing,
     kind: Kind::Setting,

@@ -1,7 +1,7 @@
 use serde_json::{Value, json};
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
 use crate::world::market::economy::round_to;
@@ -11,7 +11,7 @@ use crate::world::params::ResearchTier;
 pub struct ListResearchProjects;
 
 static SPEC: Spec = Spec {
-    name: "list_research_projects",
+    id: ToolId::ListResearchProjects,
     code: "PROJ",
     module: Module::Research,
     kind: Kind::Read,

@@ -1,7 +1,9 @@
 use serde_json::{Value, json};
 
 use super::super::arguments::{Arguments, integer};
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, View, When};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+};
 use super::affordable;
 use crate::notation::json_number;
 use crate::world::effect::{Deed, Effect};
@@ -11,7 +13,7 @@ use crate::world::market::economy::round_to;
 pub struct StartResearchProject;
 
 static SPEC: Spec = Spec {
-    name: "start_research_project",
+    id: ToolId::StartResearchProject,
     code: "RND",
     module: Module::Research,
     kind: Kind::Purchase,

@@ -2,7 +2,7 @@ use serde_json::{Value, json};
 
 use super::super::arguments::Arguments;
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, View, When,
+    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
 };
 use super::{find, stored};
 use crate::world::effect::{Deed, Effect};
@@ -11,7 +11,7 @@ use crate::world::effect::{Deed, Effect};
 pub struct DeleteScript;
 
 static SPEC: Spec = Spec {
-    name: "delete_script",
+    id: ToolId::DeleteScript,
     code: "DELS",
     module: Module::Time,
     kind: Kind::Engine,

@@ -1,7 +1,7 @@
 use serde_json::{Value, json};
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use super::stored;
 use crate::world::effect::{Deed, Effect};
 
@@ -9,7 +9,7 @@ use crate::world::effect::{Deed, Effect};
 pub struct ListScripts;
 
 static SPEC: Spec = Spec {
-    name: "list_scripts",
+    id: ToolId::ListScripts,
     code: "SCRS",
     module: Module::Time,
     kind: Kind::Engine,

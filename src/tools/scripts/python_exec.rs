@@ -2,7 +2,7 @@ use serde_json::Value;
 
 use super::super::arguments::{Arguments, number, text, wrong_type};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Task, Tool, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Task, Tool, ToolId, View, When,
 };
 use super::LONGEST_SECONDS;
 use crate::world::effect::{Deed, Effect};
@@ -11,7 +11,7 @@ use crate::world::effect::{Deed, Effect};
 pub struct PythonExec;
 
 static SPEC: Spec = Spec {
-    name: "python_exec",
+    id: ToolId::PythonExec,
     code: "PYX",
     module: Module::Time,
     kind: Kind::Engine,

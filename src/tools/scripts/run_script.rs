@@ -1,7 +1,9 @@
 use serde_json::Value;
 
 use super::super::arguments::Arguments;
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Task, Tool, View, When};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
+};
 use super::{LONGEST_SECONDS, find};
 use crate::world::effect::{Deed, Effect};
 
@@ -9,7 +11,7 @@ use crate::world::effect::{Deed, Effect};
 pub struct RunScript;
 
 static SPEC: Spec = Spec {
-    name: "run_script",
+    id: ToolId::RunScript,
     code: "RUN",
     module: Module::Time,
     kind: Kind::Engine,

@@ -1,14 +1,14 @@
 use serde_json::{Value, json};
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use crate::world::effect::{Deed, Effect};
 
 /// Tells the day.
 pub struct GetVars;
 
 static SPEC: Spec = Spec {
-    name: "get_vars",
+    id: ToolId::GetVars,
     code: "VARS",
     module: Module::Time,
     kind: Kind::Read,

@@ -3,14 +3,14 @@ use serde_json::Value;
 
 use super::super::arguments::{Arguments, number};
 use super::super::bounds::{MOST_FORECAST, refuse_beyond};
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use crate::world::effect::{Deed, Effect};
 
 /// Lets a week pass. The session does it; this entry documents it and checks what must be filed first.
 pub struct NextWeek;
 
 static SPEC: Spec = Spec {
-    name: "next_week",
+    id: ToolId::NextWeek,
     code: "NEXT",
     module: Module::Time,
     kind: Kind::Time,

@@ -1,14 +1,14 @@
 use serde_json::Value;
 
 use super::super::arguments::Arguments;
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, View, When};
+use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use crate::world::effect::{Deed, Effect};
 
 /// Asks the database. The session answers it; this entry documents it.
 pub struct Query;
 
 static SPEC: Spec = Spec {
-    name: "query",
+    id: ToolId::Query,
     code: "QRY",
     module: Module::Time,
     kind: Kind::Read,

@@ -94,7 +94,7 @@ fn a_group_opens_and_leads_to_its_tools() {
     assert_eq!(screen.open.map(|open| company.seen.known_groups[open].id()), Some("E1"));
     screen.show(group("S2"), &company);
     for tool in group::TOOLS {
-        assert!(crate::tools::CATALOGUE.iter().any(|own| own.spec().name == tool.0), "{}", tool.0);
+        assert!(crate::tools::CATALOGUE.iter().any(|own| own.spec().name() == tool.0), "{}", tool.0);
     }
     for _ in 0..40 {
         act(&mut screen, Action::Right, &company);

@@ -224,7 +224,7 @@ fn of_call(entry: &JournalEntry, settings: &mut Settings, undone: &BTreeSet<u64>
         role: if gone { Role::Dim } else { Role::Text },
         title: format!("{tool} · day {day}"),
         whole: format!("{tool}\n\n{pretty}{remark}"),
-        term: spec.map_or("decision-day", |spec| spec.name),
+        term: spec.map_or("decision-day", |spec| spec.name()),
         sql: spec.and_then(|spec| kept_in(spec, *day)),
     })
 }
@@ -233,7 +233,7 @@ fn of_call(entry: &JournalEntry, settings: &mut Settings, undone: &BTreeSet<u64>
 fn kept_in(spec: &Spec, day: u32) -> Option<String> {
     let table = spec.writes.iter().find(|table| table.starts_with("config_"))?;
     let tool = match *table {
-        "config_overrides" => format!(" AND tool_name = '{}'", spec.name),
+        "config_overrides" => format!(" AND tool_name = '{}'", spec.name()),
         _ => String::new(),
     };
     Some(format!("SELECT * FROM {table} WHERE day = {day}{tool}"))
@@ -248,7 +248,7 @@ impl Settings {
     fn change(&mut self, spec: &Spec, args: &Value) -> String {
         let mut leaves = Vec::new();
         collect(args, "", &mut leaves);
-        let key = |path: &str| format!("{}/{path}", spec.name);
+        let key = |path: &str| format!("{}/{path}", spec.name());
         if leaves.is_empty() || leaves.iter().all(|(path, _)| !self.0.contains_key(&key(path))) {
             self.0.extend(leaves.into_iter().map(|(path, value)| (key(&path), value)));
             return in_words(args);

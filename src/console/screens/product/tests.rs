@@ -65,7 +65,7 @@ fn every_pane_leads_somewhere() {
         for _ in 0..12 {
             match act(&mut screen, Action::Open, &company).pop() {
                 Some(Effect::ShowTool(tool)) => {
-                    assert!(crate::tools::CATALOGUE.iter().any(|own| own.spec().name == tool), "{tool}");
+                    assert!(crate::tools::CATALOGUE.iter().any(|own| own.spec().name() == tool), "{tool}");
                 }
                 Some(Effect::ShowCell(tool, of)) => {
                     let mut tools = crate::console::screens::tools::Tools::default();

@@ -33,11 +33,11 @@ pub(super) fn draw(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Lo
         canvas.pane(right, "Form", "", tools.focus == 1);
         return;
     };
-    match tools.forms.get(spec.name) {
+    match tools.forms.get(spec.name()) {
         Some(form) if right.width > 0 => draw_form(form, &tools.leads, canvas, right, look, tools.focus == 1),
         Some(_) => {}
         None => {
-            canvas.pane(right, spec.name, "", tools.focus == 1);
+            canvas.pane(right, spec.name(), "", tools.focus == 1);
         }
     }
 }
@@ -57,7 +57,7 @@ fn draw_list(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
     let mut lines: Vec<(Option<(usize, &Spec)>, &str)> = Vec::new();
     for module in Module::ALL {
         let own = shown.iter().enumerate().filter(|(_, spec)| spec.module == module);
-        let own: Vec<_> = own.map(|(at, spec)| (Some((at, *spec)), spec.name)).collect();
+        let own: Vec<_> = own.map(|(at, spec)| (Some((at, *spec)), spec.name())).collect();
         if !own.is_empty() {
             lines.push((None, module.id()));
             lines.extend(own);
@@ -112,7 +112,7 @@ fn draw_form(
 ) {
     let spec = form.spec;
     canvas.click(area, Click::Pane(1));
-    let title = format!("{} · {} · {}", spec.name, spec.module.id(), spec.code);
+    let title = format!("{} · {} · {}", spec.name(), spec.module.id(), spec.code);
     let inside = canvas.pane(area, &title, when(spec), focused);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let summary = wrapped(&format!("{}.", spec.summary), inside.width as usize);
@@ -173,7 +173,7 @@ fn draw_manual(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
 }
 
 fn keys(form: &Form, look: &Look<'_>) -> String {
-    match form.spec.name {
+    match form.spec.name() {
         "next_week" => return "n opens the next-week dialog".to_owned(),
         "query" => return "enter opens the SQL screen".to_owned(),
         _ => {}

@@ -10,7 +10,7 @@ use crate::tools::{ArgumentKind, CATALOGUE, Key, Spec};
 /// Names of all arguments with their tools: `set_prices.A`.
 static ARGUMENTS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let of =
-        |spec: &'static Spec| spec.arguments.iter().map(move |own| format!("{}.{}", spec.name, own.name));
+        |spec: &'static Spec| spec.arguments.iter().map(move |own| format!("{}.{}", spec.name(), own.name));
     CATALOGUE.iter().flat_map(|tool| of(tool.spec())).collect()
 });
 
@@ -24,7 +24,7 @@ fn term_of(tool: &str, argument: &str) -> Option<&'static str> {
 /// The figure that is selected.
 pub(super) fn of(tools: &Tools) -> Option<Figure> {
     let spec = tools.here()?;
-    let whole = || Figure { title: spec.summary.to_owned(), term: spec.name, sql: None };
+    let whole = || Figure { title: spec.summary.to_owned(), term: spec.name(), sql: None };
     match tools.seen_form().filter(|_| tools.focus == 1) {
         Some(form) => of_cell(form).or_else(|| Some(whole())),
         None => Some(whole()),
@@ -34,7 +34,7 @@ pub(super) fn of(tools: &Tools) -> Option<Figure> {
 fn of_cell(form: &Form) -> Option<Figure> {
     let block = form.sheet.blocks.get(form.at.block)?;
     form.sheet.slot(form.at)?;
-    let tool = form.spec.name;
+    let tool = form.spec.name();
     Some(Figure {
         title: format!("{tool} {}", block.path(form.at.row, form.at.column).replace('.', " ")),
         term: term_of(tool, block.argument.name)?,
@@ -46,7 +46,7 @@ fn of_cell(form: &Form) -> Option<Figure> {
 fn history(form: &Form) -> Option<String> {
     let block = form.sheet.blocks.get(form.at.block)?;
     let name = block.argument.name;
-    let column = match form.spec.name {
+    let column = match form.spec.name() {
         "set_prices" => format!("price_{name}"),
         "set_model_tiers" => format!("tier_{name}"),
         "set_usage_quotas" => format!("quota_{name}"),
@@ -67,6 +67,7 @@ fn of_overrides(form: &Form) -> Option<String> {
     let block = form.sheet.blocks.get(form.at.block)?;
     let kept = matches!(block.argument.kind, ArgumentKind::Map(..) | ArgumentKind::Matrix(..));
     let customers = matches!(block.argument.kind, ArgumentKind::Map(Key::Customer, _));
-    (kept && !customers)
-        .then(|| format!("SELECT * FROM config_overrides WHERE tool_name = '{}' ORDER BY id", form.spec.name))
+    (kept && !customers).then(|| {
+        format!("SELECT * FROM config_overrides WHERE tool_name = '{}' ORDER BY id", form.spec.name())
+    })
 }

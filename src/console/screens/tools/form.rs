@@ -46,7 +46,7 @@ impl Form {
             adding: None,
             preview: None,
             answer: None,
-            earlier: earlier::calls(spec.name, company, earlier::MOST),
+            earlier: earlier::calls(spec.name(), company, earlier::MOST),
         }
     }
 
@@ -58,7 +58,7 @@ impl Form {
     /// Takes over what holds now; drafts stay.
     pub fn renew(&mut self, company: &Company) {
         self.sheet = self.sheet.renewed(company);
-        self.earlier = earlier::calls(self.spec.name, company, earlier::MOST);
+        self.earlier = earlier::calls(self.spec.name(), company, earlier::MOST);
         self.preview = None;
         self.keep_inside();
     }
@@ -79,7 +79,7 @@ impl Form {
     /// The equivalent call, as a program would write it.
     pub fn call(&self) -> String {
         let arguments = self.sheet.arguments().map_or("…".to_owned(), |arguments| spaced(&arguments));
-        format!("{}.{}({arguments})", self.spec.module.id(), self.spec.name)
+        format!("{}.{}({arguments})", self.spec.module.id(), self.spec.name())
     }
 
     /// Channel and group of the cell with the focus, in the matrix of advertising.
@@ -102,7 +102,7 @@ impl Form {
             Kind::Read | Kind::Engine => true,
         };
         match self.sheet.arguments() {
-            Ok(arguments) if !quiet => vec![Effect::Check { tool: self.spec.name, arguments }],
+            Ok(arguments) if !quiet => vec![Effect::Check { tool: self.spec.name(), arguments }],
             _ => Vec::new(),
         }
     }
@@ -119,7 +119,7 @@ impl Form {
                 return vec![Effect::Complain(format!("{path}: {}", block.expected()))];
             }
         };
-        let tool = self.spec.name;
+        let tool = self.spec.name();
         match self.spec.kind {
             Kind::Setting if !self.sheet.is_changed() => {
                 vec![Effect::Complain("nothing has changed; enter a value first".to_owned())]

@@ -49,7 +49,7 @@ impl Tools {
     fn shown(&self) -> Vec<&'static Spec> {
         let wanted = self.filter.to_lowercase();
         let fits = |spec: &&'static Spec| {
-            spec.name.contains(&wanted)
+            spec.name().contains(&wanted)
                 || spec.code.to_lowercase().starts_with(&wanted)
                 || spec.summary.to_lowercase().contains(&wanted)
         };
@@ -63,18 +63,18 @@ impl Tools {
 
     fn form(&mut self, company: &Company) -> Option<&mut Form> {
         let spec = self.here()?;
-        Some(self.forms.entry(spec.name).or_insert_with(|| Form::of(spec, company)))
+        Some(self.forms.entry(spec.name()).or_insert_with(|| Form::of(spec, company)))
     }
 
     fn seen_form(&self) -> Option<&Form> {
-        self.forms.get(self.here()?.name)
+        self.forms.get(self.here()?.name())
     }
 
     /// Shows the form of a tool.
     pub fn show(&mut self, tool: &str, company: &Company) {
         self.filter.clear();
         self.typing = None;
-        if let Some(place) = self.shown().iter().position(|spec| spec.name == tool) {
+        if let Some(place) = self.shown().iter().position(|spec| spec.name() == tool) {
             self.selected = place;
             self.focus = 1;
             if let Some(form) = self.form(company) {
@@ -119,12 +119,12 @@ impl Tools {
     /// Tools whose forms hold values that were not sent.
     pub fn unsent(&self) -> Vec<&'static str> {
         let unsent = self.forms.values().filter(|form| form.spec.kind.acts() && form.sheet.is_changed());
-        unsent.map(|form| form.spec.name).collect()
+        unsent.map(|form| form.spec.name()).collect()
     }
 
     /// Tools that have a screen or a dialog of their own lead there.
     fn elsewhere(&self) -> Option<Effect> {
-        match self.here()?.name {
+        match self.here()?.name() {
             "next_week" => Some(Effect::Do(Action::NextWeek)),
             "query" => Some(Effect::Show(ScreenId::Sql)),
             _ => None,

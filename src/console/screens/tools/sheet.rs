@@ -235,10 +235,11 @@ impl Sheet {
     /// The sheet of a tool over what holds now.
     pub fn of(spec: &'static Spec, company: &Company) -> Sheet {
         let nothing = Map::new();
-        let current = company.settings.get(spec.name).unwrap_or(&nothing);
+        let current = company.settings.get(spec.name()).unwrap_or(&nothing);
         let block = |argument: &'static Argument| Block::of(argument, current.get(argument.name), company);
         let blocks = spec.arguments.iter().map(block);
-        let elsewhere = |block: &Block| block.is_text() && (spec.kind == Kind::Time || spec.name == "query");
+        let elsewhere =
+            |block: &Block| block.is_text() && (spec.kind == Kind::Time || spec.name() == "query");
         Sheet { spec, blocks: blocks.filter(|block| !elsewhere(block)).collect() }
     }
 

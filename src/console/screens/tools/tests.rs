@@ -245,14 +245,14 @@ fn a_field_names_its_term_and_its_history() {
     let mut asked = std::collections::BTreeSet::new();
     for tool in CATALOGUE {
         let spec = tool.spec();
-        tools.show(spec.name, &company);
+        tools.show(spec.name(), &company);
         let places = tools.seen_form().map_or(Vec::new(), |form| form.sheet.places().collect());
         for place in places {
             tools.form(&company).expect("a form").at = place;
             let figure = tools.figure(&look).expect("a figure");
             let (own, argument) = figure.term.split_once('.').expect("tool.argument");
             assert!(
-                own == spec.name && spec.arguments.iter().any(|it| it.name == argument),
+                own == spec.name() && spec.arguments.iter().any(|it| it.name == argument),
                 "{}",
                 figure.term
             );
@@ -261,7 +261,7 @@ fn a_field_names_its_term_and_its_history() {
             }
         }
         tools.set_focus(0);
-        assert_eq!(tools.figure(&look).expect("a figure").term, spec.name);
+        assert_eq!(tools.figure(&look).expect("a figure").term, spec.name());
     }
     tools.show("set_prices", &company);
     tools.form(&company).expect("a form").at = Default::default();
@@ -276,11 +276,11 @@ fn forms_show_figures_and_never_the_names_of_parameters() {
     let company = company();
     let mut tools = Tools::default();
     for spec in CATALOGUE.iter().map(|tool| tool.spec()) {
-        tools.show(spec.name, &company);
+        tools.show(spec.name(), &company);
         let text = drawn(&tools, &company, 200, 120);
         let named = |after: &str| after.split(['}', ' ']).next().is_some_and(|name| name.contains('.'));
         let raw = text.split('{').skip(1).any(named);
-        assert!(!raw, "{}: {text}", spec.name);
+        assert!(!raw, "{}: {text}", spec.name());
     }
     tools.show("set_targeted_ad_spend", &company);
     assert!(drawn(&tools, &company, 200, 57).contains("$0.50 for every lead"));

@@ -3,10 +3,7 @@
 //! Rounding is half to even on the exact binary value everywhere.
 
 use std::borrow::Cow;
-use std::collections::BTreeSet;
-use std::sync::Mutex;
 
-use serde::{Deserialize, Deserializer};
 use serde_json::{Number, Value, json};
 
 /// A number with thousands separators and fixed decimals, for instance `1,234,567.5`.
@@ -143,36 +140,6 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a 
     scored.retain(|(distance, candidate)| *distance <= candidate.len().max(name.len()) / 2);
     scored.sort_by_key(|(distance, _)| *distance);
     scored.into_iter().take(3).map(|(_, candidate)| candidate).collect()
-}
-
-/// A word of the program itself: the name of a tool, a unit, a term.
-pub type Word = &'static str;
-
-/// Reads back a word that the program itself wrote from its fixed vocabulary: names of tools, units, terms. Each
-/// distinct word is kept once, as long as the program runs.
-///
-/// # Errors
-/// It is no text.
-pub fn word<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Word, D::Error> {
-    static WORDS: Mutex<BTreeSet<Word>> = Mutex::new(BTreeSet::new());
-    let text = String::deserialize(deserializer)?;
-    let mut words = WORDS.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    if let Some(known) = words.get(text.as_str()) {
-        return Ok(*known);
-    }
-    let kept: Word = Box::leak(text.into_boxed_str());
-    words.insert(kept);
-    Ok(kept)
-}
-
-/// As [`word`], for one that may be missing.
-///
-/// # Errors
-/// It is neither text nor nothing.
-pub fn word_if_any<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Word>, D::Error> {
-    #[derive(Deserialize)]
-    struct Given(#[serde(deserialize_with = "word")] Word);
-    Ok(Option::<Given>::deserialize(deserializer)?.map(|given| given.0))
 }
 
 /// Text as a terminal may get it: what would move the cursor, colour what follows or turn the direction of writing round

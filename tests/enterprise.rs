@@ -133,7 +133,7 @@ fn a_changed_price_is_found(place: &Path) {
     assert!(
         lines
             .iter()
-            .any(|line| matches!(&line.record, Record::Call(call) if call.tool == "send_enterprise_deal"))
+            .any(|line| matches!(&line.record, Record::Call(call) if call.tool == novamind::tools::ToolId::SendEnterpriseDeal))
     );
     std::fs::write(&path, text.replacen("[\"B\",34", "[\"B\",33", 1)).expect("written");
     assert!(verify(place).is_err());

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use novamind::session::record::{Call, Outcome};
 use novamind::session::{
-    Access, Cell, Configuration, Ended, Forecasts, Line, Mode, NewRun, Record, Session, Storage, Trajectory,
-    Via, find_run, find_run_to_read, list_runs, verify,
+    Access, Cell, Configuration, Ended, Forecasts, Line, Mode, NewRun, Record, Session, SettingId, Storage,
+    Trajectory, Via, find_run, find_run_to_read, list_runs, verify,
 };
 use serde_json::{Value, json};
 
@@ -136,7 +136,7 @@ fn checking_shows_cost_and_changes_and_does_nothing() {
     let before = session.state_hash();
     let preview = session.check("set_capacity_tier", &json!({"tier": 2})).expect("it would work");
     assert_eq!((preview.cost_per_day, preview.effect_day), (445.0, Some(1)));
-    assert_eq!(preview.changes[0].setting, "capacity tier");
+    assert_eq!(preview.changes[0].setting, SettingId::CapacityTier);
     let preview = session.check("start_research_project", &json!({"tier": 1})).expect("it would work");
     assert_eq!(preview.cost_now, 166_667.0);
     assert_eq!(
@@ -159,7 +159,10 @@ fn settings_of_the_week_can_be_taken_back() {
     call(&mut session, "set_prices", json!({"A": 14}));
     call(&mut session, "set_targeted_ad_spend", json!({"linkedin": {"E1": 200}}));
     let back = session.undo(Via::Form).expect("it is taken back");
-    assert_eq!((back[0].setting.as_str(), back[0].old, back[0].new), ("ads linkedin E1", 200.0, 0.0));
+    assert_eq!(
+        (back[0].setting.to_string().as_str(), back[0].old, back[0].new),
+        ("ads linkedin E1", 200.0, 0.0)
+    );
     session.undo(Via::Form).expect("it is taken back");
     assert_eq!(session.current("set_prices")["A"], 12);
     assert_eq!(session.changes().len(), 1);
@@ -176,7 +179,7 @@ fn calls_that_changed_nothing_do_not_block_undo() {
     }
     call(&mut session, "set_daily_spend", json!({"operations": 0}));
     let back = session.undo(Via::Form).expect("11 is taken back");
-    assert_eq!((back[0].setting.as_str(), back[0].old, back[0].new), ("price A", 11.0, 10.0));
+    assert_eq!((back[0].setting.to_string().as_str(), back[0].old, back[0].new), ("price A", 11.0, 10.0));
     assert_eq!(session.current("set_prices")["A"], 10);
     assert_eq!(session.undo(Via::Form).expect_err("no price before").code, "cannot_undo");
 }
@@ -193,7 +196,7 @@ fn redo_sets_again_what_undo_took_back_until_something_new_is_set() {
     session.undo(Via::Form).expect("undone");
     assert_eq!(session.current("set_prices")["A"], 10);
     let again = session.redo(Via::Form).expect("redone");
-    assert_eq!((again[0].setting.as_str(), again[0].old, again[0].new), ("price A", 10.0, 12.0));
+    assert_eq!((again[0].setting.to_string().as_str(), again[0].old, again[0].new), ("price A", 10.0, 12.0));
     session.undo(Via::Form).expect("a redo can be undone");
     session.redo(Via::Form).expect("and redone");
     session.redo(Via::Form).expect("redone");

@@ -93,9 +93,8 @@ fn ask_file(folder: &Path, sql: &str) -> Result<Option<Rows>, Failure> {
 }
 
 fn moves_database(line: &Line) -> bool {
-    let reads = |name: &str| crate::tools::find(name).is_some_and(|tool| !tool.spec().kind.acts());
     match &line.record {
-        Record::Call(call) => matches!(call.outcome, Outcome::Accepted(_)) && !reads(&call.tool),
+        Record::Call(call) => matches!(call.outcome, Outcome::Accepted(_)) && call.tool.spec().kind.acts(),
         Record::Start(_) | Record::Week(_) | Record::Step(_) | Record::End(_) => true,
         _ => false,
     }

@@ -14,7 +14,7 @@ use crate::session::{
     DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Numbers, Observation, RunningStudy,
     Session, Terms, WeekFigures,
 };
-use crate::tools::CATALOGUE;
+use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
 /// The company as a player may know it.
@@ -53,7 +53,7 @@ pub struct Company {
     /// Notes of the run.
     pub memo: String,
     /// Present arguments of every tool.
-    pub settings: BTreeMap<&'static str, Map<String, Value>>,
+    pub settings: BTreeMap<ToolId, Map<String, Value>>,
     /// Answer of get_cost_info.
     pub costs: Value,
     /// Answer of list_research_projects.
@@ -84,9 +84,8 @@ impl Company {
 
     /// The same, with what an earlier look at this run has read already.
     pub fn after(session: &Session, before: Option<&Company>) -> Company {
-        let settings =
-            CATALOGUE.iter().map(|tool| tool.spec().name()).map(|name| (name, session.current(name)));
-        let read = |tool: &str| session.look_up(tool, &Value::Object(Map::new())).unwrap_or(Value::Null);
+        let settings = ToolId::all().map(|tool| (tool, tool.tool().current(session.settings())));
+        let read = |tool: ToolId| session.look_up(tool, &Value::Object(Map::new())).unwrap_or(Value::Null);
         Company {
             seen: session.observe(),
             folder: session.folder().map(PathBuf::from),
@@ -105,10 +104,10 @@ impl Company {
             asked: session.asked().to_vec(),
             memo: session.memo().unwrap_or_default(),
             settings: settings.collect(),
-            costs: read("get_cost_info"),
-            projects: read("list_research_projects"),
+            costs: read(ToolId::GetCostInfo),
+            projects: read(ToolId::ListResearchProjects),
             posts: posts::read(session, before.map(|company| &company.posts)),
-            market: read("get_market_overview"),
+            market: read(ToolId::GetMarketOverview),
             insights: insights(session),
             terms: session.terms(),
             numbers: session.numbers(),
@@ -129,8 +128,8 @@ impl Company {
     }
 
     /// A present argument of a tool as a number, 0 if it has none.
-    pub fn setting(&self, tool: &str, argument: &str) -> f64 {
-        self.settings.get(tool).and_then(|all| all.get(argument)).and_then(Value::as_f64).unwrap_or(0.0)
+    pub fn setting(&self, tool: ToolId, argument: &str) -> f64 {
+        self.settings.get(&tool).and_then(|all| all.get(argument)).and_then(Value::as_f64).unwrap_or(0.0)
     }
 
     /// The forecasts that were filed last: decision day and forecasts.
@@ -158,7 +157,7 @@ impl Company {
 fn insights(session: &Session) -> BTreeMap<Group, Value> {
     let known = session.observe().known_groups;
     let told = |group: Group| {
-        let answer = session.look_up("get_group_insights", &json!({ "group_id": group.id() }));
+        let answer = session.look_up(ToolId::GetGroupInsights, &json!({ "group_id": group.id() }));
         answer.ok().map(|answer| (group, answer))
     };
     known.into_iter().filter_map(told).collect()

@@ -8,6 +8,7 @@ use super::screens::ScreenId;
 use super::worker::Recorded;
 use crate::glossary::Subject;
 use crate::session::{Forecasts, Goal, Mode, NewRun};
+use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
 impl Effect {
@@ -52,14 +53,14 @@ pub enum Effect {
     /// What a call would do; only the newest answer counts.
     Check {
         /// Tool.
-        tool: &'static str,
+        tool: ToolId,
         /// Arguments.
         arguments: Value,
     },
     /// Call a tool.
     Call {
         /// Tool.
-        tool: &'static str,
+        tool: ToolId,
         /// Arguments.
         arguments: Value,
     },
@@ -101,13 +102,13 @@ pub enum Effect {
     /// Show a screen.
     Show(ScreenId),
     /// Show the form of a tool.
-    ShowTool(&'static str),
+    ShowTool(ToolId),
     /// Show the form of a tool at the first cell that is for a group, a plan or the like.
-    ShowCell(&'static str, String),
+    ShowCell(ToolId, String),
     /// Show the form of a tool with these arguments typed into it; none are with `Null`.
     Prefill {
         /// Tool.
-        tool: &'static str,
+        tool: ToolId,
         /// Arguments.
         arguments: Value,
     },
@@ -131,7 +132,7 @@ pub enum Effect {
     /// Ask once before a call that cannot be taken back.
     ConfirmCall {
         /// Tool.
-        tool: &'static str,
+        tool: ToolId,
         /// Arguments.
         arguments: Value,
         /// What it means.

@@ -10,6 +10,7 @@ use super::company::Company;
 use super::readings::Reading;
 use crate::report::Story;
 use crate::session::{Change, Interrupt, Library, Place, Preview, Refusal, Rows, Week};
+use crate::tools::ToolId;
 
 /// Something that arrives.
 pub enum Message {
@@ -65,7 +66,7 @@ pub enum News {
     /// What a call would do; the number says which question this answers.
     Checked(u64, Result<Preview, Refusal>),
     /// A tool was called.
-    Called(&'static str, Result<Value, Refusal>, Arc<Company>),
+    Called(ToolId, Result<Value, Refusal>, Arc<Company>),
     /// A setting was taken back.
     Undone(Result<Vec<Change>, Refusal>, Arc<Company>),
     /// A setting that was taken back was set again.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use crate::session::Session;
+use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
 /// Who writes.
@@ -94,7 +95,8 @@ pub fn read(session: &Session, known: Option<&Posts>) -> Posts {
     let last = known.and_then(|posts| posts.first()).map(|post| post.number);
     let mut limit = if last.is_some() { NEWEST } else { -1 };
     loop {
-        let answer = session.look_up("get_social_posts", &json!({ "limit": limit })).unwrap_or(Value::Null);
+        let answer =
+            session.look_up(ToolId::GetSocialPosts, &json!({ "limit": limit })).unwrap_or(Value::Null);
         let told = answer.get("posts").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
         let is_new = |post: &Post| last.is_none_or(|last| post.number > last);
         let fresh: Vec<Arc<Post>> = told.iter().map(post_of).take_while(is_new).map(Arc::new).collect();

@@ -14,6 +14,7 @@ use super::keys::Keys;
 use super::screens::ScreenId;
 use super::text::wrapped;
 use super::theme::Role;
+use crate::tools::ToolId;
 
 /// How a step shows that it was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -71,12 +72,12 @@ impl Done {
     fn holds(self, facts: &Facts<'_>) -> bool {
         let company = facts.company;
         let weeks = company.weeks.len();
-        let any = |tool: &str| ["A", "B", "C"].iter().any(|plan| company.setting(tool, plan) > 0.0);
+        let any = |tool: ToolId| ["A", "B", "C"].iter().any(|plan| company.setting(tool, plan) > 0.0);
         match self {
-            Done::FormsOpen => facts.here == ScreenId::Tools || any("set_prices"),
-            Done::PriceSet => any("set_prices"),
-            Done::QuotaSet => any("set_usage_quotas"),
-            Done::AdsSet => company.settings.get("set_targeted_ad_spend").is_some_and(spends),
+            Done::FormsOpen => facts.here == ScreenId::Tools || any(ToolId::SetPrices),
+            Done::PriceSet => any(ToolId::SetPrices),
+            Done::QuotaSet => any(ToolId::SetUsageQuotas),
+            Done::AdsSet => company.settings.get(&ToolId::SetTargetedAdSpend).is_some_and(spends),
             Done::Asked => weeks > 0 || !company.asked.is_empty() || facts.before.contains(&ScreenId::Sql),
             Done::Filing => weeks > 0 || facts.filing.is_some(),
             Done::Rationale => weeks > 0 || facts.filing == Some(3),

@@ -27,6 +27,7 @@ use crate::session::{
     Access, Configuration, Desk, Forecasts, Goal, Interrupt, Mode, NewRun, Playback, Refusal, Rows, RunError,
     Session, Ticket, Via, delete_run, end_run, find_run, find_run_to_read, list_runs, run_course,
 };
+use crate::tools::ToolId;
 
 /// Work for the session's thread.
 pub enum Job {
@@ -55,9 +56,9 @@ pub enum Job {
     /// Open the good beginning of a damaged run of a folder as a branch.
     Rescue(PathBuf, String),
     /// What a call would do.
-    Check(u64, &'static str, Value),
+    Check(u64, ToolId, Value),
     /// Call a tool.
-    Call(&'static str, Value),
+    Call(ToolId, Value),
     /// Take back the last setting.
     Undo,
     /// Set again what the last undo took back.

@@ -4,6 +4,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::session::WaitingThread;
+use crate::tools::ToolId;
 use crate::world::events::ThreadKind;
 use crate::world::identifiers::Plan;
 
@@ -108,7 +109,7 @@ impl EnterpriseRule {
     }
 
     /// The calls that answer these threads: all offers, then all rejections; none where there is nothing to say.
-    pub fn calls(&self, waiting: &[WaitingThread]) -> Vec<(&'static str, Value)> {
+    pub fn calls(&self, waiting: &[WaitingThread]) -> Vec<(ToolId, Value)> {
         let mut threads: Vec<&WaitingThread> =
             waiting.iter().filter(|thread| self.types.hold(thread.kind)).collect();
         threads.sort_by_key(|thread| thread.thread);
@@ -119,7 +120,9 @@ impl EnterpriseRule {
         let rejections: Vec<Value> =
             threads.iter().filter(given_up).map(|thread| json!({ "customer_id": thread.customer })).collect();
         let mut calls = Vec::new();
-        for (tool, deals) in [("send_enterprise_deal", offers), ("reject_enterprise_deal", rejections)] {
+        for (tool, deals) in
+            [(ToolId::SendEnterpriseDeal, offers), (ToolId::RejectEnterpriseDeal, rejections)]
+        {
             if !deals.is_empty() {
                 calls.push((tool, json!({ "deals": deals })));
             }
@@ -178,8 +181,8 @@ mod tests {
             [107, [["C", 36.48], ["A", 9.12]]],
             [109, [["C", 44.16], ["A", 11.04]]],
         ]});
-        assert_eq!(calls[0], ("send_enterprise_deal", expected));
-        assert_eq!(calls[1], ("reject_enterprise_deal", json!({"deals": [{"customer_id": 105}]})));
+        assert_eq!(calls[0], (ToolId::SendEnterpriseDeal, expected));
+        assert_eq!(calls[1], (ToolId::RejectEnterpriseDeal, json!({"deals": [{"customer_id": 105}]})));
         assert!(rule.calls(&[]).is_empty());
         assert!((rule.factor.after(9) - 0.6).abs() < 1e-12);
     }

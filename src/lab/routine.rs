@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::policy::{CapacityRule, OperationsRule, RuleBased, Target};
 use crate::session::{Observation, Session};
+use crate::tools::ToolId;
 use crate::world::identifiers::{Channel, Group, Plan};
 use crate::world::params::Params;
 
@@ -15,21 +16,21 @@ const SECOND_GROUP_FROM_DAY: u32 = 30;
 const UTILISATION: f64 = 0.8;
 
 /// The calls of the routine on a decision day, in their order.
-pub fn calls(rules: &RuleBased, session: &Session) -> Vec<(&'static str, Value)> {
+pub fn calls(rules: &RuleBased, session: &Session) -> Vec<(ToolId, Value)> {
     let seen = session.observe();
     let on = seen.cash > rules.cash_floor;
     let (prices, tiers, quotas) = rules.price_book.book();
     let mut calls = vec![
-        ("set_prices", per_plan(|plan| json!(prices.of(plan)))),
-        ("set_model_tiers", per_plan(|plan| json!(tiers.of(plan)))),
-        ("set_usage_quotas", per_plan(|plan| json!(quotas.of(plan)))),
-        ("set_daily_spend", daily_spend(rules, &seen, on)),
+        (ToolId::SetPrices, per_plan(|plan| json!(prices.of(plan)))),
+        (ToolId::SetModelTiers, per_plan(|plan| json!(tiers.of(plan)))),
+        (ToolId::SetUsageQuotas, per_plan(|plan| json!(quotas.of(plan)))),
+        (ToolId::SetDailySpend, daily_spend(rules, &seen, on)),
     ];
     if rules.target != Target::None {
         calls.extend(targeted(rules, &seen, on, session.params()));
     }
     if rules.capacity == CapacityRule::Utilisation {
-        calls.push(("set_capacity_tier", json!({ "tier": capacity_tier(&seen, session) })));
+        calls.push((ToolId::SetCapacityTier, json!({ "tier": capacity_tier(&seen, session) })));
     }
     calls
 }
@@ -46,7 +47,7 @@ fn daily_spend(rules: &RuleBased, seen: &Observation, on: bool) -> Value {
     json!({ "operations": operations, "development": if on { rules.global_development } else { 0.0 } })
 }
 
-fn targeted(rules: &RuleBased, seen: &Observation, on: bool, params: &Params) -> [(&'static str, Value); 2] {
+fn targeted(rules: &RuleBased, seen: &Observation, on: bool, params: &Params) -> [(ToolId, Value); 2] {
     let (s1, s3) = rules.spend.budgets();
     let mut targets = vec![("S1", s1)];
     if rules.target == Target::S1ThenS3 && seen.day >= SECOND_GROUP_FROM_DAY {
@@ -66,8 +67,8 @@ fn targeted(rules: &RuleBased, seen: &Observation, on: bool, params: &Params) ->
         }
     }
     [
-        ("set_targeted_dev_spend", json!({ "targeted_spend": development })),
-        ("set_targeted_ad_spend", json!({ "targeted_spend": ads })),
+        (ToolId::SetTargetedDevSpend, json!({ "targeted_spend": development })),
+        (ToolId::SetTargetedAdSpend, json!({ "targeted_spend": ads })),
     ]
 }
 
@@ -85,7 +86,7 @@ fn capacity_tier(seen: &Observation, session: &Session) -> u8 {
     let need = if seen.day == 0 { 0.0 } else { mean / UTILISATION };
     let tiers = &session.params().capacity_tier;
     let target = tiers.iter().find(|tier| f64::from(tier.capacity_units) >= need).map_or(7, |tier| tier.tier);
-    let now = session.current("set_capacity_tier").get("tier").and_then(Value::as_u64).unwrap_or(0) as u8;
+    let now = session.current(ToolId::SetCapacityTier).get("tier").and_then(Value::as_u64).unwrap_or(0) as u8;
     match now.cmp(&target) {
         std::cmp::Ordering::Less => now + 1,
         std::cmp::Ordering::Equal => now,

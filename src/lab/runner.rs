@@ -14,6 +14,7 @@ use super::symbols::Symbols;
 use crate::session::{
     Configuration, Ended, Mode, NewRun, Refusal, RunError as SessionError, Session, Storage, Via,
 };
+use crate::tools::ToolId;
 
 /// What to run.
 #[derive(Debug, Clone)]
@@ -213,13 +214,13 @@ pub(super) fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Resul
 fn call(
     seed: u64,
     session: &mut Session,
-    tool: &str,
+    tool: impl AsRef<str>,
     arguments: &Value,
     may_fail: bool,
 ) -> Result<(), RunError> {
-    match session.call(tool, arguments, Via::Policy) {
+    match session.call(&tool, arguments, Via::Policy) {
         Err(refusal) if !may_fail => {
-            Err(RunError::Refused { seed, day: session.day(), tool: tool.to_owned(), refusal })
+            Err(RunError::Refused { seed, day: session.day(), tool: tool.as_ref().to_owned(), refusal })
         }
         _ => Ok(()),
     }
@@ -241,7 +242,12 @@ fn advance(
         let forecasts = session.naive_forecasts();
         session.advance(&format!("policy {}", policy.name), &forecasts, Via::Policy, &mut watch)
     };
-    ran.map(|_| ()).map_err(|refusal| RunError::Refused { seed, day, tool: "next_week".to_owned(), refusal })
+    ran.map(|_| ()).map_err(|refusal| RunError::Refused {
+        seed,
+        day,
+        tool: ToolId::NextWeek.to_string(),
+        refusal,
+    })
 }
 
 fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> Outcome {

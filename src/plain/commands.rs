@@ -20,7 +20,7 @@ use crate::database::text::table;
 use crate::notation::nearest;
 use crate::session::library::NamedQuery;
 use crate::session::{Change, Library, Mode, Refusal, Session, Via, rows_as_json};
-use crate::tools::{self, Kind, Module, Tool};
+use crate::tools::{self, Kind, Module, Tool, ToolId};
 
 /// Commands that are no tools.
 const COMMANDS: [(&str, &str); 25] = [
@@ -184,7 +184,7 @@ impl Desk {
             "needs" => none(arguments).map(|()| self.needs()),
             "undo" => none(arguments).map(|()| self.undo()),
             "redo" => none(arguments).map(|()| self.redo()),
-            "vars" => none(arguments).map(|()| self.call_named("get_vars", &json!({}))),
+            "vars" => none(arguments).map(|()| self.call_named(ToolId::GetVars, &json!({}))),
             "help" => {
                 name(arguments).and_then(|name| readings::help(name, arguments, &self.session.numbers()))
             }
@@ -209,13 +209,13 @@ impl Desk {
     fn call(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Result<Answer, Problem> {
         let tool = tool_called(word).ok_or_else(|| unknown(word, column))?;
         let arguments = as_object(arguments, only_required(tool))?;
-        Ok(self.call_named(tool.spec().name(), &arguments))
+        Ok(self.call_named(tool.spec().id, &arguments))
     }
 
-    fn call_named(&mut self, tool: &'static str, arguments: &Value) -> Answer {
+    fn call_named(&mut self, tool: ToolId, arguments: &Value) -> Answer {
         match self.session.call(tool, arguments, Via::Plain) {
-            Ok(data) => Answer::call(tool, data),
-            Err(refusal) => Answer::refused(tool, refusal),
+            Ok(data) => Answer::call(tool.name(), data),
+            Err(refusal) => Answer::refused(tool.name(), refusal),
         }
     }
 

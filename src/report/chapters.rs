@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::words::number;
+use crate::session::ToolId;
 use crate::session::{Change, Decisions, JournalEntry, WeekFigures, week_of};
 
 /// Weeks that began with the same decision: the first of them decided, the others let it stand.
@@ -31,8 +32,7 @@ pub struct Chapter {
 /// A change as words.
 pub fn change_in_words(change: &Change) -> String {
     let told = format!("{}: {} → {}", change.setting, number(change.old), number(change.new));
-    // `model tier A` says already what its numbers are.
-    if change.setting.contains(change.unit) { told } else { format!("{told} {}", change.unit) }
+    change.setting.unit().map_or(told.clone(), |unit| format!("{told} {unit}"))
 }
 
 /// The chapters of a run: weeks in which nothing new was decided join the one before them.
@@ -94,7 +94,7 @@ fn rationale_of(entry: &JournalEntry) -> Option<String> {
 /// Purchases and offers in words, equal ones counted; posts with what they say.
 fn deeds(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String> {
     let posts = entries.iter().filter_map(|entry| match entry {
-        JournalEntry::Call { tool, args, .. } if tool == "post_social_media" => {
+        JournalEntry::Call { tool, args, .. } if *tool == ToolId::PostSocialMedia => {
             args.get("content").and_then(Value::as_str).map(|content| format!("post: “{content}”"))
         }
         _ => None,

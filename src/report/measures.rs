@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use super::books::ChannelRow;
-use crate::session::{Decisions, Ended, ForecastScore, JournalEntry, Session};
+use crate::session::{Decisions, Ended, ForecastScore, JournalEntry, Session, SettingId};
+use crate::world::identifiers::Group;
 
 /// Words that show somebody weighing what may come.
 pub const PLANNING_WORDS: [&str; 16] = [
@@ -148,15 +149,15 @@ fn best_of(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
 /// Targeted share of development spend over the days that ran; none if nothing was spent.
 pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
     let mut general = 0.0;
-    let mut targeted: BTreeMap<&str, f64> = BTreeMap::new();
+    let mut targeted: BTreeMap<Group, f64> = BTreeMap::new();
     let (mut all, mut aimed) = (0.0, 0.0);
     for decided in decisions {
         for change in &decided.changes {
-            match change.tool {
-                "set_targeted_dev_spend" => {
-                    targeted.insert(&change.setting, change.new);
+            match change.setting {
+                SettingId::TargetedDevelopment(group) => {
+                    targeted.insert(group, change.new);
                 }
-                "set_daily_spend" if change.setting == "development" => general = change.new,
+                SettingId::Development => general = change.new,
                 _ => {}
             }
         }
@@ -185,7 +186,7 @@ pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
     let mut weeks = 0u32;
     for entry in journal {
         match entry {
-            JournalEntry::Call { tool, .. } => *counts.entry(tool).or_default() += 1,
+            JournalEntry::Call { tool, .. } => *counts.entry(tool.name()).or_default() += 1,
             JournalEntry::Advance { .. } => weeks += 1,
             JournalEntry::Week { .. } => {}
         }
@@ -302,27 +303,22 @@ mod tests {
 
     #[test]
     fn targeted_development_counts_days_in_force() {
-        let set = |tool: &'static str, setting: &str, new: f64| Change {
-            tool,
-            setting: setting.to_owned(),
-            old: 0.0,
-            new,
-            unit: "$/day",
-        };
+        let s1 = Group::parse("S1").expect("a group");
+        let set = |setting, new| Change { setting, old: 0.0, new };
         let week = |day: u32, changes: Vec<Change>| Decisions {
             day,
             until: day + 7,
             changes,
             purchases: Vec::new(),
         };
-        let general = set("set_daily_spend", "development", 100.0);
-        let aimed = set("set_targeted_dev_spend", "development S1", 300.0);
-        let ended = set("set_targeted_dev_spend", "development S1", 0.0);
+        let general = set(SettingId::Development, 100.0);
+        let aimed = set(SettingId::TargetedDevelopment(s1), 300.0);
+        let ended = set(SettingId::TargetedDevelopment(s1), 0.0);
         let run = [week(0, vec![general, aimed]), week(7, vec![]), week(14, vec![ended])];
         assert_eq!(targeted_development(&run), Some(600.0 / 900.0));
         assert_eq!(targeted_development(&[week(0, vec![])]), None);
         // The last week of a bankrupt company is shorter.
-        let [general, aimed] = [set("set_daily_spend", "development", 100.0), run[0].changes[1].clone()];
+        let [general, aimed] = [set(SettingId::Development, 100.0), run[0].changes[1]];
         let short = Decisions { until: 9, ..week(7, vec![aimed]) };
         assert_eq!(targeted_development(&[week(0, vec![general]), short]), Some(600.0 / 1500.0));
     }

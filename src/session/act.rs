@@ -13,7 +13,7 @@ use super::trajectory::{Durability, Record};
 use super::undo::{Reversal, Step};
 use super::{JournalEntry, Session};
 use crate::notation::cents;
-use crate::tools::{Arguments, Kind, Refusal, Task, Tool, View, bounds, find};
+use crate::tools::{Arguments, Kind, Refusal, Task, Tool, ToolId, View, bounds, find};
 use crate::world::effect::{Deed, Effect};
 use crate::world::enterprise::letters::Letter;
 use crate::world::events::Offering;
@@ -39,10 +39,10 @@ pub enum Via {
 }
 
 /// What a call would do.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Preview {
     /// Tool.
-    pub tool: &'static str,
+    pub tool: ToolId,
     /// Paid at once, dollars.
     pub cost_now: f64,
     /// Change of the running costs, dollars a day.
@@ -58,12 +58,12 @@ impl Session {
     ///
     /// # Errors
     /// The same refusals as the call.
-    pub fn check(&self, tool: &str, arguments: &Value) -> Result<Preview, Refusal> {
-        let tool = self.tool(tool)?;
+    pub fn check(&self, tool: impl AsRef<str>, arguments: &Value) -> Result<Preview, Refusal> {
+        let tool = self.tool(tool.as_ref())?;
         self.refuse_if_over(tool.spec().kind)?;
         let (_, effect) = self.plan(tool, arguments)?;
         let mut preview = Preview {
-            tool: tool.spec().name(),
+            tool: tool.spec().id,
             cost_now: 0.0,
             cost_per_day: 0.0,
             effect_day: None,
@@ -105,8 +105,8 @@ impl Session {
     ///
     /// # Errors
     /// `unknown_tool`, `not_a_reading`, the refusals of the tool.
-    pub fn look_up(&self, tool: &str, arguments: &Value) -> Result<Value, Refusal> {
-        let tool = self.tool(tool)?;
+    pub fn look_up(&self, tool: impl AsRef<str>, arguments: &Value) -> Result<Value, Refusal> {
+        let tool = self.tool(tool.as_ref())?;
         if tool.spec().kind != Kind::Read {
             return Err(Refusal::new("not_a_reading", format!("{} does more than read", tool.spec().name())));
         }
@@ -120,8 +120,8 @@ impl Session {
     /// # Errors
     /// The refusals of the tool; `unknown_tool`; `run_over`; `not_saved` when the disk refuses. Nothing has
     /// changed then.
-    pub fn call(&mut self, tool: &str, arguments: &Value, via: Via) -> Result<Value, Refusal> {
-        self.call_recorded(tool, arguments, via, None)
+    pub fn call(&mut self, tool: impl AsRef<str>, arguments: &Value, via: Via) -> Result<Value, Refusal> {
+        self.call_recorded(tool.as_ref(), arguments, via, None)
     }
 
     pub(super) fn call_recorded(
@@ -149,7 +149,7 @@ impl Session {
         let took_ms = started.elapsed().as_secs_f64() * 1e3;
         let called = |args: Value, outcome| {
             Record::Call(Call {
-                tool: tool.spec().name().to_owned(),
+                tool: tool.spec().id,
                 args,
                 outcome,
                 via,
@@ -184,7 +184,7 @@ impl Session {
         let (spec, seq) = (tool.spec(), self.position.seq);
         if !deed.only_reads() {
             let args = Value::Object(given.as_map().clone());
-            let (day, tool) = (self.world.day, spec.name().to_owned());
+            let (day, tool) = (self.world.day, spec.id);
             self.journal.push(JournalEntry::Call { seq, day, tool, args, reversal });
         }
         self.this_week.done.extend(self.in_words(&deed));
@@ -196,7 +196,7 @@ impl Session {
         self.world.apply(deed, &self.params, to_fill(&mut self.facts, self.projector.as_ref()));
         if let Some(restores) = before {
             let changed = restores != self.world.settings;
-            self.this_week.keep(Step { seq, tool: spec.name(), restores }, changed, reversal);
+            self.this_week.keep(Step { seq, tool: spec.id, restores }, changed, reversal);
         }
         self.called.extend_from_slice(&self.facts.ledger);
         self.after_call(settings);
@@ -245,8 +245,8 @@ impl Session {
     }
 
     /// The present values of a tool's arguments, as a call would send them.
-    pub fn current(&self, tool: &str) -> Map<String, Value> {
-        find(tool).map(|tool| tool.current(&self.world.settings)).unwrap_or_default()
+    pub fn current(&self, tool: impl AsRef<str>) -> Map<String, Value> {
+        find(tool.as_ref()).map(|tool| tool.current(&self.world.settings)).unwrap_or_default()
     }
 
     /// Running costs that follow from settings alone, dollars a day.
@@ -319,14 +319,8 @@ impl Session {
     }
 
     /// Records a refused call that has no other place, for instance a refused week.
-    pub(super) fn record_refusal(
-        &mut self,
-        tool: &'static str,
-        arguments: &Value,
-        via: Via,
-        refusal: &Refusal,
-    ) {
-        let (tool, args, outcome) = (tool.to_owned(), arguments.clone(), refusal.outcome());
+    pub(super) fn record_refusal(&mut self, tool: ToolId, arguments: &Value, via: Via, refusal: &Refusal) {
+        let (args, outcome) = (arguments.clone(), refusal.outcome());
         let record = Record::Call(Call { tool, args, outcome, via, took_ms: 0.0, reversal: None });
         let _ = self.record_call(&record, Durability::Written);
     }
@@ -366,7 +360,7 @@ impl Session {
     /// # Errors
     /// What speaks against it now: the line was changed, or the program is another.
     pub(super) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
-        let tool = self.tool(&call.tool).map_err(|refusal| refusal.message)?;
+        let tool = call.tool.tool();
         let (given, effect) = self.plan_again(tool, &call.args).map_err(|refusal| refusal.to_string())?;
         let deed = self.world.resolve(effect, &self.params, &self.streams);
         let task = tool.task(&self.view(), &given);

@@ -12,7 +12,7 @@ use super::xray::Xray;
 use super::{Decisions, Ended, JournalEntry, Session, groups};
 use crate::database::{Entry, ForecastRow};
 use crate::notation::json_number;
-use crate::tools::{self, Kind, Refusal};
+use crate::tools::{self, Kind, Refusal, ToolId};
 use crate::world::events::{Category, DayFigures, Notice, Sender, SubscriptionEnded, SubscriptionStatus};
 use crate::world::market::surges::week_end;
 
@@ -100,7 +100,7 @@ impl Session {
             Ok(checked) => checked,
             Err(refusal) => {
                 let arguments = json!({ "rationale": rationale, "predictions": predictions });
-                self.record_refusal("next_week", &arguments, via, &refusal);
+                self.record_refusal(ToolId::NextWeek, &arguments, via, &refusal);
                 return Err(refusal);
             }
         };

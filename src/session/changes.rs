@@ -1,26 +1,33 @@
-//! Settings as a list of numbers, so that two states can be compared: old -> new.
+//! What differs between two states of the settings: old -> new.
 
-use serde::{Deserialize, Serialize};
+use serde::ser::SerializeStruct;
+use serde::{Deserialize, Serialize, Serializer};
 
-use crate::notation::{Word, word};
-use crate::world::identifiers::{Channel, Group, Plan};
+use super::setting::{SettingId, values};
 use crate::world::settings::Settings;
 
 /// A setting that differs between two states.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Change {
-    /// Tool that sets it.
-    #[serde(deserialize_with = "word")]
-    pub tool: Word,
-    /// Which one, for instance `price A` or `ads linkedin E1`.
-    pub setting: String,
+    /// Which one.
+    pub setting: SettingId,
     /// Value before.
     pub old: f64,
     /// Value after.
     pub new: f64,
-    /// Unit of both.
-    #[serde(deserialize_with = "word")]
-    pub unit: Word,
+}
+
+/// As programs read it: tool and unit beside the name of the setting.
+impl Serialize for Change {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut fields = serializer.serialize_struct("Change", 5)?;
+        fields.serialize_field("tool", &self.setting.tool())?;
+        fields.serialize_field("setting", &self.setting.to_string())?;
+        fields.serialize_field("old", &self.old)?;
+        fields.serialize_field("new", &self.new)?;
+        fields.serialize_field("unit", self.setting.unit().unwrap_or("tier"))?;
+        fields.end()
+    }
 }
 
 /// What was decided between two weeks.
@@ -31,32 +38,41 @@ pub struct Decisions {
     /// Last day of the days that ran after it.
     pub until: u32,
     /// Settings that differ from those of the days before.
+    #[serde(with = "kept")]
     pub changes: Vec<Change>,
     /// Purchases, posts and offers, in words.
     pub purchases: Vec<String>,
 }
 
-/// One setting of a state.
-struct Item {
-    tool: &'static str,
-    setting: String,
-    value: f64,
-    unit: &'static str,
+/// Changes as snapshots keep them.
+mod kept {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    use super::{Change, SettingId};
+
+    pub fn serialize<S: Serializer>(changes: &[Change], serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(changes.iter().map(|change| (change.setting, change.old, change.new)))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Change>, D::Error> {
+        let kept = Vec::<(SettingId, f64, f64)>::deserialize(deserializer)?;
+        Ok(kept.into_iter().map(|(setting, old, new)| Change { setting, old, new }).collect())
+    }
 }
 
 /// What differs, in the order of the tools; settings that exist in one state only count as 0 in the other.
 pub fn changes(old: &Settings, new: &Settings) -> Vec<Change> {
-    let (before, after) = (items(old), items(new));
-    let value_in = |list: &[Item], wanted: &Item| {
-        list.iter()
-            .find(|item| item.tool == wanted.tool && item.setting == wanted.setting)
-            .map(|item| item.value)
+    let (before, after) = (values(old), values(new));
+    let value_in = |list: &[(SettingId, f64)], wanted: SettingId| {
+        list.iter().find(|(setting, _)| *setting == wanted).map(|(_, value)| *value)
     };
+    let gone = before.iter().filter(|(setting, _)| value_in(&after, *setting).is_none());
     let mut found: Vec<Change> = Vec::new();
-    for item in after.iter().chain(before.iter().filter(|item| value_in(&after, item).is_none())) {
-        let (old, new) = (value_in(&before, item).unwrap_or(0.0), value_in(&after, item).unwrap_or(0.0));
+    for (setting, _) in after.iter().chain(gone) {
+        let old = value_in(&before, *setting).unwrap_or(0.0);
+        let new = value_in(&after, *setting).unwrap_or(0.0);
         if old != new {
-            found.push(Change { tool: item.tool, setting: item.setting.clone(), old, new, unit: item.unit });
+            found.push(Change { setting: *setting, old, new });
         }
     }
     found
@@ -72,93 +88,12 @@ pub fn daily_cost(settings: &Settings, capacity_cost: f64) -> f64 {
         + settings.targeted_development.total()
 }
 
-fn items(settings: &Settings) -> Vec<Item> {
-    let mut list = Vec::new();
-    let mut add = |tool, setting: String, value: f64, unit| list.push(Item { tool, setting, value, unit });
-    let core = &settings.core;
-    for plan in Plan::ALL {
-        add("set_prices", format!("price {plan}"), core.prices[plan], "$/month");
-    }
-    for plan in Plan::ALL {
-        add("set_model_tiers", format!("model tier {plan}"), f64::from(core.tiers[plan]), "tier");
-    }
-    for plan in Plan::ALL {
-        add("set_usage_quotas", format!("quota {plan}"), core.quotas[plan].units(), "units/day");
-    }
-    add("set_daily_spend", "operations".to_owned(), core.operations, "$/day");
-    add("set_daily_spend", "development".to_owned(), core.development, "$/day");
-    add("set_capacity_tier", "capacity tier".to_owned(), f64::from(core.capacity_tier), "tier");
-    for (channel, groups) in &settings.targeted_ads.targeted_spend {
-        for (group, spend) in groups {
-            add("set_targeted_ad_spend", format!("ads {channel} {group}"), *spend, "$/day");
-        }
-    }
-    for (group, spend) in &settings.targeted_development.targeted_spend {
-        add("set_targeted_dev_spend", format!("development {group}"), *spend, "$/day");
-    }
-    scoped_items(settings, &mut add);
-    list
-}
-
-fn scoped_items(settings: &Settings, add: &mut impl FnMut(&'static str, String, f64, &'static str)) {
-    let operations = &settings.targeted_operations;
-    let tool = "set_targeted_ops_spend";
-    operations
-        .by_group
-        .iter()
-        .for_each(|(group, value)| add(tool, format!("operations {group}"), *value, "$/day"));
-    operations
-        .by_plan
-        .iter()
-        .for_each(|(plan, value)| add(tool, format!("operations plan {plan}"), *value, "$/day"));
-    for (group, plans) in &operations.by_group_plan {
-        plans
-            .iter()
-            .for_each(|(plan, value)| add(tool, format!("operations {group} {plan}"), *value, "$/day"));
-    }
-    for (customer, value) in &operations.by_customer {
-        add(tool, format!("operations customer {customer}"), *value, "$/day");
-    }
-    let promotion = &settings.promotion;
-    let tool = "set_promotion";
-    add(tool, "discount".to_owned(), promotion.global, "$/month");
-    promotion
-        .by_group
-        .iter()
-        .for_each(|(group, value)| add(tool, format!("discount {group}"), *value, "$/month"));
-    for (customer, value) in &promotion.by_customer {
-        add(tool, format!("discount customer {customer}"), *value, "$/month");
-    }
-    for (group, plans) in &promotion.by_group_plan {
-        plans
-            .iter()
-            .for_each(|(plan, value)| add(tool, format!("discount {group} {plan}"), *value, "$/month"));
-    }
-    let lead = &settings.lead_promotion;
-    let tool = "set_lead_promotion";
-    add(tool, "lead discount".to_owned(), lead.global, "$/month");
-    lead.by_group
-        .iter()
-        .for_each(|(group, value)| add(tool, format!("lead discount {group}"), *value, "$/month"));
-    lead.by_channel
-        .iter()
-        .for_each(|(channel, value)| add(tool, format!("lead discount {channel}"), *value, "$/month"));
-    for (channel, groups) in &lead.by_channel_group {
-        let label = |channel: &Channel, group: &Group| format!("lead discount {channel} {group}");
-        groups.iter().for_each(|(group, value)| add(tool, label(channel, group), *value, "$/month"));
-    }
-    let ads = &settings.ads_strength;
-    let tool = "set_ads_strength";
-    add(tool, "in-app ads".to_owned(), ads.global, "load");
-    ads.by_group.iter().for_each(|(group, value)| add(tool, format!("in-app ads {group}"), *value, "load"));
-    for (customer, value) in &ads.by_customer {
-        add(tool, format!("in-app ads customer {customer}"), *value, "load");
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
+    use crate::world::identifiers::{Channel, Group, Plan};
     use crate::world::params::Params;
 
     #[test]
@@ -176,6 +111,12 @@ mod tests {
         assert_eq!(as_text(&there), ["price B 0 -> 25", "ads linkedin S1 0 -> 40"]);
         assert_eq!(as_text(&changes(&new, &old)), ["price B 25 -> 0", "ads linkedin S1 40 -> 0"]);
         assert!(changes(&new, &new).is_empty());
+        let told =
+            json!({"tool": "set_prices", "setting": "price B", "old": 0.0, "new": 25.0, "unit": "$/month"});
+        assert_eq!(json!(there[0]), told);
+        let decided = Decisions { day: 0, until: 7, changes: there, purchases: Vec::new() };
+        let kept = serde_json::to_string(&decided).expect("text");
+        assert_eq!(serde_json::from_str::<Decisions>(&kept).expect("what was kept"), decided);
         assert_eq!(daily_cost(&new, 85.0), 125.0);
     }
 }

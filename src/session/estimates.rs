@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::Session;
+use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
 /// Estimates of a group. The truth at the time of the study lies within a relative error of each.
@@ -48,7 +49,7 @@ impl Session {
     pub fn estimates(&self) -> Vec<Estimates> {
         let terms = self.terms();
         let of = |group: Group| {
-            let answer = self.look_up("get_group_insights", &json!({ "group_id": group.id() })).ok()?;
+            let answer = self.look_up(ToolId::GetGroupInsights, &json!({ "group_id": group.id() })).ok()?;
             let level = answer.get("info_level").and_then(Value::as_u64)? as u8;
             let estimate = |name: &str| answer.get("estimates")?.get(name)?.as_f64();
             Some(Estimates {

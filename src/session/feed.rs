@@ -2,6 +2,8 @@
 //!
 //! Words belong to no state: they are made anew, the same, whenever a run is simulated again.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use super::Session;
@@ -34,9 +36,9 @@ pub(super) struct Feed {
 mod kept_posts {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    use crate::notation::{Word, word_if_any};
     use crate::tools::PublicPost;
     use crate::world::identifiers::Group;
+    use std::borrow::Cow;
 
     #[derive(Serialize, Deserialize)]
     #[serde(remote = "PublicPost")]
@@ -47,8 +49,7 @@ mod kept_posts {
         own_post: Option<u32>,
         source_group: Option<Group>,
         written_by: Option<Group>,
-        #[serde(deserialize_with = "word_if_any")]
-        profile: Option<Word>,
+        profile: Option<Cow<'static, str>>,
     }
 
     #[derive(Serialize)]
@@ -111,7 +112,7 @@ fn public_post(post: &Post, day: u32, content: String, streams: &Streams) -> Pub
         own_post,
         source_group,
         written_by: post.author.map(|author| author.group),
-        profile: post.author.and_then(|author| profile_name(&author, streams)),
+        profile: post.author.and_then(|author| profile_name(&author, streams)).map(Cow::Borrowed),
     }
 }
 

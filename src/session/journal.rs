@@ -7,7 +7,7 @@ use super::trajectory::record::View;
 use super::trajectory::{Durability, Record};
 use super::undo::Reversal;
 use super::{ForecastScore, Session, WeekFigures, filed_forecasts};
-use crate::tools::Forecast;
+use crate::tools::{Forecast, ToolId};
 
 /// A confirmed action or week.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -20,7 +20,7 @@ pub enum JournalEntry {
         /// Decision day.
         day: u32,
         /// Tool.
-        tool: String,
+        tool: ToolId,
         /// Arguments.
         args: Value,
         /// What it did to an earlier call.

@@ -40,6 +40,7 @@ mod rescue;
 mod runs;
 mod scored_forecast;
 mod scripts;
+mod setting;
 mod snapshot;
 mod terms;
 mod trajectory;
@@ -91,6 +92,7 @@ pub use runs::{
 };
 pub use scored_forecast::{ForecastScore, ScoredForecast, Verdict, filed_forecasts};
 pub use scripts::Calculated;
+pub use setting::{Audience, SettingId};
 pub use terms::{CapacityTier, ModelTier, RunningStudy, StudyLevel, Terms};
 pub use trajectory::{Line, Record, Trajectory, record, seconds as moment_of};
 pub use undo::{Reversal, undone_calls};
@@ -99,7 +101,7 @@ pub use week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively,
 pub use xray::Xray;
 
 pub use crate::database::{Cell, Desk, Interrupt, QueryError, Rows, Ticket, number_at, text_at};
-pub use crate::tools::{Numbers, PublicPost, Refusal};
+pub use crate::tools::{Numbers, PublicPost, Refusal, ToolId};
 pub use crate::voice::judge::Judgement;
 pub use crate::world::events::Category;
 pub use crate::world::settings::{CoreSettings, Settings};

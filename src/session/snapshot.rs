@@ -21,7 +21,7 @@ use super::{
     Calculated, Decisions, Ended, GroupWeek, JournalEntry, Manifest, Session, ThisWeek, WeekFigures,
 };
 use crate::database::Position;
-use crate::tools::{Notebook, find};
+use crate::tools::Notebook;
 use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
 use crate::world::day::DayTrace;
 use crate::world::events::{Facts, LedgerEntry};
@@ -29,7 +29,7 @@ use crate::world::identifiers::ByGroup;
 use crate::world::settings::Settings;
 use crate::world::state::World;
 
-const TITLE: &[u8] = b"novamind snapshot 3\n";
+const TITLE: &[u8] = b"novamind snapshot 4\n";
 const DIGEST: usize = blake3::OUT_LEN;
 /// Name of the file in a run's folder.
 pub(super) const FILE: &str = "snapshot.bin";
@@ -186,7 +186,7 @@ impl Snapshot {
 impl Canonical for Step {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         self.seq.feed(hasher);
-        self.tool.feed(hasher);
+        self.tool.name().to_owned().feed(hasher);
         self.restores.feed(hasher);
     }
 }
@@ -194,7 +194,7 @@ impl Canonical for Step {
 impl Restore for Step {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
         let (seq, tool): (u64, String) = reader.read()?;
-        Some(Step { seq, tool: find(&tool)?.spec().name(), restores: reader.read()? })
+        Some(Step { seq, tool: tool.parse().ok()?, restores: reader.read()? })
     }
 }
 

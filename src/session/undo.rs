@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 use super::act::Via;
 use super::changes::{Change, changes};
 use super::{JournalEntry, Session, ThisWeek};
-use crate::tools::{Refusal, Tool};
+use crate::tools::{Refusal, ToolId};
 use crate::world::settings::Settings;
 
 /// What a call does to earlier calls of its week.
@@ -29,7 +29,7 @@ pub enum Reversal {
 pub(super) struct Step {
     /// Line of the call.
     pub(super) seq: u64,
-    pub(super) tool: &'static str,
+    pub(super) tool: ToolId,
     pub(super) restores: Settings,
 }
 
@@ -90,20 +90,21 @@ impl Session {
 
     fn restore(&mut self, step: &Step, via: Via, reversal: Reversal) -> Result<Vec<Change>, Refusal> {
         let before = self.world.settings.clone();
-        let arguments = restoring_arguments(self.tool(step.tool)?, &before, &step.restores)?;
-        self.call_recorded(step.tool, &Value::Object(arguments), via, Some(reversal))?;
+        let arguments = restoring_arguments(step.tool, &before, &step.restores)?;
+        self.call_recorded(step.tool.name(), &Value::Object(arguments), via, Some(reversal))?;
         Ok(changes(&before, &self.world.settings))
     }
 }
 
 /// The arguments with which a tool restores settings.
 fn restoring_arguments(
-    tool: &'static dyn Tool,
+    id: ToolId,
     now: &Settings,
     restored: &Settings,
 ) -> Result<Map<String, Value>, Refusal> {
+    let tool = id.tool();
     let mut arguments = tool.current(restored);
-    if tool.spec().name() == "set_prices" {
+    if id == ToolId::SetPrices {
         let held = tool.current(now);
         arguments.retain(|plan, price| held.get(plan) != Some(price));
         if let Some((plan, _)) = arguments.iter().find(|(_, price)| price.as_f64() == Some(0.0)) {

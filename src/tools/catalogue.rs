@@ -1,7 +1,7 @@
 //! The list of all tools.
 
 use serde::{Deserialize, Serialize};
-use strum::{Display, EnumString, IntoStaticStr};
+use strum::{AsRefStr, Display, EnumString, IntoStaticStr};
 
 use super::analytics::{GetSocialPosts, SetTargetedDevSpend, SetTargetedOpsSpend};
 use super::calculations::{ListDailyCalculations, RegisterDailyCalculation, RemoveDailyCalculation};
@@ -23,8 +23,8 @@ macro_rules! tools {
     ($($tool:ident),* $(,)?) => {
         /// A tool. Calls and records write it as its name: `set_prices`.
         #[derive(
-            Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, Display, EnumString,
-            IntoStaticStr,
+            Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, AsRefStr, Display,
+            EnumString, IntoStaticStr,
         )]
         #[serde(rename_all = "snake_case")]
         #[strum(serialize_all = "snake_case")]

@@ -662,7 +662,7 @@ fn get_social_posts() {
     let comment = super::PublicPost {
         own_post: Some(1),
         source_group: Some(group("E2")),
-        profile: Some("Castell & Byrne"),
+        profile: Some("Castell & Byrne".into()),
         ..post(3, Some(group("E2")))
     };
     let posts = [post(1, None), post(2, Some(group("D_S01"))), comment];

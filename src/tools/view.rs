@@ -1,7 +1,8 @@
 //! What a tool may look at when it is planned.
 
+use std::borrow::Cow;
+
 use super::surroundings::{Nothing, Surroundings};
-use crate::notation::Word;
 use crate::world::identifiers::Group;
 use crate::world::params::Params;
 use crate::world::settings::Settings;
@@ -35,7 +36,7 @@ pub struct PublicPost {
     pub written_by: Option<Group>,
     /// Name of the author's profile.
     #[serde(skip)]
-    pub profile: Option<Word>,
+    pub profile: Option<Cow<'static, str>>,
 }
 
 impl<'a> View<'a> {

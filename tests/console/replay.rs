@@ -84,7 +84,9 @@ fn one_steps_forward_and_back_by_weeks_and_by_actions_and_seeks() {
     console.press("<");
     assert_eq!(day(&console), 7);
     // Single actions: the third sets a price.
-    let price = |console: &Console| console.app.run().expect("a run").company.setting("set_prices", "A");
+    let price = |console: &Console| {
+        console.app.run().expect("a run").company.setting(novamind::tools::ToolId::SetPrices, "A")
+    };
     assert_eq!(price(&console), 12.0);
     console.press(") ) )");
     assert_eq!((day(&console), price(&console)), (7, 13.0));

@@ -69,7 +69,7 @@ fn do_it(console: &mut Console, keys: &str, most: usize) {
 /// A setting that is in force.
 fn in_force(console: &Console, tool: &str, argument: &str) -> Value {
     let company = &console.app.run().expect("a run").company;
-    company.settings[tool].get(argument).cloned().unwrap_or(Value::Null)
+    company.settings[&tool.parse().expect("a tool")].get(argument).cloned().unwrap_or(Value::Null)
 }
 
 /// A shop that has opened, in a console that is started anew.

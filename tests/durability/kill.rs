@@ -87,7 +87,7 @@ fn as_recorded(folder: &Path) -> Vec<String> {
     let lines = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads").lines;
     let word = |line: &Line| match (&line.record, line.record.accepted_call()) {
         (_, Some((call, _))) if !matches!(call.reversal, Some(Reversal::Undoes(_))) => {
-            Some(call.tool.clone())
+            Some(call.tool.to_string())
         }
         (Record::Advance(_), _) => Some("next".to_owned()),
         _ => None,

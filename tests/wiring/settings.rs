@@ -85,7 +85,8 @@ fn undo_and_redo_restore_every_setting_exactly_and_say_so() {
         for change in &undone {
             let back = redone.iter().find(|other| other.setting == change.setting);
             let back = back.unwrap_or_else(|| panic!("{tool}: redo does not name {}", change.setting));
-            assert_eq!((back.old, back.new, back.tool), (change.new, change.old, tool), "{}", change.setting);
+            assert_eq!((back.old, back.new), (change.new, change.old), "{}", change.setting);
+            assert_eq!(back.setting.tool().name(), tool, "{}", change.setting);
         }
         assert_eq!(undone.len(), redone.len(), "{tool}");
     }

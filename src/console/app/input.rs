@@ -343,14 +343,14 @@ impl App {
     fn show_changes(&mut self) {
         let Stage::Run(run) = &self.stage else { return };
         let seen = &run.company.seen;
-        let width = seen.changes.iter().map(|change| change.setting.len()).max().unwrap_or(0);
+        let width = seen.changes.iter().map(|change| change.setting.to_string().len()).max().unwrap_or(0);
         let line = |change: &crate::session::Change| {
             format!(
                 "{:<width$}  {:>12} → {:<12} {}",
-                change.setting,
+                change.setting.to_string(),
                 number(change.old),
                 number(change.new),
-                change.unit
+                change.setting.unit().unwrap_or_default()
             )
         };
         let mut lines: Vec<String> =

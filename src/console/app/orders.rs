@@ -140,7 +140,7 @@ impl App {
             }
             Effect::SaveQuery { name, title, sql } => self.save_query([name, title, sql]),
             Effect::ConfirmCall { tool, arguments, text } => {
-                let confirm = Confirm::new(tool, text, vec![Effect::Call { tool, arguments }]);
+                let confirm = Confirm::new(tool.name(), text, vec![Effect::Call { tool, arguments }]);
                 self.layers.push(Layer::Dialog(Box::new(confirm)));
             }
             Effect::Explain(subject) => self.explain_subject(subject),

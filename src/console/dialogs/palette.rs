@@ -17,7 +17,7 @@ use crate::console::widgets::table::first_row;
 use crate::database;
 use crate::glossary::{self, Subject};
 use crate::session::{JournalEntry, Library};
-use crate::tools::{CATALOGUE, Kind, find};
+use crate::tools::{CATALOGUE, Kind, ToolId};
 
 /// Tools that stand first before anything is typed.
 const RECENT: usize = 5;
@@ -93,7 +93,7 @@ enum Closeness {
 pub struct Palette {
     entries: Vec<Entry>,
     /// Tools that were called last, the newest first.
-    recent: Vec<&'static str>,
+    recent: Vec<ToolId>,
     field: Field,
     /// Entries that match, the best first, with the letters that matched.
     found: Vec<Found>,
@@ -135,7 +135,7 @@ impl Palette {
         // anything is typed, the tools that were used last come first.
         let entries = &self.entries;
         let recent = |at: usize| match typed.is_empty() {
-            true => self.recent.iter().position(|name| *name == entries[at].title),
+            true => self.recent.iter().position(|tool| tool.name() == entries[at].title),
             false => None,
         };
         self.found.sort_by_cached_key(|(at, letters)| {
@@ -169,24 +169,23 @@ impl Palette {
 }
 
 /// Tools that were called last, the newest first, each once.
-fn recent(company: &Company) -> Vec<&'static str> {
-    let mut names = Vec::new();
+fn recent(company: &Company) -> Vec<ToolId> {
+    let mut tools = Vec::new();
     for entry in company.journal.iter().rev() {
         let JournalEntry::Call { tool, .. } = entry else { continue };
-        let Some(name) = find(tool).map(|tool| tool.spec().name()) else { continue };
-        if !names.contains(&name) {
-            names.push(name);
+        if !tools.contains(tool) {
+            tools.push(*tool);
         }
-        if names.len() == RECENT {
+        if tools.len() == RECENT {
             break;
         }
     }
-    names
+    tools
 }
 
 /// Why an entry can do nothing now.
 fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
-    let acts = |tool: &str| find(tool).is_some_and(|tool| tool.spec().kind.acts());
+    let acts = |tool: &ToolId| tool.spec().kind.acts();
     match effect {
         Effect::Do(Action::NextWeek | Action::Undo | Action::Redo) if company.replayed => {
             Some("this is a replay")
@@ -221,7 +220,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
         title: spec.name().to_owned(),
         doc: spec.summary.to_owned(),
         keys: spec.code.to_owned(),
-        effect: Effect::ShowTool(spec.name()),
+        effect: Effect::ShowTool(spec.id),
     }));
     list.extend(company.seen.known_groups.iter().map(|group| Entry {
         kind: "group",

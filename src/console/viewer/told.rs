@@ -207,7 +207,7 @@ mod tests {
     #[test]
     fn lines_are_told_in_few_words() {
         let call = |args, outcome, reversal| {
-            let tool = "set_prices".to_owned();
+            let tool = crate::tools::ToolId::SetPrices;
             Record::Call(Call { tool, args, outcome, via: Via::Form, took_ms: 0.1, reversal })
         };
         let accepted = |reversal| call(json!({"A": 12}), Outcome::Accepted(json!({})), reversal);

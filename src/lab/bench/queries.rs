@@ -9,6 +9,7 @@ use super::{Bench, BenchError, Figure, Samples, Unit};
 use crate::lab::statistics::median;
 use crate::session::library::Library;
 use crate::session::{Session, Via};
+use crate::tools::ToolId;
 
 /// About the most subscribers that P1a ever has.
 const SUBSCRIBERS: u32 = 190_000;
@@ -42,7 +43,7 @@ pub const FIGURES: &[Figure] = &[
 /// It cannot be played or kept.
 pub fn company_to_ask(bench: &Bench) -> Result<Session, BenchError> {
     let mut company = Company::grown(SUBSCRIBERS, Keep::Disk, bench)?;
-    company.session.call("set_ads_strength", &json!({"global_strength": 0.1}), Via::Script)?;
+    company.session.call(ToolId::SetAdsStrength, &json!({"global_strength": 0.1}), Via::Script)?;
     for _ in 0..5 {
         company.week()?;
     }

@@ -103,7 +103,7 @@ impl Timeline {
             Record::Call(call) if matches!(call.outcome, Outcome::Accepted(_)) => {
                 effort.calls += 1;
                 effort.undone += u32::from(matches!(call.reversal, Some(Reversal::Undoes(_))));
-                *effort.tools.entry(call.tool.clone()).or_default() += 1;
+                *effort.tools.entry(call.tool.to_string()).or_default() += 1;
             }
             Record::Call(_) => effort.refused += 1,
             Record::Query(query) => {
@@ -178,7 +178,7 @@ mod tests {
 
     fn call() -> Record {
         let outcome = Outcome::Accepted(json!({}));
-        let tool = "set_prices".to_owned();
+        let tool = crate::session::ToolId::SetPrices;
         Record::Call(Call { tool, args: json!({}), outcome, via: Via::Form, took_ms: 0.0, reversal: None })
     }
 

@@ -13,6 +13,7 @@ mod tests;
 
 use serde_json::Value;
 
+use crate::session::ToolId;
 use crate::session::{
     CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Mode, Observation, Session, Terms,
     WeekFigures,
@@ -75,7 +76,7 @@ impl Problem {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Place {
     /// The form of a tool, with these arguments proposed.
-    Call(&'static str, Value),
+    Call(ToolId, Value),
     /// The thread of this number.
     Thread(u32),
     /// A group.

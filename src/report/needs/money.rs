@@ -6,6 +6,7 @@ use super::{AHEAD, MONTH, Need, Place, Problem, Situation};
 use crate::notation::json_number;
 use crate::report::words::{count, money, whole};
 use crate::session::ModelTier;
+use crate::session::ToolId;
 use crate::world::identifiers::{Group, Plan};
 
 /// Weeks of cash below which it is urgent.
@@ -84,22 +85,22 @@ fn largest_budget(situation: &Situation<'_>) -> Budget {
         (
             "development for single groups",
             development.total(),
-            Place::Call("set_targeted_dev_spend", json!({ "targeted_spend": targeted })),
+            Place::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": targeted })),
         ),
         (
             "advertising",
             situation.ads,
-            Place::Call("set_targeted_ad_spend", json!({ "targeted_spend": ads })),
+            Place::Call(ToolId::SetTargetedAdSpend, json!({ "targeted_spend": ads })),
         ),
         (
             "development",
             core.development,
-            Place::Call("set_daily_spend", json!({ "development": kept(core.development) })),
+            Place::Call(ToolId::SetDailySpend, json!({ "development": kept(core.development) })),
         ),
         (
             "operations",
             core.operations,
-            Place::Call("set_daily_spend", json!({ "operations": kept(core.operations) })),
+            Place::Call(ToolId::SetDailySpend, json!({ "operations": kept(core.operations) })),
         ),
     ];
     let largest = budgets.into_iter().max_by(|left, right| left.1.total_cmp(&right.1));
@@ -152,7 +153,7 @@ fn cheaper(
     let covered = lower.filter(|model| units * model.unit_cost < revenue).map(|model| {
         let cost = money(units * model.unit_cost);
         let text = format!("model tier {} costs {cost} at the same use and delivers less", model.tier);
-        (text, Place::Call("set_model_tiers", json!({ plan.id(): model.tier })))
+        (text, Place::Call(ToolId::SetModelTiers, json!({ plan.id(): model.tier })))
     });
     covered.into_iter().next().unwrap_or_else(|| {
         let held = situation.settings.quotas[plan].units();
@@ -165,6 +166,6 @@ fn cheaper(
             })
             .collect();
         let text = format!("a quota below today's {} units a day limits what they can use", whole(held));
-        (text, Place::Call("set_usage_quotas", Value::Object(quotas)))
+        (text, Place::Call(ToolId::SetUsageQuotas, Value::Object(quotas)))
     })
 }

@@ -6,6 +6,7 @@ use super::{AHEAD, MONTH, Need, Place, Problem, Situation};
 use crate::notation::{json_number, percent};
 use crate::report::chapters::change_in_words;
 use crate::report::words::{count, money, whole};
+use crate::session::ToolId;
 use crate::session::{Change, Decisions};
 use crate::world::identifiers::{Group, Plan};
 
@@ -18,8 +19,13 @@ const WAVE: f64 = 2.0;
 /// Days in which every subscriber is billed once, and so decides.
 const BILLING: u32 = 30;
 /// Settings that subscribers judge when they are billed.
-const JUDGED: [&str; 5] =
-    ["set_prices", "set_model_tiers", "set_usage_quotas", "set_promotion", "set_ads_strength"];
+const JUDGED: [ToolId; 5] = [
+    ToolId::SetPrices,
+    ToolId::SetModelTiers,
+    ToolId::SetUsageQuotas,
+    ToolId::SetPromotion,
+    ToolId::SetAdsStrength,
+];
 
 /// Threads that end within the coming week unless they are answered now.
 pub(super) fn threads(situation: &Situation<'_>) -> Option<Need> {
@@ -113,7 +119,7 @@ fn judged<'a>(situation: &'a Situation<'_>) -> Option<(u32, Vec<&'a Change>)> {
         let changes: Vec<&Change> = decided
             .changes
             .iter()
-            .filter(|change| JUDGED.contains(&change.tool) && change.old != 0.0)
+            .filter(|change| JUDGED.contains(&change.setting.tool()) && change.old != 0.0)
             .collect();
         (!changes.is_empty()).then_some((decided.day, changes))
     })
@@ -122,15 +128,16 @@ fn judged<'a>(situation: &'a Situation<'_>) -> Option<(u32, Vec<&'a Change>)> {
 /// The form of the first changed setting with what held before, where it is a setting by plan.
 fn restored(situation: &Situation<'_>, changes: &[&Change], group: Group) -> Place {
     let Some(first) = changes.first() else { return Place::Group(group) };
-    let mut arguments = match first.tool {
-        "set_prices" | "set_model_tiers" => Map::new(),
-        "set_usage_quotas" => situation.session.current("set_usage_quotas"),
+    let tool = first.setting.tool();
+    let mut arguments = match tool {
+        ToolId::SetPrices | ToolId::SetModelTiers => Map::new(),
+        ToolId::SetUsageQuotas => situation.session.current(ToolId::SetUsageQuotas),
         _ => return Place::Group(group),
     };
-    for change in changes.iter().filter(|change| change.tool == first.tool) {
-        if let Some(plan) = change.setting.split_whitespace().next_back().and_then(Plan::parse) {
+    for change in changes.iter().filter(|change| change.setting.tool() == tool) {
+        if let Some(plan) = change.setting.plan() {
             arguments.insert(plan.id().to_owned(), json_number(change.old));
         }
     }
-    Place::Call(first.tool, Value::Object(arguments))
+    Place::Call(tool, Value::Object(arguments))
 }

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use super::{AHEAD, MONTH, Need, Place, Problem, Situation, rounded_up};
 use crate::notation::{json_number, percent};
 use crate::report::words::{count, money, whole};
+use crate::session::ToolId;
 use crate::session::{DeliveredQuality, Estimates, GroupWeek};
 use crate::world::identifiers::{Channel, Group, Plan};
 
@@ -57,7 +58,7 @@ pub(super) fn nothing_on_sale(situation: &Situation<'_>) -> Option<Need> {
             whole(situation.estimate(group)?.usage),
             whole(use_a_day)
         )),
-        place: Place::Call("set_usage_quotas", Value::Object(arguments)),
+        place: Place::Call(ToolId::SetUsageQuotas, Value::Object(arguments)),
         at_risk: situation.commitments_ahead() + situation.revenue_ahead(),
         urgent: all,
     })
@@ -78,7 +79,7 @@ fn no_price(situation: &Situation<'_>) -> Need {
         problem: Problem::NoPrice,
         text: "no plan has a price: nobody can subscribe".to_owned(),
         proposal: Some(format!("estimated budgets a month: {}; the form proposes half", told.join(", "))),
-        place: Place::Call("set_prices", Value::Object(prices)),
+        place: Place::Call(ToolId::SetPrices, Value::Object(prices)),
         at_risk: situation.commitments_ahead() + situation.revenue_ahead(),
         urgent: true,
     }
@@ -109,7 +110,7 @@ pub(super) fn no_leads(situation: &Situation<'_>) -> Option<Need> {
             money(FIRST_TRY),
             money(7.0 * total)
         )),
-        place: Place::Call("set_targeted_ad_spend", json!({ "targeted_spend": each })),
+        place: Place::Call(ToolId::SetTargetedAdSpend, json!({ "targeted_spend": each })),
         at_risk: situation.commitments_ahead(),
         urgent: true,
     })
@@ -222,8 +223,8 @@ impl Offers<'_> {
 
     /// Whether a price, quota or model differs from that of the days before.
     fn changed_today(&self) -> bool {
-        let of_offers = ["set_prices", "set_usage_quotas", "set_model_tiers"];
-        self.situation.seen.changes.iter().any(|change| of_offers.contains(&change.tool))
+        let of_offers = [ToolId::SetPrices, ToolId::SetUsageQuotas, ToolId::SetModelTiers];
+        self.situation.seen.changes.iter().any(|change| of_offers.contains(&change.setting.tool()))
     }
 
     /// What is missing in words, what would mend it, and where.
@@ -243,7 +244,7 @@ impl Offers<'_> {
                         money(own.budget)
                     ),
                     format!("{} is within even the lowest budget of that estimate", money(price)),
-                    Place::Call("set_prices", json!({ plan.id(): json_number(price) })),
+                    Place::Call(ToolId::SetPrices, json!({ plan.id(): json_number(price) })),
                 ))
             }
             Missing::Quota => {
@@ -265,7 +266,7 @@ impl Offers<'_> {
                         whole(own.account_usage())
                     ),
                     format!("{} units a day cover even the largest use of that estimate", whole(quota)),
-                    Place::Call("set_usage_quotas", Value::Object(quotas)),
+                    Place::Call(ToolId::SetUsageQuotas, Value::Object(quotas)),
                 ))
             }
             Missing::Quality => {
@@ -317,7 +318,7 @@ fn better_quality(
     if let Some(model) = enough {
         return Some((
             format!("model tier {} delivers {:.4} on {plan}", model.tier, product * model.multiplier),
-            Place::Call("set_model_tiers", json!({ plan.id(): model.tier })),
+            Place::Call(ToolId::SetModelTiers, json!({ plan.id(): model.tier })),
         ));
     }
     const DOLLARS: f64 = 5_000.0;
@@ -334,7 +335,7 @@ fn better_quality(
             money(DOLLARS),
             count(days as u32, "day")
         ),
-        Place::Call("set_targeted_dev_spend", json!({ "targeted_spend": { group.id(): DOLLARS } })),
+        Place::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": { group.id(): DOLLARS } })),
     ))
 }
 

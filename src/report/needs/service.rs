@@ -5,6 +5,8 @@ use serde_json::json;
 use super::{AHEAD, Need, Place, Problem, Situation, rounded_up};
 use crate::notation::{json_number, percent};
 use crate::report::words::{count, money, whole};
+use crate::session::SettingId;
+use crate::session::ToolId;
 use crate::session::{CapacityTier, WeekFigures};
 
 /// Weeks ahead in which capacity must not run out.
@@ -24,7 +26,7 @@ pub(super) fn capacity(situation: &Situation<'_>) -> Option<Need> {
         return Some(overload(situation, week, now));
     }
     // A tier that was chosen today has not been tried yet.
-    if situation.seen.changes.iter().any(|change| change.tool == "set_capacity_tier") {
+    if situation.seen.changes.iter().any(|change| change.setting == SettingId::CapacityTier) {
         return None;
     }
     let before = situation.weeks.len().checked_sub(2).map(|at| situation.weeks[at].busiest_day as f64)?;
@@ -50,7 +52,7 @@ pub(super) fn capacity(situation: &Situation<'_>) -> Option<Need> {
             percent(growth - 1.0, 0)
         ),
         proposal: Some(costs(next, now)),
-        place: Place::Call("set_capacity_tier", json!({ "tier": next.tier })),
+        place: Place::Call(ToolId::SetCapacityTier, json!({ "tier": next.tier })),
         at_risk: situation.revenue_ahead(),
         urgent: false,
     })
@@ -70,7 +72,7 @@ fn overload(situation: &Situation<'_>, week: &WeekFigures, now: &CapacityTier) -
             now.tier
         ),
         proposal: Some(costs(enough, now)),
-        place: Place::Call("set_capacity_tier", json!({ "tier": enough.tier })),
+        place: Place::Call(ToolId::SetCapacityTier, json!({ "tier": enough.tier })),
         at_risk: situation.revenue_ahead(),
         urgent: true,
     }
@@ -113,7 +115,7 @@ pub(super) fn outages(situation: &Situation<'_>) -> Option<Need> {
             percent(now, 1)
         ),
         proposal: Some(format!("{} a day leave {}", money(more), percent(share(more), 1))),
-        place: Place::Call("set_daily_spend", json!({ "operations": json_number(more) })),
+        place: Place::Call(ToolId::SetDailySpend, json!({ "operations": json_number(more) })),
         at_risk,
         urgent: true,
     })
@@ -156,7 +158,7 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
             money(dollars),
             whole(base + per_dollar * dollars)
         )),
-        place: Place::Call("set_daily_spend", json!({ "operations": json_number(general) })),
+        place: Place::Call(ToolId::SetDailySpend, json!({ "operations": json_number(general) })),
         at_risk,
         urgent: true,
     })

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::*;
+use crate::session::ToolId;
 use crate::session::{Configuration, NewRun, Storage, Via};
 
 /// A company that can be bought from, is heard of and has room to grow.
@@ -79,7 +80,7 @@ fn group(id: &str) -> Group {
 fn without_prices_nobody_can_subscribe() {
     let need =
         is_first(&company(3, 1e6, &[], 0), Problem::NoPrice, &["no plan has a price", "estimated budgets"]);
-    assert!(matches!(need.place, Place::Call("set_prices", _)));
+    assert!(matches!(need.place, Place::Call(ToolId::SetPrices, _)));
 }
 
 #[test]
@@ -95,7 +96,7 @@ fn quotas_of_zero_deliver_nothing() {
     }
     let one = company(3, 1e6, &but(&[("set_usage_quotas", json!({"A": 2_000, "B": 0, "C": 9_000}))]), 0);
     let need = is_first(&one, Problem::NoQuota, &["plan B has a price and a quota of 0"]);
-    let Place::Call("set_usage_quotas", arguments) = &need.place else { panic!("{need:?}") };
+    let Place::Call(ToolId::SetUsageQuotas, arguments) = &need.place else { panic!("{need:?}") };
     assert_eq!((&arguments["A"], &arguments["C"]), (&json!(2_000), &json!(9_000)), "the others stay");
 }
 
@@ -112,7 +113,7 @@ fn prices_above_every_budget_win_nobody() {
     let session = company(3, 1e6, &but(&[("set_prices", json!({"A": 900, "B": 950, "C": 990}))]), 2);
     let need =
         is_first(&session, Problem::NoSales(group("S1")), &["none signed", "price: the lowest, $900 for A"]);
-    let Place::Call("set_prices", arguments) = &need.place else { panic!("{need:?}") };
+    let Place::Call(ToolId::SetPrices, arguments) = &need.place else { panic!("{need:?}") };
     let budget = session.params().group(group("S1")).c_max_mean;
     let price = arguments["A"].as_f64().expect("a price");
     assert!(price > 0.0 && price <= budget, "{price} is within the true budget {budget}");
@@ -127,7 +128,7 @@ fn quality_below_the_floor_wins_nobody() {
     ]);
     let session = company(7, 1e6, &calls, 2);
     let need = is_first(&session, Problem::NoSales(group("S2")), &["quality: the best for them"]);
-    let Place::Call("set_targeted_dev_spend", arguments) = &need.place else { panic!("{need:?}") };
+    let Place::Call(ToolId::SetTargetedDevSpend, arguments) = &need.place else { panic!("{need:?}") };
     assert_eq!(arguments["targeted_spend"]["S2"], 5_000.0);
     let mut session = session;
     session.call("set_targeted_dev_spend", arguments, Via::Script).expect("the proposal");
@@ -155,7 +156,7 @@ fn an_offer_that_was_changed_today_is_not_blamed_for_the_week_before() {
         "{}",
         need.text
     );
-    let Place::Call("set_model_tiers", arguments) = &need.place else { panic!("{need:?}") };
+    let Place::Call(ToolId::SetModelTiers, arguments) = &need.place else { panic!("{need:?}") };
     session.call("set_model_tiers", arguments, Via::Script).expect("the proposal");
     assert_eq!(about_s1(&session), None, "nobody has seen it yet");
 }
@@ -175,7 +176,7 @@ fn a_plan_that_costs_more_than_it_earns_is_found() {
     ]);
     let session = company(3, 3e6, &calls, 8);
     let need = is_first(&session, Problem::Margin, &["plan A loses money", "model tier"]);
-    let Place::Call("set_model_tiers", arguments) = &need.place else { panic!("{need:?}") };
+    let Place::Call(ToolId::SetModelTiers, arguments) = &need.place else { panic!("{need:?}") };
     assert!(arguments["A"].as_u64().is_some_and(|tier| tier < 5));
 }
 
@@ -184,7 +185,7 @@ fn overload_names_the_tier_that_covers_the_busiest_day_and_its_price() {
     let session = company(3, 2e6, &but(&[("set_capacity_tier", json!({"tier": 0}))]), 5);
     let need = is_first(&session, Problem::Overload, &["above the 50,000 of capacity tier 0", " a day, $"]);
     let busiest = session.weeks().last().expect("a week").busiest_day as f64;
-    let Place::Call("set_capacity_tier", arguments) = &need.place else { panic!("{need:?}") };
+    let Place::Call(ToolId::SetCapacityTier, arguments) = &need.place else { panic!("{need:?}") };
     let tier = arguments["tier"].as_u64().expect("a tier");
     let tiers = session.terms().capacities;
     let units = |tier: u64| tiers[tier as usize].units;
@@ -207,7 +208,7 @@ fn outages_that_operations_would_make_rarer_are_reported_with_the_spend() {
     }
     let words = "operations of $0 a day leave 3.0% of days with one";
     let need = is_first(&session, Problem::Outages, &["outages took", words, "$350 a day leave 1.5%"]);
-    let Place::Call("set_daily_spend", arguments) = &need.place else { panic!("{need:?}") };
+    let Place::Call(ToolId::SetDailySpend, arguments) = &need.place else { panic!("{need:?}") };
     let dollars = arguments["operations"].as_f64().expect("dollars");
     let share = session.outage_share(dollars);
     assert!(
@@ -237,7 +238,7 @@ fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
         play(&mut session, 1);
     }
     let need = is_first(&session, Problem::Backlog, &["waiting for support", "the backlog within a week"]);
-    let Place::Call("set_daily_spend", arguments) = &need.place else { panic!("{need:?}") };
+    let Place::Call(ToolId::SetDailySpend, arguments) = &need.place else { panic!("{need:?}") };
     session.call("set_daily_spend", arguments, Via::Script).expect("it is set");
     assert!(
         needs(&session).iter().all(|need| need.problem != Problem::Backlog),
@@ -258,7 +259,7 @@ fn a_wave_of_cancellations_is_told_with_what_was_changed_before_it() {
         Problem::Churn(group("S1")),
         &["cancelled last week", "you changed price A: 11 → 45"],
     );
-    let Place::Call("set_prices", arguments) = &need.place else { panic!("{need:?}") };
+    let Place::Call(ToolId::SetPrices, arguments) = &need.place else { panic!("{need:?}") };
     assert_eq!(arguments, &json!({"A": 11, "B": 24, "C": 52}), "the form holds what held before");
 }
 
@@ -301,7 +302,7 @@ fn four_weeks_of_cash_come_before_everything_else() {
         Problem::Runway,
         &["cash lasts", "the largest budget is development for single groups"],
     );
-    let Place::Call("set_targeted_dev_spend", arguments) = &need.place else { panic!("{need:?}") };
+    let Place::Call(ToolId::SetTargetedDevSpend, arguments) = &need.place else { panic!("{need:?}") };
     let mut mended = session;
     mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");
     assert!(

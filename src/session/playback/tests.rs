@@ -130,7 +130,7 @@ fn single_actions_show_the_company_between_the_weeks() {
     let chapter = playback.place().chapter;
     assert_eq!((chapter.week, chapter.day, chapter.done, chapter.entries.len()), (1, 0, 1, 6));
     assert!(
-        matches!(&chapter.entries[2].record, Record::Call(Call { tool, outcome: Outcome::Refused(_), .. }) if tool == "set_prices")
+        matches!(&chapter.entries[2].record, Record::Call(Call { tool, outcome: Outcome::Refused(_), .. }) if *tool == crate::tools::ToolId::SetPrices)
     );
     go(&mut playback, Goal::Lines(-1));
     assert_eq!(price(&playback), Some(0.0));

@@ -11,7 +11,7 @@ use toml::Table;
 
 use crate::notation::json_number;
 use crate::session::{Calculated, Consent, Ended, Mode, Parent, Reversal, Via};
-use crate::tools::Forecast;
+use crate::tools::{Forecast, ToolId};
 
 /// What a line says.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,7 +92,7 @@ pub(crate) fn first_mechanics() -> u32 {
 #[serde(from = "CallFields", into = "CallFields")]
 pub struct Call {
     /// Tool.
-    pub tool: String,
+    pub tool: ToolId,
     /// Arguments: as they were understood if it was accepted, as they were sent if it was refused.
     pub args: Value,
     /// What came of it.
@@ -129,7 +129,7 @@ pub struct RefusalRecord {
 /// The fields of a call, in their order.
 #[derive(Serialize, Deserialize)]
 struct CallFields {
-    tool: String,
+    tool: ToolId,
     args: Value,
     ok: bool,
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]

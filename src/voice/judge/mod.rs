@@ -22,9 +22,9 @@ use serde::{Deserialize, Serialize};
 pub use circumstances::Circumstances;
 pub use lexicon::Lexicon;
 
-use crate::notation::{Word, word};
 use crate::world::identifiers::Group;
 use features::Features;
+use std::borrow::Cow;
 use text::{Reading, pair_overlap};
 
 /// A post of the company and what came before it.
@@ -66,8 +66,7 @@ pub struct Judgement {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Term {
     /// Name.
-    #[serde(deserialize_with = "word")]
-    pub name: Word,
+    pub name: Cow<'static, str>,
     /// Size with its sign.
     pub value: f64,
     /// Topics, claims or events behind it.

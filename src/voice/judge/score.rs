@@ -274,7 +274,7 @@ impl Eyes<'_> {
 }
 
 fn term(name: &'static str, value: f64, because: Vec<String>) -> Term {
-    Term { name, value, because }
+    Term { name: name.into(), value, because }
 }
 
 /// A term whose good side a dishonest or ugly post loses.

@@ -1,5 +1,6 @@
 //! Comments on the player's posts: a sentence or two in the tone of a group, for the reason the judge found.
 
+use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use super::words::Register;
@@ -39,17 +40,17 @@ fn context(group: Group, effect: f64, judgement: Option<&Judgement>) -> Context 
 }
 
 /// The leading term that pulls the way of the reaction, and what the post was about.
-fn reason(effect: f64, judgement: Option<&Judgement>) -> (&'static str, String) {
+fn reason(effect: f64, judgement: Option<&Judgement>) -> (Cow<'static, str>, String) {
     let leading = judgement.map(Judgement::leading).unwrap_or_default();
     let of_kind = |name: &str| leading.iter().find(|term| term.name == name);
     let topic = of_kind("topics").and_then(|term| term.because.first()).cloned();
     let pulls = leading.iter().find(|term| term.value * effect > 0.0 && term.name != "receptive");
-    let Some(term) = pulls else { return ("topics", topic.unwrap_or_default()) };
-    let subject = match term.name {
+    let Some(term) = pulls else { return ("topics".into(), topic.unwrap_or_default()) };
+    let subject = match term.name.as_ref() {
         "claims_true" | "claims_false" => term.because.first().cloned(),
         _ => topic,
     };
-    (term.name, subject.unwrap_or_default())
+    (term.name.clone(), subject.unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -79,7 +80,8 @@ mod tests {
             for name in names {
                 assert!(GRAMMAR.has(&format!("opinion.{side}_{name}")), "{side} {name}");
                 for group in Group::all() {
-                    let term = Term { name, value: 0.4 * sign, because: vec!["api".to_owned()] };
+                    let term =
+                        Term { name: (*name).into(), value: 0.4 * sign, because: vec!["api".to_owned()] };
                     let judgement = Judgement { group, effect: 0.7 * sign, terms: vec![term] };
                     let context = context(group, 0.7 * sign, Some(&judgement));
                     let phrasings = GRAMMAR.phrasings("comment", &context);
@@ -101,15 +103,19 @@ mod tests {
     #[test]
     fn a_comment_names_what_the_post_was_about() {
         let group = Group::parse("S3").expect("a group");
-        let term = |name, value, because: &str| Term { name, value, because: vec![because.to_owned()] };
+        let term = |name: &'static str, value, because: &str| Term {
+            name: name.into(),
+            value,
+            because: vec![because.to_owned()],
+        };
         let judgement = Judgement {
             group,
             effect: -0.7,
             terms: vec![term("topics", 0.1, "limits"), term("claims_false", -0.55, "speed")],
         };
-        assert_eq!(reason(-0.7, Some(&judgement)), ("claims_false", "speed".to_owned()));
-        assert_eq!(reason(0.7, Some(&judgement)), ("topics", "limits".to_owned()));
-        assert_eq!(reason(0.7, None), ("topics", String::new()));
+        assert_eq!(reason(-0.7, Some(&judgement)), ("claims_false".into(), "speed".to_owned()));
+        assert_eq!(reason(0.7, Some(&judgement)), ("topics".into(), "limits".to_owned()));
+        assert_eq!(reason(0.7, None), ("topics".into(), String::new()));
         let text = about_own_post(group, 0.7, Some(&judgement), &mut |_| 0);
         assert!(text.contains("quotas"), "{text}");
     }

@@ -20,7 +20,7 @@ use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::console::widgets::{Editor, Field};
 use crate::notation::{dollars, grouped, percent};
 use crate::session::Forecasts;
-use crate::tools::Forecast;
+use crate::tools::{Forecast, ToolId};
 
 /// Steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +47,7 @@ pub struct Filing {
     filled: [[bool; 3]; 4],
     problem: Option<String>,
     /// Tools whose forms hold values that were not sent.
-    unsent: Vec<&'static str>,
+    unsent: Vec<ToolId>,
 }
 
 /// Weeks of the horizons, in words.
@@ -73,7 +73,7 @@ impl Default for Filing {
 
 impl Filing {
     /// Goes back to the first step; drafts stay. Warns of forms whose values were not sent.
-    pub fn reopen(&mut self, unsent: Vec<&'static str>) {
+    pub fn reopen(&mut self, unsent: Vec<ToolId>) {
         self.unsent = unsent;
         self.step = Step::Review;
         self.review = Review::default();

@@ -11,6 +11,7 @@ use crate::console::company::Company;
 use crate::console::text::{number, wrapped};
 use crate::console::theme::Role;
 use crate::report::review::money_lines;
+use crate::tools::ToolId;
 
 /// How far the review is scrolled.
 #[derive(Default)]
@@ -36,7 +37,7 @@ impl Review {
     }
 
     /// Draws what fits.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &[&str]) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &[ToolId]) {
         let lines = lines(canvas, area.width as usize, company, unsent);
         let room = area.height as usize;
         let fits = lines.len() <= room;
@@ -59,7 +60,7 @@ impl Review {
     }
 }
 
-fn lines(canvas: &Canvas<'_>, width: usize, company: &Company, unsent: &[&str]) -> Vec<TextLine<'static>> {
+fn lines(canvas: &Canvas<'_>, width: usize, company: &Company, unsent: &[ToolId]) -> Vec<TextLine<'static>> {
     let seen = &company.seen;
     let mut lines: Vec<TextLine<'static>> = Vec::new();
     let head = |text: &str, canvas: &Canvas<'_>| TextLine::from(canvas.span(text.to_owned(), Role::Header));
@@ -71,10 +72,10 @@ fn lines(canvas: &Canvas<'_>, width: usize, company: &Company, unsent: &[&str]) 
     lines.push(head("Changes since the last week", canvas));
     for change in &seen.changes {
         lines.push(TextLine::from(vec![
-            canvas.span(format!("  {:<32} ", change.setting), Role::Text),
+            canvas.span(format!("  {:<32} ", change.setting.to_string()), Role::Text),
             canvas.span(format!("{:>12} → ", number(change.old)), Role::Dim),
             canvas.span(format!("{:<12} ", number(change.new)), Role::Changed),
-            canvas.span(change.unit.to_owned(), Role::Dim),
+            canvas.span(change.setting.unit().unwrap_or_default().to_owned(), Role::Dim),
         ]));
     }
     lines.extend(

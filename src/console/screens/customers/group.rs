@@ -19,6 +19,7 @@ use crate::console::widgets::chart::{note_room, summary, zero_if_near};
 use crate::console::widgets::table::first_row;
 use crate::console::widgets::{Axis, Line, Plot, Side, Unit};
 use crate::notation::{compact, grouped, percent};
+use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
 /// Panes of an open group.
@@ -31,13 +32,13 @@ const REPORT: usize = 4;
 pub const PANES: usize = 5;
 
 /// Tools of a group, and what they do for it.
-pub const TOOLS: [(&str, &str); 6] = [
-    ("set_targeted_ad_spend", "ads"),
-    ("set_targeted_dev_spend", "development"),
-    ("set_targeted_ops_spend", "support"),
-    ("set_promotion", "discounts"),
-    ("set_lead_promotion", "for leads"),
-    ("set_ads_strength", "ads shown"),
+pub const TOOLS: [(ToolId, &str); 6] = [
+    (ToolId::SetTargetedAdSpend, "ads"),
+    (ToolId::SetTargetedDevSpend, "development"),
+    (ToolId::SetTargetedOpsSpend, "support"),
+    (ToolId::SetPromotion, "discounts"),
+    (ToolId::SetLeadPromotion, "for leads"),
+    (ToolId::SetAdsStrength, "ads shown"),
 ];
 
 /// Ways that are no tools: the insight report, and the customers themselves.
@@ -53,7 +54,7 @@ const FLOWS: [(&str, &str); 3] =
 /// What a choice leads to.
 pub fn choose(choice: usize, group: Group) -> Effect {
     match TOOLS.get(choice) {
-        Some((tool, _)) => Effect::ShowCell(tool, group.to_string()),
+        Some((tool, _)) => Effect::ShowCell(*tool, group.to_string()),
         None if choice == TOOLS.len() => Effect::ShowGroup(ScreenId::Market, group),
         None => Effect::EditSql(format!(
             "-- customers of {group}\nSELECT s.plan, s.status, count(*) AS customers, \
@@ -363,7 +364,8 @@ fn draw_choices(canvas: &mut Canvas<'_>, area: Rect, choice: usize, focused: boo
             _ => Role::Text,
         };
         canvas.clear(row, role);
-        let (name, purpose) = TOOLS.iter().chain(&OTHERS).nth(at).copied().unwrap_or_default();
+        let tools = TOOLS.iter().map(|(tool, purpose)| (tool.name(), *purpose));
+        let (name, purpose) = tools.chain(OTHERS).nth(at).unwrap_or_default();
         canvas.text(row, name, role);
         let purpose_role = if at == choice { role } else { Role::Dim };
         let place = Rect { x: row.x + 23, width: row.width.saturating_sub(23), ..row };

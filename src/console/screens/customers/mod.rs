@@ -25,6 +25,7 @@ use crate::console::readings::Reading;
 use crate::console::text::count;
 use crate::console::widgets::Table;
 use crate::session::Rows;
+use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
 /// Panes.
@@ -175,7 +176,7 @@ impl Screen for Customers {
                 self.open = self.table.selected();
                 self.opened = Opened::default();
             }
-            (CHANNELS, Action::Open) => return vec![Effect::ShowTool("set_targeted_ad_spend")],
+            (CHANNELS, Action::Open) => return vec![Effect::ShowTool(ToolId::SetTargetedAdSpend)],
             (CHANNELS, action) => {
                 self.place.act(action, look.company.seen.known_groups.len());
             }

@@ -8,6 +8,7 @@ use crate::console::company::Company;
 use crate::console::readings::Reading;
 use crate::session::Rows;
 use crate::session::{number_at, text_at};
+use crate::tools::ToolId;
 use crate::world::identifiers::{Channel, Group, Plan};
 
 /// Weeks that the curves show.
@@ -231,7 +232,7 @@ impl Market {
 
 /// Dollars a day for ads in a group through a channel, as set now.
 pub fn ad_budget(company: &Company, channel: Channel, group: Group) -> f64 {
-    let spend = company.settings.get("set_targeted_ad_spend").and_then(|all| all.get("targeted_spend"));
+    let spend = company.settings.get(&ToolId::SetTargetedAdSpend).and_then(|all| all.get("targeted_spend"));
     let own = spend.and_then(|all| all.get(channel.id())).and_then(|groups| groups.get(group.id()));
     own.and_then(Value::as_f64).unwrap_or(0.0)
 }
@@ -243,6 +244,6 @@ pub fn ad_budgets(company: &Company, group: Group) -> f64 {
 
 /// Dollars a day of development for a group.
 pub fn development_budget(company: &Company, group: Group) -> f64 {
-    let spend = company.settings.get("set_targeted_dev_spend").and_then(|all| all.get("targeted_spend"));
+    let spend = company.settings.get(&ToolId::SetTargetedDevSpend).and_then(|all| all.get("targeted_spend"));
     spend.and_then(|all| all.get(group.id())).and_then(Value::as_f64).unwrap_or(0.0)
 }

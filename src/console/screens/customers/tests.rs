@@ -2,6 +2,7 @@ use super::model::*;
 use super::*;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
 use crate::session::{Cell as Value, Session};
+use crate::tools::ToolId;
 use crate::world::identifiers::Channel;
 
 fn group(id: &str) -> Group {
@@ -75,7 +76,7 @@ fn a_group_opens_and_leads_to_its_tools() {
     act(&mut screen, Action::Down, &company);
     let effects = act(&mut screen, Action::Open, &company);
     assert!(
-        matches!(&effects[..], [Effect::ShowCell("set_targeted_dev_spend", of)] if of == "S2"),
+        matches!(&effects[..], [Effect::ShowCell(ToolId::SetTargetedDevSpend, of)] if of == "S2"),
         "{effects:?}"
     );
     act(&mut screen, Action::Last, &company);
@@ -93,9 +94,6 @@ fn a_group_opens_and_leads_to_its_tools() {
     screen.show(group("E1"), &company);
     assert_eq!(screen.open.map(|open| company.seen.known_groups[open].id()), Some("E1"));
     screen.show(group("S2"), &company);
-    for tool in group::TOOLS {
-        assert!(crate::tools::CATALOGUE.iter().any(|own| own.spec().name() == tool.0), "{}", tool.0);
-    }
     for _ in 0..40 {
         act(&mut screen, Action::Right, &company);
     }

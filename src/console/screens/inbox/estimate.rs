@@ -8,6 +8,7 @@ use super::model::Thread;
 use crate::console::company::Company;
 use crate::session::Rows;
 use crate::session::{number_at, text_at};
+use crate::tools::ToolId;
 use crate::world::identifiers::{Group, Plan};
 
 /// Days of a month of compute, as the screen of the product counts them.
@@ -66,7 +67,7 @@ impl Money {
     /// Of a plan at a price a seat.
     pub fn of(usage: &Usage, company: &Company, thread: &Thread, (plan, price): (Plan, f64)) -> Money {
         let wanted = usage.wanted(company, thread);
-        let quota = company.setting("set_usage_quotas", plan.id());
+        let quota = company.setting(ToolId::SetUsageQuotas, plan.id());
         let compute =
             wanted.zip(unit_cost(company, plan)).map(|(units, cost)| units.min(quota) * MONTH * cost);
         let covered = wanted.filter(|wanted| *wanted > quota).map(|wanted| (quota, wanted));
@@ -81,7 +82,7 @@ impl Money {
 
 /// Dollars a unit with the model of a plan.
 fn unit_cost(company: &Company, plan: Plan) -> Option<f64> {
-    let tier = company.setting("set_model_tiers", plan.id()) as u32;
+    let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u32;
     company.costs.get("model_tiers")?.get(tier.to_string())?.get("cost_per_usage_unit")?.as_f64()
 }
 
@@ -95,7 +96,10 @@ mod tests {
     fn compute_is_what_the_group_uses_at_the_cost_of_the_model() {
         let set_quota = |company: &mut Company, units: f64| {
             let quotas = serde_json::json!({"A": 1.0, "B": units, "C": 1.0});
-            company.settings.insert("set_usage_quotas", quotas.as_object().cloned().expect("an object"));
+            company.settings.insert(
+                crate::tools::ToolId::SetUsageQuotas,
+                quotas.as_object().cloned().expect("an object"),
+            );
         };
         let mut company = company();
         let thread = Thread { group: "E1".to_owned(), seats: 100.0, ..Thread::default() };

@@ -28,6 +28,7 @@ use crate::console::readings::Reading;
 use crate::console::widgets::Table;
 use crate::console::widgets::field::{Field, ONLY_NUMBERS, parse_number};
 use crate::session::Rows;
+use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
 /// Panes.
@@ -265,7 +266,7 @@ impl Inbox {
 
 /// List prices of the plans, dollars a month and seat.
 fn list_prices(company: &Company) -> [f64; 3] {
-    ["A", "B", "C"].map(|plan| company.setting("set_prices", plan))
+    ["A", "B", "C"].map(|plan| company.setting(ToolId::SetPrices, plan))
 }
 
 impl Screen for Inbox {
@@ -349,7 +350,7 @@ impl Screen for Inbox {
     fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
         match news {
             News::Called(tool, Ok(answer), _) => {
-                let effects = self.sent(tool, answer);
+                let effects = self.sent(*tool, answer);
                 self.refresh(look.company);
                 effects
             }

@@ -10,11 +10,12 @@ use crate::console::effect::Effect;
 use crate::console::screens::Figure;
 use crate::console::text::count;
 use crate::notation::dollars;
+use crate::tools::ToolId;
 use crate::world::identifiers::Plan;
 
 /// Tools of this screen.
-const SEND: &str = "send_enterprise_deal";
-const REJECT: &str = "reject_enterprise_deal";
+const SEND: ToolId = ToolId::SendEnterpriseDeal;
+const REJECT: ToolId = ToolId::RejectEnterpriseDeal;
 
 /// A thread and what it would be sent, or why nothing.
 pub(super) type Planned<'a> = (&'a Thread, Result<Vec<(Plan, f64)>, String>);
@@ -135,7 +136,7 @@ impl Inbox {
     }
 
     /// Forgets drafts and marks of what was sent or ended.
-    pub(super) fn sent(&mut self, tool: &str, answer: &Value) -> Vec<Effect> {
+    pub(super) fn sent(&mut self, tool: ToolId, answer: &Value) -> Vec<Effect> {
         if tool != SEND && tool != REJECT {
             return Vec::new();
         }

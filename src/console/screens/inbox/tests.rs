@@ -5,6 +5,7 @@ use super::*;
 use crate::console::keys::{Chord, Keys};
 use crate::console::test_kit::{act, company, courted, drawn, shown, sweep};
 use crate::session::{Cell as Datum, Via, WaitingThread};
+use crate::tools::ToolId;
 use crate::world::identifiers::Plan;
 
 /// A company with 200 waiting threads: every third is a subscriber with a price of its own.
@@ -12,7 +13,7 @@ fn crowded() -> (Company, Rows, Rows) {
     let mut company = company();
     company.seen.day = 70;
     company.settings.insert(
-        "set_prices",
+        ToolId::SetPrices,
         json!({"A": 14.0, "B": 32.0, "C": 55.0}).as_object().cloned().expect("an object"),
     );
     let (mut turns, mut firms) = (Vec::new(), Vec::new());
@@ -115,7 +116,7 @@ fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
     let look = Look { company, keys: &keys, page: 20 };
     screen.renew(&look);
     let news = News::Called(
-        "send_enterprise_deal",
+        ToolId::SendEnterpriseDeal,
         Ok(json!({ "results": results })),
         std::sync::Arc::new(company.clone()),
     );
@@ -184,7 +185,7 @@ fn rejecting_names_what_is_lost() {
     let (mut screen, company) = crowded_screen();
     press(&mut screen, &company, "a");
     let (effects, _) = press(&mut screen, &company, "x");
-    let [Effect::ConfirmCall { tool: "reject_enterprise_deal", text, .. }] = &effects[..] else {
+    let [Effect::ConfirmCall { tool: ToolId::RejectEnterpriseDeal, text, .. }] = &effects[..] else {
         panic!("{effects:?}")
     };
     assert!(text.contains("134 new leads") && text.contains("lost for good"), "{text}");

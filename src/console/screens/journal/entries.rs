@@ -9,7 +9,7 @@ use crate::console::text::{number, short_dollars};
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, signed_dollars};
 use crate::session::{JournalEntry, Reversal, ScoredForecast, WeekFigures, naively, undone_calls};
-use crate::tools::{Forecast, Kind, Spec, find};
+use crate::tools::{Forecast, Kind, Spec};
 
 /// A line.
 #[derive(Debug, Clone, PartialEq)]
@@ -204,10 +204,10 @@ impl Filing<'_> {
 /// A call as a line; a call that was taken back is shown as such, and so is the call that did it.
 fn of_call(entry: &JournalEntry, settings: &mut Settings, undone: &BTreeSet<u64>) -> Option<Line> {
     let JournalEntry::Call { seq, day, tool, args, reversal } = entry else { return None };
-    let spec = find(tool).map(|tool| tool.spec());
-    let words = match spec.filter(|spec| spec.kind == Kind::Setting) {
-        Some(spec) => settings.change(spec, args),
-        None => in_words(args),
+    let spec = tool.spec();
+    let words = match spec.kind {
+        Kind::Setting => settings.change(spec, args),
+        _ => in_words(args),
     };
     let is_undone = undone.contains(seq);
     let (sign, remark) = match reversal {
@@ -224,8 +224,8 @@ fn of_call(entry: &JournalEntry, settings: &mut Settings, undone: &BTreeSet<u64>
         role: if gone { Role::Dim } else { Role::Text },
         title: format!("{tool} · day {day}"),
         whole: format!("{tool}\n\n{pretty}{remark}"),
-        term: spec.map_or("decision-day", |spec| spec.name()),
-        sql: spec.and_then(|spec| kept_in(spec, *day)),
+        term: spec.name(),
+        sql: kept_in(spec, *day),
     })
 }
 
@@ -342,7 +342,9 @@ mod tests {
     #[test]
     fn a_later_call_says_what_was_before() {
         let mut settings = Settings::default();
-        let mut said = |tool: &str, args: Value| settings.change(find(tool).expect("a tool").spec(), &args);
+        let mut said = |tool: &str, args: Value| {
+            settings.change(crate::tools::find(tool).expect("a tool").spec(), &args)
+        };
         assert_eq!(said("set_prices", json!({"A": 12})), "A 12");
         assert_eq!(said("set_prices", json!({"A": 14, "B": 25})), "A 12 → 14 · B 25");
         assert_eq!(said("set_prices", json!({"A": 14})), "as before");

@@ -27,6 +27,7 @@ use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Field, Table};
 use crate::notation::{compact, dollars, grouped, percent};
 use crate::session::{Preview, Rows};
+use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
 /// Panes.
@@ -35,8 +36,8 @@ const REPORT: usize = 1;
 const ATTEMPTS: usize = 2;
 const NEWS: usize = 3;
 const ECONOMY: usize = 4;
-const FIND: &str = "research_market";
-const STUDY: &str = "research_group";
+const FIND: ToolId = ToolId::ResearchMarket;
+const STUDY: ToolId = ToolId::ResearchGroup;
 
 /// The screen.
 #[derive(Default)]
@@ -58,7 +59,7 @@ pub struct Market {
     /// First line of the report that is shown.
     from: usize,
     /// Call that is being looked at before the question.
-    asking: Option<(&'static str, Value)>,
+    asking: Option<(ToolId, Value)>,
 }
 
 fn columns() -> Vec<Column> {
@@ -185,7 +186,7 @@ impl Market {
         }
     }
 
-    fn check(&mut self, tool: &'static str, arguments: Value) -> Vec<Effect> {
+    fn check(&mut self, tool: ToolId, arguments: Value) -> Vec<Effect> {
         self.asking = Some((tool, arguments.clone()));
         vec![Effect::Check { tool, arguments }]
     }
@@ -201,7 +202,7 @@ impl Market {
     }
 
     /// The question before a call that costs money.
-    fn ask(&self, tool: &'static str, arguments: Value, preview: &Preview, company: &Company) -> Effect {
+    fn ask(&self, tool: ToolId, arguments: Value, preview: &Preview, company: &Company) -> Effect {
         let rest = company.seen.cash - preview.cost_now;
         let what = match tool {
             FIND => format!(

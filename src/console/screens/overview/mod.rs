@@ -27,6 +27,7 @@ use crate::console::widgets::{Axis, Cell, Column, Line, Side, Table, Unit, chart
 use crate::notation::dollars;
 use crate::report::needs::Need;
 use crate::session::Rows;
+use crate::tools::ToolId;
 use crate::world::identifiers::Plan;
 
 /// Panes.
@@ -101,7 +102,7 @@ fn walk(selected: &mut usize, rows: usize, action: Action) {
 
 /// Delivered quality by group and plan.
 fn quality_rows(company: &Company) -> (Vec<Column>, Vec<Vec<Cell>>) {
-    let tier = |plan: &Plan| number(company.setting("set_model_tiers", plan.id()));
+    let tier = |plan: &Plan| number(company.setting(ToolId::SetModelTiers, plan.id()));
     let plans = Plan::ALL.iter().map(|plan| Column::numbers(format!("{plan} tier {}", tier(plan))));
     let columns = [Column::words("group")].into_iter().chain(plans).chain([Column::numbers("group's own")]);
     let row = |quality: &crate::session::DeliveredQuality| {

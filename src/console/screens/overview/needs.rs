@@ -18,7 +18,7 @@ pub fn screen_of(need: &Need) -> ScreenId {
 /// What leads there: to the very form, thread or group.
 pub fn way_of(need: &Need) -> Effect {
     match &need.place {
-        Place::Call(tool, arguments) => Effect::Prefill { tool, arguments: arguments.clone() },
+        Place::Call(tool, arguments) => Effect::Prefill { tool: *tool, arguments: arguments.clone() },
         Place::Thread(number) => Effect::ShowThread(*number),
         Place::Group(group) => Effect::ShowGroup(ScreenId::Customers, *group),
         Place::Books => Effect::Show(ScreenId::Cash),

@@ -11,10 +11,11 @@ use crate::console::widgets::chart::NO_DATA;
 use crate::console::widgets::table::first_row;
 use crate::console::widgets::{Axis, Line, Side, Unit, chart, spark};
 use crate::notation::{compact, dollars, grouped, percent};
+use crate::tools::ToolId;
 
 /// The tier that served last, and the tier that is set.
 pub fn tiers(company: &Company, days: &[Day]) -> (Option<u32>, u32) {
-    (days.last().map(|day| day.tier), company.setting("set_capacity_tier", "tier") as u32)
+    (days.last().map(|day| day.tier), company.setting(ToolId::SetCapacityTier, "tier") as u32)
 }
 
 /// One line on capacity.

@@ -25,6 +25,7 @@ use crate::console::text::count;
 use crate::console::theme::Role;
 use crate::notation::percent;
 use crate::session::{Category, Rows};
+use crate::tools::ToolId;
 use crate::world::identifiers::Plan;
 
 /// Panes, with their titles.
@@ -81,29 +82,29 @@ impl Product {
     /// Leads to the very object that is selected: its cell, or the form with it proposed.
     fn open(&self, company: &Company) -> Vec<Effect> {
         let place = self.places[self.focus.0];
-        let cell = |tool: &'static str, of: Option<String>| match of {
+        let cell = |tool: ToolId, of: Option<String>| match of {
             Some(of) => Effect::ShowCell(tool, of),
             None => Effect::ShowTool(tool),
         };
-        let tier = |tool: &'static str, tier: Option<u32>| match tier {
+        let tier = |tool: ToolId, tier: Option<u32>| match tier {
             Some(tier) => Effect::Prefill { tool, arguments: json!({ "tier": tier }) },
             None => Effect::ShowTool(tool),
         };
         vec![match self.focus.0 {
             QUALITY => {
                 let group = company.quality.get(place).map(|quality| quality.group.to_string());
-                cell("set_targeted_dev_spend", group)
+                cell(ToolId::SetTargetedDevSpend, group)
             }
             PLANS => cell(plans::tool_of(place), Some(Plan::ALL[self.column.min(2)].to_string())),
-            CAPACITY => tier("set_capacity_tier", self.rungs.get(place).map(|rung| rung.tier)),
+            CAPACITY => tier(ToolId::SetCapacityTier, self.rungs.get(place).map(|rung| rung.tier)),
             SERVICE => Effect::EditSql("SELECT * FROM service_day ORDER BY day DESC".to_owned()),
             ISSUES => {
                 let group = self.issues.as_ref().and_then(|issues| issues.keys().nth(place));
-                cell("set_targeted_ops_spend", group.map(ToString::to_string))
+                cell(ToolId::SetTargetedOpsSpend, group.map(ToString::to_string))
             }
             _ => {
                 let offer = place.checked_sub(self.projects.len()).and_then(|at| self.offers.get(at));
-                tier("start_research_project", offer.map(|offer| offer.tier))
+                tier(ToolId::StartResearchProject, offer.map(|offer| offer.tier))
             }
         }]
     }
@@ -111,7 +112,7 @@ impl Product {
     fn opens(&self) -> &'static str {
         match self.focus.0 {
             QUALITY => "set_targeted_dev_spend",
-            PLANS => plans::tool_of(self.places[PLANS]),
+            PLANS => plans::tool_of(self.places[PLANS]).name(),
             CAPACITY => "set_capacity_tier",
             SERVICE => "service_day",
             ISSUES => "set_targeted_ops_spend",

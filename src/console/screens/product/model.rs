@@ -7,6 +7,7 @@ use serde_json::Value;
 use crate::console::company::Company;
 use crate::session::{Category, Rows, WeekFigures};
 use crate::session::{number_at, text_at};
+use crate::tools::ToolId;
 use crate::world::identifiers::Plan;
 
 /// A plan and what it earns.
@@ -85,12 +86,12 @@ impl Sales {
     pub fn plans(&self, company: &Company) -> [PlanFacts; 3] {
         std::array::from_fn(|at| {
             let plan = Plan::ALL[at].id();
-            let tier = company.setting("set_model_tiers", plan) as u32;
+            let tier = company.setting(ToolId::SetModelTiers, plan) as u32;
             let ((customers, seats, monthly), (users, units)) = (self.held[at], self.used[at]);
             PlanFacts {
                 tier,
-                quota: company.setting("set_usage_quotas", plan),
-                price: company.setting("set_prices", plan),
+                quota: company.setting(ToolId::SetUsageQuotas, plan),
+                price: company.setting(ToolId::SetPrices, plan),
                 unit_cost: cost(company, "model_tiers", tier, "cost_per_usage_unit"),
                 customers,
                 seats,

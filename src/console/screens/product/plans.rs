@@ -10,6 +10,7 @@ use crate::console::text::number;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{cents, compact, grouped, percent};
+use crate::tools::ToolId;
 use crate::world::identifiers::Plan;
 
 /// Draws the components of quality, one group in a row.
@@ -22,7 +23,7 @@ pub fn draw_quality(
     pane: usize,
 ) {
     let (base, shared) = company.quality_base;
-    let tier = |plan: &str| format!("{plan} T{}", number(company.setting("set_model_tiers", plan)));
+    let tier = |plan: &str| format!("{plan} T{}", number(company.setting(ToolId::SetModelTiers, plan)));
     let wide = area.width >= 62;
     let parts = if wide { format!(" {:>7} {:>8}", "base", "general") } else { String::new() };
     let head = format!("group {parts} {:>8} {:>9} {:>8} {:>8}", "own +", tier("A"), tier("B"), tier("C"));
@@ -117,10 +118,10 @@ pub fn draw_plans(
 }
 
 /// The tool that sets what a row shows.
-pub fn tool_of(row: usize) -> &'static str {
+pub fn tool_of(row: usize) -> ToolId {
     match row {
-        0 | 3 | 9 => "set_model_tiers",
-        2 | 6 | 8 => "set_usage_quotas",
-        _ => "set_prices",
+        0 | 3 | 9 => ToolId::SetModelTiers,
+        2 | 6 | 8 => ToolId::SetUsageQuotas,
+        _ => ToolId::SetPrices,
     }
 }

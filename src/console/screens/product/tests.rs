@@ -1,6 +1,7 @@
 use super::model::*;
 use super::*;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
+use crate::tools::ToolId;
 
 #[test]
 fn plans_earn_what_is_paid_less_what_is_used() {
@@ -46,7 +47,7 @@ fn a_rung_of_the_ladder_leads_to_the_form_with_that_tier() {
     screen.set_focus(CAPACITY);
     screen.places[CAPACITY] = 5;
     let effects = act(&mut screen, Action::Open, &company);
-    let [Effect::Prefill { tool: "set_capacity_tier", arguments }] = &effects[..] else {
+    let [Effect::Prefill { tool: ToolId::SetCapacityTier, arguments }] = &effects[..] else {
         panic!("{effects:?}")
     };
     assert_eq!(arguments, &json!({"tier": 5}));
@@ -64,9 +65,7 @@ fn every_pane_leads_somewhere() {
         screen.set_focus(pane);
         for _ in 0..12 {
             match act(&mut screen, Action::Open, &company).pop() {
-                Some(Effect::ShowTool(tool)) => {
-                    assert!(crate::tools::CATALOGUE.iter().any(|own| own.spec().name() == tool), "{tool}");
-                }
+                Some(Effect::ShowTool(_)) => {}
                 Some(Effect::ShowCell(tool, of)) => {
                     let mut tools = crate::console::screens::tools::Tools::default();
                     tools.show_cell(tool, &of, &company);

@@ -24,12 +24,13 @@ use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Editor, Field, Table};
 use crate::notation::grouped;
 use crate::session::Rows;
+use crate::tools::ToolId;
 
 /// Panes.
 const FEED: usize = 0;
 const DESK: usize = 1;
 const OWN: usize = 2;
-const POST: &str = "post_social_media";
+const POST: ToolId = ToolId::PostSocialMedia;
 
 /// The screen.
 #[derive(Default)]
@@ -295,7 +296,7 @@ impl Screen for Social {
         let post = match self.focus {
             FEED => self.post()?,
             OWN => self.own_post()?,
-            _ => return Some(Figure { title: "a post of ours".to_owned(), term: POST, sql: None }),
+            _ => return Some(Figure { title: "a post of ours".to_owned(), term: POST.name(), sql: None }),
         };
         let number = post.number;
         let own = "SELECT agent_post_id, day, views, comment_post_ids, content FROM agent_social_media_posts";

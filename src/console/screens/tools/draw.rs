@@ -13,7 +13,7 @@ use crate::console::canvas::{Align, Canvas, Click, fit, rows_of};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
-use crate::tools::{Module, Numbers, Spec, When, describe};
+use crate::tools::{Module, Numbers, Spec, ToolId, When, describe};
 
 pub(super) fn draw(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     let narrow = area.width < 100;
@@ -33,7 +33,7 @@ pub(super) fn draw(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Lo
         canvas.pane(right, "Form", "", tools.focus == 1);
         return;
     };
-    match tools.forms.get(spec.name()) {
+    match tools.forms.get(&spec.id) {
         Some(form) if right.width > 0 => draw_form(form, &tools.leads, canvas, right, look, tools.focus == 1),
         Some(_) => {}
         None => {
@@ -87,7 +87,7 @@ fn draw_list(tools: &Tools, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
             false => Role::Text,
         };
         let draft =
-            tools.forms.get(text).is_some_and(|form| form.sheet.is_changed() && form.spec.kind.acts());
+            tools.forms.get(&spec.id).is_some_and(|form| form.sheet.is_changed() && form.spec.kind.acts());
         canvas.clear(row, if here { role } else { Role::Text });
         let names = row.width.saturating_sub(9) as usize;
         let mark = if draft { '*' } else { ' ' };
@@ -173,9 +173,9 @@ fn draw_manual(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>
 }
 
 fn keys(form: &Form, look: &Look<'_>) -> String {
-    match form.spec.name() {
-        "next_week" => return "n opens the next-week dialog".to_owned(),
-        "query" => return "enter opens the SQL screen".to_owned(),
+    match form.spec.id {
+        ToolId::NextWeek => return "n opens the next-week dialog".to_owned(),
+        ToolId::Query => return "enter opens the SQL screen".to_owned(),
         _ => {}
     }
     match form.sheet.blocks.is_empty() {

@@ -5,14 +5,15 @@ use serde_json::Value;
 use crate::console::company::Company;
 use crate::console::screens::journal::entries::in_words;
 use crate::session::JournalEntry;
+use crate::tools::ToolId;
 
 /// Calls that are told below a form.
 pub const MOST: usize = 10;
 
 /// Calls of a tool, the newest first: decision day and arguments. Calls that repeat the one before are left out.
-pub fn calls(tool: &str, company: &Company, most: usize) -> Vec<(u32, String)> {
+pub fn calls(tool: ToolId, company: &Company, most: usize) -> Vec<(u32, String)> {
     let calls = company.journal.iter().rev().filter_map(|entry| match entry {
-        JournalEntry::Call { day, tool: own, args, .. } if own == tool => Some((*day, args)),
+        JournalEntry::Call { day, tool: own, args, .. } if *own == tool => Some((*day, args)),
         _ => None,
     });
     let mut told: Vec<(u32, &Value)> = Vec::new();
@@ -41,10 +42,10 @@ mod tests {
         }
         let company = Company::of(&session);
         assert_eq!(
-            calls("set_prices", &company, 9),
+            calls(ToolId::SetPrices, &company, 9),
             [(7, "A 14".to_owned()), (0, "A 12 B 25 C 55".to_owned())]
         );
-        assert_eq!(calls("set_prices", &company, 1).len(), 1);
-        assert_eq!(calls("set_promotion", &company, 9), []);
+        assert_eq!(calls(ToolId::SetPrices, &company, 1).len(), 1);
+        assert_eq!(calls(ToolId::SetPromotion, &company, 9), []);
     }
 }

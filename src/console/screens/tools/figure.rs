@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use super::super::Figure;
 use super::Tools;
 use super::form::Form;
-use crate::tools::{ArgumentKind, CATALOGUE, Key, Spec};
+use crate::tools::{ArgumentKind, CATALOGUE, Key, Spec, ToolId};
 
 /// Names of all arguments with their tools: `set_prices.A`.
 static ARGUMENTS: LazyLock<Vec<String>> = LazyLock::new(|| {
@@ -14,11 +14,11 @@ static ARGUMENTS: LazyLock<Vec<String>> = LazyLock::new(|| {
     CATALOGUE.iter().flat_map(|tool| of(tool.spec())).collect()
 });
 
-fn term_of(tool: &str, argument: &str) -> Option<&'static str> {
+fn term_of(tool: ToolId, argument: &str) -> Option<&'static str> {
     ARGUMENTS
         .iter()
         .map(String::as_str)
-        .find(|name| name.split_once('.').is_some_and(|(own, rest)| own == tool && rest == argument))
+        .find(|name| name.split_once('.').is_some_and(|(own, rest)| own == tool.name() && rest == argument))
 }
 
 /// The figure that is selected.
@@ -34,7 +34,7 @@ pub(super) fn of(tools: &Tools) -> Option<Figure> {
 fn of_cell(form: &Form) -> Option<Figure> {
     let block = form.sheet.blocks.get(form.at.block)?;
     form.sheet.slot(form.at)?;
-    let tool = form.spec.name();
+    let tool = form.spec.id;
     Some(Figure {
         title: format!("{tool} {}", block.path(form.at.row, form.at.column).replace('.', " ")),
         term: term_of(tool, block.argument.name)?,
@@ -46,12 +46,12 @@ fn of_cell(form: &Form) -> Option<Figure> {
 fn history(form: &Form) -> Option<String> {
     let block = form.sheet.blocks.get(form.at.block)?;
     let name = block.argument.name;
-    let column = match form.spec.name() {
-        "set_prices" => format!("price_{name}"),
-        "set_model_tiers" => format!("tier_{name}"),
-        "set_usage_quotas" => format!("quota_{name}"),
-        "set_daily_spend" if matches!(name, "operations" | "development") => format!("spend_{name}"),
-        "set_capacity_tier" => "capacity_tier".to_owned(),
+    let column = match form.spec.id {
+        ToolId::SetPrices => format!("price_{name}"),
+        ToolId::SetModelTiers => format!("tier_{name}"),
+        ToolId::SetUsageQuotas => format!("quota_{name}"),
+        ToolId::SetDailySpend if matches!(name, "operations" | "development") => format!("spend_{name}"),
+        ToolId::SetCapacityTier => "capacity_tier".to_owned(),
         _ => return of_overrides(form),
     };
     Some(format!("SELECT day, \"{column}\" FROM config_history ORDER BY day"))

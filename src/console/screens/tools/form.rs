@@ -46,7 +46,7 @@ impl Form {
             adding: None,
             preview: None,
             answer: None,
-            earlier: earlier::calls(spec.name(), company, earlier::MOST),
+            earlier: earlier::calls(spec.id, company, earlier::MOST),
         }
     }
 
@@ -58,7 +58,7 @@ impl Form {
     /// Takes over what holds now; drafts stay.
     pub fn renew(&mut self, company: &Company) {
         self.sheet = self.sheet.renewed(company);
-        self.earlier = earlier::calls(self.spec.name(), company, earlier::MOST);
+        self.earlier = earlier::calls(self.spec.id, company, earlier::MOST);
         self.preview = None;
         self.keep_inside();
     }
@@ -102,7 +102,7 @@ impl Form {
             Kind::Read | Kind::Engine => true,
         };
         match self.sheet.arguments() {
-            Ok(arguments) if !quiet => vec![Effect::Check { tool: self.spec.name(), arguments }],
+            Ok(arguments) if !quiet => vec![Effect::Check { tool: self.spec.id, arguments }],
             _ => Vec::new(),
         }
     }
@@ -119,7 +119,7 @@ impl Form {
                 return vec![Effect::Complain(format!("{path}: {}", block.expected()))];
             }
         };
-        let tool = self.spec.name();
+        let tool = self.spec.id;
         match self.spec.kind {
             Kind::Setting if !self.sheet.is_changed() => {
                 vec![Effect::Complain("nothing has changed; enter a value first".to_owned())]

@@ -26,7 +26,7 @@ use crate::console::message::News;
 use crate::console::readings::Reading;
 use crate::console::widgets::Field;
 use crate::session::{JournalEntry, Rows};
-use crate::tools::{CATALOGUE, Spec, find};
+use crate::tools::{CATALOGUE, Spec, ToolId};
 use form::{Form, spaced};
 use outcome::Leads;
 
@@ -40,7 +40,7 @@ pub struct Tools {
     filter: String,
     typing: Option<Field>,
     /// Forms that were opened, with their drafts.
-    forms: BTreeMap<&'static str, Form>,
+    forms: BTreeMap<ToolId, Form>,
     leads: Leads,
 }
 
@@ -63,18 +63,18 @@ impl Tools {
 
     fn form(&mut self, company: &Company) -> Option<&mut Form> {
         let spec = self.here()?;
-        Some(self.forms.entry(spec.name()).or_insert_with(|| Form::of(spec, company)))
+        Some(self.forms.entry(spec.id).or_insert_with(|| Form::of(spec, company)))
     }
 
     fn seen_form(&self) -> Option<&Form> {
-        self.forms.get(self.here()?.name())
+        self.forms.get(&self.here()?.id)
     }
 
     /// Shows the form of a tool.
-    pub fn show(&mut self, tool: &str, company: &Company) {
+    pub fn show(&mut self, tool: ToolId, company: &Company) {
         self.filter.clear();
         self.typing = None;
-        if let Some(place) = self.shown().iter().position(|spec| spec.name() == tool) {
+        if let Some(place) = self.shown().iter().position(|spec| spec.id == tool) {
             self.selected = place;
             self.focus = 1;
             if let Some(form) = self.form(company) {
@@ -84,7 +84,7 @@ impl Tools {
     }
 
     /// Shows the form of a tool at the first cell that is for a group, a plan or the like.
-    pub fn show_cell(&mut self, tool: &str, of: &str, company: &Company) {
+    pub fn show_cell(&mut self, tool: ToolId, of: &str, company: &Company) {
         self.show(tool, company);
         if let Some(form) = self.form(company)
             && let Some(place) = form.sheet.place_for(of)
@@ -108,7 +108,7 @@ impl Tools {
     }
 
     /// Shows the form of a tool with arguments typed into it.
-    pub fn prefill(&mut self, tool: &str, arguments: &Value, company: &Company) -> Vec<Effect> {
+    pub fn prefill(&mut self, tool: ToolId, arguments: &Value, company: &Company) -> Vec<Effect> {
         self.show(tool, company);
         self.form(company).map_or(Vec::new(), |form| {
             form.sheet.fill(arguments);
@@ -117,16 +117,16 @@ impl Tools {
     }
 
     /// Tools whose forms hold values that were not sent.
-    pub fn unsent(&self) -> Vec<&'static str> {
+    pub fn unsent(&self) -> Vec<ToolId> {
         let unsent = self.forms.values().filter(|form| form.spec.kind.acts() && form.sheet.is_changed());
-        unsent.map(|form| form.spec.name()).collect()
+        unsent.map(|form| form.spec.id).collect()
     }
 
     /// Tools that have a screen or a dialog of their own lead there.
     fn elsewhere(&self) -> Option<Effect> {
-        match self.here()?.name() {
-            "next_week" => Some(Effect::Do(Action::NextWeek)),
-            "query" => Some(Effect::Show(ScreenId::Sql)),
+        match self.here()?.id {
+            ToolId::NextWeek => Some(Effect::Do(Action::NextWeek)),
+            ToolId::Query => Some(Effect::Show(ScreenId::Sql)),
             _ => None,
         }
     }
@@ -136,7 +136,7 @@ impl Tools {
         let day = company.seen.day;
         let done = company.journal.iter().filter_map(|entry| match entry {
             JournalEntry::Call { day: own, tool, args, .. } if *own == day => {
-                let module = find(tool).map_or("", |tool| tool.spec().module.id());
+                let module = tool.spec().module.id();
                 Some(format!("{module}.{tool}({})", spaced(args)))
             }
             _ => None,

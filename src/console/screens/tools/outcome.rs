@@ -110,7 +110,7 @@ pub(super) fn outcome_lines(
     {
         answer_lines(answer, &mut paragraph);
     }
-    let helps = reference(form.spec.name(), look.company);
+    let helps = reference(form.spec.id, look.company);
     if !helps.is_empty() {
         paragraph(" ", Role::Text);
         for (at, line) in helps.iter().enumerate() {

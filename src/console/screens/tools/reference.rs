@@ -6,15 +6,16 @@ use unicode_width::UnicodeWidthStr;
 use crate::console::company::Company;
 use crate::console::text::number;
 use crate::notation::{cents, dollars, grouped};
+use crate::tools::ToolId;
 
 /// Lines beside a form, the first one a head; empty where nothing helps.
-pub fn reference(tool: &str, company: &Company) -> Vec<String> {
+pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {
     match tool {
-        "set_model_tiers" | "set_usage_quotas" => models(company),
-        "set_capacity_tier" => capacities(company),
-        "start_research_project" => projects(company),
-        "set_prices" => prices(company),
-        "send_enterprise_deal" | "reject_enterprise_deal" => threads(company),
+        ToolId::SetModelTiers | ToolId::SetUsageQuotas => models(company),
+        ToolId::SetCapacityTier => capacities(company),
+        ToolId::StartResearchProject => projects(company),
+        ToolId::SetPrices => prices(company),
+        ToolId::SendEnterpriseDeal | ToolId::RejectEnterpriseDeal => threads(company),
         _ => Vec::new(),
     }
 }
@@ -42,7 +43,7 @@ fn models(company: &Company) -> Vec<String> {
 }
 
 fn capacities(company: &Company) -> Vec<String> {
-    let now = company.setting("set_capacity_tier", "tier") as u32;
+    let now = company.setting(ToolId::SetCapacityTier, "tier") as u32;
     let mut lines = vec!["tier     units a day     $ a day".to_owned()];
     lines.extend(tiers(&company.costs, "capacity_tiers").into_iter().map(|(tier, facts)| {
         let mark = if tier == now { "  now" } else { "" };
@@ -103,7 +104,7 @@ fn prices(company: &Company) -> Vec<String> {
     let mut lines = vec!["plan   model tier   quota, units a day   full quota costs a month".to_owned()];
     lines.extend(["A", "B", "C"].into_iter().map(|plan| {
         let (tier, quota) =
-            (company.setting("set_model_tiers", plan), company.setting("set_usage_quotas", plan));
+            (company.setting(ToolId::SetModelTiers, plan), company.setting(ToolId::SetUsageQuotas, plan));
         let unit = company
             .costs
             .get("model_tiers")

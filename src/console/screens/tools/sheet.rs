@@ -7,7 +7,7 @@ use crate::console::text::number;
 use crate::console::widgets::Field;
 use crate::console::widgets::field::parse_number;
 use crate::notation::json_number;
-use crate::tools::{Argument, ArgumentKind, Key, Kind, Range, Spec};
+use crate::tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};
 use crate::world::identifiers::{Channel, Plan};
 
 /// A value that can be typed.
@@ -235,11 +235,11 @@ impl Sheet {
     /// The sheet of a tool over what holds now.
     pub fn of(spec: &'static Spec, company: &Company) -> Sheet {
         let nothing = Map::new();
-        let current = company.settings.get(spec.name()).unwrap_or(&nothing);
+        let current = company.settings.get(&spec.id).unwrap_or(&nothing);
         let block = |argument: &'static Argument| Block::of(argument, current.get(argument.name), company);
         let blocks = spec.arguments.iter().map(block);
         let elsewhere =
-            |block: &Block| block.is_text() && (spec.kind == Kind::Time || spec.name() == "query");
+            |block: &Block| block.is_text() && (spec.kind == Kind::Time || spec.id == ToolId::Query);
         Sheet { spec, blocks: blocks.filter(|block| !elsewhere(block)).collect() }
     }
 

@@ -4,9 +4,10 @@ use super::*;
 use crate::console::keys::{Chord, Keys};
 use crate::console::test_kit::{act, company, drawn, played, shown, sweep};
 use crate::session::{Refusal, Via};
+use crate::tools::ToolId;
 
 /// Types into the form of a tool; words are keys, the rest is typed letter by letter.
-fn typed(tool: &str, keys: &[&str]) -> (Tools, Vec<Effect>) {
+fn typed(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
     let (company, bindings) = (company(), Keys::shipped());
     let look = Look { company: &company, keys: &bindings, page: 10 };
     let mut tools = Tools::default();
@@ -29,26 +30,26 @@ fn typed(tool: &str, keys: &[&str]) -> (Tools, Vec<Effect>) {
 #[test]
 fn enter_edits_a_cell_and_arrows_go_on_in_the_next() {
     let (_, effects) =
-        typed("set_prices", &["enter", "1", "2", "down", "2", "5", "down", "5", "5", "ctrl-s"]);
+        typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "5", "ctrl-s"]);
     let Some(Effect::Call { tool, arguments }) = effects.first() else { panic!("{effects:?}") };
-    assert_eq!((*tool, arguments), ("set_prices", &json!({"A": 12, "B": 25, "C": 55})));
+    assert_eq!((*tool, arguments), (ToolId::SetPrices, &json!({"A": 12, "B": 25, "C": 55})));
 }
 
 #[test]
 fn tab_leaves_the_last_cell_as_it_was_typed_and_a_form_opens_at_its_first() {
     let (mut tools, _) =
-        typed("set_prices", &["enter", "1", "2", "tab", "2", "5", "tab", "5", "5", "tab", "7"]);
+        typed(ToolId::SetPrices, &["enter", "1", "2", "tab", "2", "5", "tab", "5", "5", "tab", "7"]);
     let form = tools.seen_form().expect("a form");
     assert!(!form.is_typing());
     assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12, "B": 25, "C": 55})));
     assert_eq!(tools.place_path().as_deref(), Some("C"));
-    tools.show("set_prices", &company());
+    tools.show(ToolId::SetPrices, &company());
     assert_eq!(tools.place_path().as_deref(), Some("A"));
 }
 
 #[test]
 fn keys_pressed_outside_a_cell_type_nothing() {
-    let (tools, _) = typed("set_targeted_ad_spend", &["9", "$", "-", "5"]);
+    let (tools, _) = typed(ToolId::SetTargetedAdSpend, &["9", "$", "-", "5"]);
     let form = tools.seen_form().expect("a form");
     assert!(!form.is_typing() && !form.sheet.is_changed(), "{:?}", form.sheet.arguments());
 }
@@ -60,7 +61,7 @@ fn one_quota_is_changed_alone_and_an_emptied_number_stays_what_it_was() {
     let keys = Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 10 };
     let mut tools: Tools = shown(&mut session, &company);
-    tools.show("set_usage_quotas", &company);
+    tools.show(ToolId::SetUsageQuotas, &company);
     let press = |tools: &mut Tools, key: &str| {
         let chord = Chord::parse(key).expect(key);
         let typed = tools.scopes()[0].is_text() && chord.is_printable();
@@ -80,13 +81,13 @@ fn one_quota_is_changed_alone_and_an_emptied_number_stays_what_it_was() {
 
 #[test]
 fn after_a_call_the_keys_are_those_of_the_list_again() {
-    let (mut tools, _) = typed("set_prices", &["enter", "1", "2", "enter"]);
+    let (mut tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "enter"]);
     let (company, keys) = (company(), Keys::shipped());
     let look = Look { company: &company, keys: &keys, page: 10 };
     let refused = Refusal::at("A", "price_not_positive", "no");
-    tools.hear(&News::Called("set_prices", Err(refused), company.clone().into()), &look);
+    tools.hear(&News::Called(ToolId::SetPrices, Err(refused), company.clone().into()), &look);
     assert_eq!(tools.focus(), 1, "a refused call is mended where it was typed");
-    tools.hear(&News::Called("set_prices", Ok(json!({})), company.clone().into()), &look);
+    tools.hear(&News::Called(ToolId::SetPrices, Ok(json!({})), company.clone().into()), &look);
     assert_eq!((tools.focus(), tools.scopes()), (0, vec![Scope::List]));
     assert!(tools.seen_form().expect("a form").answer.is_some());
     tools.hear(&News::Undone(Ok(Vec::new()), company.clone().into()), &look);
@@ -99,29 +100,29 @@ fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
         "enter", "[", "[", "7", ",", "[", "[", "\"", "B", "\"", ",", "3", "0", "]", "]", "]", "]", "enter",
         "ctrl-s",
     ];
-    let (tools, effects) = typed("send_enterprise_deal", &keys);
+    let (tools, effects) = typed(ToolId::SendEnterpriseDeal, &keys);
     let Some(Effect::ConfirmCall { tool, arguments, text }) = effects.first() else { panic!("{effects:?}") };
-    assert_eq!((*tool, arguments), ("send_enterprise_deal", &json!({"deals": [[7, [["B", 30]]]]})));
+    assert_eq!((*tool, arguments), (ToolId::SendEnterpriseDeal, &json!({"deals": [[7, [["B", 30]]]]})));
     assert!(text.contains("cannot be undone"), "{text}");
     assert!(tools.holds_unsent_text());
-    let (_, effects) = typed("send_enterprise_deal", &["enter", "[", "7", "enter", "ctrl-s"]);
+    let (_, effects) = typed(ToolId::SendEnterpriseDeal, &["enter", "[", "7", "enter", "ctrl-s"]);
     assert!(
         matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: a list")),
         "{effects:?}"
     );
-    let (_, effects) = typed("reject_enterprise_deal", &["ctrl-s"]);
+    let (_, effects) = typed(ToolId::RejectEnterpriseDeal, &["ctrl-s"]);
     assert!(matches!(&effects[..], [Effect::Call { .. }]), "the tool says what is missing: {effects:?}");
 }
 
 #[test]
 fn escape_brings_back_what_was_there() {
-    let (tools, _) = typed("set_prices", &["enter", "1", "2", "enter", "up", "enter", "9", "9", "esc"]);
+    let (tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "enter", "up", "enter", "9", "9", "esc"]);
     assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
 }
 
 #[test]
 fn the_same_value_goes_down_a_column() {
-    let (tools, _) = typed("set_targeted_ad_spend", &["right", "enter", "4", "0", "enter", "up", "="]);
+    let (tools, _) = typed(ToolId::SetTargetedAdSpend, &["right", "enter", "4", "0", "enter", "up", "="]);
     let arguments = tools.seen_form().expect("a form").sheet.arguments().expect("numbers");
     let matrix = arguments["targeted_spend"].as_object().expect("a matrix");
     assert_eq!(matrix.len(), 5);
@@ -130,20 +131,20 @@ fn the_same_value_goes_down_a_column() {
 
 #[test]
 fn a_form_without_changes_is_not_sent_and_a_wrong_cell_is_named() {
-    let (_, effects) = typed("set_prices", &["ctrl-s"]);
+    let (_, effects) = typed(ToolId::SetPrices, &["ctrl-s"]);
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing has changed")));
-    let (_, effects) = typed("set_prices", &["enter", "1", "-", "ctrl-s"]);
+    let (_, effects) = typed(ToolId::SetPrices, &["enter", "1", "-", "ctrl-s"]);
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("A: a number")));
 }
 
 #[test]
 fn drafts_stay_when_another_tool_is_looked_at() {
-    let (mut tools, _) = typed("set_prices", &["enter", "1", "2", "enter"]);
+    let (mut tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "enter"]);
     let (company, keys) = (company(), Keys::shipped());
     let look = Look { company: &company, keys: &keys, page: 10 };
-    tools.show("set_daily_spend", &company);
+    tools.show(ToolId::SetDailySpend, &company);
     tools.renew(&look);
-    tools.show("set_prices", &company);
+    tools.show(ToolId::SetPrices, &company);
     assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
     assert!(tools.holds_unsent_text());
 }
@@ -153,7 +154,7 @@ fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
     let mut session = played(2);
     let company = Company::of(&session);
     let mut tools: Tools = shown(&mut session, &company);
-    tools.show("set_prices", &company);
+    tools.show(ToolId::SetPrices, &company);
     let keys = Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 10 };
     for key in ["enter", "1", "4", "enter", "esc"] {
@@ -187,7 +188,7 @@ fn a_matrix_says_what_its_sums_were_and_what_a_channel_brought() {
     let mut session = played(5);
     let company = Company::of(&session);
     let mut tools: Tools = shown(&mut session, &company);
-    tools.show("set_targeted_ad_spend", &company);
+    tools.show(ToolId::SetTargetedAdSpend, &company);
     let form = tools.form(&company).expect("a form");
     let place = form.sheet.place_of("targeted_spend.content_marketing.S1").expect("a cell");
     form.at = place;
@@ -218,7 +219,7 @@ fn calls_of_the_week_and_drafts_go_to_a_file() {
     session.call("set_prices", &json!({"A": 13}), Via::Form).expect("prices");
     let company = Company::of(&session);
     let mut tools: Tools = shown(&mut session, &company);
-    tools.show("set_capacity_tier", &company);
+    tools.show(ToolId::SetCapacityTier, &company);
     let form = tools.form(&company).expect("a form");
     let place = form.at;
     form.sheet.slot_mut(place).expect("a slot").draft = Some(Field::of("3"));
@@ -245,7 +246,7 @@ fn a_field_names_its_term_and_its_history() {
     let mut asked = std::collections::BTreeSet::new();
     for tool in CATALOGUE {
         let spec = tool.spec();
-        tools.show(spec.name(), &company);
+        tools.show(spec.id, &company);
         let places = tools.seen_form().map_or(Vec::new(), |form| form.sheet.places().collect());
         for place in places {
             tools.form(&company).expect("a form").at = place;
@@ -263,7 +264,7 @@ fn a_field_names_its_term_and_its_history() {
         tools.set_focus(0);
         assert_eq!(tools.figure(&look).expect("a figure").term, spec.name());
     }
-    tools.show("set_prices", &company);
+    tools.show(ToolId::SetPrices, &company);
     tools.form(&company).expect("a form").at = Default::default();
     let figure = tools.figure(&look).expect("a figure");
     assert_eq!(figure.term, "set_prices.A");
@@ -276,13 +277,13 @@ fn forms_show_figures_and_never_the_names_of_parameters() {
     let company = company();
     let mut tools = Tools::default();
     for spec in CATALOGUE.iter().map(|tool| tool.spec()) {
-        tools.show(spec.name(), &company);
+        tools.show(spec.id, &company);
         let text = drawn(&tools, &company, 200, 120);
         let named = |after: &str| after.split(['}', ' ']).next().is_some_and(|name| name.contains('.'));
         let raw = text.split('{').skip(1).any(named);
         assert!(!raw, "{}: {text}", spec.name());
     }
-    tools.show("set_targeted_ad_spend", &company);
+    tools.show(ToolId::SetTargetedAdSpend, &company);
     assert!(drawn(&tools, &company, 200, 57).contains("$0.50 for every lead"));
 }
 
@@ -292,7 +293,7 @@ fn a_matrix_keeps_its_totals_and_marks_the_columns_beyond_its_edges() {
     let look_at = |column: usize| {
         let mut keys = vec!["right"; column];
         keys.push("enter");
-        let (tools, _) = typed("set_targeted_ad_spend", &keys);
+        let (tools, _) = typed(ToolId::SetTargetedAdSpend, &keys);
         let text = drawn(&tools, &company, 80, 21);
         text.lines().find(|line| line.contains("total")).expect("a head").to_owned()
     };
@@ -303,16 +304,16 @@ fn a_matrix_keeps_its_totals_and_marks_the_columns_beyond_its_edges() {
 
 #[test]
 fn the_keys_of_a_form_say_that_enter_edits() {
-    let (tools, _) = typed("set_prices", &[]);
+    let (tools, _) = typed(ToolId::SetPrices, &[]);
     let text = drawn(&tools, &company(), 120, 37);
     assert!(text.contains("enter edit the value") && !text.contains("type a number"), "{text}");
-    let (tools, _) = typed("set_prices", &["enter"]);
+    let (tools, _) = typed(ToolId::SetPrices, &["enter"]);
     assert!(!drawn(&tools, &company(), 120, 37).contains("enter edit"));
 }
 
 #[test]
 fn columns_of_projects_stand_apart() {
-    let lines = reference::reference("start_research_project", &company());
+    let lines = reference::reference(ToolId::StartResearchProject, &company());
     assert!(lines.len() > 10, "{lines:?}");
     let ends = lines[0].find("cost").expect("a column") + "cost".len();
     for line in &lines[1..] {

@@ -1,5 +1,5 @@
 //! The first decision: which plan a lead picks, whether an individual takes it, and whether a company is
-//! interested at all (chapter 20 §10, chapter 40 §4).
+//! interested at all (docs/mechanics/customers/choice.md).
 
 use super::curve::{Curve, required_quality};
 use crate::world::identifiers::{ByPlan, Plan};
@@ -95,7 +95,7 @@ mod tests {
     const PRICES: [f64; 3] = [12.0, 25.0, 55.0];
 
     #[test]
-    fn check_11_of_chapter_20() {
+    fn leads_choose_the_largest_surplus_and_fall_back_to_plan_a() {
         let params = Params::shipped();
         let market = |shared| offers(shared, PRICES, [1, 3, 5], [60.0, 100.0, 1200.0], &params);
         let weak = choose_plan(&market(0.0), 0.0, 80.0, &X, &params);
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn check_12_of_chapter_20() {
+    fn favourable_noise_sells_the_fallback_plan_and_the_budget_is_a_limit() {
         let params = Params::shipped();
         let market = offers(0.12, PRICES, [1, 3, 5], [1000.0, 100.0, 1200.0], &params);
         let choice = choose_plan(&market, 0.0, 80.0, &X, &params);
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn check_12_of_chapter_40() {
+    fn the_gate_needs_quality_and_a_quota_for_the_whole_demand() {
         let params = Params::shipped();
         let k = Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
         for (product, tier, quota, passes) in [

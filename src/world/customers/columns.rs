@@ -2,7 +2,8 @@
 //!
 //! A block holds the active ones among customers `first ..= first + BLOCK - 1` of one group, in the order of
 //! their numbers. A daily sweep goes through whole blocks, on any thread; a customer's random word stands at
-//! its fixed place of the block's stream, so nobody's fate shifts another's (chapter 20 §4).
+//! its fixed place of the block's stream, so nobody's fate shifts another's
+//! (docs/mechanics/randomness.md#blocks).
 
 use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 use crate::world::identifiers::Plan;

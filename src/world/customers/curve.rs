@@ -1,4 +1,5 @@
-//! The participation curve: how much quality a customer requires at a price (chapter 20 §8).
+//! The participation curve: how much quality a customer requires at a price
+//! (docs/mechanics/customers/participation.md).
 
 use crate::world::params::{Params, Participation, RequiredQuality};
 
@@ -34,7 +35,7 @@ impl Curve {
     }
 }
 
-/// Logistic function with the argument clamped (chapter 20, notation).
+/// Logistic function with the argument clamped.
 #[inline]
 pub fn sigmoid(z: f64, participation: &Participation) -> f64 {
     1.0 / (1.0 + libm::exp(-z.clamp(participation.sigmoid_input_min, participation.sigmoid_input_max)))
@@ -43,7 +44,7 @@ pub fn sigmoid(z: f64, participation: &Participation) -> f64 {
 /// Quality required at a price of at least 0, in dollars a month: req(C; sL, sR, c, q_min, q_max).
 ///
 /// Above the budget it is q_max. Below, the released form has two logistic halves that jump at half the
-/// budget; the paper's form (`required_quality = "blended"`) blends both sigmoids (chapter 20 §8, §23).
+/// budget; the paper's form (`required_quality = "blended"`) blends both sigmoids.
 #[inline]
 pub fn required_quality(price: f64, curve: &Curve, params: &Params) -> f64 {
     let form = &params.participation;
@@ -74,7 +75,7 @@ pub fn required_quality(price: f64, curve: &Curve, params: &Params) -> f64 {
 pub(crate) mod tests {
     use super::*;
 
-    /// Reference customer X of chapter 20 §25.
+    /// Reference customer X: steepness, budget and qualities of a typical individual.
     pub(crate) const X: Curve =
         Curve { steepness_left: 1.2, steepness_right: 2.8, c_max: 50.0, q_min: 0.1, q_max: 0.55 };
 
@@ -87,7 +88,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn check_1_of_chapter_20() {
+    fn required_quality_rises_with_the_price_and_jumps_at_half_the_budget() {
         let expected = [
             (0.0, 0.110670821),
             (10.0, 0.179727331),
@@ -105,14 +106,14 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn check_4_of_chapter_10() {
+    fn required_quality_holds_to_ten_decimals() {
         let expected =
             [(0.0, 0.1106708215), (24.999, 0.3143267387), (25.0, 0.3252049865), (50.0, 0.5497950135)];
         assert_curve(&X, &expected, 1e-10);
     }
 
     #[test]
-    fn check_1_of_chapter_40() {
+    fn a_company_requires_its_ceiling_above_its_budget() {
         let k = Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
         let expected = [
             (0.0, 0.5170680905),

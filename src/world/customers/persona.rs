@@ -1,4 +1,5 @@
-//! Picks of a customer's profile: codes only; words are made when a row is written (chapter 10.5).
+//! Picks of a customer's profile: codes only; words are made when a row is written
+//! (docs/mechanics/customers/personas.md).
 
 use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 use crate::world::identifiers::Group;

@@ -1,4 +1,4 @@
-//! What a new customer is like: the draws of chapter 20 §7, from the stream of (group, n).
+//! What a new customer is like: draws from the stream of (group, n), docs/mechanics/customers/generation.md.
 //!
 //! The n-th customer of a group has the same traits whatever else happened; only accumulated drift is added
 //! afterwards. The position of every draw in the stream is fixed. Attributes that act nowhere (patience,
@@ -29,7 +29,7 @@ pub struct Traits {
     pub persona: PersonaPicks,
 }
 
-/// How a company negotiates (chapter 40 §3).
+/// How a company negotiates (docs/mechanics/enterprise/company.md).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Negotiator {
     /// Mean reply delay, in days.
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn individuals_are_distributed_as_chapter_20_measured() {
+    fn traits_of_individuals_have_their_measured_moments() {
         let drawn = sample("S1", 60_000, 1.0);
         assert_moments("steepness_left", drawn.iter().map(|t| t.curve.steepness_left), 1.202, 0.991);
         assert_moments("steepness_right", drawn.iter().map(|t| t.curve.steepness_right), 2.713, 1.695);
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn companies_are_distributed_as_chapter_20_measured() {
+    fn traits_of_companies_have_their_measured_moments() {
         let drawn = sample("E1", 40_000, 0.9);
         assert_moments("c_max", drawn.iter().map(|t| t.curve.c_max), 55.87, 25.87);
         assert_moments("seats", drawn.iter().map(|t| t.seats), 275.7, 130.6);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The willingness curve (chapter 20 §8, chapter 10.3).
+/// The willingness curve (docs/mechanics/customers/participation.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Participation {
@@ -26,7 +26,7 @@ pub struct Participation {
     pub lead_min_satisfaction_exclusive: f64,
 }
 
-/// Bounds of the traits a new customer draws (chapter 20 §7).
+/// Bounds of the traits a new customer draws (docs/mechanics/customers/generation.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CustomerGeneration {
@@ -80,7 +80,8 @@ pub struct CustomerGeneration {
     pub daily_usage_rate_min: f64,
 }
 
-/// One of the 26 customer groups (chapter 10.4). Money and usage of enterprise groups are per seat.
+/// One of the 26 customer groups (docs/mechanics/customers/groups.md). Money and usage of enterprise groups are
+/// per seat.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GroupParams {
@@ -170,7 +171,7 @@ pub enum Segment {
     Enterprise,
 }
 
-/// Sensitivity of a group to the economy, per unit of (PMI - 50) / 50 (chapter 30 §8.3).
+/// Sensitivity of a group to the economy, per unit of (PMI - 50) / 50 (docs/mechanics/market/economy.md).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MacroBeta {
@@ -188,7 +189,7 @@ pub struct MacroBeta {
     pub seat_count: Option<f64>,
 }
 
-/// Additive drift of a group a day (chapter 30 §9.1).
+/// Additive drift of a group a day (docs/mechanics/market/drift.md).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GroupDrift {
@@ -198,7 +199,7 @@ pub struct GroupDrift {
     pub q_bias_drift: f64,
 }
 
-/// Compounding drift of a subscriber a day (chapter 30 §9.2).
+/// Compounding drift of a subscriber a day (docs/mechanics/market/drift.md).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IndividualDrift {
@@ -216,7 +217,7 @@ pub struct IndividualDrift {
     pub seat_count_drift: Option<f64>,
 }
 
-/// Words of customer profiles: `configs/world/personas.toml` (chapter 10.5).
+/// Words of customer profiles: `configs/world/personas.toml` (docs/mechanics/customers/personas.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Personas {
@@ -268,7 +269,7 @@ pub struct EnterprisePersona {
     pub quality_labels: [String; 4],
 }
 
-/// Parts of company addresses (chapter 40 §16.4).
+/// Parts of company addresses (docs/mechanics/market/social/texts.md#addresses).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EmailParts {

@@ -2,15 +2,14 @@
 
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::changes::{Change, changes, daily_cost};
 use super::error::RunError;
 use super::recording::to_fill;
-use super::trajectory::record::{Call, Outcome, RefusalRecord};
+use super::this_week::Step;
+use super::trajectory::record::{Call, Outcome, RefusalRecord, Reversal, Via};
 use super::trajectory::{Durability, Record};
-use super::undo::{Reversal, Step};
 use super::{JournalEntry, Session};
 use crate::notation::cents;
 use crate::tools::{Arguments, Kind, Refusal, Task, Tool, ToolId, View, bounds, find};
@@ -19,24 +18,6 @@ use crate::world::enterprise::letters::Letter;
 use crate::world::events::Offering;
 use crate::world::settings::Settings;
 use crate::world::state::World;
-
-/// Where an action came from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Via {
-    /// A form of the console.
-    Form,
-    /// The palette of the console.
-    Palette,
-    /// A line of plain mode.
-    Plain,
-    /// The HTTP interface.
-    Http,
-    /// A policy.
-    Policy,
-    /// A stored script.
-    Script,
-}
 
 /// What a call would do.
 #[derive(Debug, Clone, PartialEq)]

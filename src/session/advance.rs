@@ -2,10 +2,10 @@
 
 use serde_json::{Map, Value, json};
 
-use super::act::{Via, not_saved};
-use super::recording::StateHash;
+use super::act::not_saved;
+use super::facts_chain::StateHash;
 use super::snapshot::WEEKS_BETWEEN;
-use super::trajectory::record::{Advance, Closing, End};
+use super::trajectory::record::{Advance, Closing, End, Via};
 use super::trajectory::{Durability, Record, seconds};
 use super::week::{Forecasts, WeekFigures};
 use super::xray::Xray;

@@ -7,8 +7,9 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::Session;
+use super::facts_chain::{FactsChain, StateHash, state_hash};
 use super::feed::Feed;
-use super::recording::{FactsChain, StateHash, entry_of, state_hash, to_fill};
+use super::recording::{entry_of, to_fill};
 use crate::database::{Entry, Projector};
 use crate::world::day::step_day;
 use crate::world::events::{DayFigures, Facts};

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::create::{new_id, start_of};
 use super::error::RunError;
-use super::manifest::{Manifest, Parent, sync_folder};
+use super::manifest::{Manifest, sync_folder};
 use super::mode::Mode;
 use super::open::Access;
-use super::trajectory::record::Branch;
+use super::trajectory::record::{Branch, Parent};
 use super::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter, now};
 use super::{Ended, Session};
 use crate::tools::Refusal;

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::Table;
 
-use super::create::{check_cash, check_days};
 use super::error::RunError;
 use crate::world::params::{ParameterError, Params, Source, line_of_key, shipped_sources};
 
@@ -249,6 +248,25 @@ fn single_override(key: &str, value: &str) -> Result<Source, ParameterError> {
     let as_text = format!("{key} = {}", toml::Value::String(value.to_owned()));
     let text = if as_given.parse::<Table>().is_ok() { as_given } else { as_text };
     Ok(Source { name, text })
+}
+
+/// Shortest run, in days.
+const FEWEST_DAYS: u32 = 7;
+
+/// Whether a run can have this many days.
+pub(super) fn check_days(days: u32) -> Result<(), String> {
+    if (FEWEST_DAYS..=100_000).contains(&days) {
+        return Ok(());
+    }
+    Err(format!("a run has between {FEWEST_DAYS} and 100,000 days, not {days}"))
+}
+
+/// Whether a run can start with this much cash.
+pub(super) fn check_cash(cash: f64) -> Result<(), String> {
+    if cash.is_finite() && cash > 0.0 && cash <= 1e15 {
+        return Ok(());
+    }
+    Err(format!("starting cash must be above 0 and at most 1e15 dollars, not {cash}"))
 }
 
 #[cfg(test)]

@@ -3,19 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use super::configuration::{Configuration, DEFAULT_SCENARIO};
-use super::consent::agreed;
+use super::Session;
+use super::agreement::agreed;
+use super::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
 use super::error::RunError;
+use super::facts_chain::FactsChain;
 use super::feed::Feed;
 use super::manifest::{FORMAT, Manifest, differences, sync_folder};
 use super::mode::Mode;
-use super::recording::FactsChain;
+use super::office::Office;
 use super::runs::{earlier_runs, label_of, lock_run};
-use super::scripts::Office;
+use super::this_week::ThisWeek;
 use super::trajectory::record::Start;
 use super::trajectory::{Durability, Record, TrajectoryWriter, now};
 use super::week::WeekFigures;
-use super::{Session, ThisWeek};
 use crate::database::{Location, Projector};
 use crate::world::MECHANICS;
 use crate::world::day::DayTrace;
@@ -24,9 +25,6 @@ use crate::world::identifiers::ByGroup;
 use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::state::World;
-
-/// Shortest run, in days.
-pub const FEWEST_DAYS: u32 = 7;
 
 /// What a new run is to be. What is left out comes from the scenario, then from the defaults.
 #[derive(Debug, Clone, PartialEq)]
@@ -214,22 +212,6 @@ fn start_projector(
     let location = folder.map_or_else(Location::memory, |folder| Location::File(folder.join("world.db")));
     let (projector, _) = Projector::start(location, owner, params.clone(), |_| false)?;
     Ok(Some(projector))
-}
-
-/// Whether a run can have this many days.
-pub(super) fn check_days(days: u32) -> Result<(), String> {
-    if (FEWEST_DAYS..=100_000).contains(&days) {
-        return Ok(());
-    }
-    Err(format!("a run has between {FEWEST_DAYS} and 100,000 days, not {days}"))
-}
-
-/// Whether a run can start with this much cash.
-pub(super) fn check_cash(cash: f64) -> Result<(), String> {
-    if cash.is_finite() && cash > 0.0 && cash <= 1e15 {
-        return Ok(());
-    }
-    Err(format!("starting cash must be above 0 and at most 1e15 dollars, not {cash}"))
 }
 
 fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Params), RunError> {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::scripts::Calculated;
+use super::office::Calculated;
 use super::week::{WeekFigures, week_of};
 use crate::notation::{dollars, grouped, percent, released_dollars, signed_dollars};
 use crate::world::identifiers::{ByPlan, Group, Plan};

@@ -6,17 +6,14 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::Session;
-use super::recording::to_fill;
 use crate::tools::PublicPost;
-use crate::voice::judge::{self, Circumstances, Judgement, Lexicon, Original, Submission};
+use crate::voice::judge::{Judgement, Original};
 use crate::voice::posts::Writer;
 use crate::voice::posts::names::profile_name;
 use crate::world::events::{Facts, Matter, Post};
 use crate::world::identifiers::Group;
-use crate::world::market::social::reach::{self, Verdict};
 use crate::world::market::social::sentiment::Sentiment;
-use crate::world::params::{Params, PostJudge};
+use crate::world::params::Params;
 use crate::world::random::Streams;
 
 /// Everything that was written so far, and why the player's posts were taken as they were.
@@ -93,7 +90,7 @@ impl Feed {
     }
 
     /// The post with this number, as one that is answered.
-    fn original(&self, post: u32) -> Option<Original<'_>> {
+    pub(super) fn original(&self, post: u32) -> Option<Original<'_>> {
         let at = (post as usize).checked_sub(1)?;
         let own = self.posts.get(at)?;
         Some(Original { content: &own.content, negative: self.complains[at], group: own.written_by })
@@ -113,42 +110,5 @@ fn public_post(post: &Post, day: u32, content: String, streams: &Streams) -> Pub
         source_group,
         written_by: post.author.map(|author| author.group),
         profile: post.author.and_then(|author| profile_name(&author, streams)).map(Cow::Borrowed),
-    }
-}
-
-impl Session {
-    /// Lets the readers judge what the player posted before today.
-    pub(super) fn judge_own_posts(&mut self) {
-        if self.params.fidelity.post_judge == PostJudge::None {
-            return;
-        }
-        let own = &self.world.market.social.own;
-        if own.iter().all(|post| post.effects.is_some()) {
-            return;
-        }
-        let lexicon = Lexicon::shipped();
-        let circumstances = Circumstances::of(&self.world, &self.params, lexicon);
-        let known: Vec<Group> = Group::all().filter(|group| self.world.market.is_known(*group)).collect();
-        let mut verdicts = Vec::new();
-        self.feed.judgements.resize(own.len(), Vec::new());
-        for (at, post) in own.iter().enumerate().filter(|(_, post)| post.effects.is_none()) {
-            let submission = Submission {
-                content: &post.content,
-                day: post.day,
-                original: post.reply_to.and_then(|post| self.feed.original(post)),
-                earlier: own[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
-            };
-            let judgements = judge::judge(&submission, known.iter().copied(), &circumstances, lexicon);
-            let effects = judgements.iter().map(|own| (own.group, own.effect)).collect();
-            verdicts.push(Verdict { post: at as u32 + 1, effects });
-            self.feed.judgements[at] = judgements;
-        }
-        let facts = to_fill(&mut self.facts, self.projector.as_ref());
-        reach::receive(&mut self.world, &verdicts, &self.params, &self.streams, facts);
-    }
-
-    /// Every post of others so far, in the order of their numbers.
-    pub fn posts(&self) -> &[PublicPost] {
-        &self.feed.posts
     }
 }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::Session;
 use crate::world::canonical::canonical;
 use crate::world::events::{DayFigures, Facts, SubscriptionStatus};
 use crate::world::identifiers::{ByGroup, ByPlan, Group};
@@ -85,12 +84,5 @@ pub(super) fn settle(week: &mut ByGroup<GroupWeek>, world: &World) {
             week[group].subscribers[*plan] += 1;
             week[group].revenue[*plan] += price;
         }
-    }
-}
-
-impl Session {
-    /// Figures of the groups for every week that ran.
-    pub fn group_weeks(&self) -> &[ByGroup<GroupWeek>] {
-        &self.group_weeks
     }
 }

@@ -3,10 +3,8 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::trajectory::record::View;
-use super::trajectory::{Durability, Record};
-use super::undo::Reversal;
-use super::{ForecastScore, Session, WeekFigures, filed_forecasts};
+use super::trajectory::record::Reversal;
+use super::week::WeekFigures;
 use crate::tools::{Forecast, ToolId};
 
 /// A confirmed action or week.
@@ -43,31 +41,4 @@ pub enum JournalEntry {
         /// Its figures.
         figures: WeekFigures,
     },
-}
-
-impl Session {
-    /// Everything that was done, in order.
-    pub fn journal(&self) -> &[JournalEntry] {
-        &self.journal
-    }
-
-    /// Scores of the forecasts so far, one per horizon.
-    pub fn forecast_scores(&self) -> Vec<ForecastScore> {
-        let filed = filed_forecasts(&self.journal, &self.cash_by_day);
-        let horizons = self.params.limits.prediction_horizons_days.iter();
-        horizons.map(|horizon| ForecastScore::of(*horizon, &filed)).collect()
-    }
-
-    /// Records what the person looked at, and for how long.
-    pub fn note_view(&mut self, screen: &str, from: &str, for_ms: u64) {
-        self.note(Record::View(View { screen: screen.to_owned(), from: from.to_owned(), for_ms }));
-    }
-
-    /// Records something that changes nothing; once the run is over nothing more is recorded.
-    pub(super) fn note(&mut self, record: Record) {
-        if self.ended.is_none() {
-            // Nothing is lost with it, so a disk that refuses it is no reason to stop.
-            let _ = self.append(&record, Durability::Written);
-        }
-    }
 }

@@ -9,6 +9,7 @@ use super::configuration::Configuration;
 use super::consent::Consent;
 use super::error::RunError;
 use super::mode::Mode;
+use super::trajectory::record::Parent;
 use super::trajectory::{Line, Record};
 use crate::world::MECHANICS;
 use crate::world::params::{ParameterError, Params, Source, shipped_sources};
@@ -61,16 +62,6 @@ pub struct Manifest {
 
 fn first_mechanics() -> u32 {
     1
-}
-
-/// Where a branch comes from.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Parent {
-    /// Run.
-    pub run: String,
-    /// Number of the last line that was copied.
-    pub seq: u64,
 }
 
 impl Manifest {

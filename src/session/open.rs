@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use super::Session;
 use super::error::RunError;
+use super::facts_chain::StateHash;
 use super::manifest::Manifest;
-use super::recording::StateHash;
 use super::runs::lock_run;
 use super::snapshot::Snapshot;
 use super::trajectory::record::{Closing, Outcome};

@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::week::{Forecasts, WeekFigures};
-use super::{ScoredForecast, Session, filed_forecasts};
+use super::{ForecastScore, ScoredForecast, Session, filed_forecasts};
 use crate::tools::Forecast;
 use crate::world::events::Category;
 
@@ -127,6 +127,13 @@ fn cents(value: f64) -> f64 {
 }
 
 impl Session {
+    /// Scores of the forecasts so far, one per horizon.
+    pub fn forecast_scores(&self) -> Vec<ForecastScore> {
+        let filed = filed_forecasts(&self.journal, &self.cash_by_day);
+        let horizons = self.params.limits.prediction_horizons_days.iter();
+        horizons.map(|horizon| ForecastScore::of(*horizon, &filed)).collect()
+    }
+
     /// How money goes on from here.
     pub fn pace(&self) -> Pace {
         let running = (self.running_week.days_run > 0).then_some(self.running_week);

@@ -6,63 +6,17 @@
 
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::Session;
+use super::office::Calculated;
 use crate::database::{self, text};
-use crate::tools::{ColumnDocument, Kept, Notebook, Refusal, Surroundings, TableDocument, Task};
-use crate::voice;
-use crate::world::events::Reading;
+use crate::tools::{Kept, Notebook, Refusal, Task};
 
 /// Characters of output that a script may give.
 const MOST_OUTPUT: usize = 5000;
 /// Characters of warnings and hints that a script may give.
 const MOST_REMARKS: usize = 2000;
-
-/// What a session has around its company.
-#[derive(Debug, Default)]
-pub(super) struct Office {
-    /// Calculations and scripts.
-    pub notebook: Notebook,
-}
-
-impl Surroundings for Office {
-    fn describe(&self, reading: &Reading) -> String {
-        voice::reading(reading)
-    }
-
-    fn tables(&self) -> Vec<TableDocument> {
-        let document = |table: &'static database::Table| TableDocument {
-            name: &table.name,
-            description: &table.description,
-            columns: table.columns.iter().map(document_of).collect(),
-        };
-        database::tables().iter().map(document).collect()
-    }
-
-    fn notebook(&self) -> &Notebook {
-        &self.notebook
-    }
-}
-
-fn document_of(column: &'static database::Column) -> ColumnDocument {
-    ColumnDocument {
-        name: &column.name,
-        kind: &column.kind,
-        values: &column.values,
-        description: &column.description,
-    }
-}
-
-/// A calculation and what it said before the last week.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Calculated {
-    /// Name.
-    pub name: String,
-    /// Output, cut to what the dashboard shows.
-    pub output: String,
-}
 
 /// What statements said.
 #[derive(Debug, Default)]

@@ -14,12 +14,10 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::facts_chain::{FactsChain, state_hash};
 use super::feed::Feed;
-use super::recording::{FactsChain, state_hash};
-use super::undo::Step;
-use super::{
-    Calculated, Decisions, Ended, GroupWeek, JournalEntry, Manifest, Session, ThisWeek, WeekFigures,
-};
+use super::this_week::{Step, ThisWeek};
+use super::{Calculated, Decisions, Ended, GroupWeek, JournalEntry, Manifest, Session, WeekFigures};
 use crate::database::Position;
 use crate::tools::Notebook;
 use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};

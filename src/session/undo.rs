@@ -5,51 +5,14 @@
 
 use std::collections::BTreeSet;
 
-use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::act::Via;
 use super::changes::{Change, changes};
-use super::{JournalEntry, Session, ThisWeek};
+use super::this_week::Step;
+use super::trajectory::record::{Reversal, Via};
+use super::{JournalEntry, Session};
 use crate::tools::{Refusal, ToolId};
 use crate::world::settings::Settings;
-
-/// What a call does to earlier calls of its week.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Reversal {
-    /// It takes back the call of this line.
-    Undoes(u64),
-    /// It repeats what the call of this line took back.
-    Redoes(u64),
-}
-
-/// A call that changed settings, and the settings that reversing it restores.
-#[derive(Debug, Clone)]
-pub(super) struct Step {
-    /// Line of the call.
-    pub(super) seq: u64,
-    pub(super) tool: ToolId,
-    pub(super) restores: Settings,
-}
-
-impl ThisWeek {
-    /// Keeps what a setting call did, so that it can be reversed.
-    pub(super) fn keep(&mut self, call: Step, changed: bool, reversal: Option<Reversal>) {
-        if let Some(Reversal::Undoes(seq)) = reversal {
-            self.undo.retain(|step| step.seq < seq);
-        }
-        if !changed {
-            return;
-        }
-        match reversal {
-            Some(Reversal::Undoes(_)) => return self.redo.push(call),
-            Some(Reversal::Redoes(seq)) => self.redo.retain(|step| step.seq < seq),
-            None => self.redo.clear(),
-        }
-        self.undo.push(call);
-    }
-}
 
 /// Lines of the calls that were taken back. What redo repeated has a line of its own.
 pub fn undone_calls(journal: &[JournalEntry]) -> BTreeSet<u64> {

@@ -1,6 +1,8 @@
 //! The hidden state, for debug runs: what the player never sees.
 
 use super::Session;
+use super::mode::Mode;
+use crate::tools::Refusal;
 use crate::voice::judge::Judgement;
 use crate::world::customers::columns::Block;
 use crate::world::day::DayTrace;
@@ -20,6 +22,19 @@ pub struct Xray<'a> {
     trace: &'a DayTrace,
     called: &'a [LedgerEntry],
     judgements: &'a [Vec<Judgement>],
+}
+
+impl Session {
+    /// The hidden state; only in debug runs.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`.
+    pub fn xray(&self) -> Result<Xray<'_>, Refusal> {
+        if self.manifest.mode != Mode::Debug {
+            return Err(Refusal::new("not_in_this_mode", "hidden state is shown in debug runs only"));
+        }
+        Ok(Xray::new(self))
+    }
 }
 
 impl<'a> Xray<'a> {

@@ -10,7 +10,9 @@ use serde_json::{Map, Value};
 use toml::Table;
 
 use crate::notation::json_number;
-use crate::session::{Calculated, Consent, Ended, Mode, Parent, Reversal, Via};
+use crate::session::consent::Consent;
+use crate::session::mode::Mode;
+use crate::session::office::Calculated;
 use crate::tools::{Forecast, ToolId};
 
 /// What a line says.
@@ -82,6 +84,16 @@ pub struct Start {
     pub line_sums: bool,
 }
 
+/// Where a branch comes from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parent {
+    /// Run.
+    pub run: String,
+    /// Number of the last line that was copied.
+    pub seq: u64,
+}
+
 /// Number of the mechanics of runs whose first line names none.
 pub(crate) fn first_mechanics() -> u32 {
     1
@@ -112,6 +124,34 @@ pub enum Outcome {
     Accepted(Value),
     /// It was refused.
     Refused(RefusalRecord),
+}
+
+/// Where an action came from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Via {
+    /// A form of the console.
+    Form,
+    /// The palette of the console.
+    Palette,
+    /// A line of plain mode.
+    Plain,
+    /// The HTTP interface.
+    Http,
+    /// A policy.
+    Policy,
+    /// A stored script.
+    Script,
+}
+
+/// What a call does to earlier calls of its week.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Reversal {
+    /// It takes back the call of this line.
+    Undoes(u64),
+    /// It repeats what the call of this line took back.
+    Redoes(u64),
 }
 
 /// A refusal as a line has it.
@@ -283,6 +323,29 @@ pub struct Branch {
     /// The other run and its last line that was copied.
     #[serde(deserialize_with = "may_be_null")]
     pub from: Option<Parent>,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ended {
+    /// It reached its last day.
+    Horizon,
+    /// Cash fell below zero.
+    Bankruptcy,
+    /// Somebody gave it up.
+    Abandoned,
+}
+
+impl Ended {
+    /// Word as trajectories write it.
+    pub fn id(self) -> &'static str {
+        match self {
+            Ended::Horizon => "horizon",
+            Ended::Bankruptcy => "bankruptcy",
+            Ended::Abandoned => "abandoned",
+        }
+    }
 }
 
 /// The end of a run.

@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value, json};
 
-use super::Session;
-use super::trajectory::Record;
-use super::trajectory::record::Query;
-use super::witness::is_as_left;
 use crate::database::query::Limits;
 use crate::database::{Cell, Desk, Interrupt, Location, QueryError, Rows, Ticket, desk_of};
 use crate::notation::json_number;
+use crate::session::resume::witness::is_as_left;
+use crate::session::state::Session;
+use crate::session::trajectory::Record;
+use crate::session::trajectory::record::Query;
 use crate::tools::Refusal;
 
 impl Session {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::consent::ConsentText;
+use crate::session::folder::consent::ConsentText;
 
 use crate::database::ProjectionError;
 use crate::world::params::ParameterError;

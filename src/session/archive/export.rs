@@ -9,14 +9,14 @@ use flate2::write::GzEncoder;
 
 use super::seal::{SEAL_FORMAT, Seal, SealedFile};
 use super::workshop::Workshop;
-use super::{DATABASE, MANIFEST, MEMO, SEAL, TRAJECTORY, is_compressed};
+use crate::session::archive::{DATABASE, MANIFEST, MEMO, SEAL, TRAJECTORY, is_compressed};
 use crate::session::error::RunError;
-use crate::session::manifest::{Manifest, sync_folder};
-use crate::session::memo::notes_file;
-use crate::session::open::check_start;
+use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::play::memo::notes_file;
+use crate::session::resume::open::{Access, check_start};
+use crate::session::resume::witness::Witnesses;
+use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
-use crate::session::witness::Witnesses;
-use crate::session::{Access, Session};
 
 /// A run that was read, simulated again and found whole: ready to be sealed, and to be looked at.
 ///

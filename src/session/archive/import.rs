@@ -9,11 +9,11 @@ use flate2::read::MultiGzDecoder;
 
 use super::seal::{CopyError, SEAL_FORMAT, Seal, SealedFile, copy_hashed};
 use super::workshop::Workshop;
-use super::{DATABASE, FILES, MANIFEST, MEMO, SEAL, TRAJECTORY, is_run_name, refused};
+use crate::session::archive::{DATABASE, FILES, MANIFEST, MEMO, SEAL, TRAJECTORY, is_run_name, refused};
 use crate::session::error::RunError;
-use crate::session::manifest::{Manifest, sync_folder};
-use crate::session::open::check_start;
-use crate::session::runs::{all_run_folders, label_of, participant_folder};
+use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::folder::runs::{all_run_folders, label_of, participant_folder};
+use crate::session::resume::open::check_start;
 use crate::session::trajectory::Trajectory;
 
 /// What became of an archive.

@@ -27,7 +27,7 @@ pub use import::{Imported, import_run};
 pub use seal::{Seal, SealedFile};
 pub use workshop::close_workshops;
 
-use super::error::RunError;
+use crate::session::error::RunError;
 
 /// Files an archive may hold and the most bytes each may have: enough for any run, too few to fill a disk by surprise.
 const FILES: [(&str, u64); 5] =

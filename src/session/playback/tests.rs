@@ -4,11 +4,14 @@ use std::collections::BTreeMap;
 
 use serde_json::json;
 
-use super::*;
-use crate::session::record::{Call, Outcome};
-use crate::session::trajectory::Durability;
-use crate::session::{Configuration, Forecasts, NewRun, Storage, Via, verify};
-use crate::session::{Record, RecordView};
+use super::record_view::RecordView;
+use crate::session::figures::week::Forecasts;
+use crate::session::folder::configuration::Configuration;
+use crate::session::folder::create::{NewRun, Storage};
+use crate::session::playback::*;
+use crate::session::resume::verify::verify;
+use crate::session::trajectory::record::{Call, Outcome, Via};
+use crate::session::trajectory::{Durability, Record};
 
 /// A run that was recorded into a folder.
 pub(in crate::session) struct Recorded {
@@ -93,7 +96,7 @@ fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
     }
     assert_eq!(
         playback.session().ended(),
-        Some(crate::session::Ended::Horizon),
+        Some(crate::session::trajectory::record::Ended::Horizon),
         "the end comes with its week"
     );
     assert!(playback.at_end());
@@ -220,7 +223,7 @@ fn an_unfinished_baseline_is_not_taken_over() {
     let playback = Playback::open(&run.folder).expect("it opens");
     assert!(playback.place().no_branch.expect("a reason").contains("end it first"));
     assert_eq!(playback.take_over(Mode::Sandbox).err().expect("refused").code, "not_in_this_mode");
-    crate::session::end_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
+    crate::session::folder::runs::end_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
     let playback = Playback::open(&run.folder).expect("it opens");
     assert_eq!(playback.take_over(Mode::Sandbox).expect("a branch").day(), 0);
 }

@@ -7,9 +7,9 @@ use serde_json::{Map, Value};
 use time::OffsetDateTime;
 use time::format_description::well_known::Rfc3339;
 
-use super::DOES_NOT_FOLLOW;
 use super::record::Record;
 use crate::database::Position;
+use crate::session::trajectory::DOES_NOT_FOLLOW;
 
 /// A line that was read back.
 #[derive(Debug, Clone, PartialEq)]

@@ -17,7 +17,7 @@ pub(super) use medium::Medium;
 pub use record::Record;
 pub use writer::{Durability, TrajectoryWriter};
 
-use super::error::RunError;
+use crate::session::error::RunError;
 use line::line_hash;
 
 /// A trajectory that was read.
@@ -104,9 +104,10 @@ pub(super) const BRANCH_THEM: &str = ": `novamind runs rescue` makes a branch of
 
 #[cfg(test)]
 mod tests {
-    use super::record::{Memo, Query, View};
     use super::*;
-    use crate::session::{Configuration, NewRun};
+    use crate::session::folder::configuration::Configuration;
+    use crate::session::folder::create::NewRun;
+    use crate::session::trajectory::record::{Memo, Query, View};
     use serde_json::{Value, json};
     use std::path::PathBuf;
 
@@ -115,11 +116,11 @@ mod tests {
     }
 
     fn start() -> Record {
-        let manifest = crate::session::Session::create(NewRun::default(), &Configuration::shipped())
+        let manifest = crate::session::state::Session::create(NewRun::default(), &Configuration::shipped())
             .expect("a run")
             .manifest()
             .clone();
-        crate::session::create::start_of(&manifest)
+        crate::session::folder::create::start_of(&manifest)
     }
 
     /// A start, and memos after it.

@@ -10,9 +10,9 @@ use serde_json::{Map, Value};
 use toml::Table;
 
 use crate::notation::json_number;
-use crate::session::consent::Consent;
-use crate::session::mode::Mode;
-use crate::session::office::Calculated;
+use crate::session::folder::consent::Consent;
+use crate::session::folder::mode::Mode;
+use crate::session::play::office::Calculated;
 use crate::tools::{Forecast, ToolId};
 
 /// What a line says.

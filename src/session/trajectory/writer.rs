@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
 
-use super::Trajectory;
 use super::line::{Line, line_hash, now, with_sum};
 use super::medium::Medium;
 use super::record::Record;
 use crate::database::Position;
 use crate::session::error::RunError;
+use crate::session::trajectory::Trajectory;
 
 /// When a line has to be on the disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,320 @@
+//! The weekly dashboard as text: the one agents read, with what they can find out by queries.
+
+use std::fmt::Write;
+
+use super::week::{WeekFigures, week_of};
+use crate::notation::{dollars, grouped, percent, released_dollars, signed_dollars};
+use crate::session::play::office::Calculated;
+use crate::world::identifiers::{ByPlan, Group, Plan};
+use crate::world::market::social::own::OwnPost;
+use crate::world::params::Params;
+use crate::world::state::World;
+
+/// Quality delivered to a known group.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeliveredQuality {
+    /// Group.
+    pub group: Group,
+    /// By plan, with the model in force.
+    pub by_plan: ByPlan<f64>,
+    /// What targeted development has added.
+    pub group_bonus: f64,
+}
+
+/// Quality delivered to every known group, in text order of their names.
+pub fn delivered_quality(world: &World, params: &Params) -> Vec<DeliveredQuality> {
+    let mut known: Vec<Group> = Group::all().filter(|group| world.market.is_known(*group)).collect();
+    known.sort_by_key(|group| group.id());
+    known
+        .into_iter()
+        .map(|group| DeliveredQuality {
+            group,
+            by_plan: ByPlan::from_fn(|plan| {
+                let multiplier = params.model(world.settings.core.tiers[plan]).quality_multiplier;
+                world.product.quality(group, params) * multiplier
+            }),
+            group_bonus: world.product.group_bonus[group],
+        })
+        .collect()
+}
+
+/// Leads that wait for an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Waiting {
+    /// Threads.
+    pub threads: u32,
+    /// Days left until the first of them dies unless it is answered now.
+    pub days_left: u32,
+}
+
+/// Builds the dashboard. `week` holds the figures of the week that just ran, none before the first.
+pub fn build(
+    world: &World,
+    params: &Params,
+    week: Option<&WeekFigures>,
+    stocks: &WeekFigures,
+    calculated: &[Calculated],
+    waiting: Waiting,
+) -> String {
+    let mut text = format!("=== Week {} (day {}) ===\n", week_of(world.day), world.day);
+    head(&mut text, stocks);
+    if let Some(week) = week {
+        week_block(&mut text, week);
+    }
+    settings_block(&mut text, world);
+    quality_block(&mut text, world, params);
+    calculations_block(&mut text, calculated);
+    posts_block(&mut text, world, params);
+    inbox_block(&mut text, week, waiting);
+    text
+}
+
+fn head(text: &mut String, stocks: &WeekFigures) {
+    let _ = writeln!(
+        text,
+        "Cash: {} | Individual Subscribers: {}",
+        released_dollars(stocks.cash),
+        stocks.individual_subscribers
+    );
+    let _ = writeln!(
+        text,
+        "Enterprise Subscribed Seats: {} | Open Issues: {}",
+        stocks.enterprise_seats, stocks.open_issues
+    );
+}
+
+fn week_block(text: &mut String, week: &WeekFigures) {
+    let overload = if week.overload_peak > 0.0 { percent(week.overload_peak, 1) } else { "None".to_owned() };
+    let outage =
+        if week.outage { format!("yes ({} minutes)", week.downtime_minutes) } else { "no".to_owned() };
+    let _ = writeln!(text, "\n--- This week ---");
+    let _ = writeln!(
+        text,
+        "Cash Change: {} | Recurring Revenue: {}",
+        signed_dollars(week.cash_change),
+        released_dollars(week.recurring_revenue)
+    );
+    let _ = writeln!(
+        text,
+        "Payments: {} | Running Costs: {}",
+        released_dollars(week.payments),
+        released_dollars(week.costs)
+    );
+    let _ = writeln!(text, "Usage: {} units", grouped(week.usage as f64, 0));
+    let _ = writeln!(
+        text,
+        "New Individual Leads: {} | New Enterprise Leads: {}",
+        week.new_individual_leads, week.new_enterprise_leads
+    );
+    let _ = writeln!(
+        text,
+        "New Individual Subscribers: {} | New Enterprise Subscribed Seats: {}",
+        week.new_individual_subscribers, week.new_enterprise_seats
+    );
+    let _ = writeln!(
+        text,
+        "Cancellations: {} | Enterprise Lost: {} companies, {} seats",
+        week.cancellations, week.companies_lost, week.seats_lost
+    );
+    let _ = writeln!(text, "Upgrades: {} | Downgrades: {}", week.upgrades, week.downgrades);
+    let _ = writeln!(text, "Overload (peak): {overload} | Outage: {outage}");
+    let _ = writeln!(
+        text,
+        "P95 Latency (peak): {} ms | Error Rate (peak): {}",
+        grouped(week.p95_ms_peak, 0),
+        percent(week.error_rate_peak, 2)
+    );
+}
+
+fn settings_block(text: &mut String, world: &World) {
+    let core = &world.settings.core;
+    let list =
+        |value: &dyn Fn(Plan) -> String| Plan::ALL.map(|plan| format!("{plan} {}", value(plan))).join(" | ");
+    let _ = writeln!(text, "\n--- Settings ---");
+    let _ = writeln!(text, "Prices: {}", list(&|plan| dollars(core.prices[plan])));
+    let _ = writeln!(text, "Model Tiers: {}", list(&|plan| core.tiers[plan].to_string()));
+    let _ = writeln!(text, "Quotas: {}", list(&|plan| grouped(core.quotas[plan].units(), 0)));
+    let _ = writeln!(text, "Capacity Tier: {}", core.capacity_tier);
+    let _ = writeln!(text, "Ops: {}/day | Dev: {}/day", dollars(core.operations), dollars(core.development));
+    let _ = writeln!(text, "Targeted spend and advertising: see config_overrides");
+}
+
+fn quality_block(text: &mut String, world: &World, params: &Params) {
+    let core = &world.settings.core;
+    let _ = writeln!(
+        text,
+        "\n--- Delivered quality (base {:.2}, global bonus {:.4}) ---",
+        params.quality.base_product_quality, world.product.shared_bonus
+    );
+    let caption = |plan: Plan| format!("{plan} (T{})", core.tiers[plan]);
+    let [a, b, c] = Plan::ALL.map(caption);
+    let _ = writeln!(text, "{:<8}{a:<14}{b:<14}{c:<14}Group bonus", "Group");
+    for row in delivered_quality(world, params) {
+        let [a, b, c] = row.by_plan.0.map(|quality| format!("{quality:.4}"));
+        let bonus = if row.group_bonus > 0.0 { format!("+{:.4}", row.group_bonus) } else { "0".to_owned() };
+        let _ = writeln!(text, "{:<8}{a:<14}{b:<14}{c:<14}{bonus}", row.group.id());
+    }
+}
+
+fn calculations_block(text: &mut String, calculated: &[Calculated]) {
+    if calculated.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "\n--- Weekly Calculations ---");
+    for Calculated { name, output } in calculated {
+        let _ = writeln!(text, "{name}:");
+        output.lines().for_each(|line| {
+            let _ = writeln!(text, "  {line}");
+        });
+    }
+}
+
+/// What became of the posts of the week that just ran.
+fn posts_block(text: &mut String, world: &World, params: &Params) {
+    let week = params.run.days_per_week;
+    let own = world.market.social.own.iter();
+    let recent: Vec<&OwnPost> =
+        own.filter(|post| post.day < world.day && post.day + week >= world.day).collect();
+    if recent.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "\n--- Your posts ---");
+    for post in recent {
+        let shown = params.limits.dashboard_post_preview_chars as usize;
+        let preview: String = post.content.chars().take(shown).collect();
+        let comments: Vec<String> = post.comments.iter().map(u32::to_string).collect();
+        let numbers = if comments.is_empty() { String::new() } else { format!(" ({})", comments.join(", ")) };
+        let views = grouped(post.views as f64, 0);
+        let _ = writeln!(
+            text,
+            "Day {}: {views} views, {} comments{numbers} | {preview}",
+            post.day,
+            comments.len()
+        );
+    }
+}
+
+fn inbox_block(text: &mut String, week: Option<&WeekFigures>, waiting: Waiting) {
+    let _ = writeln!(text, "\n--- Inbox ---");
+    let mut lines = 0;
+    if let Some(week) = week.filter(|week| week.threads_opened > 0) {
+        let _ =
+            writeln!(text, "- {} new enterprise leads ({} seats)", week.threads_opened, week.thread_seats);
+        lines += 1;
+    }
+    if let Some(week) = week.filter(|week| week.replies > 0) {
+        let _ = writeln!(text, "- {} new replies", week.replies);
+        lines += 1;
+    }
+    if waiting.threads > 0 {
+        let _ = writeln!(
+            text,
+            "- {} awaiting your response; the first is lost in {} {} unless it is answered now",
+            waiting.threads,
+            waiting.days_left,
+            if waiting.days_left == 1 { "day" } else { "days" }
+        );
+        lines += 1;
+    }
+    if lines == 0 {
+        let _ = writeln!(text, "Nothing new");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::events::Facts;
+
+    fn world() -> (World, Params) {
+        let params = Params::shipped();
+        (World::open(500, 1_000_000.0, &params, &mut Facts::default()), params)
+    }
+
+    #[test]
+    fn day_0_shows_stocks_settings_and_quality() {
+        let (world, params) = world();
+        let stocks = WeekFigures { cash: 1_000_000.0, ..WeekFigures::default() };
+        let text = build(&world, &params, None, &stocks, &[], Waiting::default());
+        let expected = "=== Week 0 (day 0) ===\n\
+            Cash: $1,000,000 | Individual Subscribers: 0\n\
+            Enterprise Subscribed Seats: 0 | Open Issues: 0\n\n\
+            --- Settings ---\n\
+            Prices: A $0 | B $0 | C $0\n\
+            Model Tiers: A 1 | B 1 | C 1\n\
+            Quotas: A 0 | B 0 | C 0\n\
+            Capacity Tier: 0\n\
+            Ops: $0/day | Dev: $0/day\n\
+            Targeted spend and advertising: see config_overrides\n\n\
+            --- Delivered quality (base 0.20, global bonus 0.0000) ---\n\
+            Group   A (T1)        B (T1)        C (T1)        Group bonus\n\
+            E1      0.1200        0.1200        0.1200        0\n\
+            E2      0.1200        0.1200        0.1200        0\n\
+            E3      0.1200        0.1200        0.1200        0\n\
+            S1      0.1200        0.1200        0.1200        0\n\
+            S2      0.1200        0.1200        0.1200        0\n\
+            S3      0.1200        0.1200        0.1200        0\n\n\
+            --- Inbox ---\n\
+            Nothing new\n";
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn quality_is_shown_for_each_group_and_plan() {
+        let (mut world, params) = world();
+        world.settings.core.tiers = ByPlan([1, 2, 3]);
+        world.product.shared_bonus = 0.02257;
+        world.product.group_bonus[Group::at(0).expect("S1")] = 0.27773;
+        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
+        assert!(text.contains("S1      0.3002        0.3752        0.4503        +0.2777"), "{text}");
+        assert!(text.contains("S2      0.1335        0.1669        0.2003        0\n"), "{text}");
+        assert!(text.contains("global bonus 0.0226"), "{text}");
+    }
+
+    #[test]
+    fn posts_of_the_week_show_what_became_of_them() {
+        let (mut world, params) = world();
+        let own = &mut world.market.social.own;
+        own.push(OwnPost::new(0, "An old one.", None));
+        own.push(OwnPost { views: 1840, comments: vec![91, 92], ..OwnPost::new(7, "y".repeat(90), None) });
+        world.day = 14;
+        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
+        let line = format!("Day 7: 1,840 views, 2 comments (91, 92) | {}\n", "y".repeat(80));
+        assert!(text.contains(&line) && !text.contains("An old one"), "{text}");
+        world.day = 7;
+        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
+        assert!(text.contains("An old one.") && !text.contains("1,840"), "{text}");
+    }
+
+    #[test]
+    fn a_week_shows_peaks_and_losses() {
+        let (world, params) = world();
+        let week = WeekFigures {
+            overload_peak: 0.12345,
+            outage: true,
+            downtime_minutes: 40,
+            p95_ms_peak: 250.5,
+            error_rate_peak: 0.012345,
+            cash_change: -2095.4,
+            companies_lost: 1,
+            seats_lost: 120,
+            threads_opened: 2,
+            thread_seats: 512,
+            replies: 3,
+            ..WeekFigures::default()
+        };
+        let waiting = Waiting { threads: 2, days_left: 4 };
+        let text = build(&world, &params, Some(&week), &week, &[], waiting);
+        for part in [
+            "Overload (peak): 12.3% | Outage: yes (40 minutes)",
+            "P95 Latency (peak): 250 ms | Error Rate (peak): 1.23%",
+            "Cash Change: -$2,095",
+            "Enterprise Lost: 1 companies, 120 seats",
+            "- 2 new enterprise leads (512 seats)",
+            "- 3 new replies",
+            "- 2 awaiting your response; the first is lost in 4 days",
+        ] {
+            assert!(text.contains(part), "{part} is missing in {text}");
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! What studies say of a group, as numbers: the answer of get_group_insights, without its words.
+
+use serde_json::{Value, json};
+
+use crate::session::state::Session;
+use crate::tools::ToolId;
+use crate::world::identifiers::Group;
+
+/// Estimates of a group. The truth at the time of the study lies within a relative error of each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimates {
+    /// Group.
+    pub group: Group,
+    /// Level of knowledge, 1..=5.
+    pub level: u8,
+    /// Largest relative error, 0..1.
+    pub noise: f64,
+    /// Mean budget, dollars a month, of companies per seat.
+    pub budget: f64,
+    /// Mean use, units a day, of companies per seat.
+    pub usage: f64,
+    /// Mean of the least quality a customer accepts.
+    pub floor: f64,
+    /// Seats of the smallest and the largest company; one of individuals.
+    pub seats: (f64, f64),
+}
+
+impl Estimates {
+    /// Units a day that the smallest account uses: all seats of a company share one quota.
+    pub fn account_usage(&self) -> f64 {
+        self.usage * self.seats.0
+    }
+
+    /// Least and greatest truth behind an estimated value.
+    pub fn range(&self, value: f64) -> (f64, f64) {
+        (value / (1.0 + self.noise), value / (1.0 - self.noise).max(f64::EPSILON))
+    }
+}
+
+/// The range of seats that a study states, one seat where it states none.
+fn seats(answer: &Value) -> (f64, f64) {
+    let range = answer.get("estimates").and_then(|estimates| estimates.get("seat_range"));
+    let end = |at: usize| range.and_then(|range| range.get(at)).and_then(Value::as_f64).unwrap_or(1.0);
+    (end(0), end(1))
+}
+
+impl Session {
+    /// Estimates of every known group, in their fixed order; not recorded.
+    pub fn estimates(&self) -> Vec<Estimates> {
+        let terms = self.terms();
+        let of = |group: Group| {
+            let answer = self.look_up(ToolId::GetGroupInsights, &json!({ "group_id": group.id() })).ok()?;
+            let level = answer.get("info_level").and_then(Value::as_u64)? as u8;
+            let estimate = |name: &str| answer.get("estimates")?.get(name)?.as_f64();
+            Some(Estimates {
+                group,
+                level,
+                noise: terms.level(level)?.noise,
+                budget: estimate("willingness_to_pay")?,
+                usage: estimate("usage_volume")?,
+                floor: estimate("quality_floor_q_min")?,
+                seats: seats(&answer),
+            })
+        };
+        Group::all().filter(|group| self.world.market.is_known(*group)).filter_map(of).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::folder::configuration::Configuration;
+    use crate::session::folder::create::{NewRun, Storage};
+
+    #[test]
+    fn estimates_are_those_of_the_tool_and_their_range_holds_the_mean() {
+        let new = NewRun { storage: Storage::Memory, ..NewRun::default() };
+        let session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let all = session.estimates();
+        assert_eq!(all.len(), 6);
+        let s1 = all[0];
+        let answer = session.look_up("get_group_insights", &json!({ "group_id": "S1" })).expect("an answer");
+        assert_eq!((s1.group.id(), s1.level, s1.noise), ("S1", 1, 0.65));
+        assert_eq!(Some(s1.budget), answer["estimates"]["willingness_to_pay"].as_f64());
+        let mean = session.params().group(s1.group).c_max_mean;
+        let (least, most) = s1.range(s1.budget);
+        assert!(least <= mean + 0.01 && mean <= most + 0.01, "{least} {mean} {most}");
+    }
+}

@@ -1,0 +1,44 @@
+//! What was done and why: every confirmed action, week by week, and how the forecasts turned out.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::week::WeekFigures;
+use crate::session::trajectory::record::Reversal;
+use crate::tools::{Forecast, ToolId};
+
+/// A confirmed action or week.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum JournalEntry {
+    /// A tool was called.
+    Call {
+        /// Its line in the trajectory.
+        seq: u64,
+        /// Decision day.
+        day: u32,
+        /// Tool.
+        tool: ToolId,
+        /// Arguments.
+        args: Value,
+        /// What it did to an earlier call.
+        #[serde(flatten)]
+        reversal: Option<Reversal>,
+    },
+    /// A week was let pass.
+    Advance {
+        /// Decision day.
+        day: u32,
+        /// Why.
+        rationale: String,
+        /// Forecasts of cash.
+        forecasts: Vec<Forecast>,
+        /// Which of them the naive projection filled in.
+        filled_naively: [bool; 4],
+    },
+    /// A week, or single days, ran.
+    Week {
+        /// Its figures.
+        figures: WeekFigures,
+    },
+}

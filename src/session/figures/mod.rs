@@ -1,0 +1,16 @@
+//! What a player sees of a run, in figures: at a glance, by week and by group, what was decided, and what is expected.
+
+pub(in crate::session) mod booked;
+pub(in crate::session) mod changes;
+pub(in crate::session) mod dashboard;
+pub(in crate::session) mod estimates;
+pub(in crate::session) mod groups;
+pub(in crate::session) mod journal;
+pub(in crate::session) mod notices;
+pub(in crate::session) mod observe;
+pub(in crate::session) mod pace;
+pub(in crate::session) mod scored_forecast;
+pub(in crate::session) mod setting;
+pub(in crate::session) mod terms;
+pub(in crate::session) mod week;
+pub(in crate::session) mod xray;

@@ -1,0 +1,84 @@
+//! The inbox in words: each notice names its company where the day's facts tell which it is.
+
+use crate::session::state::Session;
+use crate::voice::{self, notices::Party};
+use crate::world::events::{EndCause, Notice, SubscriptionStatus};
+
+impl Session {
+    /// Texts of the notices of the last day, or of the last call.
+    pub(in crate::session) fn notice_texts(&self) -> Vec<String> {
+        let mut parties = Parties::of(self);
+        self.facts.notices.iter().map(|notice| self.notice_text(notice, parties.next(notice))).collect()
+    }
+
+    fn notice_text(&self, notice: &Notice, party: Option<Party>) -> String {
+        let Notice::OwnPostSeen(reaction) = notice else { return voice::notices::notice(notice, party) };
+        let own = self.world.market.social.own.get(reaction.post as usize - 1);
+        let content = own.map_or("", |post| post.content.as_str());
+        voice::notices::reaction_to(content, reaction, &self.params.ceo_posts)
+    }
+}
+
+/// Companies of a day's notices, kind by kind in the order of the notices.
+struct Parties {
+    asking: std::vec::IntoIter<Party>,
+    silent: std::vec::IntoIter<Party>,
+    unanswered: std::vec::IntoIter<Party>,
+    agreed: std::vec::IntoIter<Party>,
+    /// Days after which an unanswered lead is lost; later notices repeat an earlier loss.
+    patience: u32,
+}
+
+impl Parties {
+    fn of(session: &Session) -> Parties {
+        let (facts, world) = (&session.facts, &session.world);
+        let patience = session.params.enterprise.agent_response_timeout_days;
+        let notices = |fits: &dyn Fn(&Notice) -> bool| facts.notices.iter().filter(|own| fits(own)).count();
+        // A list that is not one to one with its notices names nobody.
+        let only = |parties: Vec<Party>, count: usize| {
+            if parties.len() == count { parties.into_iter() } else { Vec::new().into_iter() }
+        };
+        let ended = |cause: EndCause| -> Vec<Party> {
+            let of_cause = facts.endings.iter().filter(|ending| ending.cause == cause);
+            of_cause
+                .map(|ending| Party { customer: ending.customer, group: ending.group, seats: ending.seats })
+                .collect()
+        };
+        let group = |customer: u32| world.enterprise.company(customer).map(|company| company.group);
+        let asking: Vec<Party> = facts
+            .openings
+            .iter()
+            .filter(|opening| opening.status == SubscriptionStatus::Lead)
+            .filter_map(|own| {
+                Some(Party { customer: own.customer, group: group(own.customer)?, seats: own.seats })
+            })
+            .collect();
+        let agreed: Vec<Party> = facts
+            .deals
+            .iter()
+            .filter_map(|deal| {
+                Some(Party { customer: deal.customer, group: group(deal.customer)?, seats: deal.seats })
+            })
+            .collect();
+        let first =
+            |notice: &Notice| matches!(notice, Notice::LeadLostByTimeout { days } if *days == patience);
+        Parties {
+            asking: only(asking, notices(&|own| *own == Notice::EnterpriseLead)),
+            silent: only(ended(EndCause::LeadSilent), notices(&|own| *own == Notice::LeadSilent)),
+            unanswered: only(ended(EndCause::LeadTimeout), notices(&first)),
+            agreed: only(agreed, notices(&|own| matches!(own, Notice::DealWon { .. }))),
+            patience,
+        }
+    }
+
+    /// The company of the next notice.
+    fn next(&mut self, notice: &Notice) -> Option<Party> {
+        match notice {
+            Notice::EnterpriseLead => self.asking.next(),
+            Notice::LeadSilent => self.silent.next(),
+            Notice::LeadLostByTimeout { days } if *days == self.patience => self.unanswered.next(),
+            Notice::DealWon { .. } => self.agreed.next(),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! What a player can see at a glance.
+
+use serde::Serialize;
+
+use super::booked::Booked;
+use super::changes::Change;
+use super::dashboard::{self, DeliveredQuality, Waiting, delivered_quality};
+use super::pace::Pace;
+use super::week::{WeekFigures, week_of};
+use crate::session::folder::mode::Mode;
+use crate::session::state::Session;
+use crate::session::trajectory::record::Ended;
+use crate::world::day::closing_figures;
+use crate::world::identifiers::Group;
+
+/// The company at a glance.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Observation {
+    /// Run.
+    pub run: String,
+    /// Mode.
+    pub mode: Mode,
+    /// Seed.
+    pub seed: u64,
+    /// Scenario.
+    pub scenario: String,
+    /// The parameters are others than those of the shipped scenario of that name.
+    pub has_own_parameters: bool,
+    /// Who plays.
+    pub participant: Option<String>,
+    /// Last simulated day.
+    pub day: u32,
+    /// Last day of the run.
+    pub last_day: u32,
+    /// Week that holds the day.
+    pub week: u32,
+    /// Cash, dollars.
+    pub cash: f64,
+    /// Cash on day 0, before anything was bought, dollars.
+    pub starting_cash: f64,
+    /// Change of cash over the last week, from the end of the week before to its own, dollars; 0 before the first.
+    pub cash_change: f64,
+    /// What was booked since the end of the last week: purchases, and days of a week that was begun.
+    pub booked_since: Booked,
+    /// How money goes on.
+    pub pace: Pace,
+    /// What the settings at the end of the last week committed to, dollars a day.
+    pub committed_before: f64,
+    /// Weeks until cash is gone at this pace; none where it lasts to the last day.
+    pub runway_weeks: Option<f64>,
+    /// Active subscriptions of individuals.
+    pub subscribers: u32,
+    /// Active companies.
+    pub companies: u32,
+    /// Seats of active companies.
+    pub seats: u32,
+    /// Groups the company knows, in their fixed order.
+    pub known_groups: Vec<Group>,
+    /// How the run ended, if it did.
+    pub ended: Option<Ended>,
+    /// Score of a run that is over.
+    pub score: Option<f64>,
+    /// Figures of the last week, none before the first.
+    pub last_week: Option<WeekFigures>,
+    /// The dashboard of the last week, or a fresh one before the first.
+    pub dashboard: String,
+    /// Settings changed since the last week.
+    pub changes: Vec<Change>,
+    /// Purchases since the last week, in words.
+    pub purchases: Vec<String>,
+    /// Threads that wait for an answer.
+    pub waiting: Vec<WaitingThread>,
+    /// R&D projects that run.
+    pub running_research: u32,
+}
+
+/// A thread that waits for an answer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WaitingThread {
+    /// Number of the thread.
+    pub thread: u32,
+    /// The company.
+    pub customer: u32,
+    /// Its group.
+    pub group: &'static str,
+    /// Whole seats.
+    pub seats: u32,
+    /// How the thread began.
+    pub kind: &'static str,
+    /// Number of its last turn.
+    pub turn: u32,
+    /// Turns of the player in it.
+    pub own_turns: u32,
+    /// Price that the company named last, dollars a month and seat.
+    pub asked: Option<f64>,
+    /// Days left before it is lost.
+    pub days_left: u32,
+}
+
+impl Observation {
+    /// Whole weeks that cash lasts at this pace; none where it lasts to the last day.
+    pub fn weeks_of_cash(&self) -> Option<u32> {
+        self.runway_weeks.map(|weeks| weeks as u32)
+    }
+}
+
+impl Session {
+    /// The company at a glance.
+    pub fn observe(&self) -> Observation {
+        let (closing, pace) = (closing_figures(self.world()), self.pace());
+        Observation {
+            run: self.manifest.id.clone(),
+            mode: self.manifest.mode,
+            seed: self.manifest.seed,
+            scenario: self.manifest.scenario.clone(),
+            has_own_parameters: *self.own_parameters.get_or_init(|| self.manifest.has_own_parameters()),
+            participant: self.manifest.participant.clone(),
+            day: self.world.day,
+            last_day: self.manifest.days,
+            week: week_of(self.world.day),
+            cash: self.world.finance.cash,
+            starting_cash: self.manifest.cash,
+            cash_change: self.cash_change(),
+            booked_since: self.booked_since(),
+            pace,
+            committed_before: self.daily_cost(&self.this_week.settings),
+            runway_weeks: self.runway_weeks(&pace),
+            subscribers: closing.individual_subscribers,
+            companies: self.companies(),
+            seats: closing.enterprise_seats,
+            known_groups: Group::all().filter(|group| self.world.market.is_known(*group)).collect(),
+            ended: self.ended,
+            score: self.score(),
+            last_week: self.weeks.last().copied(),
+            dashboard: self.dashboard(),
+            changes: self.changes(),
+            purchases: self.this_week.done.clone(),
+            waiting: self.waiting(),
+            running_research: self.running_research(),
+        }
+    }
+
+    /// The weekly dashboard as text: as it was when the last days had run, whatever was set since. Before the first days
+    /// it is built of what is.
+    pub fn dashboard(&self) -> String {
+        self.last_dashboard.clone().unwrap_or_else(|| self.build_dashboard(self.open_issues()))
+    }
+
+    /// The dashboard of the company as it is.
+    pub(in crate::session) fn build_dashboard(&self, open_issues: u32) -> String {
+        let closing = closing_figures(self.world());
+        let stocks = WeekFigures {
+            cash: closing.cash,
+            individual_subscribers: closing.individual_subscribers,
+            enterprise_seats: closing.enterprise_seats,
+            open_issues,
+            ..WeekFigures::default()
+        };
+        let waiting = self.waiting();
+        let waiting = Waiting {
+            threads: waiting.len() as u32,
+            days_left: waiting.iter().map(|thread| thread.days_left).min().unwrap_or(0),
+        };
+        let week = if self.running_week.days_run > 0 { Some(&self.running_week) } else { self.weeks.last() };
+        dashboard::build(&self.world, &self.params, week, &stocks, &self.calculated, waiting)
+    }
+
+    /// Quality delivered to every known group, as the dashboard shows it.
+    pub fn delivered_quality(&self) -> Vec<DeliveredQuality> {
+        delivered_quality(&self.world, &self.params)
+    }
+
+    /// Quality before any improvement, and what development has added for everybody.
+    pub fn quality_base(&self) -> (f64, f64) {
+        (self.params.quality.base_product_quality, self.world.product.shared_bonus)
+    }
+
+    /// Active subscribers with an open issue.
+    pub(in crate::session) fn open_issues(&self) -> u32 {
+        let open = |days: &&u32| **days > 0;
+        self.world
+            .customers
+            .blocks()
+            .map(|(_, block)| block.open_issue_days.iter().filter(open).count() as u32)
+            .sum()
+    }
+
+    /// Threads that wait for an answer, the first to be lost first.
+    fn waiting(&self) -> Vec<WaitingThread> {
+        let patience = self.params.enterprise.agent_response_timeout_days;
+        let enterprise = &self.world.enterprise;
+        let threads = enterprise.threads.iter().filter(|thread| thread.awaits_agent());
+        let waiting = threads.map(|thread| {
+            let company = enterprise.company(thread.customer);
+            let row = company.and_then(|company| company.row(&self.world.customers));
+            WaitingThread {
+                thread: thread.number,
+                customer: thread.customer,
+                group: thread.group.id(),
+                seats: row.map_or(1, |row| row.seats as u32),
+                kind: thread.kind.id(),
+                turn: thread.last().number,
+                own_turns: thread.agent_turns(),
+                asked: thread.asked(),
+                days_left: (thread.last().day + patience).saturating_sub(self.world.day),
+            }
+        });
+        let mut waiting: Vec<WaitingThread> = waiting.collect();
+        waiting.sort_by_key(|thread| (thread.days_left, std::cmp::Reverse(thread.seats), thread.thread));
+        waiting
+    }
+
+    fn companies(&self) -> u32 {
+        let enterprise = Group::all().filter(|group| group.is_enterprise());
+        enterprise.map(|group| self.world.customers.groups[group].active()).sum()
+    }
+
+    fn running_research(&self) -> u32 {
+        self.world.product.research.iter().filter(|project| project.completed_day.is_none()).count() as u32
+    }
+
+    fn cash_change(&self) -> f64 {
+        let week = if self.running_week.days_run > 0 { Some(&self.running_week) } else { self.weeks.last() };
+        week.map_or(0.0, |week| week.cash_change)
+    }
+
+    fn runway_weeks(&self, pace: &Pace) -> Option<f64> {
+        let left = f64::from(self.manifest.days.saturating_sub(self.world.day));
+        pace.runway_weeks(self.world.finance.cash).filter(|weeks| weeks * 7.0 < left)
+    }
+
+    fn booked_since(&self) -> Booked {
+        let mut booked = self.running_week.booked;
+        self.called.iter().for_each(|entry| booked.add(entry.category, entry.amount));
+        booked
+    }
+}

@@ -1,0 +1,168 @@
+//! Forecasts that were filed, and what came of them: the one place that knows when a forecast is due, whether its
+//! interval held, and how far it missed.
+
+use serde::Serialize;
+
+use super::journal::JournalEntry;
+use crate::tools::Forecast;
+
+/// A forecast of cash that was filed, and what came if its day has come.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ScoredForecast {
+    /// What was said.
+    #[serde(flatten)]
+    pub forecast: Forecast,
+    /// Day on which it was filed.
+    #[serde(skip)]
+    pub day: u32,
+    /// What came, dollars; none before its day.
+    pub outcome: Option<f64>,
+}
+
+/// Where an outcome lies beside an interval. The ends of an interval belong to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Below its lower end.
+    Below,
+    /// In it.
+    Inside,
+    /// Above its upper end.
+    Above,
+}
+
+impl Verdict {
+    /// In a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::Below => "below",
+            Verdict::Inside => "inside",
+            Verdict::Above => "above",
+        }
+    }
+}
+
+impl ScoredForecast {
+    /// A forecast that was filed on a day. `cash_by_day` is cash at the end of each day, day 0 first.
+    pub fn of(day: u32, forecast: &Forecast, cash_by_day: &[f64]) -> ScoredForecast {
+        let scored = ScoredForecast { forecast: *forecast, day, outcome: None };
+        ScoredForecast { outcome: cash_by_day.get(scored.due() as usize).copied(), ..scored }
+    }
+
+    /// The day it speaks of.
+    pub fn due(&self) -> u32 {
+        self.day.saturating_add(self.forecast.horizon_days)
+    }
+
+    /// Where the outcome lies; none before its day.
+    pub fn verdict(&self) -> Option<Verdict> {
+        let outcome = self.outcome?;
+        Some(if outcome < self.forecast.lower {
+            Verdict::Below
+        } else if outcome > self.forecast.upper {
+            Verdict::Above
+        } else {
+            Verdict::Inside
+        })
+    }
+
+    /// Whether the interval held what came; not before its day.
+    pub fn is_inside(&self) -> bool {
+        self.verdict() == Some(Verdict::Inside)
+    }
+
+    /// How far the point was off, as a share of what came, or of a dollar where less than that came; positive where the
+    /// point was above it.
+    pub fn error(&self) -> Option<f64> {
+        self.outcome.map(|outcome| (self.forecast.point - outcome) / size(outcome))
+    }
+
+    /// How wide the interval was, as a share of what came.
+    pub fn sharpness(&self) -> Option<f64> {
+        self.outcome.map(|outcome| (self.forecast.upper - self.forecast.lower) / size(outcome))
+    }
+}
+
+fn size(outcome: f64) -> f64 {
+    outcome.abs().max(1.0)
+}
+
+/// Every forecast that was filed, in the order of filing. `cash_by_day` is cash at the end of each day, day 0 first.
+pub fn filed_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ScoredForecast> {
+    let mut all = Vec::new();
+    for entry in journal {
+        let JournalEntry::Advance { day, forecasts, .. } = entry else { continue };
+        all.extend(forecasts.iter().map(|forecast| ScoredForecast::of(*day, forecast, cash_by_day)));
+    }
+    all
+}
+
+/// How the forecasts of a horizon did.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ForecastScore {
+    /// Days ahead.
+    pub horizon_days: u32,
+    /// Forecasts whose day has come.
+    pub scored: u32,
+    /// Of them, those whose interval held the outcome.
+    pub covered: u32,
+    /// Mean distance of the point from the outcome, as a share of it.
+    pub mean_error: f64,
+    /// Mean width of the interval, as a share of the outcome.
+    pub mean_sharpness: f64,
+}
+
+impl ForecastScore {
+    /// The score of those of a horizon among all that were filed.
+    pub fn of(horizon_days: u32, filed: &[ScoredForecast]) -> ForecastScore {
+        let due = filed.iter().filter(|one| one.forecast.horizon_days == horizon_days);
+        let due: Vec<&ScoredForecast> = due.filter(|one| one.outcome.is_some()).collect();
+        let mean = |of: fn(&ScoredForecast) -> Option<f64>| {
+            due.iter().filter_map(|one| of(one)).map(f64::abs).sum::<f64>() / due.len().max(1) as f64
+        };
+        ForecastScore {
+            horizon_days,
+            scored: due.len() as u32,
+            covered: due.iter().filter(|one| one.is_inside()).count() as u32,
+            mean_error: mean(ScoredForecast::error),
+            mean_sharpness: mean(ScoredForecast::sharpness),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn came(outcome: f64) -> ScoredForecast {
+        let forecast = Forecast { horizon_days: 7, point: 5.0, lower: 1.0, upper: 9.0 };
+        ScoredForecast { forecast, day: 7, outcome: Some(outcome) }
+    }
+
+    #[test]
+    fn an_interval_holds_its_ends() {
+        use Verdict::{Above, Below, Inside};
+        let verdicts = [0.9, 1.0, 5.0, 9.0, 9.1].map(|outcome| came(outcome).verdict());
+        assert_eq!(verdicts, [Below, Inside, Inside, Inside, Above].map(Some));
+        let open = ScoredForecast { outcome: None, ..came(5.0) };
+        assert_eq!((open.verdict(), open.is_inside(), open.error(), open.due()), (None, false, None, 14));
+    }
+
+    #[test]
+    fn a_miss_is_a_share_of_what_came_or_of_a_dollar() {
+        assert_eq!([4.0, -10.0, 0.0].map(|outcome| came(outcome).error()), [0.25, 1.5, 5.0].map(Some));
+        let score =
+            ForecastScore::of(7, &[came(4.0), came(10.0), ScoredForecast { outcome: None, ..came(1.0) }]);
+        assert_eq!((score.scored, score.covered), (2, 1));
+        assert!((score.mean_error - (0.25 + 0.5) / 2.0).abs() < 1e-12);
+        assert!((score.mean_sharpness - (8.0 / 4.0 + 8.0 / 10.0) / 2.0).abs() < 1e-12);
+        assert_eq!(ForecastScore::of(28, &[came(4.0)]).scored, 0);
+    }
+
+    #[test]
+    fn the_outcome_is_cash_on_the_day_it_speaks_of() {
+        let cash: Vec<f64> = (0..20).map(f64::from).collect();
+        let one = ScoredForecast::of(7, &came(0.0).forecast, &cash);
+        assert_eq!((one.due(), one.outcome), (14, Some(14.0)));
+        assert_eq!(ScoredForecast::of(14, &one.forecast, &cash).outcome, None);
+    }
+}

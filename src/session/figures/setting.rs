@@ -1,0 +1,228 @@
+//! Which numbers a player can set, and what each is called.
+
+use std::fmt::{self, Display, Formatter};
+
+use serde::{Deserialize, Serialize};
+
+use crate::tools::ToolId;
+use crate::world::identifiers::{Channel, Group, Plan};
+use crate::world::settings::Settings;
+
+/// A number that a player can set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum SettingId {
+    /// List price, dollars a month.
+    Price(Plan),
+    /// Model tier.
+    ModelTier(Plan),
+    /// Quota, units a day.
+    Quota(Plan),
+    /// Operations, dollars a day.
+    Operations,
+    /// Development, dollars a day.
+    Development,
+    /// Capacity tier.
+    CapacityTier,
+    /// Advertising, dollars a day.
+    Advertising(Channel, Group),
+    /// Development for a group, dollars a day.
+    TargetedDevelopment(Group),
+    /// Operations for a part of the open issues, dollars a day.
+    TargetedOperations(Audience),
+    /// Ongoing discount, dollars a month.
+    Discount(Audience),
+    /// Discount for new leads, dollars a month.
+    LeadDiscount(Audience),
+    /// In-app advertising, 0 to 1.
+    AdsStrength(Audience),
+}
+
+/// Whom a setting reaches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Audience {
+    /// Everybody.
+    Everybody,
+    /// A group.
+    Group(Group),
+    /// Subscribers of a plan.
+    Plan(Plan),
+    /// Subscribers of a group on a plan.
+    GroupPlan(Group, Plan),
+    /// A single customer.
+    Customer(i64),
+    /// Leads of a channel.
+    Channel(Channel),
+    /// Leads of a channel in a group.
+    ChannelGroup(Channel, Group),
+}
+
+impl SettingId {
+    /// The tool that sets it.
+    pub fn tool(self) -> ToolId {
+        match self {
+            SettingId::Price(_) => ToolId::SetPrices,
+            SettingId::ModelTier(_) => ToolId::SetModelTiers,
+            SettingId::Quota(_) => ToolId::SetUsageQuotas,
+            SettingId::Operations | SettingId::Development => ToolId::SetDailySpend,
+            SettingId::CapacityTier => ToolId::SetCapacityTier,
+            SettingId::Advertising(..) => ToolId::SetTargetedAdSpend,
+            SettingId::TargetedDevelopment(_) => ToolId::SetTargetedDevSpend,
+            SettingId::TargetedOperations(_) => ToolId::SetTargetedOpsSpend,
+            SettingId::Discount(_) => ToolId::SetPromotion,
+            SettingId::LeadDiscount(_) => ToolId::SetLeadPromotion,
+            SettingId::AdsStrength(_) => ToolId::SetAdsStrength,
+        }
+    }
+
+    /// Unit of its numbers; none where its name says what they are.
+    pub fn unit(self) -> Option<&'static str> {
+        match self {
+            SettingId::ModelTier(_) | SettingId::CapacityTier => None,
+            SettingId::Price(_) | SettingId::Discount(_) | SettingId::LeadDiscount(_) => Some("$/month"),
+            SettingId::Quota(_) => Some("units/day"),
+            SettingId::AdsStrength(_) => Some("load"),
+            SettingId::Operations
+            | SettingId::Development
+            | SettingId::Advertising(..)
+            | SettingId::TargetedDevelopment(_)
+            | SettingId::TargetedOperations(_) => Some("$/day"),
+        }
+    }
+
+    /// The plan, of a setting that every plan has.
+    pub fn plan(self) -> Option<Plan> {
+        match self {
+            SettingId::Price(plan) | SettingId::ModelTier(plan) | SettingId::Quota(plan) => Some(plan),
+            _ => None,
+        }
+    }
+}
+
+/// For instance `price A` or `ads linkedin E1`.
+impl Display for SettingId {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            SettingId::Price(plan) => write!(out, "price {plan}"),
+            SettingId::ModelTier(plan) => write!(out, "model tier {plan}"),
+            SettingId::Quota(plan) => write!(out, "quota {plan}"),
+            SettingId::Operations => out.write_str("operations"),
+            SettingId::Development => out.write_str("development"),
+            SettingId::CapacityTier => out.write_str("capacity tier"),
+            SettingId::Advertising(channel, group) => write!(out, "ads {channel} {group}"),
+            SettingId::TargetedDevelopment(group) => write!(out, "development {group}"),
+            SettingId::TargetedOperations(audience) => write!(out, "operations{audience}"),
+            SettingId::Discount(audience) => write!(out, "discount{audience}"),
+            SettingId::LeadDiscount(audience) => write!(out, "lead discount{audience}"),
+            SettingId::AdsStrength(audience) => write!(out, "in-app ads{audience}"),
+        }
+    }
+}
+
+/// What follows the name of a setting: nothing for everybody.
+impl Display for Audience {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Audience::Everybody => Ok(()),
+            Audience::Group(group) => write!(out, " {group}"),
+            Audience::Plan(plan) => write!(out, " plan {plan}"),
+            Audience::GroupPlan(group, plan) => write!(out, " {group} {plan}"),
+            Audience::Customer(number) => write!(out, " customer {number}"),
+            Audience::Channel(channel) => write!(out, " {channel}"),
+            Audience::ChannelGroup(channel, group) => write!(out, " {channel} {group}"),
+        }
+    }
+}
+
+/// Every number that is set, in the order of the tools.
+pub(in crate::session) fn values(settings: &Settings) -> Vec<(SettingId, f64)> {
+    let core = &settings.core;
+    let mut all: Vec<(SettingId, f64)> = Vec::new();
+    all.extend(Plan::ALL.map(|plan| (SettingId::Price(plan), core.prices[plan])));
+    all.extend(Plan::ALL.map(|plan| (SettingId::ModelTier(plan), f64::from(core.tiers[plan]))));
+    all.extend(Plan::ALL.map(|plan| (SettingId::Quota(plan), core.quotas[plan].units())));
+    all.push((SettingId::Operations, core.operations));
+    all.push((SettingId::Development, core.development));
+    all.push((SettingId::CapacityTier, f64::from(core.capacity_tier)));
+    for (channel, groups) in &settings.targeted_ads.targeted_spend {
+        all.extend(groups.iter().map(|(group, spend)| (SettingId::Advertising(*channel, *group), *spend)));
+    }
+    let development = settings.targeted_development.targeted_spend.iter();
+    all.extend(development.map(|(group, spend)| (SettingId::TargetedDevelopment(*group), *spend)));
+    all.extend(
+        operations(settings).map(|(audience, spend)| (SettingId::TargetedOperations(audience), spend)),
+    );
+    all.extend(discounts(settings).map(|(audience, dollars)| (SettingId::Discount(audience), dollars)));
+    all.extend(
+        lead_discounts(settings).map(|(audience, dollars)| (SettingId::LeadDiscount(audience), dollars)),
+    );
+    all.extend(ads_strengths(settings).map(|(audience, load)| (SettingId::AdsStrength(audience), load)));
+    all
+}
+
+fn operations(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
+    let own = &settings.targeted_operations;
+    let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
+    let plans = own.by_plan.iter().map(|(plan, value)| (Audience::Plan(*plan), *value));
+    let both = own.by_group_plan.iter().flat_map(|(group, plans)| {
+        plans.iter().map(|(plan, value)| (Audience::GroupPlan(*group, *plan), *value))
+    });
+    let customers = own.by_customer.iter().map(|(customer, value)| (Audience::Customer(*customer), *value));
+    groups.chain(plans).chain(both).chain(customers)
+}
+
+fn discounts(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
+    let own = &settings.promotion;
+    let everybody = std::iter::once((Audience::Everybody, own.global));
+    let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
+    let customers = own.by_customer.iter().map(|(customer, value)| (Audience::Customer(*customer), *value));
+    let both = own.by_group_plan.iter().flat_map(|(group, plans)| {
+        plans.iter().map(|(plan, value)| (Audience::GroupPlan(*group, *plan), *value))
+    });
+    everybody.chain(groups).chain(customers).chain(both)
+}
+
+fn lead_discounts(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
+    let own = &settings.lead_promotion;
+    let everybody = std::iter::once((Audience::Everybody, own.global));
+    let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
+    let channels = own.by_channel.iter().map(|(channel, value)| (Audience::Channel(*channel), *value));
+    let both = own.by_channel_group.iter().flat_map(|(channel, groups)| {
+        groups.iter().map(|(group, value)| (Audience::ChannelGroup(*channel, *group), *value))
+    });
+    everybody.chain(groups).chain(channels).chain(both)
+}
+
+fn ads_strengths(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
+    let own = &settings.ads_strength;
+    let everybody = std::iter::once((Audience::Everybody, own.global));
+    let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
+    let customers = own.by_customer.iter().map(|(customer, value)| (Audience::Customer(*customer), *value));
+    everybody.chain(groups).chain(customers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_called_by_what_they_set_and_for_whom() {
+        let e1: Group = Group::parse("E1").expect("a group");
+        let named = [
+            (SettingId::Price(Plan::A), "price A"),
+            (SettingId::Operations, "operations"),
+            (SettingId::TargetedOperations(Audience::Plan(Plan::A)), "operations plan A"),
+            (SettingId::TargetedOperations(Audience::GroupPlan(e1, Plan::A)), "operations E1 A"),
+            (SettingId::Advertising(Channel::Linkedin, e1), "ads linkedin E1"),
+            (SettingId::Discount(Audience::Everybody), "discount"),
+            (SettingId::Discount(Audience::Customer(7)), "discount customer 7"),
+            (
+                SettingId::LeadDiscount(Audience::ChannelGroup(Channel::Linkedin, e1)),
+                "lead discount linkedin E1",
+            ),
+            (SettingId::AdsStrength(Audience::Group(e1)), "in-app ads E1"),
+        ];
+        for (setting, name) in named {
+            assert_eq!(setting.to_string(), name);
+        }
+    }
+}

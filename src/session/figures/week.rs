@@ -1,0 +1,252 @@
+//! The figures of a week, and what a player must file before it runs.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+
+use super::booked::Booked;
+use crate::notation::json_number;
+use crate::session::trajectory::record::FiledForecast;
+use crate::tools::{FORECAST_KEYS, Forecast};
+use crate::world::events::DayFigures;
+
+/// Figures of a week, or of the part of it that ran.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct WeekFigures {
+    /// Last day.
+    pub day: u32,
+    /// Days that ran.
+    pub days_run: u32,
+    /// Cash at the end, dollars.
+    pub cash: f64,
+    /// Its change over the days that ran, dollars.
+    pub cash_change: f64,
+    /// Active subscriptions of individuals.
+    pub individual_subscribers: u32,
+    /// Seats of active companies.
+    pub enterprise_seats: u32,
+    /// Active subscribers with an open issue.
+    pub open_issues: u32,
+    /// Issues that were opened.
+    pub issues_opened: u32,
+    /// Units used.
+    pub usage: u64,
+    /// Leads of individuals.
+    pub new_individual_leads: u32,
+    /// Leads of companies that opened a thread.
+    pub new_enterprise_leads: u32,
+    /// Individuals who signed up.
+    pub new_individual_subscribers: u32,
+    /// Seats of companies that signed.
+    pub new_enterprise_seats: u32,
+    /// Cancellations of individuals.
+    pub cancellations: u32,
+    /// Switches to dearer plans.
+    pub upgrades: u32,
+    /// Switches to cheaper plans.
+    pub downgrades: u32,
+    /// Companies that left.
+    pub companies_lost: u32,
+    /// Their seats.
+    pub seats_lost: u32,
+    /// Units used on the busiest day.
+    pub busiest_day: u64,
+    /// Largest overload.
+    pub overload_peak: f64,
+    /// Minutes of outages.
+    pub downtime_minutes: u32,
+    /// Whether there was an outage.
+    pub outage: bool,
+    /// Highest latency, milliseconds.
+    pub p95_ms_peak: f64,
+    /// Highest error rate.
+    pub error_rate_peak: f64,
+    /// What was booked by category since the end of the week before.
+    pub booked: Booked,
+    /// Payments of subscribers, dollars.
+    pub payments: f64,
+    /// Running costs, dollars.
+    pub costs: f64,
+    /// Monthly recurring revenue at the end, dollars.
+    pub recurring_revenue: f64,
+    /// Threads that were opened, and the seats behind them.
+    pub threads_opened: u32,
+    /// Seats of the companies that opened threads.
+    pub thread_seats: u32,
+    /// Messages of companies in their threads.
+    #[serde(default)]
+    pub replies: u32,
+    /// R&D projects and studies of groups that were finished.
+    #[serde(default)]
+    pub research_finished: u32,
+}
+
+impl WeekFigures {
+    /// Share of the week's individual leads who signed up, from 0 to 1; not a number without leads.
+    pub fn conversion(&self) -> f64 {
+        match self.new_individual_leads {
+            0 => f64::NAN,
+            leads => f64::from(self.new_individual_subscribers) / f64::from(leads),
+        }
+    }
+
+    /// Adds a day. Sums add up, peaks rise, stocks are those of the last day.
+    pub fn add(&mut self, day: &DayFigures) {
+        self.day = day.day;
+        self.days_run += 1;
+        self.cash = day.cash;
+        self.individual_subscribers = day.individual_subscribers;
+        self.enterprise_seats = day.enterprise_seats;
+        self.recurring_revenue = day.mrr;
+        self.usage += day.total_usage;
+        self.busiest_day = self.busiest_day.max(day.total_usage);
+        self.new_individual_leads += day.new_individual_leads;
+        self.new_enterprise_leads += day.new_enterprise_leads;
+        self.new_individual_subscribers += day.new_individual_subscribers;
+        self.new_enterprise_seats += day.new_enterprise_seats;
+        self.cancellations += day.cancellations;
+        self.upgrades += day.upgrades;
+        self.downgrades += day.downgrades;
+        self.payments += day.payments_received;
+        self.costs += day.total_costs;
+        self.downtime_minutes += day.downtime_minutes;
+        self.outage |= day.outage;
+        self.overload_peak = self.overload_peak.max(day.overload);
+        self.p95_ms_peak = self.p95_ms_peak.max(day.p95_ms);
+        self.error_rate_peak = self.error_rate_peak.max(day.error_rate);
+    }
+
+    /// The figures that a `week` line and programs carry, by their names there.
+    pub fn as_json(&self) -> Map<String, Value> {
+        let figures = json!({
+            "cash": json_number(self.cash),
+            "individual_subscribers": self.individual_subscribers,
+            "enterprise_seats": self.enterprise_seats,
+            "open_issues": self.open_issues,
+            "usage": self.usage,
+            "new_individual_leads": self.new_individual_leads,
+            "new_enterprise_leads": self.new_enterprise_leads,
+            "new_individual_subscribers": self.new_individual_subscribers,
+            "new_enterprise_seats": self.new_enterprise_seats,
+            "cancellations": self.cancellations,
+            "upgrades": self.upgrades,
+            "downgrades": self.downgrades,
+            "overload_peak": json_number(self.overload_peak),
+            "downtime_minutes": self.downtime_minutes,
+            "p95_ms_peak": json_number(self.p95_ms_peak),
+            "error_rate_peak": json_number(self.error_rate_peak),
+            "payments": json_number(self.payments),
+            "costs": json_number(self.costs),
+            "recurring_revenue": json_number(self.recurring_revenue),
+        });
+        match figures {
+            Value::Object(map) => map,
+            _ => Map::new(),
+        }
+    }
+}
+
+/// Number of the week that holds a day: 0 -> 0, 1 to 7 -> 1, 8 -> 2.
+pub fn week_of(day: u32) -> u32 {
+    day.div_ceil(7)
+}
+
+/// The week that a row of the ledger belongs to, in SQL: weeks end with their last day, so what is bought on a decision
+/// day counts in the week that it opens.
+pub const WEEK_OF_ENTRY: &str = "CASE WHEN category IN ('research_project', 'market_research', 'group_research') \
+                                 THEN day / 7 + 1 ELSE (day + 6) / 7 END";
+
+/// The condition that rows of the ledger belong to some weeks, in SQL.
+pub fn entries_of_weeks(first: u32, last: u32) -> String {
+    let (from, to) = (7 * first.saturating_sub(1), 7 * last);
+    format!("day BETWEEN {from} AND {to} AND {WEEK_OF_ENTRY} BETWEEN {first} AND {last}")
+}
+
+/// Four forecasts of cash, and which of them the naive projection filled in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Forecasts {
+    /// One per horizon: 7, 28, 84, 182 days.
+    pub all: [Forecast; 4],
+    /// Filled in by the naive projection, whole or in part.
+    pub filled_naively: [bool; 4],
+}
+
+/// How many of some forecasts the naive projection filled in: `naively`, `3 of 4 naively`; none where it filled none.
+pub fn naively(filled: &[bool]) -> Option<String> {
+    match filled.iter().filter(|filled| **filled).count() {
+        0 => None,
+        all if all == filled.len() => Some("naively".to_owned()),
+        some => Some(format!("{some} of {} naively", filled.len())),
+    }
+}
+
+impl Forecasts {
+    /// The forecasts of a line; none unless there is one for each horizon.
+    pub(in crate::session) fn of(filed: &[FiledForecast]) -> Option<Forecasts> {
+        let filed: &[FiledForecast; 4] = filed.try_into().ok()?;
+        Some(Forecasts {
+            all: filed.map(|forecast| forecast.said()),
+            filled_naively: filed.map(|forecast| forecast.filled_naively),
+        })
+    }
+
+    /// As a line has them.
+    pub(in crate::session) fn filed(&self) -> Vec<FiledForecast> {
+        let one = |(forecast, filled_naively): (Forecast, bool)| {
+            let Forecast { horizon_days, point, lower, upper } = forecast;
+            FiledForecast { horizon_days, point, lower, upper, filled_naively }
+        };
+        self.all.into_iter().zip(self.filled_naively).map(one).collect()
+    }
+
+    /// The forecasts as the body of next_week carries them.
+    pub fn as_predictions(&self) -> Value {
+        let entry = |(key, forecast): (&str, &Forecast)| {
+            let fields = json!({
+                "point": json_number(forecast.point),
+                "lower": json_number(forecast.lower),
+                "upper": json_number(forecast.upper),
+            });
+            (key.to_owned(), fields)
+        };
+        FORECAST_KEYS.into_iter().zip(&self.all).map(entry).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forecasts_are_told_naive_as_far_as_they_are() {
+        let told = [[false; 4], [false, true, true, true], [true; 4]].map(|filled| naively(&filled));
+        assert_eq!(told, [None, Some("3 of 4 naively".to_owned()), Some("naively".to_owned())]);
+    }
+
+    #[test]
+    fn weeks_are_counted_from_the_first_and_day_0_belongs_to_none() {
+        for (day, week) in [(0, 0), (1, 1), (7, 1), (8, 2), (497, 71), (500, 72), (504, 72)] {
+            assert_eq!(week_of(day), week, "day {day}");
+        }
+    }
+
+    #[test]
+    fn a_week_sums_usage_and_keeps_peaks() {
+        let mut week = WeekFigures::default();
+        for day in 1..=7u32 {
+            let outage = day == 3;
+            week.add(&DayFigures {
+                day,
+                total_usage: u64::from(day) * 10,
+                outage,
+                downtime_minutes: if outage { 30 } else { 0 },
+                overload: if day == 5 { 0.4 } else { 0.1 },
+                ..DayFigures::default()
+            });
+        }
+        assert_eq!(
+            (week.usage, week.outage, week.downtime_minutes, week.overload_peak),
+            (280, true, 30, 0.4)
+        );
+        assert_eq!((week.day, week.days_run), (7, 7));
+    }
+}

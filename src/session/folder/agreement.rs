@@ -1,0 +1,113 @@
+//! Whether a participant has agreed to what a baseline session asks.
+
+use std::path::Path;
+
+use super::configuration::Configuration;
+use super::consent::{Consent, ConsentText};
+use super::create::{NewRun, Storage};
+use super::manifest::Manifest;
+use super::runs::all_run_folders;
+use crate::session::error::RunError;
+use crate::session::trajectory::now;
+
+/// Name of the file in the configuration folder.
+const FILE: &str = "consent.md";
+
+impl Configuration {
+    /// The text that participants of baseline sessions agree to, if the experimenter has one.
+    ///
+    /// # Errors
+    /// The file exists and cannot be read.
+    pub fn consent(&self) -> Result<Option<ConsentText>, RunError> {
+        let source = self.file(FILE)?.filter(|source| !source.text.trim().is_empty());
+        Ok(source.map(|source| ConsentText { file: source.name, text: source.text }))
+    }
+}
+
+/// The agreement that a new baseline run records: given now, or by the same participant for an earlier run here.
+///
+/// # Errors
+/// `ConsentNeeded` with the text, if neither is the case; the file cannot be read.
+pub(in crate::session) fn agreed(
+    new: &NewRun,
+    participant: Option<&str>,
+    configuration: &Configuration,
+) -> Result<Option<Consent>, RunError> {
+    let Some(text) = configuration.consent()? else { return Ok(None) };
+    let digest = text.digest();
+    if new.agreed {
+        return Ok(Some(Consent { digest, at: now() }));
+    }
+    let earlier = match (&new.storage, participant) {
+        (Storage::Runs(runs), Some(participant)) => earlier_consent(runs, participant, &digest),
+        _ => None,
+    };
+    earlier.map(Some).ok_or(RunError::ConsentNeeded(text))
+}
+
+fn earlier_consent(runs: &Path, participant: &str, digest: &str) -> Option<Consent> {
+    let folders = all_run_folders(runs);
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
+    let manifests = entries.filter_map(|entry| Manifest::read(&entry.path()).ok());
+    let own = manifests.filter(|manifest| manifest.participant.as_deref() == Some(participant));
+    own.filter_map(|manifest| manifest.consent)
+        .filter(|consent| consent.digest == digest)
+        .min_by(|one, other| one.at.cmp(&other.at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::folder::mode::Mode;
+    use crate::session::resume::open::Access;
+    use crate::session::state::Session;
+
+    fn new(runs: &Path, participant: Option<&str>, agreed: bool, mode: Mode) -> NewRun {
+        let storage = Storage::Runs(runs.to_owned());
+        let participant = participant.map(str::to_owned);
+        NewRun { mode, participant, agreed, storage, days: Some(28), ..NewRun::default() }
+    }
+
+    #[test]
+    fn a_participant_agrees_once_to_each_text() {
+        let place = tempfile::tempdir().expect("a folder");
+        let runs = place.path().join("runs");
+        std::fs::create_dir(&runs).expect("a folder");
+        let configuration = Configuration { folder: Some(place.path().to_owned()) };
+        let start = |participant, agreed, mode| {
+            Session::create(new(&runs, participant, agreed, mode), &configuration)
+        };
+        let consent = |session: Result<Session, RunError>| session.expect("a run").manifest().consent.clone();
+        assert_eq!(
+            consent(start(Some("P01"), false, Mode::Baseline)),
+            None,
+            "nothing is asked without a text"
+        );
+        std::fs::write(place.path().join(FILE), "We keep what you do for a year.").expect("written");
+        assert_eq!(consent(start(Some("P01"), false, Mode::Sandbox)), None, "only baseline sessions ask");
+        let count = || std::fs::read_dir(&runs).expect("a folder").count();
+        let before = count();
+        let error = start(Some("P01"), false, Mode::Baseline).err().expect("nobody has agreed");
+        assert!(
+            matches!(&error, RunError::ConsentNeeded(text) if text.text.contains("for a year")),
+            "{error}"
+        );
+        assert!(
+            error.to_string().contains("consent.md") && error.to_string().contains("--consent"),
+            "{error}"
+        );
+        assert_eq!(count(), before, "no run begins without agreement");
+
+        let given = consent(start(Some("P01"), true, Mode::Baseline)).expect("it was given");
+        let again = start(Some("P01"), false, Mode::Baseline).expect("a run");
+        assert_eq!(again.manifest().consent.as_ref(), Some(&given), "once is enough");
+        let folder = again.folder().expect("a folder").to_owned();
+        drop(again);
+        let opened = Session::open(&folder, Access::Write, false).expect("it opens");
+        assert_eq!(opened.manifest().consent, Some(given));
+        assert!(start(Some("P02"), false, Mode::Baseline).is_err(), "somebody else has not");
+        assert!(start(None, false, Mode::Baseline).is_err(), "nor has a run without a participant");
+        std::fs::write(place.path().join(FILE), "We keep what you do for two years.").expect("written");
+        assert!(start(Some("P01"), false, Mode::Baseline).is_err(), "another text is another question");
+    }
+}

@@ -1,0 +1,302 @@
+//! Starting a run.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use super::agreement::agreed;
+use super::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
+use super::manifest::{FORMAT, Manifest, differences, sync_folder};
+use super::mode::Mode;
+use super::runs::{earlier_runs, label_of, lock_run};
+use crate::database::{Location, Projector};
+use crate::session::error::RunError;
+use crate::session::figures::week::WeekFigures;
+use crate::session::play::facts_chain::FactsChain;
+use crate::session::play::feed::Feed;
+use crate::session::play::office::Office;
+use crate::session::play::this_week::ThisWeek;
+use crate::session::state::Session;
+use crate::session::trajectory::record::Start;
+use crate::session::trajectory::{Durability, Record, TrajectoryWriter, now};
+use crate::world::MECHANICS;
+use crate::world::day::DayTrace;
+use crate::world::events::Facts;
+use crate::world::identifiers::ByGroup;
+use crate::world::params::Params;
+use crate::world::random::Streams;
+use crate::world::state::World;
+
+/// What a new run is to be. What is left out comes from the scenario, then from the defaults.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewRun {
+    /// Seed of all chance; 42 if left out.
+    pub seed: Option<u64>,
+    /// Last day, at least 7; 500 if left out.
+    pub days: Option<u32>,
+    /// Cash on day 0, dollars above 0; a million if left out.
+    pub cash: Option<f64>,
+    /// Scenario.
+    pub scenario: String,
+    /// Single parameters, `(table.key, value)`; debug runs only.
+    pub overrides: Vec<(String, String)>,
+    /// Mode.
+    pub mode: Mode,
+    /// Who plays, as the experimenter names them; if left out, whoever the folder of runs belongs to.
+    pub participant: Option<String>,
+    /// Whether the person has agreed to the text that the experimenter asks for; baseline runs only.
+    pub agreed: bool,
+    /// Where the run is kept.
+    pub storage: Storage,
+    /// Whether the database is kept up to date; without it queries are refused.
+    pub projection: bool,
+    /// Whether every call is on the disk before it is confirmed; otherwise once a week.
+    pub sync_calls: bool,
+}
+
+/// Where a run is kept.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Storage {
+    /// In a folder of its own below this one.
+    Runs(PathBuf),
+    /// In memory: it is gone with the session.
+    Memory,
+}
+
+impl Default for NewRun {
+    fn default() -> Self {
+        NewRun {
+            seed: None,
+            days: None,
+            cash: None,
+            scenario: DEFAULT_SCENARIO.to_owned(),
+            overrides: Vec::new(),
+            mode: Mode::Sandbox,
+            participant: None,
+            agreed: false,
+            storage: Storage::Memory,
+            projection: true,
+            sync_calls: true,
+        }
+    }
+}
+
+impl Session {
+    /// Starts a run.
+    ///
+    /// # Errors
+    /// The scenario, the parameters or the values do not allow it, or the folder cannot be written. Then there
+    /// is no run.
+    pub fn create(new: NewRun, configuration: &Configuration) -> Result<Session, RunError> {
+        let (manifest, params) = plan_run(&new, configuration)?;
+        match &new.storage {
+            Storage::Memory => Session::begin(manifest, params, None, &new),
+            Storage::Runs(runs) => {
+                let folder = runs.join(&manifest.id);
+                std::fs::create_dir_all(&folder).map_err(RunError::io(&folder))?;
+                let begun = Session::begin(manifest, params, Some(folder.clone()), &new);
+                if begun.is_err() {
+                    // A run that did not begin leaves nothing behind.
+                    let _ = std::fs::remove_dir_all(&folder);
+                }
+                begun
+            }
+        }
+    }
+
+    fn begin(
+        manifest: Manifest,
+        params: Params,
+        folder: Option<PathBuf>,
+        new: &NewRun,
+    ) -> Result<Session, RunError> {
+        let params = Arc::new(params);
+        let mut facts = Facts::default();
+        let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
+        let (mut trajectory, lock) = match &folder {
+            None => (TrajectoryWriter::in_memory(), None),
+            Some(folder) => {
+                let lock = lock_run(folder, &manifest.id)?;
+                manifest.write(folder)?;
+                let trajectory = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
+                sync_folder(folder)?;
+                (trajectory, Some(lock))
+            }
+        };
+        trajectory.append(0, &start_of(&manifest), Durability::Synced)?;
+        let projector = start_projector(new.projection, folder.as_deref(), manifest.number(), &params)?;
+        let session = Session::assemble(
+            manifest,
+            folder,
+            lock,
+            params,
+            world,
+            facts,
+            trajectory,
+            projector,
+            new.sync_calls,
+        );
+        session.project_opening();
+        Ok(session)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "the parts of a session come from different places")]
+    pub(in crate::session) fn assemble(
+        manifest: Manifest,
+        folder: Option<PathBuf>,
+        lock: Option<std::fs::File>,
+        params: Arc<Params>,
+        world: World,
+        facts: Facts,
+        trajectory: TrajectoryWriter,
+        projector: Option<Projector>,
+        sync_calls: bool,
+    ) -> Session {
+        let settings = world.settings.clone();
+        Session {
+            streams: Streams::new(manifest.seed),
+            cash_by_day: vec![world.finance.cash],
+            manifest,
+            folder,
+            _lock: lock,
+            params,
+            numbers: OnceLock::new(),
+            own_parameters: OnceLock::new(),
+            world,
+            facts: facts.into(),
+            facts_before: Arc::default(),
+            trace: DayTrace::default(),
+            position: trajectory.position(),
+            trajectory: Some(trajectory),
+            sync_calls,
+            projector,
+            desk: None,
+            weeks: Vec::new(),
+            decisions: Vec::new(),
+            running_week: WeekFigures::default(),
+            group_weeks: Vec::new(),
+            running_groups: ByGroup::default(),
+            notices: Vec::new(),
+            feed: Feed::default(),
+            this_week: ThisWeek { settings, undo: Vec::new(), redo: Vec::new(), done: Vec::new() },
+            journal: Vec::new(),
+            asked: Vec::new(),
+            office: Office::default(),
+            calculated: Vec::new(),
+            last_dashboard: None,
+            called: Vec::new(),
+            memo_in_memory: String::new(),
+            facts_chain: FactsChain::default(),
+            ended: None,
+            remarks: Vec::new(),
+        }
+    }
+
+    /// Hands the set-up of day 0 to the database.
+    pub(in crate::session) fn project_opening(&self) {
+        if let Some(projector) = &self.projector {
+            projector.write(self.entry());
+            projector.commit(self.position.clone());
+        }
+    }
+}
+
+fn start_projector(
+    wanted: bool,
+    folder: Option<&Path>,
+    owner: u32,
+    params: &Arc<Params>,
+) -> Result<Option<Projector>, RunError> {
+    if !wanted {
+        return Ok(None);
+    }
+    let location = folder.map_or_else(Location::memory, |folder| Location::File(folder.join("world.db")));
+    let (projector, _) = Projector::start(location, owner, params.clone(), |_| false)?;
+    Ok(Some(projector))
+}
+
+fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Params), RunError> {
+    let scenario = configuration.scenario(&new.scenario)?;
+    if new.mode == Mode::Baseline && !scenario.shipped {
+        let message =
+            format!("a baseline run needs a shipped scenario; {} is a file of your own", scenario.name);
+        return Err(RunError::NotPossible(message));
+    }
+    if !new.overrides.is_empty() && new.mode != Mode::Debug {
+        let message = format!("parameters can be set in debug runs only; this one would be {}", new.mode);
+        return Err(RunError::NotPossible(message));
+    }
+    let params = configuration.parameters(&scenario, &new.overrides, new.mode != Mode::Baseline)?;
+    let (days, cash) = scenario.terms(&params);
+    let days = new.days.unwrap_or(days);
+    check_days(days).map_err(RunError::NotPossible)?;
+    let cash = new.cash.unwrap_or(cash);
+    check_cash(cash).map_err(RunError::NotPossible)?;
+    let seed = new.seed.unwrap_or(params.run.seed);
+    if seed > i64::MAX as u64 {
+        return Err(RunError::NotPossible(format!("a seed is at most {}, not {seed}", i64::MAX)));
+    }
+    let earlier_runs = match &new.storage {
+        Storage::Runs(runs) => earlier_runs(runs, seed, &scenario.name),
+        Storage::Memory => 0,
+    };
+    let of_folder = match &new.storage {
+        Storage::Runs(runs) => label_of(runs),
+        Storage::Memory => None,
+    };
+    let participant = new.participant.clone().or(of_folder);
+    let consent = match new.mode {
+        Mode::Baseline => agreed(new, participant.as_deref(), configuration)?,
+        Mode::Sandbox | Mode::Lesson | Mode::Debug => None,
+    };
+    let manifest = Manifest {
+        format: FORMAT,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        mechanics: MECHANICS,
+        id: new_id(),
+        created: now(),
+        seed,
+        days,
+        cash,
+        scenario: scenario.name,
+        mode: new.mode,
+        participant,
+        earlier_runs,
+        consent,
+        parameters_digest: params.digest(),
+        parent: None,
+        parameters: differences(&params),
+    };
+    Ok((manifest, params))
+}
+
+/// Eight hexadecimal digits that no other run has, as good as certainly.
+pub(in crate::session) fn new_id() -> String {
+    static COUNT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    let moment =
+        std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |d| d.as_nanos());
+    let mix = format!("{moment} {} {count}", std::process::id());
+    blake3::hash(mix.as_bytes()).to_hex()[..8].to_owned()
+}
+
+/// The first line: what the manifest says.
+pub(in crate::session) fn start_of(manifest: &Manifest) -> Record {
+    let manifest = manifest.clone();
+    Record::Start(Box::new(Start {
+        format: manifest.format,
+        version: manifest.version,
+        mechanics: manifest.mechanics,
+        run: manifest.id,
+        seed: manifest.seed,
+        days: manifest.days,
+        cash: manifest.cash,
+        scenario: manifest.scenario,
+        overrides: manifest.parameters,
+        parameters_digest: manifest.parameters_digest,
+        mode: manifest.mode,
+        participant: manifest.participant,
+        consent: manifest.consent,
+        parent: manifest.parent,
+        line_sums: true,
+    }))
+}

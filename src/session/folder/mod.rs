@@ -1,0 +1,11 @@
+//! The folder of runs: what a run is, how one begins, what is kept of it, and where scenarios, consent and queries lie.
+
+pub(in crate::session) mod agreement;
+pub(in crate::session) mod configuration;
+pub(in crate::session) mod consent;
+pub(in crate::session) mod course;
+pub(in crate::session) mod create;
+pub mod library;
+pub(in crate::session) mod manifest;
+pub(in crate::session) mod mode;
+pub(in crate::session) mod runs;

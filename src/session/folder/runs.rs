@@ -1,0 +1,324 @@
+//! The folder of runs: names, locks, the list.
+
+use std::fs::{File, TryLockError};
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::manifest::Manifest;
+use super::mode::Mode;
+use crate::session::error::RunError;
+use crate::session::resume::open::Access;
+use crate::session::state::Session;
+use crate::session::trajectory::record::Ended;
+use crate::session::trajectory::{Line, Record};
+
+/// A run in the list.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunSummary {
+    /// Name.
+    pub id: String,
+    /// When it was created, RFC 3339.
+    pub created: String,
+    /// When it was last played, RFC 3339.
+    pub played: String,
+    /// Mode.
+    pub mode: Option<Mode>,
+    /// Seed.
+    pub seed: u64,
+    /// Scenario.
+    pub scenario: String,
+    /// The parameters are others than those of the shipped scenario of that name.
+    pub has_own_parameters: bool,
+    /// Who plays.
+    pub participant: Option<String>,
+    /// Last simulated day.
+    pub day: u32,
+    /// Last day of the run.
+    pub days: u32,
+    /// Cash on day 0, dollars.
+    pub starting_cash: f64,
+    /// Cash after the last week, dollars.
+    pub cash: f64,
+    /// How it ended, if it did.
+    pub ended: Option<Ended>,
+    /// Why it cannot be read, if it cannot.
+    pub problem: Option<String>,
+}
+
+/// Folder of a run.
+pub fn run_folder(runs: &Path, id: &str) -> PathBuf {
+    runs.join(id)
+}
+
+/// Folder, below that of all runs, in which participants have folders of their own.
+const PARTICIPANTS: &str = "participants";
+
+/// Folder of one participant's runs, so that several people at one machine do not meet each other's by accident.
+///
+/// # Errors
+/// The label cannot name a folder.
+pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
+    let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
+    if label.is_empty() || label.len() > 40 || label.starts_with('.') || !label.chars().all(fits) {
+        return Err(format!(
+            "{label:?} is not a participant label: use up to 40 letters, digits, hyphens, underscores and \
+             dots, not beginning with a dot"
+        ));
+    }
+    Ok(runs.join(PARTICIPANTS).join(label))
+}
+
+/// Whose runs a folder holds, if it is a participant's own.
+pub(in crate::session) fn label_of(runs: &Path) -> Option<String> {
+    let own = runs.parent()?.file_name()? == PARTICIPANTS;
+    runs.file_name().filter(|_| own).map(|label| label.to_string_lossy().into_owned())
+}
+
+/// Every folder of runs that belongs with this one: the common one, then those of the participants by their labels.
+pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
+    let of_participant = label_of(runs).and_then(|_| runs.parent()?.parent());
+    let base = of_participant.unwrap_or(runs);
+    let entries = std::fs::read_dir(base.join(PARTICIPANTS)).into_iter().flatten().flatten();
+    let mut own: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    own.sort_unstable();
+    own.insert(0, base.to_owned());
+    own
+}
+
+/// All runs, the last played first.
+///
+/// # Errors
+/// The folder exists and cannot be read.
+pub fn list_runs(runs: &Path) -> Result<Vec<RunSummary>, RunError> {
+    let entries = match std::fs::read_dir(runs) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(RunError::Io { path: runs.to_owned(), error }),
+    };
+    let mut list: Vec<RunSummary> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|folder| folder.join("run.toml").exists() || folder.join("trajectory.jsonl").exists())
+        .map(|folder| summarise(&folder))
+        .collect();
+    list.sort_by(|left, right| right.played.cmp(&left.played).then_with(|| left.id.cmp(&right.id)));
+    Ok(list)
+}
+
+fn summarise(folder: &Path) -> RunSummary {
+    let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let manifest = match Manifest::read(folder) {
+        Ok(manifest) => manifest,
+        Err(error) => return unreadable(id, error.to_string()),
+    };
+    let (last, problem) = match last_lines(&folder.join("trajectory.jsonl")) {
+        Ok(lines) => (lines, None),
+        Err(problem) => (Vec::new(), Some(problem)),
+    };
+    // Day and cash after the days that ran last, and how the run ended.
+    let closed = last.iter().rev().find_map(|line| match &line.record {
+        Record::Week(closing) | Record::Step(closing) => Some((line.day, closing.cash)),
+        Record::End(end) => Some((line.day, end.cash)),
+        _ => None,
+    });
+    let ended = last.iter().rev().find_map(|line| match &line.record {
+        Record::End(end) => Some(end.reason),
+        _ => None,
+    });
+    RunSummary {
+        id,
+        has_own_parameters: manifest.has_own_parameters(),
+        created: manifest.created.clone(),
+        played: last.last().map_or(manifest.created, |line| line.at.clone()),
+        mode: Some(manifest.mode),
+        seed: manifest.seed,
+        scenario: manifest.scenario,
+        participant: manifest.participant,
+        day: closed.map_or(0, |(day, _)| day),
+        days: manifest.days,
+        starting_cash: manifest.cash,
+        cash: match closed {
+            Some((_, cash)) => cash,
+            // Nobody knows what is left.
+            None if problem.is_some() => 0.0,
+            None => manifest.cash,
+        },
+        ended,
+        problem,
+    }
+}
+
+fn unreadable(id: String, problem: String) -> RunSummary {
+    RunSummary {
+        id,
+        created: String::new(),
+        played: String::new(),
+        mode: None,
+        seed: 0,
+        scenario: String::new(),
+        has_own_parameters: false,
+        participant: None,
+        day: 0,
+        days: 0,
+        starting_cash: 0.0,
+        cash: 0.0,
+        ended: None,
+        problem: Some(problem),
+    }
+}
+
+/// The lines at the end of a trajectory, enough to hold its last week; read from the end, for runs may be long.
+///
+/// # Errors
+/// The file cannot be read, or holds no line: then nobody knows how far the run has come.
+fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
+    let mut window: u64 = 64 << 10;
+    loop {
+        let (text, whole) = tail(path, window).map_err(|error| format!("{}: {error}", path.display()))?;
+        let lines: Vec<Line> = text.lines().filter_map(|line| Line::unchecked(line.as_bytes())).collect();
+        let has_week = lines.iter().any(Line::closes_days);
+        let begins = || lines.iter().any(|line| matches!(line.record, Record::Start(_)));
+        match (has_week, whole) {
+            (true, _) => return Ok(lines),
+            (false, true) if begins() => return Ok(lines),
+            (false, true) => return Err(format!("{}: none of its lines can be read", path.display())),
+            (false, false) => window *= 8,
+        }
+    }
+}
+
+fn tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(window)))?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes)?;
+    Ok((String::from_utf8_lossy(&bytes).into_owned(), window >= length))
+}
+
+/// The folder of a run to play, by its name, a unique beginning of it, or `latest`: the newest unfinished one.
+///
+/// # Errors
+/// There is none, or several begin like this.
+pub fn find_run(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
+    find(runs, id, |run| run.ended.is_none())
+}
+
+/// The folder of a run to read, by its name, a unique beginning of it, or `latest`: the newest one.
+///
+/// # Errors
+/// There is none, or several begin like this.
+pub fn find_run_to_read(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
+    find(runs, id, |_| true)
+}
+
+fn find(runs: &Path, id: &str, wanted: impl Fn(&RunSummary) -> bool) -> Result<PathBuf, RunError> {
+    let missing = || RunError::NotFound { id: id.to_owned(), folder: runs.to_owned() };
+    let list = list_runs(runs)?;
+    if id == "latest" {
+        let newest = list.iter().find(|run| run.problem.is_none() && wanted(run));
+        return newest.map(|run| runs.join(&run.id)).ok_or_else(missing);
+    }
+    let folder = runs.join(id);
+    if !id.is_empty() && list.iter().any(|run| run.id == id) {
+        return Ok(folder);
+    }
+    let mut fitting = list.iter().filter(|run| id.len() >= 2 && run.id.starts_with(id));
+    match (fitting.next(), fitting.next()) {
+        (Some(only), None) => Ok(runs.join(&only.id)),
+        (Some(_), Some(_)) => {
+            Err(RunError::NotPossible(format!("several run ids begin with {id}; type more of the id")))
+        }
+        _ => Err(missing()),
+    }
+}
+
+/// Ends an unfinished run for good.
+///
+/// # Errors
+/// It is over already, in use, or cannot be read.
+pub fn end_run(runs: &Path, id: &str) -> Result<(), RunError> {
+    let mut session = Session::open(&find_run(runs, id)?, Access::Write, false)?;
+    session.end().map_err(|refusal| RunError::NotPossible(refusal.message))
+}
+
+/// Deletes a run with everything in its folder.
+///
+/// # Errors
+/// It is in use, or cannot be removed.
+pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
+    let folder = find_run(runs, id)?;
+    let lock = lock_run(&folder, id)?;
+    drop(lock);
+    std::fs::remove_dir_all(&folder).map_err(RunError::io(&folder))
+}
+
+/// Claims a run for writing; the claim ends with the program, however it ends.
+pub(in crate::session) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
+    let path = folder.join("lock");
+    let open = File::options().create(true).truncate(false).read(true).write(true).open(&path);
+    let mut file = open.map_err(|error| match error.kind() {
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            RunError::NotWritable { id: id.to_owned(), folder: folder.to_owned(), error }
+        }
+        _ => RunError::Io { path: path.clone(), error },
+    })?;
+    match file.try_lock() {
+        Ok(()) => {
+            // Only for people who look; the lock itself is what counts.
+            let _ = file.set_len(0).and_then(|()| writeln!(file, "process {}", std::process::id()));
+            Ok(file)
+        }
+        Err(TryLockError::WouldBlock) => {
+            let holder = std::fs::read_to_string(&path).unwrap_or_default().trim().to_owned();
+            Err(RunError::InUse { id: id.to_owned(), holder })
+        }
+        Err(TryLockError::Error(error)) => Err(RunError::Io { path, error }),
+    }
+}
+
+/// Runs of a seed and scenario that the folder of runs and those of its participants hold.
+pub(in crate::session) fn earlier_runs(runs: &Path, seed: u64, scenario: &str) -> u32 {
+    let folders = all_run_folders(runs);
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
+    let same = |folder: &PathBuf| {
+        Manifest::read(folder).is_ok_and(|manifest| manifest.seed == seed && manifest.scenario == scenario)
+    };
+    entries.map(|entry| entry.path()).filter(same).count() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::folder::configuration::Configuration;
+    use crate::session::folder::create::{NewRun, Storage};
+
+    #[test]
+    fn participants_have_folders_and_labels_of_their_own() {
+        let place = tempfile::tempdir().expect("a folder");
+        let base = place.path().join("runs");
+        let play = |runs: &Path| {
+            let storage = Storage::Runs(runs.to_owned());
+            let new = NewRun { storage, projection: false, days: Some(28), ..NewRun::default() };
+            Session::create(new, &Configuration::shipped()).expect("a run").manifest().clone()
+        };
+        let [first, second] = ["P01", "P02"].map(|label| participant_folder(&base, label).expect("a label"));
+        assert_eq!(play(&base).participant, None);
+        assert_eq!(play(&first).participant.as_deref(), Some("P01"));
+        let last = play(&second);
+        assert_eq!(
+            (last.participant.as_deref(), last.earlier_runs),
+            (Some("P02"), 2),
+            "seeds count everywhere"
+        );
+        for folder in [&base, &first, &second] {
+            assert_eq!(list_runs(folder).expect("a list").len(), 1, "nobody sees the others' runs");
+            assert_eq!(all_run_folders(folder), [base.clone(), first.clone(), second.clone()]);
+        }
+        for label in ["", ".", "..", "a/b", "a\\b", "P 01", "\u{fc}", &"x".repeat(41)] {
+            assert!(participant_folder(&base, label).is_err(), "{label}");
+        }
+    }
+}

@@ -1,0 +1,377 @@
+//! Calling tools: check and call.
+
+use std::time::Instant;
+
+use serde_json::{Map, Value};
+
+use super::recording::to_fill;
+use super::this_week::Step;
+use crate::notation::cents;
+use crate::session::error::RunError;
+use crate::session::figures::changes::{Change, changes, daily_cost};
+use crate::session::figures::journal::JournalEntry;
+use crate::session::state::Session;
+use crate::session::trajectory::record::{Call, Outcome, RefusalRecord, Reversal, Via};
+use crate::session::trajectory::{Durability, Record};
+use crate::tools::{Arguments, Kind, Refusal, Task, Tool, ToolId, View, bounds, find};
+use crate::world::effect::{Deed, Effect};
+use crate::world::enterprise::letters::Letter;
+use crate::world::events::Offering;
+use crate::world::settings::Settings;
+use crate::world::state::World;
+
+/// What a call would do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preview {
+    /// Tool.
+    pub tool: ToolId,
+    /// Paid at once, dollars.
+    pub cost_now: f64,
+    /// Change of the running costs, dollars a day.
+    pub cost_per_day: f64,
+    /// First day on which it acts; none when it changes nothing.
+    pub effect_day: Option<u32>,
+    /// Settings that change.
+    pub changes: Vec<Change>,
+}
+
+impl Session {
+    /// What a call would do; nothing happens, nothing is recorded, nothing is drawn.
+    ///
+    /// # Errors
+    /// The same refusals as the call.
+    pub fn check(&self, tool: impl AsRef<str>, arguments: &Value) -> Result<Preview, Refusal> {
+        let tool = self.tool(tool.as_ref())?;
+        self.refuse_if_over(tool.spec().kind)?;
+        let (_, effect) = self.plan(tool, arguments)?;
+        let mut preview = Preview {
+            tool: tool.spec().id,
+            cost_now: 0.0,
+            cost_per_day: 0.0,
+            effect_day: None,
+            changes: Vec::new(),
+        };
+        match effect {
+            Effect::None | Effect::ReadInsights(_) => {}
+            Effect::Set(change) => {
+                let now = &self.world.settings;
+                let mut after = now.clone();
+                after.set(change);
+                preview.cost_per_day = self.daily_cost(&after) - self.daily_cost(now);
+                preview.effect_day = Some(self.world.day + 1);
+                preview.changes = changes(now, &after);
+            }
+            Effect::Post(_) => preview.effect_day = Some(self.world.day + 1),
+            Effect::StartResearch(tier) => {
+                preview.cost_now = f64::from(self.params.research(tier).cost);
+                preview.effect_day = Some(self.world.day + self.params.development.rd_min_duration_days);
+            }
+            Effect::ResearchMarket => {
+                preview.cost_now = self.params.market_research.discovery_cost_level_1;
+                preview.effect_day = Some(self.world.day);
+            }
+            Effect::ResearchGroup(_, target) => {
+                let level = self.params.level(target);
+                preview.cost_now = level.cost;
+                preview.effect_day = Some(self.world.day + level.delay_days);
+            }
+            Effect::SendDeals(_) => {
+                preview.effect_day = Some(self.world.day + self.params.enterprise.reply_delay_min_days);
+            }
+            Effect::RejectDeals(_) => preview.effect_day = Some(self.world.day),
+        }
+        Ok(preview)
+    }
+
+    /// Answers a reading tool without recording that it was asked, for screens that always show what it says.
+    ///
+    /// # Errors
+    /// `unknown_tool`, `not_a_reading`, the refusals of the tool.
+    pub fn look_up(&self, tool: impl AsRef<str>, arguments: &Value) -> Result<Value, Refusal> {
+        let tool = self.tool(tool.as_ref())?;
+        if tool.spec().kind != Kind::Read {
+            return Err(Refusal::new("not_a_reading", format!("{} does more than read", tool.spec().name())));
+        }
+        let (arguments, effect) = self.plan(tool, arguments)?;
+        let deed = self.world.resolve(effect, &self.params, &self.streams);
+        Ok(tool.answer(&self.view(), &arguments, &deed))
+    }
+
+    /// Calls a tool; `next_week` and `query` have functions of their own.
+    ///
+    /// # Errors
+    /// The refusals of the tool; `unknown_tool`; `run_over`; `not_saved` when the disk refuses. Nothing has
+    /// changed then.
+    pub fn call(&mut self, tool: impl AsRef<str>, arguments: &Value, via: Via) -> Result<Value, Refusal> {
+        self.call_recorded(tool.as_ref(), arguments, via, None)
+    }
+
+    pub(in crate::session) fn call_recorded(
+        &mut self,
+        name: &str,
+        arguments: &Value,
+        via: Via,
+        reversal: Option<Reversal>,
+    ) -> Result<Value, Refusal> {
+        let started = Instant::now();
+        let tool = self.tool(name)?;
+        let allowed = self.refuse_if_over(tool.spec().kind);
+        let planned = allowed.and_then(|()| self.plan(tool, arguments)).and_then(|(arguments, effect)| {
+            let deed = self.world.resolve(effect, &self.params, &self.streams);
+            let task = tool.task(&self.view(), &arguments);
+            if task.as_ref().is_some_and(Task::leaves_something) {
+                self.refuse_if_only_read()?;
+            }
+            let answer = match &task {
+                Some(Task::Run { code, seconds }) => self.run_statements(code, *seconds)?,
+                _ => tool.answer(&self.view(), &arguments, &deed),
+            };
+            Ok((arguments, deed, task, answer))
+        });
+        let took_ms = started.elapsed().as_secs_f64() * 1e3;
+        let called = |args: Value, outcome| {
+            Record::Call(Call {
+                tool: tool.spec().id,
+                args,
+                outcome,
+                via,
+                took_ms: rounded(took_ms),
+                reversal,
+            })
+        };
+        match planned {
+            Err(refusal) => {
+                // A refusal changes nothing, so a disk that refuses its line takes nothing away.
+                let record = called(arguments.clone(), refusal.outcome());
+                let _ = self.record_call(&record, Durability::Written);
+                Err(refusal)
+            }
+            Ok((given, deed, task, answer)) => {
+                let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
+                let record = called(Value::Object(given.as_map().clone()), Outcome::Accepted(answer.clone()));
+                // Statements can be kept even when the run is over, and then their line comes after its end.
+                let recorded = match &task {
+                    Some(task) if task.leaves_something() => self.append(&record, durability).map(|_| ()),
+                    _ => self.record_call(&record, durability),
+                };
+                recorded.map_err(not_saved)?;
+                task.iter().for_each(|task| self.apply_task(task));
+                self.apply(tool, &given, reversal, deed);
+                Ok(answer)
+            }
+        }
+    }
+
+    fn apply(&mut self, tool: &'static dyn Tool, given: &Arguments, reversal: Option<Reversal>, deed: Deed) {
+        let (spec, seq) = (tool.spec(), self.position.seq);
+        if !deed.only_reads() {
+            let args = Value::Object(given.as_map().clone());
+            let (day, tool) = (self.world.day, spec.id);
+            self.journal.push(JournalEntry::Call { seq, day, tool, args, reversal });
+        }
+        self.this_week.done.extend(self.in_words(&deed));
+        if matches!(deed, Deed::None | Deed::ReadInsights(_)) {
+            return;
+        }
+        let settings = tool.row(given, &deed);
+        let before = matches!(deed, Deed::Set(_)).then(|| self.world.settings.clone());
+        self.world.apply(deed, &self.params, to_fill(&mut self.facts, self.projector.as_ref()));
+        if let Some(restores) = before {
+            let changed = restores != self.world.settings;
+            self.this_week.keep(Step { seq, tool: spec.id, restores }, changed, reversal);
+        }
+        self.called.extend_from_slice(&self.facts.ledger);
+        self.after_call(settings);
+    }
+
+    /// What cannot be taken back of a deed, in words.
+    fn in_words(&self, deed: &Deed) -> Vec<String> {
+        match deed {
+            Deed::None | Deed::Set(_) | Deed::ReadInsights(_) => Vec::new(),
+            Deed::Post(_) => vec!["post published, read tomorrow".to_owned()],
+            Deed::StartResearch(project, _) => {
+                vec![format!("R&D project {} started, done on day {}", project.id(), project.due_day)]
+            }
+            Deed::ResearchMarket(attempt) => vec![match attempt.found {
+                Some(group) => format!("market research found group {group}"),
+                None => "market research found nothing".to_owned(),
+            }],
+            Deed::ResearchGroup(study, _) => {
+                let (group, level, day) = (study.group, study.target, study.due_day);
+                vec![format!("study of {group} to level {level} ordered, done on day {day}")]
+            }
+            Deed::SendDeals(letters) => letters.iter().map(letter_in_words).collect(),
+            Deed::RejectDeals(threads) => {
+                let ended = self.world.enterprise.threads.iter();
+                let ended = ended.filter(|thread| threads.contains(&thread.number));
+                ended.map(|thread| format!("thread with customer {} ended", thread.customer)).collect()
+            }
+        }
+    }
+
+    /// What follows every applied deed, live or replayed; with the settings family that it leaves.
+    fn after_call(&mut self, settings: Option<Value>) {
+        if let Some(last) = self.cash_by_day.last_mut() {
+            *last = self.world.finance.cash;
+        }
+        self.follow_up(settings);
+        // The database must not be ahead of what is on the disk.
+        if self.sync_calls {
+            self.commit_projection();
+        }
+    }
+
+    /// Settings changed since the last week, old -> new.
+    pub fn changes(&self) -> Vec<Change> {
+        changes(&self.this_week.settings, &self.world.settings)
+    }
+
+    /// The present values of a tool's arguments, as a call would send them.
+    pub fn current(&self, tool: impl AsRef<str>) -> Map<String, Value> {
+        find(tool.as_ref()).map(|tool| tool.current(&self.world.settings)).unwrap_or_default()
+    }
+
+    /// Running costs that follow from settings alone, dollars a day.
+    pub(in crate::session) fn daily_cost(&self, settings: &Settings) -> f64 {
+        daily_cost(settings, f64::from(self.params.capacity(settings.core.capacity_tier).cost_per_day))
+    }
+
+    pub(in crate::session) fn tool(&self, name: &str) -> Result<&'static dyn Tool, Refusal> {
+        find(name).ok_or_else(|| {
+            let near = crate::tools::catalogue::nearest(name);
+            let help = if near.is_empty() {
+                String::new()
+            } else {
+                format!("; did you mean {}?", near.join(" or "))
+            };
+            Refusal::at("tool", "unknown_tool", format!("tool {name} does not exist{help}"))
+        })
+    }
+
+    /// What tools may look at.
+    fn view(&self) -> View<'_> {
+        View::new(&self.world, &self.params).within(&self.office).with_posts(&self.feed.posts)
+    }
+
+    fn plan(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Effect), Refusal> {
+        let (arguments, effect) = self.plan_again(tool, arguments)?;
+        bounds::hold(tool.spec(), &arguments)?;
+        Ok((arguments, effect))
+    }
+
+    /// Plans a call that was accepted once, by a version that may have taken larger numbers.
+    fn plan_again(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Effect), Refusal> {
+        let arguments = Arguments::of(tool.spec(), arguments)?;
+        let effect = tool.plan(&self.view(), &arguments)?;
+        Ok((arguments, effect))
+    }
+
+    /// Refuses what acts once the run is over, and in a run that is only read.
+    pub(in crate::session) fn refuse_if_over(&self, kind: Kind) -> Result<(), Refusal> {
+        if !kind.acts() {
+            return Ok(());
+        }
+        if let Some(ended) = self.ended {
+            let day = self.world.day;
+            let how = match ended {
+                crate::session::trajectory::record::Ended::Horizon => {
+                    format!("it reached its last day, {day}")
+                }
+                crate::session::trajectory::record::Ended::Bankruptcy => {
+                    format!("the company went bankrupt on day {day}")
+                }
+                crate::session::trajectory::record::Ended::Abandoned => {
+                    format!("it was given up on day {day}")
+                }
+            };
+            return Err(Refusal::new(
+                "run_over",
+                format!("the run is over: {how}; you can still read and query"),
+            ));
+        }
+        self.refuse_if_only_read()
+    }
+
+    fn refuse_if_only_read(&self) -> Result<(), Refusal> {
+        match &self.trajectory {
+            Some(_) => Ok(()),
+            None => Err(Refusal::new("read_only", "this run is open read-only")),
+        }
+    }
+
+    fn record_call(&mut self, record: &Record, durability: Durability) -> Result<(), RunError> {
+        match self.ended {
+            Some(_) => Ok(()),
+            None => self.append(record, durability).map(|_| ()),
+        }
+    }
+
+    /// Records a refused call that has no other place, for instance a refused week.
+    pub(in crate::session) fn record_refusal(
+        &mut self,
+        tool: ToolId,
+        arguments: &Value,
+        via: Via,
+        refusal: &Refusal,
+    ) {
+        let (args, outcome) = (arguments.clone(), refusal.outcome());
+        let record = Record::Call(Call { tool, args, outcome, via, took_ms: 0.0, reversal: None });
+        let _ = self.record_call(&record, Durability::Written);
+    }
+}
+
+fn letter_in_words(letter: &Letter) -> String {
+    let offer = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
+    let offers: Vec<String> = letter.offerings.iter().map(offer).collect();
+    format!("offered to customer {}: {}", letter.customer, offers.join(", "))
+}
+
+/// A refusal that says the disk did not take a line.
+pub(in crate::session) fn not_saved(error: RunError) -> Refusal {
+    let message = format!(
+        "{error}; nothing was changed and everything confirmed before is safe: free some disk space, then \
+         try again"
+    );
+    Refusal::new("not_saved", message)
+}
+
+/// Milliseconds to a thousandth.
+fn rounded(took_ms: f64) -> f64 {
+    (took_ms * 1e3).round() / 1e3
+}
+
+impl Refusal {
+    /// As a line of the trajectory has it.
+    fn outcome(&self) -> Outcome {
+        let Refusal { code, message, field } = self.clone();
+        Outcome::Refused(RefusalRecord { code: code.to_owned(), message, field })
+    }
+}
+
+impl Session {
+    /// Applies an accepted call of a trajectory again.
+    ///
+    /// # Errors
+    /// What speaks against it now: the line was changed, or the program is another.
+    pub(in crate::session) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
+        let tool = call.tool.tool();
+        let (given, effect) = self.plan_again(tool, &call.args).map_err(|refusal| refusal.to_string())?;
+        let deed = self.world.resolve(effect, &self.params, &self.streams);
+        let task = tool.task(&self.view(), &given);
+        // What statements said is not asked again: the database may be ahead of this line. And documents may be worded
+        // differently by now.
+        let runs = matches!(task, Some(Task::Run { .. }));
+        let documents = tool.spec().kind == Kind::Engine && task.is_none();
+        if !runs && !documents && *answer != tool.answer(&self.view(), &given, &deed) {
+            return Err("the call answers differently now".to_owned());
+        }
+        task.iter().for_each(|task| self.apply_task(task));
+        self.apply(tool, &given, call.reversal, deed);
+        Ok(())
+    }
+
+    /// The world, for the parts of the session that build readings from it.
+    pub(in crate::session) fn world(&self) -> &World {
+        &self.world
+    }
+}

@@ -1,0 +1,342 @@
+//! Letting time pass.
+
+use serde_json::{Map, Value, json};
+
+use super::act::not_saved;
+use super::facts_chain::StateHash;
+use crate::database::{Entry, ForecastRow};
+use crate::notation::json_number;
+use crate::session::figures::changes::Decisions;
+use crate::session::figures::groups;
+use crate::session::figures::journal::JournalEntry;
+use crate::session::figures::week::{Forecasts, WeekFigures};
+use crate::session::figures::xray::Xray;
+use crate::session::resume::snapshot::WEEKS_BETWEEN;
+use crate::session::state::Session;
+use crate::session::trajectory::record::{Advance, Closing, End, Ended, Via};
+use crate::session::trajectory::{Durability, Record, seconds};
+use crate::tools::{self, Kind, Refusal, ToolId};
+use crate::world::events::{Category, DayFigures, Notice, Sender, SubscriptionEnded, SubscriptionStatus};
+use crate::world::market::surges::week_end;
+
+/// A day that was just simulated.
+pub struct DayReport<'a> {
+    /// Its figures.
+    pub figures: &'a DayFigures,
+    /// Day on which the week will end, unless cash runs out.
+    pub week_end: u32,
+    /// The hidden state, in debug runs.
+    pub xray: Option<Xray<'a>>,
+}
+
+/// A week, or the rest of one, that was simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Week {
+    /// Its figures.
+    pub figures: WeekFigures,
+    /// The dashboard.
+    pub dashboard: String,
+    /// What was put into the inbox: day and text.
+    pub notices: Vec<(u32, String)>,
+    /// How the run ended with it, if it did.
+    pub ended: Option<Ended>,
+    /// What the person should know: the disk did not take the closing line.
+    pub remark: Option<String>,
+}
+
+impl Week {
+    /// The week as programs get it.
+    pub fn as_json(&self) -> Value {
+        let notices: Vec<Value> =
+            self.notices.iter().map(|(day, text)| json!({ "day": day, "text": text })).collect();
+        let mut data = Map::from_iter([
+            ("day".to_owned(), self.figures.day.into()),
+            ("days_run".to_owned(), self.figures.days_run.into()),
+            ("cash".to_owned(), json_number(self.figures.cash)),
+            ("figures".to_owned(), Value::Object(self.figures.as_json())),
+            ("dashboard".to_owned(), self.dashboard.clone().into()),
+            ("notifications".to_owned(), notices.into()),
+            ("ended".to_owned(), json!(self.ended)),
+        ]);
+        if let Some(remark) = &self.remark {
+            data.insert("remark".to_owned(), remark.clone().into());
+        }
+        Value::Object(data)
+    }
+}
+
+impl Session {
+    /// Files rationale and forecasts and simulates the days until the next decision day, or the last day, or
+    /// bankruptcy.
+    ///
+    /// # Errors
+    /// `run_over`, the refusals of next_week, `not_saved`. Nothing has happened then.
+    pub fn advance(
+        &mut self,
+        rationale: &str,
+        forecasts: &Forecasts,
+        via: Via,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Week, Refusal> {
+        let predictions = forecasts.as_predictions();
+        self.advance_given(&json!(rationale), &predictions, forecasts.filled_naively, via, progress)
+    }
+
+    /// As [`Session::advance`], with rationale and predictions as a program sends them.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn advance_given(
+        &mut self,
+        rationale: &Value,
+        predictions: &Value,
+        filled_naively: [bool; 4],
+        via: Via,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Week, Refusal> {
+        let checked = self.refuse_if_over(Kind::Time).and_then(|()| {
+            let text = tools::rationale(rationale)?;
+            let all = tools::forecasts(predictions, &self.params.limits.prediction_horizons_days)?;
+            Ok((text, Forecasts { all, filled_naively }))
+        });
+        let (text, forecasts) = match checked {
+            Ok(checked) => checked,
+            Err(refusal) => {
+                let arguments = json!({ "rationale": rationale, "predictions": predictions });
+                self.record_refusal(ToolId::NextWeek, &arguments, via, &refusal);
+                return Err(refusal);
+            }
+        };
+        let calculated = self.run_calculations();
+        let filed = Advance {
+            rationale: text.clone(),
+            forecasts: forecasts.filed(),
+            via,
+            calculations: calculated.clone(),
+        };
+        let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
+        let at = self.append(&Record::Advance(filed), durability).map_err(not_saved)?;
+        self.calculated = calculated;
+        self.file(text, &forecasts, &at);
+        Ok(self.run_week(progress))
+    }
+
+    /// Simulates single days of a debug run, at most to the end of the week.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `run_over`, `not_saved`.
+    pub fn step(&mut self, days: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> Result<Week, Refusal> {
+        if self.manifest.mode != crate::session::folder::mode::Mode::Debug {
+            return Err(Refusal::new("not_in_this_mode", "single days can be stepped in debug runs only"));
+        }
+        self.refuse_if_over(Kind::Time)?;
+        let until = self.next_decision_day().min(self.world.day + days.max(1));
+        let from = self.world.day;
+        let state = self.run_days(until, progress);
+        Ok(self.close_days(Record::Step, from, state))
+    }
+
+    /// Gives up an unfinished run for good.
+    ///
+    /// # Errors
+    /// `run_over`, `not_saved`.
+    pub fn end(&mut self) -> Result<(), Refusal> {
+        self.refuse_if_over(Kind::Time)?;
+        let problem = self.close_run(Ended::Abandoned);
+        self.commit_projection();
+        problem.map_or(Ok(()), |problem| Err(Refusal::new("not_saved", problem)))
+    }
+
+    /// The day on which the week that holds the next day ends.
+    pub fn next_decision_day(&self) -> u32 {
+        week_end(self.world.day + 1, self.params.run.days_per_week, self.manifest.days)
+    }
+
+    /// Runs the week of an `advance` line and closes it.
+    pub(in crate::session) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
+        let from = self.world.day;
+        let state = self.run_days(self.next_decision_day(), progress);
+        self.close_days(Record::Week, from, state)
+    }
+
+    /// Simulates days until one of them is reached, or cash is below zero. Returns the hash of the state reached.
+    pub(in crate::session) fn run_days(
+        &mut self,
+        until: u32,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> StateHash {
+        let week_end = self.next_decision_day();
+        self.notices.clear();
+        let mut day_before = None;
+        while self.world.day < until && !self.world.is_over(&self.params) {
+            let figures = self.simulate_day(day_before.take());
+            self.judge_own_posts();
+            self.cash_by_day.push(figures.cash);
+            self.count_day(&figures);
+            let notices = self.notice_texts();
+            self.notices.extend(notices.iter().map(|text| (figures.day, text.clone())));
+            let debug = self.manifest.mode == crate::session::folder::mode::Mode::Debug;
+            let xray = debug.then(|| Xray::new(self));
+            progress(&DayReport { figures: &figures, week_end, xray });
+            self.called.clear();
+            day_before = Some(notices);
+        }
+        self.end_days(day_before)
+    }
+
+    fn count_day(&mut self, figures: &DayFigures) {
+        groups::count(&mut self.running_groups, figures, &self.facts, &self.world);
+        let week = &mut self.running_week;
+        week.add(figures);
+        let leads = f64::from(figures.new_leads) * self.params.leads.lead_acquisition_cost;
+        week.booked.add(Category::LeadAcquisitionCost, -leads);
+        week.booked.add(Category::SubscriptionPayment, figures.payments_received);
+        for entry in self.called.iter().chain(&self.facts.ledger) {
+            week.booked.add(entry.category, entry.amount);
+        }
+        for turn in self.facts.turns.iter().filter(|turn| turn.number == 0) {
+            week.threads_opened += 1;
+            week.thread_seats += turn.seats;
+        }
+        week.issues_opened += self.facts.issues_opened.len() as u32;
+        let replies = self.facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+        week.replies += replies.filter(|turn| turn.number > 0).count() as u32;
+        let finished = |notice: &&Notice| {
+            matches!(notice, Notice::ResearchComplete { .. } | Notice::StudyComplete { .. })
+        };
+        week.research_finished += self.facts.notices.iter().filter(finished).count() as u32;
+        let left = |ending: &&SubscriptionEnded| {
+            ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
+        };
+        for ending in self.facts.endings.iter().filter(left) {
+            week.companies_lost += 1;
+            week.seats_lost += ending.seats;
+        }
+    }
+
+    /// Ends the figures of the days that ran, and the week if it is complete.
+    pub(in crate::session) fn settle_figures(&mut self) -> WeekFigures {
+        let before = self.weeks.last().map_or(self.manifest.cash, |week| week.cash);
+        self.running_week.cash_change = self.world.finance.cash - before;
+        self.running_week.open_issues = self.open_issues();
+        let figures = self.running_week;
+        let complete = self.world.day.is_multiple_of(self.params.run.days_per_week);
+        if complete || self.world.is_over(&self.params) {
+            self.weeks.push(figures);
+            self.running_week = WeekFigures::default();
+            let mut groups = std::mem::take(&mut self.running_groups);
+            groups::settle(&mut groups, &self.world);
+            self.group_weeks.push(groups);
+        }
+        self.decisions.push(Decisions {
+            day: self.decisions.last().map_or(0, |before| before.until),
+            until: self.world.day,
+            changes: self.changes(),
+            purchases: std::mem::take(&mut self.this_week.done),
+        });
+        self.journal.push(JournalEntry::Week { figures });
+        self.this_week.settings = self.world.settings.clone();
+        self.this_week.undo.clear();
+        self.this_week.redo.clear();
+        self.last_dashboard = Some(self.build_dashboard(figures.open_issues));
+        figures
+    }
+
+    /// Writes the line that closes days that ran, and tells what came of them and what keeps the line from the disk.
+    fn close_days(&mut self, kind: fn(Closing) -> Record, from: u32, state: StateHash) -> Week {
+        let figures = self.settle_figures();
+        let closing = self.closing(from, &figures, &state);
+        let mut problem = self.append_done(&kind(closing));
+        self.facts_chain.close();
+        problem = problem.or_else(|| self.close_if_over());
+        let due = self.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.running_week.days_run == 0;
+        let snapshot = due && problem.is_none() && self.sync_calls;
+        let week = self.report(problem.map(|problem| {
+            format!("{problem}; the days are simulated again when the run is opened, with the same result")
+        }));
+        // The database is written once everything is told: until then the processors are needed here.
+        if snapshot {
+            self.keep_snapshot(|| state.0, false);
+        } else {
+            self.commit_projection();
+        }
+        week
+    }
+
+    /// Closes a run whose last day has passed or whose cash is gone; the database has to be told.
+    pub(in crate::session) fn close_if_over(&mut self) -> Option<String> {
+        if self.world.finance.is_bankrupt(&self.params) {
+            self.close_run(Ended::Bankruptcy)
+        } else if self.world.is_over(&self.params) {
+            self.close_run(Ended::Horizon)
+        } else {
+            None
+        }
+    }
+
+    fn close_run(&mut self, ended: Ended) -> Option<String> {
+        self.ended = Some(ended);
+        let end = End { reason: ended, cash: self.world.finance.cash, score: self.score() };
+        self.append_done(&Record::End(end))
+    }
+
+    /// What a line says that closes days: what a replay has to arrive at.
+    pub(in crate::session) fn closing(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> Closing {
+        let (state_hash, parts) = state.clone();
+        Closing {
+            days_run: self.world.day - from,
+            figures: figures.as_json(),
+            cash: self.world.finance.cash,
+            state_hash,
+            parts,
+        }
+    }
+
+    fn report(&self, remark: Option<String>) -> Week {
+        let figures = match self.running_week.days_run {
+            0 => self.weeks.last().copied().unwrap_or_default(),
+            _ => self.running_week,
+        };
+        Week {
+            figures,
+            dashboard: self.dashboard(),
+            notices: self.notices.clone(),
+            ended: self.ended,
+            remark,
+        }
+    }
+
+    /// Keeps rationale and forecasts in the journal and the database.
+    fn file(&mut self, rationale: String, forecasts: &Forecasts, at: &str) {
+        self.project_forecasts(forecasts, at);
+        self.journal.push(JournalEntry::Advance {
+            day: self.world.day,
+            rationale,
+            forecasts: forecasts.all.to_vec(),
+            filled_naively: forecasts.filled_naively,
+        });
+    }
+
+    /// Files the rationale and forecasts of an `advance` line again.
+    pub(in crate::session) fn replay_forecasts(&mut self, filed: &Advance, at: &str) -> Result<(), String> {
+        let forecasts = Forecasts::of(&filed.forecasts).ok_or("there are not four forecasts")?;
+        self.calculated.clone_from(&filed.calculations);
+        self.file(filed.rationale.clone(), &forecasts, at);
+        Ok(())
+    }
+
+    fn project_forecasts(&self, forecasts: &Forecasts, at: &str) {
+        if let Some(projector) = &self.projector {
+            let submitted_at = seconds(at);
+            let row = |forecast: &crate::tools::Forecast| ForecastRow {
+                submit_day: self.world.day,
+                horizon_days: forecast.horizon_days,
+                point: forecast.point,
+                lower: forecast.lower,
+                upper: forecast.upper,
+                submitted_at,
+            };
+            projector.write(Entry { forecasts: forecasts.all.iter().map(row).collect(), ..Entry::default() });
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The state hash of a week: the parts of the world, and everything that happened.
+
+use std::collections::BTreeMap;
+
+use crate::world::canonical::hash_of;
+use crate::world::events::Facts;
+use crate::world::state::{PartHash, combined_hash};
+
+/// Hash of the state and of the week's facts, with the hash of each part by its name.
+pub(in crate::session) type StateHash = (String, BTreeMap<String, String>);
+
+/// Hash of a state with these parts and of the week's facts.
+pub(in crate::session) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> StateHash {
+    parts.push(PartHash { part: "facts", hash: facts });
+    let short = |hash: &blake3::Hash| hash.to_hex()[..16].to_owned();
+    let by_name = parts.iter().map(|part| (part.part.to_owned(), short(&part.hash))).collect();
+    (combined_hash(&parts).to_hex().to_string(), by_name)
+}
+
+/// The facts of a week, day by day and call by call, as one hash.
+pub(in crate::session) struct FactsChain {
+    hash: blake3::Hash,
+    /// The week is over: what comes next begins a new chain.
+    closed: bool,
+}
+
+impl Default for FactsChain {
+    fn default() -> Self {
+        FactsChain { hash: blake3::hash(b""), closed: false }
+    }
+}
+
+impl FactsChain {
+    /// Adds the facts of a day or call.
+    pub(in crate::session) fn add(&mut self, facts: &Facts) {
+        if self.closed {
+            *self = FactsChain::default();
+        }
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.hash.as_bytes());
+        hasher.update(hash_of(facts).as_bytes());
+        self.hash = hasher.finalize();
+    }
+
+    /// The chain with this hash, of a week that is over or still runs.
+    pub(in crate::session) fn resume(hash: blake3::Hash, closed: bool) -> FactsChain {
+        FactsChain { hash, closed }
+    }
+
+    /// Whether the week is over.
+    pub(in crate::session) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Ends the week.
+    pub(in crate::session) fn close(&mut self) {
+        self.closed = true;
+    }
+
+    /// Hash of the week so far, or of the one that just ended.
+    pub(in crate::session) fn hash(&self) -> blake3::Hash {
+        self.hash
+    }
+}

@@ -1,0 +1,46 @@
+//! What readers make of the player's posts.
+
+use super::recording::to_fill;
+use crate::session::state::Session;
+use crate::tools::PublicPost;
+use crate::voice::judge::{self, Circumstances, Lexicon, Submission};
+use crate::world::identifiers::Group;
+use crate::world::market::social::reach::{self, Verdict};
+use crate::world::params::PostJudge;
+
+impl Session {
+    /// Lets the readers judge what the player posted before today.
+    pub(in crate::session) fn judge_own_posts(&mut self) {
+        if self.params.fidelity.post_judge == PostJudge::None {
+            return;
+        }
+        let own = &self.world.market.social.own;
+        if own.iter().all(|post| post.effects.is_some()) {
+            return;
+        }
+        let lexicon = Lexicon::shipped();
+        let circumstances = Circumstances::of(&self.world, &self.params, lexicon);
+        let known: Vec<Group> = Group::all().filter(|group| self.world.market.is_known(*group)).collect();
+        let mut verdicts = Vec::new();
+        self.feed.judgements.resize(own.len(), Vec::new());
+        for (at, post) in own.iter().enumerate().filter(|(_, post)| post.effects.is_none()) {
+            let submission = Submission {
+                content: &post.content,
+                day: post.day,
+                original: post.reply_to.and_then(|post| self.feed.original(post)),
+                earlier: own[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
+            };
+            let judgements = judge::judge(&submission, known.iter().copied(), &circumstances, lexicon);
+            let effects = judgements.iter().map(|own| (own.group, own.effect)).collect();
+            verdicts.push(Verdict { post: at as u32 + 1, effects });
+            self.feed.judgements[at] = judgements;
+        }
+        let facts = to_fill(&mut self.facts, self.projector.as_ref());
+        reach::receive(&mut self.world, &verdicts, &self.params, &self.streams, facts);
+    }
+
+    /// Every post of others so far, in the order of their numbers.
+    pub fn posts(&self) -> &[PublicPost] {
+        &self.feed.posts
+    }
+}

@@ -1,0 +1,191 @@
+//! The notes that are kept with a run: a file beside the trajectory, and a line in it for every change.
+//!
+//! New notes are on the disk as a draft before their line is, and take the place of the old ones after it: whenever
+//! the program is stopped, one of the two files holds what the last line tells.
+
+use std::fs::File;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use crate::session::error::RunError;
+use crate::session::folder::manifest::{sync_folder, write_whole};
+use crate::session::resume::open::Access;
+use crate::session::state::Session;
+use crate::session::trajectory::record::Memo;
+use crate::session::trajectory::{Durability, Record, Trajectory};
+use crate::tools::Refusal;
+
+const FILE: &str = "memo.md";
+const DRAFT: &str = "memo.draft";
+
+impl Session {
+    /// The notes kept with the run.
+    ///
+    /// # Errors
+    /// The file exists and cannot be read.
+    pub fn memo(&self) -> Result<String, RunError> {
+        let Some(folder) = &self.folder else { return Ok(self.memo_in_memory.clone()) };
+        let path = folder.join(FILE);
+        match std::fs::read(&path) {
+            Ok(bytes) => Ok(String::from_utf8_lossy(&bytes).into_owned()),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(String::new()),
+            Err(error) => Err(RunError::Io { path, error }),
+        }
+    }
+
+    /// Keeps notes with the run, and records that they changed.
+    ///
+    /// # Errors
+    /// `not_saved`, `read_only`.
+    pub fn set_memo(&mut self, text: &str) -> Result<(), Refusal> {
+        if self.trajectory.is_none() {
+            return Err(Refusal::new("read_only", "this run is open read-only"));
+        }
+        let not_saved = |error: RunError| Refusal::new("not_saved", error.to_string());
+        match self.folder.clone() {
+            None => self.memo_in_memory = text.to_owned(),
+            // Once a run is over nothing more is recorded.
+            Some(folder) if self.ended.is_some() => {
+                return write_whole(&folder.join(FILE), text.as_bytes()).map_err(not_saved);
+            }
+            Some(folder) => {
+                let draft = folder.join(DRAFT);
+                let kept = write_draft(&draft, text).and_then(|()| self.note_memo(text));
+                if let Err(error) = kept {
+                    let _ = std::fs::remove_file(&draft);
+                    return Err(not_saved(error));
+                }
+                return put_in_place(&folder).map_err(not_saved);
+            }
+        }
+        self.note_memo(text).map_err(not_saved)
+    }
+
+    fn note_memo(&mut self, text: &str) -> Result<(), RunError> {
+        if self.ended.is_some() {
+            return Ok(());
+        }
+        let memo = Memo { digest: digest(text.as_bytes()), length: text.len() as u64 };
+        self.append(&Record::Memo(memo), Durability::Synced)?;
+        Ok(())
+    }
+
+    /// Finishes what a stopped program has left. Notes that are not the ones that were kept last are told; they are the
+    /// person's own, and stay as they are.
+    pub(in crate::session) fn check_memo(&mut self, trajectory: &Trajectory, access: Access) {
+        let Some(folder) = &self.folder else { return };
+        let unfinished = notes_file(folder, trajectory) == folder.join(DRAFT);
+        match (access, unfinished) {
+            (Access::Write, true) => drop(put_in_place(folder)),
+            // It was never confirmed.
+            (Access::Write, false) => drop(std::fs::remove_file(folder.join(DRAFT))),
+            (Access::Read, true) => return,
+            (Access::Read, false) => {}
+        }
+        // Once a run is over, notes are kept without a line.
+        let Some(kept) = last_digest(trajectory).filter(|_| self.ended.is_none()) else { return };
+        if digest_of(&folder.join(FILE)) != Some(kept) {
+            self.remarks.push(
+                "memo.md is not as it was last saved: another program changed it, or it is damaged."
+                    .to_owned(),
+            );
+        }
+    }
+}
+
+/// The file that holds the notes of a run as its trajectory tells them: the draft, where the program was stopped between
+/// the line and the file.
+pub(in crate::session) fn notes_file(folder: &Path, trajectory: &Trajectory) -> PathBuf {
+    let (file, draft) = (folder.join(FILE), folder.join(DRAFT));
+    let kept = last_digest(trajectory);
+    let is_kept = |path: &Path| kept.is_some() && digest_of(path) == kept;
+    if !is_kept(&file) && is_kept(&draft) { draft } else { file }
+}
+
+fn last_digest(trajectory: &Trajectory) -> Option<String> {
+    trajectory.lines.iter().rev().find_map(|line| match &line.record {
+        Record::Memo(memo) => Some(memo.digest.clone()),
+        _ => None,
+    })
+}
+
+/// Digest of the notes in a file, as lines tell it; that of no notes where there is no file.
+fn digest_of(path: &Path) -> Option<String> {
+    match std::fs::read(path) {
+        Ok(bytes) => Some(digest(&bytes)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Some(digest(b"")),
+        Err(_) => None,
+    }
+}
+
+fn digest(notes: &[u8]) -> String {
+    blake3::hash(notes).to_hex().to_string()
+}
+
+fn write_draft(draft: &Path, text: &str) -> Result<(), RunError> {
+    let written = File::create(draft)
+        .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()));
+    written.map_err(RunError::io(draft))
+}
+
+fn put_in_place(folder: &Path) -> Result<(), RunError> {
+    let file = folder.join(FILE);
+    std::fs::rename(folder.join(DRAFT), &file).map_err(RunError::io(&file))?;
+    sync_folder(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::folder::configuration::Configuration;
+    use crate::session::folder::create::{NewRun, Storage};
+
+    fn run(runs: &Path) -> (PathBuf, Session) {
+        let storage = Storage::Runs(runs.to_owned());
+        let new = NewRun { storage, projection: false, days: Some(28), ..NewRun::default() };
+        let session = Session::create(new, &Configuration::shipped()).expect("a run");
+        (session.folder().expect("a folder").to_owned(), session)
+    }
+
+    /// The notes and the remarks of a run that is opened again.
+    fn opened(folder: &Path, access: Access) -> (String, Vec<String>) {
+        let session = Session::open(folder, access, false).expect("it opens");
+        (session.memo().expect("notes"), session.remarks().to_vec())
+    }
+
+    #[test]
+    fn notes_are_as_confirmed_wherever_the_program_was_stopped() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let (folder, mut session) = run(runs.path());
+        session.set_memo("first").expect("kept");
+        // Stopped before the line.
+        write_draft(&folder.join(DRAFT), "second").expect("a draft");
+        drop(session);
+        assert_eq!(opened(&folder, Access::Read), ("first".to_owned(), Vec::new()));
+        assert_eq!(opened(&folder, Access::Write), ("first".to_owned(), Vec::new()));
+        assert!(!folder.join(DRAFT).exists(), "what was never confirmed is gone");
+        // Stopped between the line and the file.
+        let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
+        write_draft(&folder.join(DRAFT), "second").expect("a draft");
+        session.note_memo("second").expect("a line");
+        drop(session);
+        assert_eq!(opened(&folder, Access::Read).1, Vec::<String>::new());
+        assert_eq!(opened(&folder, Access::Write), ("second".to_owned(), Vec::new()));
+        assert!(!folder.join(DRAFT).exists());
+        // Changed by somebody else.
+        std::fs::write(folder.join(FILE), "third").expect("written");
+        let (notes, remarks) = opened(&folder, Access::Write);
+        assert_eq!(notes, "third");
+        assert!(remarks.iter().any(|remark| remark.contains("another program changed it")), "{remarks:?}");
+    }
+
+    #[test]
+    fn notes_that_cannot_be_recorded_are_not_kept() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let (folder, mut session) = run(runs.path());
+        session.set_memo("first").expect("kept");
+        std::fs::create_dir(folder.join(DRAFT)).expect("in the way");
+        assert_eq!(session.set_memo("second").expect_err("no room").code, "not_saved");
+        assert_eq!(session.memo().expect("notes"), "first");
+    }
+}

@@ -1,0 +1,14 @@
+//! Playing a run: calls and weeks, what follows from them, and taking them back.
+
+pub(in crate::session) mod act;
+pub(in crate::session) mod advance;
+pub(in crate::session) mod aftermath;
+pub(in crate::session) mod facts_chain;
+pub(in crate::session) mod feed;
+pub(in crate::session) mod judging;
+pub(in crate::session) mod memo;
+pub(in crate::session) mod office;
+pub(in crate::session) mod recording;
+pub(in crate::session) mod scripts;
+pub(in crate::session) mod this_week;
+pub(in crate::session) mod undo;

@@ -1,0 +1,94 @@
+//! What a session writes: lines of the trajectory, and rows for the database.
+
+use std::sync::Arc;
+
+use super::feed::Feed;
+use crate::database::{Entry, Projector};
+use crate::session::error::RunError;
+use crate::session::state::Session;
+use crate::session::trajectory::record::View;
+use crate::session::trajectory::{Durability, Record};
+use crate::voice;
+use crate::world::events::{Facts, Sender};
+use crate::world::params::Params;
+
+/// Facts to be filled: these if nobody reads them any more, else some that the writer of the database has done with, or
+/// new ones. The facts of a day that is not handed over yet stay.
+pub(in crate::session) fn to_fill<'a>(
+    facts: &'a mut Arc<Facts>,
+    projector: Option<&Projector>,
+) -> &'a mut Facts {
+    if Arc::strong_count(facts) > 1 {
+        *facts = projector.and_then(Projector::spare_facts).unwrap_or_default();
+    }
+    Arc::make_mut(facts)
+}
+
+/// The facts of a day or call with the words that belong to them.
+pub(in crate::session) fn entry_of(
+    facts: &Arc<Facts>,
+    notices: Vec<String>,
+    feed: &Feed,
+    params: &Params,
+) -> Entry {
+    let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
+    let writers = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+    let named = companies.map(|arrival| arrival.customer).chain(writers.map(|turn| turn.customer));
+    let personas = &params.personas;
+    Entry {
+        notices,
+        readings: facts.readings.iter().map(voice::reading).collect(),
+        turns: facts.turns.iter().map(|turn| voice::message(turn, personas)).collect(),
+        posts: feed.words_of(facts),
+        addresses: named.map(|customer| (customer, voice::address(customer, &personas.email))).collect(),
+        facts: facts.clone(),
+        ..Entry::default()
+    }
+}
+
+impl Session {
+    /// The facts of day 0 with the words that belong to them.
+    pub(in crate::session) fn entry(&self) -> Entry {
+        entry_of(&self.facts, self.notice_texts(), &self.feed, &self.params)
+    }
+
+    /// Makes everything handed over visible, as of the last line.
+    pub(in crate::session) fn commit_projection(&self) {
+        if let Some(projector) = &self.projector {
+            projector.commit(self.position.clone());
+        }
+    }
+
+    /// Appends a line; a run that is only read has none.
+    pub(in crate::session) fn append(
+        &mut self,
+        record: &Record,
+        durability: Durability,
+    ) -> Result<String, RunError> {
+        let Some(trajectory) = &mut self.trajectory else { return Ok(String::new()) };
+        let at = trajectory.append(self.world.day, record, durability)?;
+        self.position = trajectory.position();
+        Ok(at)
+    }
+
+    /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
+    pub(in crate::session) fn append_done(&mut self, record: &Record) -> Option<String> {
+        let trajectory = self.trajectory.as_mut()?;
+        let written = trajectory.append_done(self.world.day, record);
+        self.position = trajectory.position();
+        written.err().map(|error| error.to_string())
+    }
+
+    /// Records what the person looked at, and for how long.
+    pub fn note_view(&mut self, screen: &str, from: &str, for_ms: u64) {
+        self.note(Record::View(View { screen: screen.to_owned(), from: from.to_owned(), for_ms }));
+    }
+
+    /// Records something that changes nothing; once the run is over nothing more is recorded.
+    pub(in crate::session) fn note(&mut self, record: Record) {
+        if self.ended.is_none() {
+            // Nothing is lost with it, so a disk that refuses it is no reason to stop.
+            let _ = self.append(&record, Durability::Written);
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Taking settings of this week back, and setting them again.
+//!
+//! Both are calls like any other: they restore old values with the tool that set them, and their lines name the call
+//! that they take back or repeat. Calls that changed nothing are passed over.
+
+use std::collections::BTreeSet;
+
+use serde_json::{Map, Value};
+
+use super::this_week::Step;
+use crate::session::figures::changes::{Change, changes};
+use crate::session::figures::journal::JournalEntry;
+use crate::session::state::Session;
+use crate::session::trajectory::record::{Reversal, Via};
+use crate::tools::{Refusal, ToolId};
+use crate::world::settings::Settings;
+
+/// Lines of the calls that were taken back. What redo repeated has a line of its own.
+pub fn undone_calls(journal: &[JournalEntry]) -> BTreeSet<u64> {
+    let mut undone = BTreeSet::new();
+    for entry in journal {
+        if let JournalEntry::Call { reversal: Some(Reversal::Undoes(seq)), .. } = entry {
+            undone.insert(*seq);
+        }
+    }
+    undone
+}
+
+impl Session {
+    /// Takes back the last call of this week that changed a setting. Returns what changed by it.
+    ///
+    /// # Errors
+    /// `nothing_to_undo`, `cannot_undo` where no call can restore the old value, and the refusals of the call.
+    pub fn undo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
+        let Some(step) = self.this_week.undo.last().cloned() else {
+            let message = "no setting has changed since the last week; purchases, posts and offers cannot be \
+                           taken back";
+            return Err(Refusal::new("nothing_to_undo", message));
+        };
+        self.restore(&step, via, Reversal::Undoes(step.seq))
+    }
+
+    /// Sets again what the last undo of this week took back. Returns what changed by it.
+    ///
+    /// # Errors
+    /// `nothing_to_redo`, and the refusals of the call.
+    pub fn redo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
+        let Some(step) = self.this_week.redo.last().cloned() else {
+            let message = "nothing has been undone since the last setting";
+            return Err(Refusal::new("nothing_to_redo", message));
+        };
+        self.restore(&step, via, Reversal::Redoes(step.seq))
+    }
+
+    fn restore(&mut self, step: &Step, via: Via, reversal: Reversal) -> Result<Vec<Change>, Refusal> {
+        let before = self.world.settings.clone();
+        let arguments = restoring_arguments(step.tool, &before, &step.restores)?;
+        self.call_recorded(step.tool.name(), &Value::Object(arguments), via, Some(reversal))?;
+        Ok(changes(&before, &self.world.settings))
+    }
+}
+
+/// The arguments with which a tool restores settings.
+fn restoring_arguments(
+    id: ToolId,
+    now: &Settings,
+    restored: &Settings,
+) -> Result<Map<String, Value>, Refusal> {
+    let tool = id.tool();
+    let mut arguments = tool.current(restored);
+    if id == ToolId::SetPrices {
+        let held = tool.current(now);
+        arguments.retain(|plan, price| held.get(plan) != Some(price));
+        if let Some((plan, _)) = arguments.iter().find(|(_, price)| price.as_f64() == Some(0.0)) {
+            let message = format!(
+                "plan {plan} had no price before this call, and a price of 0 cannot be set; set another price instead"
+            );
+            return Err(Refusal::at(plan.clone(), "cannot_undo", message));
+        }
+    }
+    Ok(arguments)
+}

@@ -1,0 +1,433 @@
+//! A recorded run, played again: its company at any moment, read-only, with what was decided there.
+//!
+//! The lines of the trajectory are applied one after the other to a session of its own, whose database is in memory;
+//! nothing on the disk changes. Forward means more lines for the same session, backward a new one from the start.
+
+pub(in crate::session) mod place;
+pub(in crate::session) mod record_view;
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::database::{Location, Projector};
+use crate::session::error::RunError;
+use crate::session::figures::week::week_of;
+use crate::session::folder::manifest::Manifest;
+use crate::session::folder::mode::Mode;
+use crate::session::playback::place::{Chapter, Goal, Place, Went};
+use crate::session::playback::record_view::RecordView;
+use crate::session::resume::open::check_start;
+use crate::session::state::Session;
+use crate::session::trajectory::{Line, Record, Trajectory, TrajectoryWriter, damaged_at};
+use crate::tools::Refusal;
+use crate::world::events::Facts;
+use crate::world::params::Params;
+use crate::world::state::World;
+
+/// A line that closes a week or single steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Stop {
+    /// Lines up to it, with the end of the run if that follows at once.
+    after: usize,
+    day: u32,
+    cash: f64,
+}
+
+/// Where the lines come from.
+pub(super) struct Origin {
+    pub path: PathBuf,
+    /// Folder of the run; none for a trajectory that stands alone.
+    pub folder: Option<PathBuf>,
+    pub manifest: Manifest,
+    pub params: Arc<Params>,
+}
+
+/// A recorded run, played again.
+pub struct Playback {
+    origin: Origin,
+    trajectory: Trajectory,
+    /// Lines that can be applied: all, unless one of them turned out wrong.
+    good: usize,
+    stops: Vec<Stop>,
+    session: Session,
+    applied: usize,
+    follows: bool,
+}
+
+impl Playback {
+    /// Opens the run of a folder, or a trajectory file, at its beginning.
+    ///
+    /// # Errors
+    /// It is missing, damaged or of another version; the error names the place and what is safe.
+    pub fn open(path: &Path) -> Result<Playback, RunError> {
+        let (origin, trajectory) = read(path)?;
+        let session = begin(&origin)?;
+        let good = trajectory.lines.len();
+        let mut playback =
+            Playback { origin, trajectory, good, stops: Vec::new(), session, applied: 0, follows: false };
+        playback.find_stops(0);
+        playback.forward(1, &mut |_| ControlFlow::Continue(()))?;
+        Ok(playback)
+    }
+
+    /// From now on new lines are awaited.
+    pub fn follow(&mut self) {
+        self.follows = !self.is_recorded_to_the_end();
+    }
+
+    /// Whether new lines are awaited.
+    pub fn follows(&self) -> bool {
+        self.follows
+    }
+
+    /// The company of this moment; it cannot be acted on.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// The same, for what needs it changeable: asking the database.
+    pub fn session_mut(&mut self) -> &mut Session {
+        &mut self.session
+    }
+
+    /// Goes somewhere. Going back is done with a new session beside the one that is shown, so that it can be stopped.
+    ///
+    /// # Errors
+    /// A line does not lead to the recorded state: the playback stands before it, and never goes beyond.
+    pub fn go(
+        &mut self,
+        goal: Goal,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<Went, RunError> {
+        let line = self.line_of(goal).clamp(1, self.good);
+        let before = self.good;
+        let went = if line < self.applied { self.back(line, progress) } else { self.forward(line, progress) };
+        if went.is_err() && self.good < before {
+            // The session has taken a line that is wrong: only a new one is as it was before it.
+            self.back(self.stop_before(self.good), &mut |_| ControlFlow::Continue(()))?;
+        }
+        went
+    }
+
+    fn line_of(&self, goal: Goal) -> usize {
+        match goal {
+            Goal::First => 1,
+            Goal::Last => self.good,
+            Goal::Lines(count) => self.applied.saturating_add_signed(count as isize),
+            Goal::Week(0) => 1,
+            Goal::Week(week) => {
+                let reached = self.stops.iter().rfind(|stop| week_of(stop.day) <= week);
+                reached.map_or(1, |stop| stop.after)
+            }
+            Goal::Weeks(count) if count >= 0 => {
+                let coming = self.stops.iter().filter(|stop| stop.after > self.applied);
+                coming.take(count as usize).last().map_or(self.good, |stop| stop.after)
+            }
+            Goal::Weeks(count) => {
+                let mut passed = self.stops.iter().rev().filter(|stop| stop.after < self.applied);
+                passed.nth(count.unsigned_abs() as usize - 1).map_or(1, |stop| stop.after)
+            }
+        }
+    }
+
+    fn stop_before(&self, line: usize) -> usize {
+        self.stops.iter().rfind(|stop| stop.after <= line).map_or(1, |stop| stop.after)
+    }
+
+    /// Applies further lines; whatever was applied when it is stopped stays.
+    fn forward(
+        &mut self,
+        line: usize,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<Went, RunError> {
+        let lines = &self.trajectory.lines[..line.min(self.trajectory.lines.len())];
+        let (applied, end) = apply(&mut self.session, &self.origin.path, lines, self.applied, progress);
+        self.applied = applied;
+        self.end(end)
+    }
+
+    /// Goes to an earlier line with a session that begins before it.
+    fn back(
+        &mut self,
+        line: usize,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<Went, RunError> {
+        let (mut session, from) = self.session_before()?;
+        let lines = &self.trajectory.lines[..line];
+        let (applied, end) = apply(&mut session, &self.origin.path, lines, from, progress);
+        let went = self.end(end)?;
+        if went == Went::Stopped {
+            return Ok(went);
+        }
+        (self.session, self.applied) = (session, applied);
+        Ok(Went::Anew)
+    }
+
+    /// A session that stands before the line looked for, and the lines it holds: the beginning. Whatever is stored of
+    /// later moments may come in here.
+    fn session_before(&self) -> Result<(Session, usize), RunError> {
+        begin(&self.origin).map(|session| (session, 0))
+    }
+
+    fn end(&mut self, end: Result<ControlFlow<()>, (usize, RunError)>) -> Result<Went, RunError> {
+        match end {
+            Ok(ControlFlow::Continue(())) => Ok(Went::There),
+            Ok(ControlFlow::Break(())) => Ok(Went::Stopped),
+            Err((line, error)) => {
+                self.good = line;
+                Err(error)
+            }
+        }
+    }
+
+    /// Takes lines that were written since. True if there are any.
+    ///
+    /// # Errors
+    /// The file cannot be read, or its new lines are damaged.
+    pub fn look_for_more(&mut self) -> Result<bool, RunError> {
+        let more = self.read_more();
+        if more.is_err() || self.is_recorded_to_the_end() {
+            self.follows = false;
+        }
+        more
+    }
+
+    fn read_more(&mut self) -> Result<bool, RunError> {
+        let path = &self.origin.path;
+        let length = std::fs::metadata(path).map_err(RunError::io(path))?.len();
+        let known = self.trajectory.length + self.trajectory.unfinished as u64;
+        if length == known || self.good < self.trajectory.lines.len() {
+            return Ok(false);
+        }
+        let before = self.trajectory.lines.len();
+        let bytes = tail(path, self.trajectory.length)?;
+        if length < self.trajectory.length {
+            let lines = format!("lines were removed; there were {before}");
+            return Err(damaged_at(path)((before, lines)));
+        }
+        self.trajectory.extend(&bytes).map_err(damaged_at(path))?;
+        self.good = self.trajectory.lines.len();
+        self.find_stops(before);
+        Ok(self.good > before)
+    }
+
+    /// Whether the playback stands after the last line.
+    pub fn at_end(&self) -> bool {
+        self.applied == self.good
+    }
+
+    fn is_recorded_to_the_end(&self) -> bool {
+        self.trajectory.lines.last().is_some_and(|line| matches!(line.record, Record::End(_)))
+    }
+
+    fn find_stops(&mut self, from: usize) {
+        for line in &self.trajectory.lines[from..] {
+            let after = line.seq as usize + 1;
+            match &line.record {
+                Record::Week(closing) | Record::Step(closing) => {
+                    self.stops.push(Stop { after, day: line.day, cash: closing.cash });
+                }
+                // Days that were the last are shown with the end they brought.
+                Record::End(_) => {
+                    if let Some(stop) = self.stops.last_mut().filter(|stop| stop.after + 1 == after) {
+                        stop.after = after;
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Where it is, and what was decided there.
+    pub fn place(&self) -> Place {
+        let recorded_day = self.stops.last().map_or(0, |stop| stop.day);
+        Place {
+            line: self.applied,
+            lines: self.good,
+            day: self.session.day(),
+            week: week_of(self.session.day()),
+            recorded_day,
+            weeks: week_of(recorded_day),
+            follows: self.follows,
+            at_end: self.at_end(),
+            chapter: self.chapter(),
+            no_branch: self.no_branch().map(|refusal| refusal.message),
+        }
+    }
+
+    /// What was decided before the next week; where none follows, what was decided last.
+    fn chapter(&self) -> Chapter {
+        let last = self.trajectory.lines.len();
+        let at_end = self.stops.last().is_some_and(|stop| stop.after == last && self.applied == last);
+        let shown = if at_end { self.applied - 1 } else { self.applied };
+        let from = self.stops.iter().rfind(|stop| stop.after <= shown);
+        let to = self.stops.iter().find(|stop| stop.after > shown).map_or(last, |stop| stop.after);
+        let (first, day) = from.map_or((1, 0), |stop| (stop.after, stop.day));
+        let lines = &self.trajectory.lines[first.min(to)..to];
+        let (today, outcome) = (self.session.day(), |due: u32| self.outcome(due));
+        Chapter {
+            week: day / 7 + 1,
+            day,
+            entries: lines.iter().map(|line| RecordView::of(line, today, &outcome)).collect(),
+            done: self.applied.saturating_sub(first).min(lines.len()),
+        }
+    }
+
+    /// Cash on a day, also on one that is still to come, where that is recorded.
+    fn outcome(&self, day: u32) -> Option<f64> {
+        if day <= self.session.day() {
+            return self.session.cash_by_day().get(day as usize).copied();
+        }
+        self.stops.iter().find(|stop| stop.day == day).map(|stop| stop.cash)
+    }
+
+    /// The notes of the run, if they had already been written as they are now: earlier texts are not recorded.
+    pub fn memo(&self) -> Option<String> {
+        let text = self.session.memo().ok()?;
+        let last =
+            self.trajectory.lines[..self.applied].iter().rev().find_map(|line| match &line.record {
+                Record::Memo(memo) => Some(memo),
+                _ => None,
+            })?;
+        (last.digest == blake3::hash(text.as_bytes()).to_hex().as_str()).then_some(text)
+    }
+
+    fn no_branch(&self) -> Option<Refusal> {
+        if self.origin.folder.is_none() {
+            return Some(stands_alone());
+        }
+        let unfinished = !self.is_recorded_to_the_end();
+        (self.origin.manifest.mode == Mode::Baseline && unfinished).then(|| {
+            let message = "an unfinished baseline run cannot be branched, so that nobody can look into its \
+                           future and come back: end it first (novamind runs end)";
+            Refusal::new("not_in_this_mode", message)
+        })
+    }
+
+    /// Takes over here: a new run that shares everything up to this moment, open to go on with.
+    ///
+    /// # Errors
+    /// `not_in_this_mode` for an unfinished baseline run or a baseline branch, `not_possible`, `run_over`, `not_saved`.
+    pub fn take_over(&self, mode: Mode) -> Result<Session, Refusal> {
+        let folder = match (self.no_branch(), &self.origin.folder) {
+            (None, Some(folder)) => folder,
+            (refusal, _) => return Err(refusal.unwrap_or_else(stands_alone)),
+        };
+        // What was given up can be gone on with; what reached its end cannot.
+        if self.session.ended().is_some() && !self.session.is_abandoned() {
+            let message = "nothing comes after this moment: go back to a week first";
+            return Err(Refusal::new("run_over", message));
+        }
+        crate::session::resume::branch::branch_of(folder, &self.origin.manifest, &self.shared(), mode)
+    }
+
+    /// The lines up to here without a week that was about to run: that decision is taken anew.
+    fn shared(&self) -> Vec<Line> {
+        let mut lines = self.trajectory.lines[..self.applied].to_vec();
+        if let Some(last) = lines.iter().rposition(|line| matches!(line.record, Record::Advance(_))) {
+            let ran = lines[last..].iter().any(Line::closes_days);
+            if !ran {
+                lines.truncate(last);
+            }
+        }
+        lines
+    }
+}
+
+fn stands_alone() -> Refusal {
+    let message =
+        "this trajectory stands alone, without the folder of its run: import the run to take it over";
+    Refusal::new("not_possible", message)
+}
+
+/// Applies lines after those that were applied; returns how many are applied then, and how it ended.
+fn apply(
+    session: &mut Session,
+    path: &Path,
+    lines: &[Line],
+    applied: usize,
+    progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+) -> (usize, Result<ControlFlow<()>, (usize, RunError)>) {
+    for (at, line) in lines.iter().enumerate().skip(applied) {
+        if let Err(error) = session.apply_line(path, line) {
+            return (at, Err((at, error)));
+        }
+        if line.closes_days() && at + 1 < lines.len() && progress(line.day).is_break() {
+            return (at + 1, Ok(ControlFlow::Break(())));
+        }
+    }
+    (lines.len().max(applied), Ok(ControlFlow::Continue(())))
+}
+
+/// Reads the lines of a run's folder, or of a trajectory file that stands alone.
+pub(super) fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {
+    let (file, folder) = match path.is_dir() {
+        true => (path.join("trajectory.jsonl"), Some(path.to_owned())),
+        false => {
+            let beside = path
+                .parent()
+                .map(|parent| if parent.as_os_str().is_empty() { Path::new(".") } else { parent });
+            let is_of_run = path.file_name().is_some_and(|name| name == "trajectory.jsonl");
+            let folder = beside.filter(|folder| is_of_run && folder.join("run.toml").exists());
+            (path.to_owned(), folder.map(Path::to_owned))
+        }
+    };
+    let trajectory = Trajectory::read(&file)?;
+    let manifest = match &folder {
+        Some(folder) => Manifest::read(folder)?,
+        None => Manifest::of_start(&file, trajectory.lines.first())?,
+    };
+    check_start(&file, trajectory.lines.first(), &manifest)?;
+    let params = Arc::new(manifest.params()?);
+    Ok((Origin { path: file, folder, manifest, params }, trajectory))
+}
+
+/// A session before the first line.
+fn begin(origin: &Origin) -> Result<Session, RunError> {
+    let (projector, _) = Projector::start(Location::memory(), 0, origin.params.clone(), |_| false)?;
+    let (manifest, params) = (origin.manifest.clone(), origin.params.clone());
+    Ok(Session::unwritten(manifest, origin.folder.clone(), params, Some(projector)))
+}
+
+fn tail(path: &Path, from: u64) -> Result<Vec<u8>, RunError> {
+    use std::io::{Read, Seek, SeekFrom};
+    let mut bytes = Vec::new();
+    let read = std::fs::File::open(path).and_then(|mut file| {
+        file.seek(SeekFrom::Start(from))?;
+        file.read_to_end(&mut bytes)
+    });
+    read.map(|_| bytes).map_err(RunError::io(path))
+}
+
+impl Session {
+    /// A session on day 0 that writes nothing, for lines to be applied to.
+    pub(super) fn unwritten(
+        manifest: Manifest,
+        folder: Option<PathBuf>,
+        params: Arc<Params>,
+        projector: Option<Projector>,
+    ) -> Session {
+        let mut facts = Facts::default();
+        let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
+        Session::unwritten_from(manifest, folder, params, (world, facts), projector)
+    }
+
+    /// The same with a world that has a past.
+    pub(super) fn unwritten_from(
+        manifest: Manifest,
+        folder: Option<PathBuf>,
+        params: Arc<Params>,
+        (world, facts): (World, Facts),
+        projector: Option<Projector>,
+    ) -> Session {
+        let nowhere = TrajectoryWriter::in_memory();
+        let mut session =
+            Session::assemble(manifest, folder, None, params, world, facts, nowhere, projector, true);
+        session.trajectory = None;
+        session
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests;

@@ -1,0 +1,76 @@
+//! A line of a trajectory as somebody looks back at it: what it says, and what came of its forecasts.
+
+use crate::session::figures::scored_forecast::ScoredForecast;
+use crate::session::trajectory::{Line, Record};
+use crate::tools::Forecast;
+
+/// A line, and what is known by now of what it foresaw.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordView {
+    /// Number of the line.
+    pub seq: u64,
+    /// Day of the run.
+    pub day: u32,
+    /// When it was written, RFC 3339.
+    pub at: String,
+    /// What it says.
+    pub record: Record,
+    /// Its forecasts. Their outcomes are taken from the whole record, also those that nobody knew at the moment.
+    pub forecasts: Vec<ScoredForecast>,
+    /// The day from which is looked back: what came after it was not known yet.
+    pub today: u32,
+}
+
+impl RecordView {
+    /// A line as it is seen on a day. `outcome` knows cash on a day, where that is recorded.
+    pub(in crate::session) fn of(
+        line: &Line,
+        today: u32,
+        outcome: &dyn Fn(u32) -> Option<f64>,
+    ) -> RecordView {
+        let scored = |forecast: Forecast| {
+            let open = ScoredForecast { forecast, day: line.day, outcome: None };
+            ScoredForecast { outcome: outcome(open.due()), ..open }
+        };
+        let forecasts = match &line.record {
+            Record::Advance(filed) => filed.forecasts.iter().map(|one| scored(one.said())).collect(),
+            _ => Vec::new(),
+        };
+        let Line { seq, day, at, record, .. } = line.clone();
+        RecordView { seq, day, at, record, forecasts, today }
+    }
+
+    /// Whether nobody knew yet what came of a forecast.
+    pub fn is_later(&self, forecast: &ScoredForecast) -> bool {
+        forecast.due() > self.today
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::figures::scored_forecast::Verdict;
+    use crate::session::trajectory::record::{Advance, FiledForecast, Via};
+
+    #[test]
+    fn a_forecast_says_what_came_and_what_is_still_to_come() {
+        let one = |horizon_days| FiledForecast {
+            horizon_days,
+            point: 100.0,
+            lower: 80.0,
+            upper: 95.0,
+            filled_naively: false,
+        };
+        let advance = Advance {
+            rationale: "if".to_owned(),
+            forecasts: vec![one(7), one(28)],
+            via: Via::Form,
+            calculations: Vec::new(),
+        };
+        let line = Line::alone(5, 14, "", Record::Advance(advance));
+        let view = RecordView::of(&line, 21, &|due| (due == 21).then_some(90.0));
+        let [first, second] = view.forecasts[..] else { panic!("{view:?}") };
+        assert_eq!((first.due(), first.verdict(), view.is_later(&first)), (21, Some(Verdict::Inside), false));
+        assert_eq!((second.due(), second.verdict(), view.is_later(&second)), (42, None, true));
+    }
+}

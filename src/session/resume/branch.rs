@@ -1,0 +1,122 @@
+//! Branches: a new run that shares the past of another up to a decision day.
+
+use std::path::{Path, PathBuf};
+
+use super::open::Access;
+use crate::session::error::RunError;
+use crate::session::folder::create::{new_id, start_of};
+use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::folder::mode::Mode;
+use crate::session::state::Session;
+use crate::session::trajectory::record::{Branch, Ended, Parent};
+use crate::session::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter, now};
+use crate::tools::Refusal;
+
+impl Session {
+    /// Starts a branch at the beginning of a week, counted from 1, and opens it.
+    ///
+    /// # Errors
+    /// `not_in_this_mode` for an unfinished baseline run or a baseline branch, `week_unknown`, `not_saved`.
+    pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Refusal> {
+        if self.manifest.mode == Mode::Baseline && self.ended.is_none() {
+            let message = "an unfinished baseline run cannot be branched; end it first";
+            return Err(Refusal::new("not_in_this_mode", message));
+        }
+        let Some(folder) = &self.folder else {
+            return Err(Refusal::new("not_saved", "a run in memory cannot be branched"));
+        };
+        let day = week.saturating_sub(1) * self.params.run.days_per_week;
+        if week == 0 || day > self.world.day {
+            let last = self.world.day / self.params.run.days_per_week + 1;
+            return Err(Refusal::at(
+                "week",
+                "week_unknown",
+                format!("cannot branch from week {week}; choose a week from 1 to {last}"),
+            ));
+        }
+        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved)?;
+        branch_of(folder, &self.manifest, before(&trajectory, day), mode)
+    }
+
+    /// Whether the run can be branched now.
+    pub fn can_branch(&self) -> bool {
+        self.folder.is_some() && (self.manifest.mode != Mode::Baseline || self.ended.is_some())
+    }
+
+    /// Whether the run was given up.
+    pub fn is_abandoned(&self) -> bool {
+        self.ended == Some(Ended::Abandoned)
+    }
+}
+
+fn not_saved(error: RunError) -> Refusal {
+    Refusal::new("not_saved", error.to_string())
+}
+
+/// Starts a run beside another that shares some of its lines, and opens it.
+///
+/// # Errors
+/// `not_in_this_mode` for a baseline branch, `not_saved`.
+pub(in crate::session) fn branch_of(
+    folder: &Path,
+    parent: &Manifest,
+    lines: &[Line],
+    mode: Mode,
+) -> Result<Session, Refusal> {
+    if mode == Mode::Baseline {
+        return Err(Refusal::new("not_in_this_mode", "a branch can have any mode but baseline"));
+    }
+    let shared = shared_lines(lines);
+    let manifest = Manifest {
+        id: new_id(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        created: now(),
+        mode,
+        parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
+        ..parent.clone()
+    };
+    let own = folder.with_file_name(&manifest.id);
+    write_branch(&own, &manifest, &shared).and_then(|()| Session::open(&own, Access::Write, true)).map_err(
+        |error| {
+            // A branch that cannot be opened is nobody's run.
+            let _ = std::fs::remove_dir_all(&own);
+            not_saved(error)
+        },
+    )
+}
+
+/// The lines before a decision day: those of the days before it and the week that ends on it, without what was
+/// decided on that day itself.
+fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
+    let after = trajectory
+        .lines
+        .iter()
+        .position(|line| !(line.day < day || (line.day == day && line.closes_days()) || line.seq == 0));
+    &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]
+}
+
+/// Those lines that make a company what it is.
+fn shared_lines(lines: &[Line]) -> Vec<&Line> {
+    let makes = |line: &&Line| {
+        line.record.accepted_call().is_some()
+            || matches!(
+                line.record,
+                Record::Advance(_) | Record::Week(_) | Record::Step(_) | Record::Override(_)
+            )
+    };
+    lines.iter().filter(makes).collect()
+}
+
+fn write_branch(folder: &PathBuf, manifest: &Manifest, shared: &[&Line]) -> Result<(), RunError> {
+    std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+    manifest.write(folder)?;
+    let mut writer = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
+    writer.append(0, &start_of(manifest), Durability::Written)?;
+    for line in shared {
+        writer.copy(line)?;
+    }
+    let day = shared.last().map_or(0, |line| line.day);
+    let branch = Branch { from: manifest.parent.clone() };
+    writer.append(day, &Record::Branch(branch), Durability::Synced)?;
+    sync_folder(folder)
+}

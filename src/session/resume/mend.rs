@@ -1,0 +1,114 @@
+//! A database that could not be written, for instance because the disk was full, is made whole again while the run
+//! goes on.
+
+use std::sync::Arc;
+
+use super::open::{Access, open_projector, usable};
+use super::witness::Witnesses;
+use crate::database::{Location, ProjectionError, Projector, is_consistent};
+use crate::session::error::RunError;
+use crate::session::state::Session;
+use crate::session::trajectory::Trajectory;
+
+impl Session {
+    /// What keeps the database from being written; none where it holds everything, or will soon.
+    pub fn database_failure(&self) -> Option<ProjectionError> {
+        self.projector.as_ref()?.failure()
+    }
+
+    /// Brings a database that could not be written up to the last line again, from the trajectory. Desks that were
+    /// opened before know nothing of it.
+    ///
+    /// # Errors
+    /// It still cannot be written. Nothing else has changed.
+    pub fn mend_database(&mut self) -> Result<(), RunError> {
+        let Some(problem) = self.database_failure() else { return Ok(()) };
+        let (Some(folder), Some(trajectory)) = (self.folder.clone(), &mut self.trajectory) else {
+            return Err(problem.into());
+        };
+        // Lines that wait for the disk would be missing.
+        trajectory.sync()?;
+        let path = folder.join("trajectory.jsonl");
+        let read = Trajectory::read(&path)?;
+        let sound = is_consistent(&Location::File(folder.join("world.db")));
+        let run = (&self.manifest, &self.params);
+        let database = open_projector(&folder, Access::Write, run, &read, sound)?;
+        let witnesses = Witnesses::of(&folder, &self.manifest);
+        let rows = database.1.as_ref().map_or(0, |position| position.seq);
+        let snapshot = usable(&witnesses, &self.manifest, &read, Some(rows));
+        let (manifest, params) = (self.manifest.clone(), Arc::clone(&self.params));
+        let (mut other, seen) = Session::before_replay(manifest, &folder, None, params, snapshot);
+        other.replay(&path, &read, seen, Some(database), &mut |_| {})?;
+        let mended: Option<Projector> = other.projector.take();
+        if let Some(projector) = &mended {
+            projector.wait()?;
+        }
+        (self.projector, self.desk) = (mended, None);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::session::Cell;
+    use crate::session::folder::configuration::Configuration;
+    use crate::session::folder::create::{NewRun, Storage};
+    use crate::session::trajectory::record::Via;
+
+    /// Rows that tell how far the database has come.
+    fn rows(session: &mut Session) -> Vec<Vec<Cell>> {
+        let sql = "SELECT (SELECT count(*) FROM ledger), (SELECT max(day) FROM ledger), \
+                   (SELECT count(*) FROM config_history), (SELECT sum(usage_units) FROM daily_usage)";
+        session.query(sql).expect("rows").rows
+    }
+
+    fn week(session: &mut Session) {
+        let forecasts = session.naive_forecasts();
+        session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+    }
+
+    fn play(session: &mut Session, weeks: usize) {
+        let ads = json!({ "targeted_spend": { "content_marketing": { "S1": 750 } } });
+        for (tool, arguments) in
+            [("set_prices", json!({ "A": 12, "B": 25, "C": 55 })), ("set_targeted_ad_spend", ads)]
+        {
+            session.call(tool, &arguments, Via::Form).expect("done");
+        }
+        (0..weeks).for_each(|_| week(session));
+    }
+
+    fn run(runs: &std::path::Path) -> Session {
+        let storage = Storage::Runs(runs.to_owned());
+        let new = NewRun { seed: Some(5), days: Some(60), storage, ..NewRun::default() };
+        Session::create(new, &Configuration::shipped()).expect("a run")
+    }
+
+    #[test]
+    fn a_database_that_had_no_room_is_whole_again_once_there_is_some() {
+        let (first, second) =
+            (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
+        let mut straight = run(first.path());
+        play(&mut straight, 3);
+        let mut session = run(second.path());
+        session.projector.as_ref().expect("a database").bound_pages(Some(1));
+        play(&mut session, 2);
+        let problem = session.wait_for_database().expect_err("there is no room").message;
+        assert_eq!(session.database_failure().map(|own| own.to_string()), Some(problem.clone()));
+        assert!(problem.contains("full") && problem.contains("the run is safe"), "{problem}");
+        // There is room again: asking is enough, and the run goes on as if nothing had been.
+        week(&mut session);
+        assert_eq!(rows(&mut session), rows(&mut straight));
+        assert!(session.database_failure().is_none());
+        week(&mut session);
+        week(&mut straight);
+        assert_eq!(rows(&mut session), rows(&mut straight));
+        let folder = session.folder().expect("a folder").to_owned();
+        drop(session);
+        let mut again = Session::open(&folder, Access::Write, true).expect("it opens");
+        assert!(again.remarks().is_empty(), "{:?}", again.remarks());
+        assert_eq!(rows(&mut again), rows(&mut straight));
+    }
+}

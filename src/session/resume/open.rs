@@ -1,0 +1,268 @@
+//! Going on with a run: reading its trajectory and simulating it again.
+
+use std::fs::File;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::snapshot::Snapshot;
+use super::witness::Witnesses;
+use crate::database::{Location, Position, Projector};
+use crate::session::error::RunError;
+use crate::session::folder::manifest::Manifest;
+use crate::session::folder::runs::lock_run;
+use crate::session::play::facts_chain::StateHash;
+use crate::session::state::Session;
+use crate::session::trajectory::record::{Closing, Outcome};
+use crate::session::trajectory::{Line, Record, Trajectory, TrajectoryWriter, damaged_at};
+use crate::world::params::Params;
+
+/// What may be done with an opened run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Access {
+    /// Go on with it. One program at a time.
+    Write,
+    /// Look at it; nothing of it is changed.
+    Read,
+}
+
+impl Session {
+    /// Opens the run in a folder and simulates it up to its last line.
+    ///
+    /// # Errors
+    /// The run is missing, damaged, of another version, or in use; the error names the place and what is safe.
+    pub fn open(folder: &Path, access: Access, projection: bool) -> Result<Session, RunError> {
+        let manifest = Manifest::read(folder)?;
+        let params = Arc::new(manifest.params()?);
+        let lock = match access {
+            Access::Write => Some(lock_run(folder, &manifest.id)?),
+            Access::Read => None,
+        };
+        let path = folder.join("trajectory.jsonl");
+        let mut witnesses = Witnesses::of(folder, &manifest);
+        let trajectory = Trajectory::read(&path)?;
+        check_start(&path, trajectory.lines.first(), &manifest)?;
+        witnesses.check(&path, &trajectory)?;
+        let database = match projection {
+            false => None,
+            true => {
+                let sound = access == Access::Write && witnesses.vouch_for_database(folder);
+                Some(open_projector(folder, access, (&manifest, &params), &trajectory, sound)?)
+            }
+        };
+        // The number of the line up to which rows are there; rows that lack need the facts before them.
+        let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
+        let snapshot = usable(&witnesses, &manifest, &trajectory, rows);
+        let (mut session, seen) = Session::before_replay(manifest.clone(), folder, lock, params, snapshot);
+        session.remarks.append(&mut witnesses.remarks);
+        session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
+        if access == Access::Write {
+            session.trajectory = Some(TrajectoryWriter::resume(&path, &trajectory)?);
+        }
+        if trajectory.unfinished > 0 {
+            let bytes = trajectory.unfinished;
+            session.remarks.push(format!(
+                "The last line of the trajectory was unfinished ({bytes} bytes) and was dropped: it was never confirmed."
+            ));
+        }
+        session.check_memo(&trajectory, access);
+        session.finish_week(&trajectory);
+        Ok(session)
+    }
+
+    /// A session that has seen no line yet, or everything up to a snapshot's; and how many it has seen.
+    pub(in crate::session) fn before_replay(
+        manifest: Manifest,
+        folder: &Path,
+        lock: Option<File>,
+        params: Arc<Params>,
+        snapshot: Option<&Snapshot>,
+    ) -> (Session, usize) {
+        let own = Some(folder.to_owned());
+        let recalled = snapshot.and_then(|snapshot| Some((snapshot.recall()?, snapshot.position())));
+        let (mut session, seen) = match recalled {
+            None => (Session::unwritten(manifest, own, params, None), 0),
+            Some(((past, recalled), position)) => {
+                let seen = position.seq as usize + 1;
+                let mut session = Session::unwritten_from(manifest, own, params, past, None);
+                session.remember(recalled, position);
+                (session, seen)
+            }
+        };
+        session._lock = lock;
+        (session, seen)
+    }
+
+    /// Applies every line again but those the session has seen; the database gets only what it does not have yet.
+    /// `reached` is told the day after each line.
+    pub(in crate::session) fn replay(
+        &mut self,
+        path: &Path,
+        trajectory: &Trajectory,
+        seen: usize,
+        database: Option<(Projector, Option<Position>)>,
+        reached: &mut dyn FnMut(u32),
+    ) -> Result<(), RunError> {
+        let (mut projector, projected): (Option<Projector>, _) = database.unzip();
+        let projected = projected.flatten();
+        for line in trajectory.lines.iter().skip(seen) {
+            let missing = projected.as_ref().is_none_or(|position| line.seq > position.seq);
+            if missing && projector.is_some() {
+                self.projector = projector.take();
+            }
+            self.apply_line(path, line)?;
+            reached(self.world.day);
+        }
+        if projector.is_some() {
+            self.projector = projector;
+        }
+        Ok(())
+    }
+
+    /// Applies a line of a file again.
+    pub(in crate::session) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
+        self.position = line.position();
+        let damaged = damaged_at(path);
+        self.replay_line(line).map_err(|problem| damaged((line.seq as usize + 1, problem)))
+    }
+
+    fn replay_line(&mut self, line: &Line) -> Result<(), String> {
+        match &line.record {
+            Record::Start(_) => self.project_opening(),
+            Record::Call(call) => {
+                if let Outcome::Accepted(answer) = &call.outcome {
+                    self.replay_call(call, answer)?;
+                }
+            }
+            Record::Advance(filed) => self.replay_forecasts(filed, &line.at)?,
+            Record::Week(closing) | Record::Step(closing) => {
+                let from = self.world.day;
+                let state = self.run_days(from.saturating_add(closing.days_run), &mut |_| {});
+                self.compare(from, &state, closing)?;
+                self.commit_projection();
+            }
+            Record::End(end) => {
+                self.ended = Some(end.reason);
+                self.commit_projection();
+            }
+            Record::Query(query) => self.remember_query(&query.sql),
+            Record::View(_)
+            | Record::Memo(_)
+            | Record::Branch(_)
+            | Record::Override(_)
+            | Record::Unknown(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Settles the figures of days that ran again and compares the state with the recorded one.
+    fn compare(&mut self, from: u32, state: &StateHash, recorded: &Closing) -> Result<(), String> {
+        let figures = self.settle_figures();
+        let reached = self.closing(from, &figures, state);
+        self.facts_chain.close();
+        if reached.state_hash == recorded.state_hash {
+            return same_figures(&reached, recorded);
+        }
+        let differs = |(name, hash): &(&String, &String)| recorded.parts.get(*name) != Some(*hash);
+        let differing = reached.parts.iter().filter(differs).map(|(name, _)| name.as_str());
+        let differing: Vec<&str> = differing.collect();
+        Err(format!(
+            "the state on day {} is not the recorded one (different: {}); a line before it was changed, or another \
+             version recorded it",
+            self.world.day,
+            differing.join(", ")
+        ))
+    }
+
+    /// A week that was confirmed but not finished is simulated now.
+    fn finish_week(&mut self, trajectory: &Trajectory) {
+        let open = trajectory.lines.iter().rev().find_map(|line| match line.record {
+            Record::Advance(_) => Some(true),
+            Record::End(_) | Record::Week(_) | Record::Step(_) => Some(false),
+            _ => None,
+        });
+        if open == Some(true) {
+            let week = self.run_week(&mut |_| {});
+            self.remarks.push(format!("The week up to day {} was simulated again.", week.figures.day));
+        } else if self.ended.is_none() && self.world.is_over(&self.params) {
+            // The program ended between the last week and the line that closes the run.
+            let remark = self.close_if_over();
+            self.commit_projection();
+            self.remarks.extend(remark);
+        }
+    }
+}
+
+/// The first line must say what the manifest says: otherwise one of the two files belongs to another run.
+pub(in crate::session) fn check_start(
+    path: &Path,
+    first: Option<&Line>,
+    manifest: &Manifest,
+) -> Result<(), RunError> {
+    let damaged = |problem: &str| RunError::Damaged {
+        path: path.to_owned(),
+        line: 1,
+        problem: problem.to_owned(),
+        safe: "Nothing was changed; restore run.toml or the trajectory from a copy".to_owned(),
+    };
+    let Some(Record::Start(start)) = first.map(|line| &line.record) else {
+        return Err(damaged("the trajectory does not begin with the start of a run"));
+    };
+    let same = start.run == manifest.id
+        && start.seed == manifest.seed
+        && start.days == manifest.days
+        && start.cash == manifest.cash
+        && start.mode == manifest.mode
+        && start.parameters_digest == manifest.parameters_digest
+        && start.scenario == manifest.scenario
+        && start.participant == manifest.participant
+        && start.consent == manifest.consent;
+    if same { Ok(()) } else { Err(damaged("the start of the trajectory contradicts run.toml")) }
+}
+
+/// The figures that stand beside a state are derived from it.
+fn same_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> {
+    let name = if reached.days_run != recorded.days_run {
+        "days_run"
+    } else if reached.figures != recorded.figures {
+        "figures"
+    } else if reached.cash != recorded.cash {
+        "cash"
+    } else {
+        return Ok(());
+    };
+    Err(format!("the recorded {name} does not belong to the recorded state: it was changed"))
+}
+
+/// Starts the database. What it holds already counts only if `sound` says so.
+pub(in crate::session) fn open_projector(
+    folder: &Path,
+    access: Access,
+    (manifest, params): (&Manifest, &Arc<Params>),
+    trajectory: &Trajectory,
+    sound: bool,
+) -> Result<(Projector, Option<Position>), RunError> {
+    let location = match access {
+        Access::Write => Location::File(folder.join("world.db")),
+        // Somebody else may be writing the file; a reader makes its own.
+        Access::Read => Location::memory(),
+    };
+    let known = |position: &Position| {
+        let line = trajectory.lines.get(position.seq as usize);
+        sound && line.is_some_and(|line| line.hash == position.line_hash)
+    };
+    Ok(Projector::start(location, manifest.number(), params.clone(), known)?)
+}
+
+/// The snapshot from which the run can go on: its line is in the trajectory, and the database lacks no row before it.
+pub(in crate::session) fn usable<'a>(
+    witnesses: &'a Witnesses,
+    manifest: &Manifest,
+    trajectory: &Trajectory,
+    rows_from: Option<u64>,
+) -> Option<&'a Snapshot> {
+    let snapshot = witnesses.snapshot.as_ref().filter(|snapshot| snapshot.fits(manifest))?;
+    let position = snapshot.position();
+    let line = trajectory.lines.get(position.seq as usize)?;
+    let complete = rows_from.is_none_or(|seq| seq >= position.seq);
+    (line.hash == position.line_hash && complete).then_some(snapshot)
+}

@@ -1,0 +1,44 @@
+//! The database of a run that nobody plays, brought up to date on its disk; the run itself is only read.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::open::{Access, check_start, open_projector, usable};
+use super::witness::Witnesses;
+use crate::session::error::RunError;
+use crate::session::folder::manifest::Manifest;
+use crate::session::folder::runs::lock_run;
+use crate::session::state::Session;
+use crate::session::trajectory::Trajectory;
+
+/// Brings `world.db` up to the last line of the trajectory, or makes it anew. `progress` is told each day that is reached
+/// and the last day of the run.
+///
+/// # Errors
+/// The run is damaged, of another version, or in use; its folder cannot be written.
+pub fn rebuild_database(folder: &Path, progress: &mut dyn FnMut(u32, u32)) -> Result<(), RunError> {
+    let manifest = Manifest::read(folder)?;
+    let params = Arc::new(manifest.params()?);
+    let lock = lock_run(folder, &manifest.id)?;
+    let path = folder.join("trajectory.jsonl");
+    let mut witnesses = Witnesses::of(folder, &manifest);
+    let trajectory = Trajectory::read(&path)?;
+    check_start(&path, trajectory.lines.first(), &manifest)?;
+    witnesses.check(&path, &trajectory)?;
+    let sound = witnesses.vouch_for_database(folder);
+    let database = open_projector(folder, Access::Write, (&manifest, &params), &trajectory, sound)?;
+    let rows = database.1.as_ref().map_or(0, |position| position.seq);
+    let snapshot = usable(&witnesses, &manifest, &trajectory, Some(rows));
+    let days = manifest.days;
+    let (mut session, seen) = Session::before_replay(manifest.clone(), folder, Some(lock), params, snapshot);
+    session.replay(&path, &trajectory, seen, Some(database), &mut |day| progress(day, days))?;
+    let Some(projector) = &session.projector else { return Ok(()) };
+    projector.wait()?;
+    // The file is another one now: what vouched for the old one would call it damaged.
+    if let Some(closed) = witnesses.snapshot.filter(|snapshot| snapshot.database().is_some()) {
+        let folder = folder.to_owned();
+        projector.then(true, move |digest| closed.vouch_for(&folder, digest));
+        projector.wait()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,175 @@
+//! The undamaged beginning of a damaged run, as a branch; the run itself is not touched.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::branch::branch_of;
+use super::open::check_start;
+use super::witness::Witnesses;
+use crate::session::error::RunError;
+use crate::session::folder::manifest::Manifest;
+use crate::session::folder::mode::Mode;
+use crate::session::state::Session;
+use crate::session::trajectory::{DOES_NOT_FOLLOW, Line, Trajectory};
+
+/// What was saved of a damaged run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Rescued {
+    /// The new run.
+    pub run: String,
+    /// Its mode.
+    pub mode: Mode,
+    /// Lines of the damaged one that are in it, from its first.
+    pub lines: usize,
+    /// Day on which the new run stands.
+    pub day: u32,
+    /// What is wrong with the damaged run.
+    pub problem: String,
+}
+
+/// Makes a branch of the lines that are good beyond doubt: their own sums vouch for them, or the state that was
+/// reached again. A baseline run becomes a sandbox.
+///
+/// # Errors
+/// The run is not damaged; nothing of it can be used; the branch cannot be written.
+pub fn rescue(folder: &Path) -> Result<Rescued, RunError> {
+    let path = folder.join("trajectory.jsonl");
+    let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
+    let mut trajectory = Trajectory::default();
+    let mut problem = trajectory.extend(&bytes).err();
+    let first = trajectory.lines.first();
+    // The first line tells the same, should the manifest be what is damaged.
+    let manifest = Manifest::read(folder);
+    let unreadable = manifest.as_ref().err().map(ToString::to_string);
+    let manifest = manifest.or_else(|_| Manifest::of_start(&path, first))?;
+    check_start(&path, first, &manifest)?;
+    let good = replayed(&path, &manifest, &trajectory.lines, &mut problem)?;
+    let words = match (&problem, unreadable) {
+        (Some((line, problem)), _) => format!("line {line}: {problem}"),
+        (None, Some(problem)) => problem,
+        (None, None) => match Witnesses::of(folder, &manifest).check(&path, &trajectory) {
+            Err(problem) => problem.to_string(),
+            Ok(()) => {
+                let message = format!("run {} is not damaged; there is nothing to rescue", manifest.id);
+                return Err(RunError::NotPossible(message));
+            }
+        },
+    };
+    let mode = if manifest.mode == Mode::Baseline { Mode::Sandbox } else { manifest.mode };
+    let branch = branch_of(folder, &manifest, &trajectory.lines[..good], mode)
+        .map_err(|refusal| RunError::NotPossible(refusal.message))?;
+    let (run, day) = (branch.manifest().id.clone(), branch.day());
+    Ok(Rescued { run, mode, lines: good, day, problem: words })
+}
+
+/// Number of lines that are good beyond doubt; a line whose state is another one is a problem too.
+fn replayed(
+    path: &Path,
+    manifest: &Manifest,
+    lines: &[Line],
+    problem: &mut Option<(usize, String)>,
+) -> Result<usize, RunError> {
+    let params = Arc::new(manifest.params()?);
+    let mut session = Session::unwritten(manifest.clone(), None, params, None);
+    // The start, and lines up to the last state that was reached again.
+    let mut reached = 1;
+    for (at, line) in lines.iter().enumerate() {
+        if let Err(error) = session.apply_line(path, line) {
+            let words = match error {
+                RunError::Damaged { problem, .. } => problem,
+                other => other.to_string(),
+            };
+            *problem = Some((at + 1, words));
+            // Nothing vouches for the last line: it may be the wrong one itself. Another one that contradicts its past
+            // makes everything doubtful since the last state that was reached.
+            return Ok(if at + 1 == lines.len() { at } else { reached });
+        }
+        if line.closes_days() {
+            reached = at + 1;
+        }
+    }
+    let summed = lines.first().is_some_and(Line::promises_sums);
+    // A line's own sum vouches for it, unless the next one contradicts it. Without sums only its state does.
+    let doubtful = problem.as_ref().is_some_and(|(_, words)| !summed || words == DOES_NOT_FOLLOW);
+    Ok(if doubtful { reached.max(lines.len() - 1) } else { lines.len() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::playback::tests::{Recorded, recorded};
+    use crate::session::resume::verify::verify;
+
+    /// Damages a copy of a run's trajectory and rescues it.
+    fn rescued(run: &Recorded, damage: impl Fn(&mut Vec<u8>)) -> Result<Rescued, RunError> {
+        let path = run.folder.join("trajectory.jsonl");
+        let whole = std::fs::read(&path).expect("a trajectory");
+        let mut bytes = whole.clone();
+        damage(&mut bytes);
+        std::fs::write(&path, &bytes).expect("written");
+        let rescued = rescue(&run.folder);
+        assert_eq!(std::fs::read(&path).expect("a trajectory"), bytes, "the run itself was changed");
+        std::fs::write(&path, whole).expect("written");
+        rescued
+    }
+
+    fn start_of(bytes: &[u8], line: usize) -> usize {
+        let ends = bytes.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
+        std::iter::once(0).chain(ends).nth(line).expect("so many lines")
+    }
+
+    #[test]
+    fn whatever_byte_is_flipped_only_lines_that_are_true_are_kept() {
+        let run = recorded(Mode::Sandbox, 3);
+        let bytes = std::fs::read(run.folder.join("trajectory.jsonl")).expect("a trajectory");
+        let whole = Trajectory::parse(&bytes).expect("it is whole");
+        for line in 1..whole.lines.len() {
+            let (from, to) = (start_of(&bytes, line), start_of(&bytes, line + 1));
+            // Somewhere in every line, early and late.
+            for at in [from + 2, from + (to - from) / 2, to - 3] {
+                let found = rescued(&run, |bytes| bytes[at] ^= 0x04);
+                let Ok(found) = found else {
+                    // Of the last line only what the state or the database vouches for can be wrong.
+                    assert_eq!(line + 1, whole.lines.len(), "{found:?}");
+                    continue;
+                };
+                assert_eq!(found.lines, line, "line {} is damaged: {found:?}", line + 1);
+                let branch = run.folder.with_file_name(&found.run);
+                assert_eq!(verify(&branch).expect("an intact run").day, found.day);
+                std::fs::remove_dir_all(branch).expect("removed");
+            }
+        }
+    }
+
+    #[test]
+    fn a_cut_in_the_middle_keeps_the_weeks_before_it_and_a_baseline_becomes_a_sandbox() {
+        let run = recorded(Mode::Baseline, 3);
+        let found = rescued(&run, |bytes| {
+            let middle = start_of(bytes, 9) + 20;
+            bytes.drain(middle..middle + 30);
+        });
+        let found = found.expect("a branch");
+        assert_eq!((found.mode, found.day, found.lines), (Mode::Sandbox, 7, 9));
+        assert!(found.problem.contains("line"), "{}", found.problem);
+        let manifest = Manifest::read(&run.folder.with_file_name(&found.run)).expect("a manifest");
+        assert_eq!(manifest.parent.expect("a parent").run, run.id);
+    }
+
+    #[test]
+    fn a_lost_manifest_is_taken_from_the_first_line() {
+        let run = recorded(Mode::Sandbox, 2);
+        std::fs::write(run.folder.join("run.toml"), "seed = [").expect("written");
+        let found = rescue(&run.folder).expect("a branch");
+        assert_eq!(found.day, 14);
+        assert!(found.problem.contains("run.toml"), "{}", found.problem);
+    }
+
+    #[test]
+    fn nothing_is_rescued_of_a_whole_run_or_without_a_first_line() {
+        let run = recorded(Mode::Sandbox, 1);
+        let whole = rescue(&run.folder).expect_err("it is whole").to_string();
+        assert!(whole.contains("not damaged"), "{whole}");
+        let problem = rescued(&run, |bytes| bytes[3] ^= 0x04).expect_err("no beginning").to_string();
+        assert!(problem.contains("start of a run"), "{problem}");
+    }
+}

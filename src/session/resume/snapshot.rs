@@ -1,0 +1,317 @@
+//! `snapshot.bin`: the whole state at one line of the trajectory, so that a long run opens at once.
+//!
+//! Never the truth: a snapshot is used only if it is whole, was written by this version for this run and these
+//! parameters, and stands at a line that the trajectory still has. Otherwise the run is simulated from its
+//! beginning, which costs time and nothing else (docs/formats/snapshot.md).
+//!
+//! The file is a title line, the blake3 digest of the rest, and the rest as canonical bytes: header and notes as
+//! JSON texts, then what the world and the session hold as numbers.
+
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::Write;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::database::Position;
+use crate::session::figures::changes::Decisions;
+use crate::session::figures::groups::GroupWeek;
+use crate::session::figures::journal::JournalEntry;
+use crate::session::figures::week::WeekFigures;
+use crate::session::folder::manifest::Manifest;
+use crate::session::play::facts_chain::{FactsChain, state_hash};
+use crate::session::play::feed::Feed;
+use crate::session::play::office::Calculated;
+use crate::session::play::this_week::{Step, ThisWeek};
+use crate::session::state::Session;
+use crate::session::trajectory::record::Ended;
+use crate::tools::Notebook;
+use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
+use crate::world::day::DayTrace;
+use crate::world::events::{Facts, LedgerEntry};
+use crate::world::identifiers::ByGroup;
+use crate::world::settings::Settings;
+use crate::world::state::World;
+
+const TITLE: &[u8] = b"novamind snapshot 4\n";
+const DIGEST: usize = blake3::OUT_LEN;
+/// Name of the file in a run's folder.
+pub(in crate::session) const FILE: &str = "snapshot.bin";
+/// Room for a subscriber: columns and the facts of a day need 190 bytes or so. Room that nobody takes costs nothing;
+/// room that is too small costs a copy of everything.
+const BYTES_OF_A_SUBSCRIBER: usize = 320;
+/// Weeks between two snapshots of a run that is played.
+pub(in crate::session) const WEEKS_BETWEEN: usize = 4;
+
+/// What a snapshot is of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Header {
+    /// Version of the program that wrote it.
+    version: String,
+    run: String,
+    parameters_digest: String,
+    /// Line of the trajectory it stands at.
+    seq: u64,
+    line_hash: String,
+    /// Hash of the state it holds.
+    state_hash: String,
+    /// Digest of the database's file as it was then, if the run was closed in order.
+    database: Option<String>,
+}
+
+/// What a session knows in words: borrowed when it is kept, owned when it is read back.
+#[derive(Serialize, Deserialize)]
+struct Notes<'a> {
+    weeks: Cow<'a, [WeekFigures]>,
+    running_week: Cow<'a, WeekFigures>,
+    decisions: Cow<'a, [Decisions]>,
+    notices: Cow<'a, [(u32, String)]>,
+    feed: Cow<'a, Feed>,
+    done: Cow<'a, [String]>,
+    journal: Cow<'a, [JournalEntry]>,
+    asked: Cow<'a, [String]>,
+    notebook: Cow<'a, Notebook>,
+    calculated: Cow<'a, [Calculated]>,
+    #[serde(default)]
+    last_dashboard: Option<Cow<'a, str>>,
+    facts_chain: (String, bool),
+    ended: Option<Ended>,
+}
+
+impl Notes<'_> {
+    /// No days have run yet.
+    fn cannot_have_a_dashboard(&self) -> bool {
+        self.weeks.is_empty() && self.running_week.days_run == 0
+    }
+}
+
+/// A snapshot file that is whole.
+pub(in crate::session) struct Snapshot {
+    header: Header,
+    /// Title, digest and everything after them.
+    file: Vec<u8>,
+    /// Where the notes begin.
+    notes_at: usize,
+}
+
+/// What a session gets back from a snapshot besides world and facts.
+pub(in crate::session) struct Recalled {
+    facts_chain: FactsChain,
+    trace: DayTrace,
+    cash_by_day: Vec<f64>,
+    group_weeks: Vec<ByGroup<GroupWeek>>,
+    running_groups: ByGroup<GroupWeek>,
+    called: Vec<LedgerEntry>,
+    /// Settings before the first call of this week.
+    settings: Settings,
+    undo: Vec<Step>,
+    redo: Vec<Step>,
+    notes: Notes<'static>,
+}
+
+impl Snapshot {
+    /// The snapshot in a run's folder; none if there is none.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub(in crate::session) fn read(folder: &Path) -> Result<Option<Snapshot>, &'static str> {
+        let file = match std::fs::read(folder.join(FILE)) {
+            Ok(file) => file,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(_) => return Err("cannot be read"),
+        };
+        let body = file.strip_prefix(TITLE).ok_or("is of another version or damaged")?;
+        let (digest, body) = body.split_at_checked(DIGEST).ok_or("is cut short")?;
+        if blake3::hash(body).as_bytes() != digest {
+            return Err("is damaged");
+        }
+        let mut reader = CanonicalReader::new(body);
+        let header: Option<String> = reader.read();
+        let header =
+            header.and_then(|text| serde_json::from_str(&text).ok()).ok_or("is of another version")?;
+        let notes_at = file.len() - reader.left();
+        Ok(Some(Snapshot { header, file, notes_at }))
+    }
+
+    /// The line of the trajectory it stands at.
+    pub(in crate::session) fn position(&self) -> Position {
+        Position { seq: self.header.seq, line_hash: self.header.line_hash.clone() }
+    }
+
+    /// Digest of the database's file as it was then, if the run was closed in order.
+    pub(in crate::session) fn database(&self) -> Option<&str> {
+        self.header.database.as_deref()
+    }
+
+    /// Vouches for a database that was made anew as of the same line.
+    pub(in crate::session) fn vouch_for(&self, folder: &Path, database: Option<String>) {
+        let header = Header { database, ..self.header.clone() };
+        write(&folder.join(FILE), &header, &self.file[self.notes_at..]);
+    }
+
+    /// Whether it is one of this run.
+    pub(in crate::session) fn is_of(&self, run: &str) -> bool {
+        self.header.run == run
+    }
+
+    /// Whether it was written by this version under these parameters.
+    pub(in crate::session) fn fits(&self, manifest: &Manifest) -> bool {
+        self.header.version == env!("CARGO_PKG_VERSION")
+            && self.header.parameters_digest == manifest.parameters_digest
+    }
+
+    /// The state; none if it is not the one it claims to be.
+    pub(in crate::session) fn recall(&self) -> Option<((World, Facts), Recalled)> {
+        let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
+        let notes: Notes<'static> = serde_json::from_str(&reader.read::<String>()?).ok()?;
+        // Snapshots of earlier builds lack it, and it cannot be made of a state that was changed since.
+        if notes.last_dashboard.is_none() && !notes.cannot_have_a_dashboard() {
+            return None;
+        }
+        let chain = blake3::Hash::from_hex(&notes.facts_chain.0).ok()?;
+        let (world, facts): (World, Facts) = (reader.read()?, reader.read()?);
+        let recalled = Recalled {
+            facts_chain: FactsChain::resume(chain, notes.facts_chain.1),
+            notes,
+            trace: reader.read()?,
+            cash_by_day: reader.read()?,
+            group_weeks: reader.read()?,
+            running_groups: reader.read()?,
+            called: reader.read()?,
+            settings: reader.read()?,
+            undo: reader.read()?,
+            redo: reader.read()?,
+        };
+        let (hash, _) = state_hash(world.part_hashes(), recalled.facts_chain.hash());
+        (reader.left() == 0 && hash == self.header.state_hash).then_some(((world, facts), recalled))
+    }
+}
+
+impl Canonical for Step {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.seq.feed(hasher);
+        self.tool.name().to_owned().feed(hasher);
+        self.restores.feed(hasher);
+    }
+}
+
+impl Restore for Step {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        let (seq, tool): (u64, String) = reader.read()?;
+        Some(Step { seq, tool: tool.parse().ok()?, restores: reader.read()? })
+    }
+}
+
+impl Session {
+    /// Keeps the present state, which has this hash, as a snapshot, and has the database take in everything up to now; a
+    /// run without a folder keeps none. A closing one vouches for the database's file too. A disk that refuses it takes
+    /// away nothing but time.
+    pub(in crate::session) fn keep_snapshot(&self, state_hash: impl FnOnce() -> String, closing: bool) {
+        let Some(folder) = self.folder.as_ref().filter(|_| self.trajectory.is_some()) else {
+            return self.commit_projection();
+        };
+        let path = folder.join(FILE);
+        let (header, state) = (self.snapshot_header(state_hash()), self.state_bytes());
+        // Lines without rows move the database on, too: a snapshot ahead of it could not be used.
+        self.commit_projection();
+        match &self.projector {
+            None => write(&path, &header, &state),
+            Some(projector) => projector.then(closing, move |database| {
+                write(&path, &Header { database, ..header }, &state);
+            }),
+        }
+    }
+
+    fn snapshot_header(&self, state_hash: String) -> Header {
+        Header {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            run: self.manifest.id.clone(),
+            parameters_digest: self.manifest.parameters_digest.clone(),
+            seq: self.position.seq,
+            line_hash: self.position.line_hash.clone(),
+            state_hash,
+            database: None,
+        }
+    }
+
+    fn state_bytes(&self) -> Vec<u8> {
+        let notes = Notes {
+            weeks: Cow::Borrowed(&self.weeks),
+            running_week: Cow::Borrowed(&self.running_week),
+            decisions: Cow::Borrowed(&self.decisions),
+            notices: Cow::Borrowed(&self.notices),
+            feed: Cow::Borrowed(&self.feed),
+            done: Cow::Borrowed(&self.this_week.done),
+            journal: Cow::Borrowed(&self.journal),
+            asked: Cow::Borrowed(&self.asked),
+            notebook: Cow::Borrowed(&self.office.notebook),
+            calculated: Cow::Borrowed(&self.calculated),
+            last_dashboard: self.last_dashboard.as_deref().map(Cow::Borrowed),
+            facts_chain: (self.facts_chain.hash().to_hex().to_string(), self.facts_chain.is_closed()),
+            ended: self.ended,
+        };
+        let rows: u32 = self.world.customers.active().iter().sum();
+        let mut bytes = CanonicalHasher::collector(rows as usize * BYTES_OF_A_SUBSCRIBER);
+        serde_json::to_string(&notes).unwrap_or_default().feed(&mut bytes);
+        self.world.feed(&mut bytes);
+        self.facts.feed(&mut bytes);
+        self.trace.feed(&mut bytes);
+        self.cash_by_day.feed(&mut bytes);
+        self.group_weeks.feed(&mut bytes);
+        self.running_groups.feed(&mut bytes);
+        self.called.feed(&mut bytes);
+        self.this_week.settings.feed(&mut bytes);
+        self.this_week.undo.feed(&mut bytes);
+        self.this_week.redo.feed(&mut bytes);
+        bytes.into_bytes()
+    }
+
+    /// Takes over what a snapshot kept besides world and facts.
+    pub(in crate::session) fn remember(&mut self, recalled: Recalled, position: Position) {
+        let Recalled {
+            facts_chain,
+            trace,
+            cash_by_day,
+            group_weeks,
+            running_groups,
+            called,
+            settings,
+            undo,
+            redo,
+            notes,
+        } = recalled;
+        self.facts_chain = facts_chain;
+        self.this_week = ThisWeek { settings, undo, redo, done: notes.done.into_owned() };
+        (self.trace, self.cash_by_day, self.called) = (trace, cash_by_day, called);
+        (self.group_weeks, self.running_groups) = (group_weeks, running_groups);
+        self.weeks = notes.weeks.into_owned();
+        self.running_week = notes.running_week.into_owned();
+        self.decisions = notes.decisions.into_owned();
+        self.notices = notes.notices.into_owned();
+        self.feed = notes.feed.into_owned();
+        self.journal = notes.journal.into_owned();
+        self.asked = notes.asked.into_owned();
+        self.office.notebook = notes.notebook.into_owned();
+        self.calculated = notes.calculated.into_owned();
+        self.last_dashboard = notes.last_dashboard.map(Cow::into_owned);
+        self.ended = notes.ended;
+        self.position = position;
+    }
+}
+
+/// Writes a snapshot in place of the old one. Not synced: after a power cut its digest tells whether it is whole.
+fn write(path: &Path, header: &Header, state: &[u8]) {
+    let header = bytes_of(&serde_json::to_string(header).unwrap_or_default());
+    let digest = blake3::Hasher::new().update(&header).update(state).finalize();
+    let draft = path.with_extension("draft");
+    // Piece by piece: a large state is a good part of the memory already.
+    let pieces = [TITLE, digest.as_bytes(), &header, state];
+    let written = File::create(&draft)
+        .and_then(|mut file| pieces.iter().try_for_each(|piece| file.write_all(piece)))
+        .and_then(|()| std::fs::rename(&draft, path));
+    if written.is_err() {
+        // Half a file helps nobody, least of all on a disk that is full.
+        let _ = std::fs::remove_file(&draft);
+    }
+}

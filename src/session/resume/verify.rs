@@ -1,0 +1,50 @@
+//! Whether a recorded run is what its decisions make of it.
+
+use std::path::Path;
+
+use super::witness::Witnesses;
+use crate::session::error::RunError;
+use crate::session::playback::{Origin, read};
+use crate::session::state::Session;
+
+/// What a verification found out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Verification {
+    /// Run.
+    pub run: String,
+    /// Lines that were checked.
+    pub lines: usize,
+    /// Weeks and steps whose state was reached again.
+    pub states: usize,
+    /// Last day.
+    pub day: u32,
+    /// Hash of the last state.
+    pub state_hash: String,
+}
+
+/// Simulates a recorded run again, the one of a folder or a trajectory file that stands alone, and compares every
+/// recorded state; nothing is changed.
+///
+/// # Errors
+/// The first line that does not fit; or the run is missing or of another version.
+pub fn verify(path: &Path) -> Result<Verification, RunError> {
+    let (origin, trajectory) = read(path)?;
+    let Origin { path, folder, manifest, params } = origin;
+    if let Some(folder) = &folder {
+        Witnesses::of(folder, &manifest).check(&path, &trajectory)?;
+    }
+    let run = manifest.id.clone();
+    let mut session = Session::unwritten(manifest, None, params, None);
+    for line in &trajectory.lines {
+        session.apply_line(&path, line)?;
+    }
+    let states = trajectory.lines.iter().filter(|line| line.closes_days());
+    let last = trajectory.lines.iter().rev().find_map(|line| line.record.closing());
+    Ok(Verification {
+        run,
+        lines: trajectory.lines.len(),
+        states: states.count(),
+        day: session.day(),
+        state_hash: last.map(|closing| closing.state_hash.clone()).unwrap_or_default(),
+    })
+}

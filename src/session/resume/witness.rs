@@ -1,0 +1,118 @@
+//! What vouches for the end of a trajectory, and for the database.
+//!
+//! Nothing follows the last line, but the database and the snapshot remember how far it went: a cut at a line end
+//! shows here.
+
+use std::path::Path;
+
+use super::snapshot::{FILE, Snapshot};
+use crate::database::{
+    Location, Position, file_digest, has_layout_of_now, is_consistent, owner_of, position_of,
+};
+use crate::session::error::RunError;
+use crate::session::folder::manifest::Manifest;
+use crate::session::trajectory::{BRANCH_THEM, Record, Trajectory};
+
+/// What stood beside the trajectory before it was read.
+pub(in crate::session) struct Witnesses {
+    /// The snapshot, if there is one that is whole.
+    pub snapshot: Option<Snapshot>,
+    /// How far the database has come, if it can be read.
+    database: Option<Position>,
+    /// The database is one of another run.
+    foreign: bool,
+    /// What the person should know about them.
+    pub remarks: Vec<String>,
+}
+
+impl Witnesses {
+    /// Asks them. Has to come before the trajectory is read, which may grow in between.
+    pub(in crate::session) fn of(folder: &Path, manifest: &Manifest) -> Witnesses {
+        let mut remarks = Vec::new();
+        let snapshot = Snapshot::read(folder).unwrap_or_else(|problem| {
+            remarks
+                .push(format!("{FILE} {problem} and is not used: the run was simulated from its beginning."));
+            None
+        });
+        // A stranger's snapshot says nothing about this run.
+        let snapshot = snapshot.filter(|snapshot| snapshot.is_of(&manifest.id));
+        let foreign = owner_of(&location(folder)).is_some_and(|owner| owner != manifest.number());
+        // Nor does a stranger's database.
+        let database = if foreign { None } else { position_of(&location(folder)) };
+        Witnesses { snapshot, database, foreign, remarks }
+    }
+
+    /// Whether the trajectory goes as far as they remember.
+    ///
+    /// # Errors
+    /// The first line that is missing or is not the one they saw.
+    pub(in crate::session) fn check(&self, path: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
+        let database = self.database.clone().map(|position| ("world.db", position));
+        let snapshot = self.snapshot.as_ref().map(|snapshot| (FILE, snapshot.position()));
+        [database, snapshot].into_iter().flatten().try_for_each(|(file, position)| {
+            let Some((line, problem)) = contradiction(trajectory, &position) else { return Ok(()) };
+            let good = line - 1;
+            Err(RunError::Damaged {
+                path: path.to_owned(),
+                line: line as usize,
+                problem: format!("{problem} ({file} was made from it)"),
+                safe: format!(
+                    "Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}. Or restore the trajectory from a \
+                     copy, or remove {file} to continue from what is there"
+                ),
+            })
+        })
+    }
+
+    /// Whether the database's file is the one that an orderly end left; none where no end tells.
+    fn is_as_closed(&self, folder: &Path) -> Option<bool> {
+        let position = self.database.as_ref()?;
+        let closed = self.snapshot.as_ref().filter(|snapshot| snapshot.position() == *position)?;
+        let digest = closed.database()?;
+        Some(file_digest(&folder.join("world.db")).as_deref() == Some(digest))
+    }
+
+    /// Whether the database can be gone on with. After an orderly end its whole file is compared; after a crash
+    /// its structure is.
+    pub(in crate::session) fn vouch_for_database(&mut self, folder: &Path) -> bool {
+        let file = folder.join("world.db");
+        if !file.exists() {
+            return false;
+        }
+        let sound = self.database.is_some()
+            && self.is_as_closed(folder).unwrap_or_else(|| is_consistent(&location(folder)));
+        let problem = match sound {
+            false if self.foreign => "belongs to another run",
+            false => "is damaged",
+            true if !has_layout_of_now(&location(folder)) => "was made by another version of the program",
+            true => return true,
+        };
+        self.remarks.push(format!("world.db {problem} and was rebuilt from the trajectory."));
+        false
+    }
+}
+
+fn location(folder: &Path) -> Location {
+    Location::File(folder.join("world.db"))
+}
+
+/// Whether nobody has changed the database's file since the run was closed.
+pub(in crate::session) fn is_as_left(folder: &Path) -> bool {
+    let Ok(manifest) = Manifest::read(folder) else { return false };
+    Witnesses::of(folder, &manifest).is_as_closed(folder).unwrap_or(true)
+}
+
+/// Line, from 1, that a remembered position shows to be missing or changed.
+fn contradiction(trajectory: &Trajectory, position: &Position) -> Option<(u64, &'static str)> {
+    let last = trajectory.lines.last()?;
+    // A torn line is cut off with a notice, and a week that lacks its closing lines is simulated again: week and end.
+    let healing =
+        if matches!(last.record, Record::Advance(_)) { 2 } else { u64::from(trajectory.unfinished > 0) };
+    match trajectory.lines.get(position.seq as usize) {
+        None if position.seq > last.seq + healing => Some((last.seq + 2, "the line is missing")),
+        Some(line) if line.hash != position.line_hash => {
+            Some((position.seq + 1, "the line is not the one that was recorded: it was changed"))
+        }
+        None | Some(_) => None,
+    }
+}

@@ -53,6 +53,7 @@ pub mod notation;
 pub mod plain;
 pub mod report;
 pub mod session;
+pub mod shipped;
 pub mod tools;
 pub mod voice;
 pub mod world;

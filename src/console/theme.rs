@@ -4,6 +4,7 @@ use ratatui::style::{Color, Modifier, Style};
 use serde::Deserialize;
 
 use crate::session::Configuration;
+use crate::shipped;
 
 /// What a piece of the screen means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -117,14 +118,6 @@ pub struct Theme {
     looks: File,
 }
 
-/// The shipped themes.
-pub const THEMES: [(&str, &str); 4] = [
-    ("dark", include_str!("../../configs/themes/dark.toml")),
-    ("light", include_str!("../../configs/themes/light.toml")),
-    ("high-contrast", include_str!("../../configs/themes/high-contrast.toml")),
-    ("mono", include_str!("../../configs/themes/mono.toml")),
-];
-
 impl Theme {
     /// A theme by name; a person's file goes before the shipped one.
     ///
@@ -135,13 +128,13 @@ impl Theme {
         if let Some(source) = own {
             return Theme::parse(name, &source.text).map_err(|problem| format!("{}: {problem}", source.name));
         }
-        match THEMES.iter().find(|(shipped, _)| *shipped == name) {
+        match shipped::themes().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => Theme::parse(name, text),
             None => {
                 let own = configuration.names("themes");
-                let known: Vec<&str> = THEMES
-                    .iter()
-                    .map(|(shipped, _)| *shipped)
+                let known: Vec<&str> = shipped::themes()
+                    .into_iter()
+                    .map(|(shipped, _)| shipped)
                     .chain(own.iter().map(String::as_str))
                     .collect();
                 Err(format!("there is no theme {name}; there are {}", known.join(", ")))
@@ -153,9 +146,14 @@ impl Theme {
     /// what is wrong with it.
     pub fn all(configuration: &Configuration) -> Vec<Theme> {
         let own = configuration.names("themes");
-        let shipped = THEMES.iter().map(|(name, _)| *name);
-        let others = own.iter().map(String::as_str).filter(|own| THEMES.iter().all(|(name, _)| name != own));
-        shipped.chain(others).filter_map(|name| Theme::find(name, configuration).ok()).collect()
+        let shipped: Vec<&str> = shipped::themes().into_iter().map(|(name, _)| name).collect();
+        let others = own.iter().map(String::as_str).filter(|own| !shipped.contains(own));
+        shipped
+            .iter()
+            .copied()
+            .chain(others)
+            .filter_map(|name| Theme::find(name, configuration).ok())
+            .collect()
     }
 
     fn parse(name: &str, text: &str) -> Result<Theme, String> {
@@ -210,7 +208,7 @@ mod tests {
 
     #[test]
     fn the_shipped_themes_are_read_and_mono_has_no_colour() {
-        for (name, _) in THEMES {
+        for (name, _) in shipped::themes() {
             Theme::find(name, &Configuration::shipped()).expect(name);
         }
         let mono = Theme::find("mono", &Configuration::shipped()).expect("mono");

@@ -17,6 +17,6 @@ mod symbols;
 pub use answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
 pub use golden::{Comparison, GoldenError, Reference, compare, read_reference};
 pub use metrics::{Collector, Figure};
-pub use policy::{Policy, PolicyError, shipped_policies};
+pub use policy::{Policy, PolicyError};
 pub use runner::{Outcome, RunEnd, RunError, RunSpec, play};
 pub use statistics::{Sample, median};

@@ -7,6 +7,7 @@ use toml::Table;
 
 use super::answers::EnterpriseRule;
 use crate::session::Configuration;
+use crate::shipped;
 use crate::tools;
 use crate::world::identifiers::Plan;
 use crate::world::params::Source;
@@ -329,17 +330,6 @@ impl fmt::Display for PolicyError {
 
 impl std::error::Error for PolicyError {}
 
-macro_rules! shipped {
-    ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("../../configs/policies/", $name, ".toml")))),*]
-    };
-}
-
-/// Names and texts of the policies compiled into the program.
-pub fn shipped_policies() -> &'static [(&'static str, &'static str)] {
-    shipped!["baseline", "P0", "P1a", "P1b", "P1c", "P1s", "P2", "P4", "P6", "P8", "P9", "P10"]
-}
-
 impl Policy {
     /// A policy by name (this person's directory first, then the shipped ones) or by path: anything with a
     /// separator, or ending in .toml.
@@ -357,14 +347,14 @@ impl Policy {
         if let Some(source) = own {
             return Policy::parse(&source);
         }
-        match shipped_policies().iter().find(|(shipped, _)| *shipped == name) {
+        match shipped::policies().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => {
                 let file = format!("configs/policies/{name}.toml");
-                Policy::parse(&Source { name: file, text: (*text).to_owned() })
+                Policy::parse(&Source { name: file, text: text.to_owned() })
             }
             None => {
                 let mut known: Vec<String> =
-                    shipped_policies().iter().map(|(name, _)| (*name).to_owned()).collect();
+                    shipped::policies().into_iter().map(|(name, _)| name.to_owned()).collect();
                 known.extend(configuration.names("policies"));
                 Err(wrong(format!("there is no such policy; there are {}", known.join(", "))))
             }
@@ -453,11 +443,11 @@ mod tests {
     #[test]
     fn all_shipped_policies_are_read() {
         let configuration = Configuration::shipped();
-        for (name, _) in shipped_policies() {
+        for (name, _) in shipped::policies() {
             let policy = Policy::find(name, &configuration).expect("a shipped policy");
-            assert_eq!(policy.name, *name);
+            assert_eq!(policy.name, name);
             assert!(!policy.description.is_empty());
-            assert_eq!(policy.start.surges, Some(*name == "P1s"), "{name}");
+            assert_eq!(policy.start.surges, Some(name == "P1s"), "{name}");
         }
         let best = Policy::find("baseline", &configuration).expect("the baseline");
         assert_eq!(best.rule_based, Some(RuleBased::default()));

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::Table;
 
 use crate::session::error::RunError;
+use crate::shipped;
 use crate::world::params::{ParameterError, Params, Source, line_of_key, shipped_sources};
 
 /// Folders of this person on this machine.
@@ -46,27 +47,6 @@ struct ScenarioFile {
     #[serde(default)]
     world: Table,
 }
-
-macro_rules! shipped {
-    ($($name:literal),* $(,)?) => {
-        [$(($name, include_str!(concat!("../../../configs/scenarios/", $name, ".toml")))),*]
-    };
-}
-
-const SHIPPED: [(&str, &str); 12] = shipped![
-    "default",
-    "short",
-    "competitor-off",
-    "competitor-stationary",
-    "competitor-u10",
-    "competitor-u20",
-    "competitor-u30",
-    "competitor-hard",
-    "demand-surges",
-    "paper",
-    "corrected",
-    "reference-seed42",
-];
 
 /// Name of the standard scenario.
 pub const DEFAULT_SCENARIO: &str = "default";
@@ -125,10 +105,14 @@ impl Configuration {
 
     /// Names of all scenarios: the shipped ones, then this person's.
     pub fn scenarios(&self) -> Vec<String> {
-        let shipped = SHIPPED.iter().map(|(name, _)| (*name).to_owned());
-        let own =
-            self.names("scenarios").into_iter().filter(|own| SHIPPED.iter().all(|(name, _)| name != own));
-        shipped.chain(own).collect()
+        let mut names: Vec<String> =
+            shipped::scenarios().into_iter().map(|(name, _)| name.to_owned()).collect();
+        // The standard scenario stands first.
+        names.sort_by_key(|name| name != DEFAULT_SCENARIO);
+        let own = self.names("scenarios").into_iter().filter(|own| !names.contains(own));
+        let own: Vec<String> = own.collect();
+        names.extend(own);
+        names
     }
 
     /// A scenario; this person's file goes before the shipped one.
@@ -139,10 +123,10 @@ impl Configuration {
         if let Some(source) = self.file(format!("scenarios/{name}.toml"))? {
             return Ok(read_scenario(name, source, false)?);
         }
-        match SHIPPED.iter().find(|(shipped, _)| *shipped == name) {
+        match shipped::scenarios().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => {
                 let file = format!("configs/scenarios/{name}.toml");
-                Ok(read_scenario(name, Source { name: file, text: (*text).to_owned() }, true)?)
+                Ok(read_scenario(name, Source { name: file, text: text.to_owned() }, true)?)
             }
             None => Err(RunError::NoScenario { name: name.to_owned(), known: self.scenarios().join(", ") }),
         }
@@ -286,7 +270,7 @@ mod tests {
         digests.sort_unstable();
         digests.dedup();
         // `default` and `short` differ only in their days.
-        assert_eq!(digests.len(), SHIPPED.len() - 1);
+        assert_eq!(digests.len(), shipped::scenarios().len() - 1);
     }
 
     #[test]

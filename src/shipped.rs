@@ -1,0 +1,52 @@
+//! Scenarios, themes and policies that came with the program: every file of their folders in `configs/`, compiled in.
+//! A new one needs no line of code.
+
+use include_dir::{Dir, include_dir};
+
+/// Name and text of a file.
+pub type Shipped = (&'static str, &'static str);
+
+static SCENARIOS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/scenarios");
+static THEMES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/themes");
+static POLICIES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/policies");
+
+/// The scenarios, by name.
+pub fn scenarios() -> Vec<Shipped> {
+    of(&SCENARIOS)
+}
+
+/// The themes, by name.
+pub fn themes() -> Vec<Shipped> {
+    of(&THEMES)
+}
+
+/// The policies, by name.
+pub fn policies() -> Vec<Shipped> {
+    of(&POLICIES)
+}
+
+fn of(folder: &'static Dir<'static>) -> Vec<Shipped> {
+    let named = |file: &'static include_dir::File<'static>| {
+        let name = file.path().file_name()?.to_str()?.strip_suffix(".toml")?;
+        Some((name, file.contents_utf8()?))
+    };
+    folder.files().filter_map(named).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_of_the_folders_is_here_under_its_name() {
+        for (folder, held) in [("scenarios", scenarios()), ("themes", themes()), ("policies", policies())] {
+            let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(folder);
+            let entries = std::fs::read_dir(path).expect("a folder").flatten();
+            let mut there: Vec<String> =
+                entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+            there.sort_unstable();
+            let named: Vec<String> = held.iter().map(|(name, _)| format!("{name}.toml")).collect();
+            assert_eq!(named, there);
+        }
+    }
+}

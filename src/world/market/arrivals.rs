@@ -1,4 +1,4 @@
-//! The leads of a day become customers, prospects, or nothing (chapter 20 §9, §10, step 19).
+//! The leads of a day become customers, prospects, or nothing (docs/mechanics/market/arrivals.md).
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Competitor events: rivals raise everyone's expectations, and copy what we improved (chapter 30 §7, step 11).
+//! Competitor events: rivals raise everyone's expectations, and copy what we improved (docs/mechanics/market/competitors.md).
 
 use super::drift::DriftTotals;
 use crate::world::canonical::canonical;
@@ -44,7 +44,7 @@ fn events_possible(day: u32, total_days: u32, params: &Params) -> bool {
     !law.competitor_events_disabled && !too_early && !too_late
 }
 
-/// Chance of an event on a day, 0 where none can happen (chapter 30 §7.1).
+/// Chance of an event on a day, 0 where none can happen.
 pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, params: &Params) -> f64 {
     let law = &params.competitor;
     if !events_possible(day, total_days, params) {
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn check_c_of_chapter_30_when_events_happen() {
+    fn rivals_move_between_the_grace_period_and_the_last_month() {
         let params = Params::shipped();
         let chance = |day, total, last| event_probability(day, total, last, &params);
         assert_eq!(chance(59, 500, None), 0.0);
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn check_c_of_chapter_30_how_large_they_are() {
+    fn sizes_grow_over_the_run_and_copying_takes_from_the_bank() {
         let (small, _, class) = event(60, 0.02, 0.0, 0.5);
         near(small.boost, 0.027547974413646);
         assert_eq!(class, Severity::Minor);
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn check_c_of_chapter_30_with_targeted_banks() {
+    fn targeted_banks_are_copied_apart() {
         let params = Params::shipped();
         let (event, bank, _) = event(200, 0.03, 1.0, 0.25);
         near(event.boost, 0.275);
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn check_16_of_chapter_10() {
+    fn sizes_are_clamped_before_they_grow() {
         let law = Params::shipped().competitor;
         near(sampled_boost(0.01, 250, 500, &law), 0.02592750533049);
         near(sampled_boost(0.01, 470, 500, &law), 0.04);
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn events_without_development_are_distributed_as_chapter_30_measured() {
+    fn events_without_development_are_distributed_as_measured() {
         let params = Params::shipped();
         let (mut counts, mut sums, mut first_half) = (0.0, 0.0, 0.0);
         let seeds = 200;

@@ -1,4 +1,4 @@
-//! Market research: paying for a chance to find an unknown group (chapter 30 §11).
+//! Market research: paying for a chance to find an unknown group (docs/mechanics/market/discovery.md).
 
 use super::Market;
 use super::drift::DriftTotals;

@@ -1,4 +1,4 @@
-//! Preference drift: expectations and budgets move, for groups and for each subscriber (chapter 30 §9, step 8).
+//! Preference drift: expectations and budgets move, for groups and for each subscriber (docs/mechanics/market/drift.md).
 
 use crate::world::canonical::canonical;
 use crate::world::customers::Customers;
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn check_d_of_chapter_30() {
+    fn subscribers_drift_by_the_rates_of_their_group_within_bounds() {
         for (id, before, [c_max, q_min, q_max, steepness, seats]) in [
             ("S1", row(50.0, 0.10, 0.50, 1.0, 1.0), [47.0853976979, 0.1061772923, 0.5308864615, 1.0, 1.0]),
             ("S3", row(120.0, 0.3, 0.8, 5.6, 1.0), [120.5411761459, 0.3185318769, 0.8494183385, 5.0, 1.0]),
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn check_17_of_chapter_20_and_15_of_chapter_10() {
+    fn rates_compound_over_an_application() {
         near(compounded(0.002, &Params::shipped().drift), 0.0617729231);
         let (x, _) = drifted("S1", row(50.0, 0.10, 0.55, 1.2, 1.0), 90, 45.0);
         near(x.c_max, 47.0853976979);
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn check_14_of_chapter_40() {
+    fn seats_drift_with_the_economy() {
         for (id, first) in [("E1", 99.1039040602), ("E2", 101.2069860543), ("E3", 100.9039259842)] {
             near(drifted(id, row(60.0, 0.5, 0.9, 1.0, 100.0), 90, 50.0).0.seats, first);
         }

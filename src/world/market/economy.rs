@@ -1,4 +1,4 @@
-//! The economy: a hidden index, its delayed publications, and what it does to groups (chapter 30 §8, step 10).
+//! The economy: a hidden index, its delayed publications, and what it does to groups (docs/mechanics/market/economy.md).
 
 use crate::world::canonical::canonical;
 use crate::world::events::{Facts, Notice, Phase, Reading, Trend};
@@ -42,7 +42,7 @@ pub fn macro_multiplier(beta: f64, pmi: f64, law: &MacroEconomy) -> f64 {
     (law.multiplier_neutral + beta * (pmi - law.neutral_pmi) / law.pmi_scale).max(law.multiplier_min)
 }
 
-/// Rounds to decimals, half to even on the exact binary value (chapter 30, terms).
+/// Rounds to decimals, half to even on the exact binary value.
 pub fn round_to(value: f64, decimals: u32) -> f64 {
     format!("{value:.*}", decimals as usize).parse().expect("a formatted number reads back")
 }
@@ -157,7 +157,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn check_19_of_chapter_30() {
+    fn without_chance_the_index_follows_its_cycle_and_is_published_a_month_late() {
         let mut params = Params::shipped();
         params.economy.macro_pmi_daily_volatility = 0.0;
         let (mut economy, streams) = (Economy::opening(&params), Streams::new(1));
@@ -190,7 +190,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn check_20_of_chapter_30_and_10_of_chapter_10() {
+    fn factors_follow_the_sensitivities_of_a_group() {
         use Dimension::*;
         for (id, dimension, pmi, expected) in [
             ("S1", LeadGeneration, 42.5, 0.775),
@@ -217,7 +217,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn check_11_of_chapter_10() {
+    fn readings_are_named_by_their_value_and_change() {
         let law = Params::shipped().economy;
         for (pmi, trend) in [
             (58.0, "strong_expansion"),
@@ -248,7 +248,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn the_index_is_distributed_as_chapter_30_measured() {
+    fn the_index_is_distributed_as_measured() {
         let params = Params::shipped();
         let (mut means, mut lows, mut highs, mut below) = (vec![], vec![], vec![], vec![]);
         for seed in 0..60 {

@@ -1,5 +1,5 @@
 //! Insights: what a study tells of a group, true values times a noise that shrinks with the level
-//! (chapter 30 §12.3, §12.4).
+//! (docs/mechanics/market/discovery.md).
 
 use super::Market;
 use super::drift::DriftTotals;
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn check_23_of_chapter_30_individuals() {
+    fn estimates_of_individuals_are_the_truth_times_noise() {
         for (id, level, values, cap) in [
             ("S1", 1, [25.87, 91.1, 0.081, 0.0962, 0.1906], 272_812),
             ("S1", 5, [48.14, 80.9, 0.099, 0.192, 0.16235], 272_062),
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn check_23_of_chapter_30_companies() {
+    fn estimates_of_companies_have_seats_rounds_and_days() {
         let company = |least, most, rounds, days| {
             Some(CompanyInsights {
                 seats_least: least,
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn check_23_of_chapter_30_and_9_of_chapter_50_influence() {
+    fn links_to_known_groups_are_sorted_by_what_is_shown() {
         let e1 = estimates("E1", 1, 0);
         assert_eq!(named(&e1.referrals_from), [("S3", 0.0073), ("E3", 0.0004)]);
         let weights = [("E2", 0.0502), ("S3", 0.0488), ("E3", 0.0228), ("S1", 0.0209), ("S2", 0.0167)];
@@ -343,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn check_10_of_chapter_50_each_level_is_closer_to_the_truth() {
+    fn each_level_is_closer_to_the_truth() {
         for (level, day, pay, usage, cap, growth) in [
             (2, 3, 35.15, 86.8, 272_948, 0.1361),
             (3, 19, 40.72, 84.3, 275_147, 0.1601),

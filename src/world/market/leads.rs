@@ -1,4 +1,4 @@
-//! How many leads a group brings today (chapter 20 §9, chapter 30 §3, step 19).
+//! How many leads a group brings today (docs/mechanics/market/leads.md).
 
 use super::Market;
 use super::economy::Dimension;
@@ -143,9 +143,8 @@ mod tests {
         assert!((actual - expected).abs() <= 1e-9 * expected.abs(), "{actual} instead of {expected}");
     }
 
-    /// Check A of chapter 30.
     #[test]
-    fn check_10_of_chapter_30() {
+    fn every_factor_multiplies_the_expected_leads() {
         let params = Params::shipped();
         let mut market = Market::opening(&params);
         market.economy.pmi = 45.0;
@@ -194,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn check_11_of_chapter_30_and_19_of_chapter_10() {
+    fn room_shrinks_with_the_share_of_a_growing_market() {
         let law = Params::shipped().leads;
         near(saturation(136_000, market_cap(272_000.0, 0.2, 0, &law), &law), 0.75);
         near(saturation(136_000, market_cap(272_000.0, 0.2, 250, &law), &law), 0.806611990129);
@@ -206,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn check_13_of_chapter_20() {
+    fn a_first_campaign_brings_its_yield_times_the_calendar() {
         let params = Params::shipped();
         let market = Market::opening(&params);
         let subscribers = ByGroup::default();

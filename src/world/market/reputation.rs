@@ -1,4 +1,4 @@
-//! Reputation: what subscribers say, how it spreads, and what a departure costs (chapter 30 §2, step 17).
+//! Reputation: what subscribers say, how it spreads, and what a departure costs (docs/mechanics/market/reputation.md).
 
 use crate::world::canonical::canonical;
 use crate::world::identifiers::{ByGroup, Group};
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn checks_1_to_5_of_chapter_30() {
+    fn moods_move_a_group_and_spread_where_they_are_large() {
         assert_book(
             &after(&[("S1", 1000, 0.3)], 0.5, &[]),
             &[("S1", 0.501494867643), ("S3", 0.5), ("E1", 0.5)],
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn check_6_of_chapter_30_spreads_to_known_groups() {
+    fn changes_spread_to_known_groups_only() {
         let book = after(&[("S3", 2000, -0.4)], 0.5, &["D_S07", "D_S05"]);
         let expected = [
             ("S3", 0.495613686286),
@@ -160,13 +160,13 @@ mod tests {
     }
 
     #[test]
-    fn check_7_of_chapter_30_clips_and_floors() {
+    fn reputation_is_clamped_and_floored() {
         assert_book(&after(&[("S1", 1000, -3.0)], 0.002, &[]), &[("S1", 0.001)]);
         assert_book(&after(&[("S1", 1000, 3.0)], 0.9999, &[]), &[("S1", 1.0)]);
     }
 
     #[test]
-    fn checks_8_and_9_of_chapter_30_and_10_of_chapter_20() {
+    fn a_departure_hurts_a_small_group_more() {
         let law = Params::shipped().reputation;
         for (count, scale) in [
             (0, 0.5),
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn check_13_of_chapter_40() {
+    fn a_lost_company_hurts_without_its_mood() {
         let law = Params::shipped().reputation;
         for (count, low, middle) in [
             (1, 9.375e-5, 1.875e-4),

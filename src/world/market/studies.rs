@@ -1,4 +1,4 @@
-//! Group research: studies that are paid at once and finish some days later (chapter 30 §12, step 7).
+//! Group research: studies that are paid at once and finish some days later (docs/mechanics/market/discovery.md).
 
 use super::Market;
 use crate::world::events::{Facts, Notice, Snapshot, Study};
@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn check_24_of_chapter_30() {
+    fn a_study_keeps_the_market_of_the_morning_it_is_complete() {
         let params = Params::shipped();
         let (mut market, mut facts) = (Market::opening(&params), Facts::default());
         let s1 = order(&mut market, "S1", 2, 0, &params);
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn check_10_of_chapter_50_levels_and_days() {
+    fn studies_take_the_days_of_their_level() {
         let params = Params::shipped();
         let (mut market, mut facts) = (Market::opening(&params), Facts::default());
         for (day, target, due) in [(0, 2, 3), (14, 3, 19), (28, 4, 35), (42, 5, 52)] {

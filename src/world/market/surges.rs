@@ -1,4 +1,4 @@
-//! Demand surges: silent rushes of leads (chapter 30 §4).
+//! Demand surges: silent rushes of leads (docs/mechanics/market/surges.md).
 
 use crate::world::canonical::canonical;
 use crate::world::params::{DemandSurge, Params, SurgeStart};
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn check_14_of_chapter_20_and_25_of_chapter_30() {
+    fn surges_of_a_week_multiply_from_its_first_day() {
         let surge = |day, end_day, multiplier| Surge { day, end_day, multiplier };
         let week = |day, surges: &[Surge]| surge_factor(day, surges, SurgeStart::Week);
         let stored = [surge(5, 10, 3.0), surge(6, 9, 2.0)];
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn surges_are_distributed_as_chapter_30_measured() {
+    fn surges_are_distributed_as_measured() {
         let params = Params::shipped();
         let (mut count, mut multipliers, mut durations) = (0.0, 0.0, 0.0);
         for seed in 0..300 {

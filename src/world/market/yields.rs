@@ -1,4 +1,4 @@
-//! Channel yields wander: once a month every channel brings a little more or less (chapter 30 §3.7, step 9).
+//! Channel yields wander: once a month every channel brings a little more or less (docs/mechanics/market/leads.md).
 
 use crate::world::identifiers::{ByChannel, ByGroup, Channel, Group};
 use crate::world::params::{Leads, Params};
@@ -38,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn check_13_of_chapter_20() {
+    fn a_yield_moves_by_its_fraction_and_never_below_its_floor() {
         let law = Params::shipped().leads;
         assert!((varied_yield(124.5849, 1.0, &law) - 130.814145).abs() < 1e-9);
         assert_eq!(varied_yield(124.5849, -25.0, &law), 0.0);

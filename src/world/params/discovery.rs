@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Finding groups (chapter 30 §11).
+/// Finding groups (docs/mechanics/market/discovery.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarketResearch {
@@ -12,7 +12,7 @@ pub struct MarketResearch {
     pub market_research_discover_prob: f64,
 }
 
-/// One level of knowledge about a group (chapter 30 §12).
+/// One level of knowledge about a group (docs/mechanics/market/discovery.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InfoLevel {
@@ -26,7 +26,7 @@ pub struct InfoLevel {
     pub delay_days: u32,
 }
 
-/// What a study may aim at, and how its estimates are shown (chapter 30 §12, chapter 10.3).
+/// What a study may aim at, and how its estimates are shown (docs/mechanics/market/discovery.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GroupResearch {

@@ -12,7 +12,7 @@ pub struct Calendar {
     pub monthly: [f64; 30],
 }
 
-/// Silent rushes of demand (chapter 30 §4).
+/// Silent rushes of demand (docs/mechanics/market/surges.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DemandSurge {
@@ -28,7 +28,7 @@ pub struct DemandSurge {
     pub multiplier_range: f64,
 }
 
-/// Leads and channel yields (chapter 30 §3).
+/// Leads and channel yields (docs/mechanics/market/leads.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Leads {
@@ -52,7 +52,7 @@ pub struct Leads {
     pub monthly_channel_noise_interval_days: u32,
 }
 
-/// Reputation (chapter 30 §2).
+/// Reputation (docs/mechanics/market/reputation.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reputation {
@@ -84,7 +84,7 @@ pub struct Reputation {
     pub event_scale_min_group_size: u32,
 }
 
-/// Competitor events and their echo in the press (chapter 30 §7, §5.9).
+/// Competitor events and their echo in the press (docs/mechanics/market/competitors.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Competitor {
@@ -160,7 +160,7 @@ pub struct Competitor {
     pub competitor_names: Vec<String>,
 }
 
-/// Preference drift (chapter 30 §9).
+/// Preference drift (docs/mechanics/market/drift.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drift {
@@ -184,7 +184,7 @@ pub struct Drift {
     pub individual_seat_count_min: f64,
 }
 
-/// The hidden index of the economy (chapter 30 §8).
+/// The hidden index of the economy (docs/mechanics/market/economy.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MacroEconomy {

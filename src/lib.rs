@@ -13,9 +13,9 @@
 //! | 2 | [`tools`], [`database`], [`voice`] | the catalogue of tools; the observable company in SQLite and its guarded queries; words for facts, and the judge of the player's posts |
 //! | 1 | [`world`] | the simulator: pure, deterministic, no files, no clock, no SQL, no prose |
 //!
-//! [`notation`] writes and reads numbers for all of them. Arrows point down only; houses on one floor never import each
+//! [`notation`] writes and reads numbers for all of them, [`shipped`] holds scenarios, themes and policies. Arrows point down only; houses on one floor never import each
 //! other; the upper floors use nothing of `world` but plain identifiers, except `lab`, which works on debug runs and
-//! reads the x-ray. `tests/tidy.rs` holds this true.
+//! reads the x-ray. `tests/tidy` holds this true.
 //!
 //! * A day is a list: [`world::day::step_day`] reads as the order of the day, one line per mechanism.
 //! * Mechanisms push facts ([`world::events`]); `database` turns them into rows, `voice` some into words.

@@ -225,6 +225,6 @@ mod tests {
             assert!(theme.colours_apart(12), "{name}: one colour a category");
         }
         let problem = Theme::find("pink", &Configuration::shipped()).expect_err("no theme");
-        assert!(problem.contains("dark, light, high-contrast, mono"), "{problem}");
+        assert!(problem.contains("dark, high-contrast, light, mono"), "{problem}");
     }
 }

@@ -346,3 +346,21 @@ fn every_mechanism_names_its_code() {
         .collect();
     assert!(nameless.is_empty(), "{nameless:?}");
 }
+
+/// What explains the code is in the repository: nothing refers to numbered chapters of something else.
+#[test]
+fn nothing_refers_to_what_is_not_here() {
+    let numbered = |line: &str| {
+        let after =
+            |(_, rest): (&str, &str)| rest.trim_start().starts_with(|sign: char| sign.is_ascii_digit());
+        line.to_lowercase().split_once("chapter ").is_some_and(after) || line.contains('\u{a7}')
+    };
+    let folders = [("src", "rs"), ("tests", "rs"), ("configs", "toml"), ("assets", "toml"), ("docs", "md")];
+    let all = folders.iter().flat_map(|(folder, kind)| files(&root().join(folder), kind));
+    let mut problems = Vec::new();
+    for page in all.map(Page::read) {
+        let lines = page.text.lines().enumerate().filter(|(_, line)| numbered(line));
+        problems.extend(lines.map(|(at, line)| page.complaint(at + 1, line)));
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}

@@ -283,23 +283,24 @@ impl Offers<'_> {
             Missing::Balance if self.changed_today() => None,
             Missing::Balance => {
                 let plan = self.best()?;
-                Some((
-                    format!(
-                        "{plan} delivers {:.4} for {}; their floor of about {:.3} (±{error}) rises with the price",
-                        self.quality.by_plan[plan],
-                        money(self.price(plan)),
-                        own.floor
-                    ),
-                    "only a lower price or a higher quality can win them".to_owned(),
-                    Place::Group(group),
-                ))
+                let delivered = self.quality.by_plan[plan];
+                let problem = format!(
+                    "{plan} delivers {delivered:.4} for {}; their floor of about {:.3} (±{error}) rises with the price",
+                    money(self.price(plan)),
+                    own.floor
+                );
+                let remedy = "only a lower price or a higher quality can win them";
+                Some(match better_model(self.situation, group, plan, delivered, delivered) {
+                    Some((model, place)) => (problem, format!("{remedy}: {model}"), place),
+                    None => (problem, remedy.to_owned(), Place::Group(group)),
+                })
             }
         }
     }
 }
 
-/// A better model if one is good enough and pays, otherwise development for the group.
-fn better_quality(
+/// The least model above the present one that delivers as much as this and whose compute the price covers.
+fn better_model(
     situation: &Situation<'_>,
     group: Group,
     plan: Plan,
@@ -314,13 +315,25 @@ fn better_quality(
         situation.estimate(group)?.account_usage().min(situation.settings.quotas[plan].units()) * MONTH;
     let pays = |unit_cost: f64| group.is_enterprise() || used * unit_cost <= situation.settings.prices[plan];
     let better = models.iter().filter(|model| model.tier > now.tier && pays(model.unit_cost));
-    let enough = better.into_iter().find(|model| product * model.multiplier >= floor);
-    if let Some(model) = enough {
-        return Some((
-            format!("model tier {} delivers {:.4} on {plan}", model.tier, product * model.multiplier),
-            Place::Call(ToolId::SetModelTiers, json!({ plan.id(): model.tier })),
-        ));
+    let enough = better.into_iter().find(|model| product * model.multiplier >= floor)?;
+    Some((
+        format!("model tier {} delivers {:.4} on {plan}", enough.tier, product * enough.multiplier),
+        Place::Call(ToolId::SetModelTiers, json!({ plan.id(): enough.tier })),
+    ))
+}
+
+/// A better model if one is good enough and pays, otherwise development for the group.
+fn better_quality(
+    situation: &Situation<'_>,
+    group: Group,
+    plan: Plan,
+    delivered: f64,
+    floor: f64,
+) -> Option<(String, Place)> {
+    if let Some(model) = better_model(situation, group, plan, delivered, floor) {
+        return Some(model);
     }
+    let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     const DOLLARS: f64 = 5_000.0;
     // What is on its way needs nothing but time.
     let settings = situation.session.settings();

@@ -318,7 +318,7 @@ mod tests {
                 .scenario("none")
                 .expect_err("no such")
                 .to_string()
-                .contains("corrected, reference-seed42, mine")
+                .contains("reference-seed42, short, mine")
         );
     }
 }

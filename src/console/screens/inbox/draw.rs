@@ -117,7 +117,7 @@ fn nobody(inbox: &Inbox, look: &Look<'_>) -> String {
         look.company.funnels.iter().map(|own| format!("· {}", own.in_words())).collect();
     format!(
         "No company has asked for an offer yet. Ads bring companies ({} set_targeted_ad_spend). A better model tier, \
-         development for their group and a quota for a whole office make a plan good enough.\n\n{}",
+         development for their group and a quota for a whole office make a plan better for them.\n\n{}",
         key(Action::Tools),
         funnels.join("\n")
     )

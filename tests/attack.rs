@@ -6,7 +6,9 @@ use std::sync::{Mutex, MutexGuard};
 use std::time::Duration;
 
 use novamind::database::query::Limits;
-use novamind::session::{Cell, Configuration, Desk, NewRun, QueryError, Rows, Session, Storage, Via};
+use novamind::session::{
+    Cell, Configuration, NewRun, QueryConnection, QueryError, Rows, Session, Storage, Via,
+};
 use serde_json::json;
 
 /// No clock decides here: what is endless ends by its number of steps.
@@ -115,7 +117,7 @@ fn problem(attack: &Attack, outcome: &Result<Rows, QueryError>) -> Option<String
     (!fits).then(|| format!("{}\n    must be {}, but was {told}", attack.sql, attack.head))
 }
 
-fn ask_all(desk: &Desk, attacks: &[Attack], secrets: &[String]) {
+fn ask_all(desk: &QueryConnection, attacks: &[Attack], secrets: &[String]) {
     let mut problems = Vec::new();
     for attack in attacks {
         let limits = if attack.head.starts_with("answered") { AMPLE } else { LIMITS };

@@ -1,6 +1,6 @@
 //! `novamind lab`: comparison with reference figures, and of runs with each other.
 
-mod beside;
+mod comparison;
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ enum Laboratory {
     /// Run the policies of a reference folder over many seeds and compare with its figures.
     Golden(Golden),
     /// Put runs side by side: cash by week, decisions, behaviour measures, and the paper's published figures.
-    Compare(beside::Options),
+    Compare(comparison::Options),
 }
 
 /// Options of `lab golden`.
@@ -61,7 +61,7 @@ const SHARE_OF_ALL: f64 = 0.97;
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.command {
         Laboratory::Golden(golden) => run_golden(golden, context),
-        Laboratory::Compare(options) => beside::run(options, context),
+        Laboratory::Compare(options) => comparison::run(options, context),
     }
 }
 

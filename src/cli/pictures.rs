@@ -7,9 +7,9 @@ use clap::{Args, ValueEnum};
 use super::{Context, Failure, print};
 use crate::console::app::Settings;
 use crate::console::glyphs::Glyphs;
+use crate::console::headless::Headless;
 use crate::console::keys::Keys;
 use crate::console::photograph::{self, Paper};
-use crate::console::rehearsal::Rehearsal;
 use crate::console::screens::ScreenId;
 use crate::console::theme::Theme;
 use crate::console::worker::Recorded;
@@ -78,7 +78,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         again: context.again(),
     };
     let places = places(options, &settings.keys)?;
-    let mut console = Rehearsal::new(settings, options.size);
+    let mut console = Headless::new(settings, options.size);
     let taken = take_pictures(&mut console, &id, &places, options);
     console.finish();
     taken
@@ -108,7 +108,7 @@ fn places(options: &Options, keys: &Keys) -> Result<Vec<(String, String)>, Failu
 }
 
 fn take_pictures(
-    console: &mut Rehearsal,
+    console: &mut Headless,
     run: &str,
     places: &[(String, String)],
     options: &Options,

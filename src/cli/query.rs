@@ -9,8 +9,8 @@ use super::{Context, Failure, print};
 use crate::notation::printable;
 use crate::session::record::Outcome;
 use crate::session::{
-    Access, Cell, Line, Record, Refusal, Rows, RunError, Session, Trajectory, desk_of_file, find_run_to_read,
-    rebuild_database, rows_as_json,
+    Access, Cell, Line, Record, Refusal, Rows, RunError, Session, Trajectory, connection_to_file,
+    find_run_to_read, rebuild_database, rows_as_json,
 };
 
 /// Options of `query`.
@@ -81,7 +81,7 @@ fn ask_file(folder: &Path, sql: &str) -> Result<Option<Rows>, Failure> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
     // Queries and views do not move the database on; only lines that change the company do.
     let last = trajectory.lines.iter().rev().find(|line| moves_database(line));
-    if let (Ok((desk, position)), Some(last)) = (desk_of_file(folder), last)
+    if let (Ok((desk, position)), Some(last)) = (connection_to_file(folder), last)
         && position.seq >= last.seq
         && trajectory.lines.get(position.seq as usize).is_some_and(|line| line.hash == position.line_hash)
     {

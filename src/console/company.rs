@@ -12,7 +12,7 @@ use crate::report::funnel::{Funnel, funnels};
 use crate::report::needs::{Need, needs};
 use crate::session::{
     DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Numbers, Observation, RunningStudy,
-    Session, Terms, WeekFigures,
+    Session, ToolLimits, WeekFigures,
 };
 use crate::tools::ToolId;
 use crate::world::identifiers::Group;
@@ -64,8 +64,8 @@ pub struct Company {
     pub market: Value,
     /// Answers of get_group_insights for every known group.
     pub insights: BTreeMap<Group, Value>,
-    /// Terms of the tools.
-    pub terms: Terms,
+    /// ToolLimits of the tools.
+    pub terms: ToolLimits,
     /// The numbers that documentation names.
     pub numbers: Arc<Numbers>,
     /// Studies of groups that run.

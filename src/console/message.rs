@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::company::Company;
 use super::readings::Reading;
 use crate::report::Story;
-use crate::session::{Change, Interrupt, Library, Place, Preview, Refusal, Rows, Week};
+use crate::session::{Change, Interrupt, Library, PlaybackPosition, Preview, Refusal, Rows, Week};
 use crate::tools::ToolId;
 
 /// Something that arrives.
@@ -27,7 +27,7 @@ pub struct Arrival {
     /// The company of that moment; none where nothing has changed.
     pub company: Option<Arc<Company>>,
     /// Where it is.
-    pub place: Place,
+    pub place: PlaybackPosition,
     /// The company has a new database: a handle that stops the person's queries of it.
     pub interrupt: Option<Interrupt>,
     /// What the person should know.
@@ -50,15 +50,15 @@ pub enum News {
     /// The runs of the folder.
     Runs(Result<Vec<crate::session::RunSummary>, String>),
     /// How a run went; with its id.
-    Course(String, Result<crate::session::RunCourse, String>),
+    Course(String, Result<crate::session::RunHistory, String>),
     /// A run was given up or deleted: a sentence, or what went wrong; and the runs of the folder now.
     Kept(Result<String, String>, Result<Vec<crate::session::RunSummary>, String>),
     /// A run is open; with a handle that stops the person's queries.
     Opened(Arc<Company>, Option<Interrupt>),
     /// A run is played again; with a handle that stops the person's queries.
-    Replays(Arc<Company>, Option<Interrupt>, Box<Place>),
+    Replays(Arc<Company>, Option<Interrupt>, Box<PlaybackPosition>),
     /// The replay has gone where it was sent, or tried to.
-    Went(Box<Arrival>),
+    SeekResult(Box<Arrival>),
     /// The replay has gone on by itself: it plays, or somebody else has played.
     WentOn(Box<Arrival>),
     /// A run could not be opened or created; with what can be done instead.

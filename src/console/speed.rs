@@ -9,8 +9,8 @@ use ratatui::layout::Rect;
 use ratatui::{Terminal, TerminalOptions, Viewport};
 
 use super::app::Settings;
+use super::headless::{Headless, event};
 use super::message::Message;
-use super::rehearsal::{Rehearsal, event};
 
 /// Window that is drawn: columns, rows.
 const WINDOW: (u16, u16) = (200, 60);
@@ -30,7 +30,7 @@ pub fn first_frame<E: From<io::Error>>(settings: impl FnOnce() -> Result<Setting
     let mut console = Measured::start(settings()?)?;
     console.draw()?;
     let seconds = started.elapsed().as_secs_f64();
-    console.rehearsal.finish();
+    console.headless.finish();
     Ok(seconds)
 }
 
@@ -40,24 +40,24 @@ pub fn first_frame<E: From<io::Error>>(settings: impl FnOnce() -> Result<Setting
 /// The run does not open, a week does not pass, the drawing fails.
 pub fn keys_during_weeks(settings: Settings, run: &str, weeks: usize) -> io::Result<Vec<f64>> {
     let mut console = Measured::start(settings)?;
-    console.rehearsal.open(run)?;
+    console.headless.open(run)?;
     let mut seconds = Vec::new();
     for _ in 0..weeks {
         let week = console.weeks();
         for key in WEEK {
-            console.rehearsal.app.update(Message::Input(event(key)?));
+            console.headless.app.update(Message::Input(event(key)?));
             console.draw()?;
         }
         seconds.extend(console.keys_until_week(week + 1)?);
-        console.rehearsal.press("esc")?;
+        console.headless.press("esc")?;
     }
-    console.rehearsal.finish();
+    console.headless.finish();
     Ok(seconds)
 }
 
-/// A rehearsal whose frames go to a terminal that nobody sees: what is written to it is part of the time.
+/// A headless whose frames go to a terminal that nobody sees: what is written to it is part of the time.
 struct Measured {
-    rehearsal: Rehearsal,
+    headless: Headless,
     terminal: Terminal<CrosstermBackend<Sink>>,
 }
 
@@ -66,21 +66,21 @@ impl Measured {
         let window = Viewport::Fixed(Rect::new(0, 0, WINDOW.0, WINDOW.1));
         let terminal =
             Terminal::with_options(CrosstermBackend::new(io::sink()), TerminalOptions { viewport: window })?;
-        Ok(Measured { rehearsal: Rehearsal::new(settings, WINDOW), terminal })
+        Ok(Measured { headless: Headless::new(settings, WINDOW), terminal })
     }
 
     /// Weeks that have passed in the run that is shown.
     fn weeks(&self) -> usize {
-        self.rehearsal.app.run().map_or(0, |run| run.company.weeks.len())
+        self.headless.app.run().map_or(0, |run| run.company.weeks.len())
     }
 
     fn draw(&mut self) -> io::Result<()> {
-        self.rehearsal.hand_over();
-        if let Some((_, words)) = &self.rehearsal.left {
+        self.headless.hand_over();
+        if let Some((_, words)) = &self.headless.left {
             return Err(io::Error::other(words.clone().unwrap_or_else(|| "the console left".to_owned())));
         }
-        let rehearsal = &mut self.rehearsal;
-        self.terminal.draw(|whole| rehearsal.draw_into(whole.buffer_mut()))?;
+        let headless = &mut self.headless;
+        self.terminal.draw(|whole| headless.draw_into(whole.buffer_mut()))?;
         Ok(())
     }
 
@@ -88,7 +88,7 @@ impl Measured {
     fn keys_until_week(&mut self, week: usize) -> io::Result<Vec<f64>> {
         let (stop, stopped) = channel::<()>();
         let (press, pressed) = channel();
-        let input = self.rehearsal.sender();
+        let input = self.headless.sender();
         let events = KEYS.iter().map(|key| event(key)).collect::<io::Result<Vec<_>>>()?;
         let typist = std::thread::spawn(move || {
             for event in events.iter().cycle() {
@@ -103,12 +103,12 @@ impl Measured {
         let mut seconds = Vec::new();
         while self.weeks() < week {
             let mut keys = 0;
-            let mut next = Some(self.rehearsal.receive()?);
+            let mut next = Some(self.headless.receive()?);
             // Everything that has arrived meanwhile is drawn once, as the console does.
             while let Some(message) = next {
                 keys += usize::from(matches!(message, Message::Input(_)));
-                self.rehearsal.app.update(message);
-                next = self.rehearsal.received();
+                self.headless.app.update(message);
+                next = self.headless.received();
             }
             self.draw()?;
             let arrived: Vec<Instant> = pressed.iter().take(keys).collect();
@@ -116,9 +116,9 @@ impl Measured {
         }
         drop(stop);
         let _ = typist.join();
-        while let Some(message) = self.rehearsal.received() {
+        while let Some(message) = self.headless.received() {
             if !matches!(message, Message::Input(_)) {
-                self.rehearsal.app.update(message);
+                self.headless.app.update(message);
             }
         }
         Ok(seconds)

@@ -24,8 +24,9 @@ use super::readings::Reading;
 use crate::database::query::Limits;
 use crate::report::{Story, as_html, as_markdown};
 use crate::session::{
-    Access, Configuration, Desk, Forecasts, Goal, Interrupt, Mode, NewRun, Playback, Refusal, Rows, RunError,
-    Session, Ticket, Via, delete_run, end_run, find_run, find_run_to_read, list_runs, run_course,
+    Access, Configuration, Forecasts, Goal, Interrupt, Mode, NewRun, Playback, QueryConnection, Refusal,
+    Rows, RunError, Session, Ticket, Via, delete_run, end_run, find_run, find_run_to_read, list_runs,
+    run_history,
 };
 use crate::tools::ToolId;
 
@@ -125,7 +126,7 @@ struct Desks {
 }
 
 enum DeskJob {
-    Take(Box<Desk>, Limits),
+    Take(Box<QueryConnection>, Limits),
     Ask(Question),
     Leave,
 }
@@ -266,7 +267,7 @@ impl SessionThread {
                 self.say(News::Runs(list));
             }
             Job::Course(runs, id) => {
-                let course = run_course(&runs, &id).map_err(|error| error.to_string());
+                let course = run_history(&runs, &id).map_err(|error| error.to_string());
                 self.say(News::Course(id, course));
             }
             Job::EndRun(runs, id) => {
@@ -449,7 +450,7 @@ impl SessionThread {
 fn start_desk(news: Sender<Message>, jobs: Sender<Job>) -> Sender<DeskJob> {
     let (asked, questions) = channel();
     std::thread::spawn(move || {
-        let mut desk: Option<(Box<Desk>, Limits)> = None;
+        let mut desk: Option<(Box<QueryConnection>, Limits)> = None;
         while let Ok(job) = questions.recv() {
             match job {
                 DeskJob::Take(own, limits) => desk = Some((own, limits)),
@@ -463,7 +464,7 @@ fn start_desk(news: Sender<Message>, jobs: Sender<Job>) -> Sender<DeskJob> {
 
 fn answer(
     question: Question,
-    desk: Option<&(Box<Desk>, Limits)>,
+    desk: Option<&(Box<QueryConnection>, Limits)>,
     news: &Sender<Message>,
     jobs: &Sender<Job>,
 ) {

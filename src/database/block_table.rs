@@ -19,7 +19,7 @@ use rusqlite::vtab::{
     VTabCursor,
 };
 
-use super::blocks::{AdsRow, AdsRun, PackedDay, Run, Seen, Shelf};
+use super::blocks::{AdsRow, AdsRun, BlockStore, PackedDay, Run, Seen};
 use super::by_customer::{ByCustomer, Indexes};
 use crate::world::events::UsageRows;
 use crate::world::identifiers::Group;
@@ -37,7 +37,7 @@ trait Kind: Send + Sync + Sized + 'static {
     type Run: Run;
     const DECLARATION: &'static CStr;
 
-    fn days(shelf: &Shelf) -> &[Arc<PackedDay>];
+    fn days(shelf: &BlockStore) -> &[Arc<PackedDay>];
     fn indexes(seen: &Seen) -> &Indexes<Self::Run>;
     fn column(row: RowOf<Self>, column: c_int, context: &mut Context) -> rusqlite::Result<()>;
 }
@@ -60,7 +60,7 @@ impl Kind for Usage {
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(day INTEGER, customer_id INTEGER, usage_units INTEGER)";
 
-    fn days(shelf: &Shelf) -> &[Arc<PackedDay>] {
+    fn days(shelf: &BlockStore) -> &[Arc<PackedDay>] {
         &shelf.usage
     }
 
@@ -80,7 +80,7 @@ impl Kind for Ads {
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(day INTEGER, customer_id INTEGER, group_id TEXT, ads_strength REAL, revenue REAL)";
 
-    fn days(shelf: &Shelf) -> &[Arc<PackedDay>] {
+    fn days(shelf: &BlockStore) -> &[Arc<PackedDay>] {
         &shelf.ads
     }
 
@@ -187,7 +187,7 @@ type Found<K> = (Arc<ByCustomer<<K as Kind>::Run>>, Range<usize>);
 struct BlockCursor<'vtab, K: Kind> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab_cursor,
-    shelf: Shelf,
+    shelf: BlockStore,
     seen: Arc<Seen>,
     place: Place,
     /// The run of the place, once a row of it was asked for.
@@ -356,7 +356,7 @@ mod tests {
         let group = Group::parse("S2").expect("a group");
         let ads_row = AdsRevenueRow { customer: 2, group, strength: 0.5, revenue: 0.25 };
         let ads = vec![Arc::new(PackedDay::pack(3, &AdsRun::runs_of(&[ads_row])))];
-        let shelf = Shelf { usage: Arc::new(usage), ads: Arc::new(ads) };
+        let shelf = BlockStore { usage: Arc::new(usage), ads: Arc::new(ads) };
         let connection = Connection::open_in_memory().expect("memory");
         seen.see(shelf);
         register(&connection, seen).expect("modules");

@@ -2,7 +2,7 @@
 //!
 //! `world.db` is a projection of the facts of each day, never the truth: a writer thread ([`Projector`]) turns
 //! facts into rows while the player reads and decides, and the file can be rebuilt from the trajectory at any
-//! time. Queries go through a guarded read-only connection ([`Desk`]). What is hidden is never written here, so
+//! time. Queries go through a guarded read-only connection ([`QueryConnection`]). What is hidden is never written here, so
 //! no query, tool or editor can find it (docs/formats/database.md).
 
 pub mod catalogue;
@@ -31,8 +31,8 @@ pub use catalogue::{Column, Table, table, tables};
 pub use interrupt::{Interrupt, Ticket};
 pub use location::Location;
 pub use projector::{
-    Position, ProjectionError, Projector, desk_of, file_digest, has_layout_of_now, is_consistent, owner_of,
-    position_of,
+    Position, ProjectionError, Projector, file_digest, has_layout_of_now, is_consistent, owner_of,
+    position_of, query_connection,
 };
-pub use query::{Cell, Desk, QueryError, Rows, ScriptError, number_at, text_at};
+pub use query::{Cell, QueryConnection, QueryError, Rows, ScriptError, number_at, text_at};
 pub use rows::{Entry, ForecastRow};

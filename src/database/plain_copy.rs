@@ -7,7 +7,7 @@ use std::time::Duration;
 use rusqlite::backup::Backup;
 use rusqlite::{Connection, Transaction, params};
 
-use super::blocks::{AdsRun, Shelf};
+use super::blocks::{AdsRun, BlockStore};
 use super::projector::{ProjectionError, Projector};
 use crate::world::events::UsageRows;
 
@@ -38,7 +38,7 @@ impl Projector {
     }
 }
 
-fn copy(source: &Connection, shelf: &Shelf, file: &Path) -> rusqlite::Result<()> {
+fn copy(source: &Connection, shelf: &BlockStore, file: &Path) -> rusqlite::Result<()> {
     let mut copy = Connection::open(file)?;
     Backup::new(source, &mut copy)?.run_to_completion(PAGES, Duration::ZERO, None)?;
     // One file without companions, and nothing to save it from: what is half written is thrown away.
@@ -54,7 +54,7 @@ fn copy(source: &Connection, shelf: &Shelf, file: &Path) -> rusqlite::Result<()>
     copy.pragma_update(None, "journal_mode", "DELETE")
 }
 
-fn copy_usage(transaction: &Transaction<'_>, shelf: &Shelf) -> rusqlite::Result<()> {
+fn copy_usage(transaction: &Transaction<'_>, shelf: &BlockStore) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare("INSERT INTO daily_usage VALUES (?1, ?2, ?3)")?;
     for day in shelf.usage.iter() {
         for run in (0..day.len()).filter_map(|run| day.open::<UsageRows>(run)) {
@@ -66,7 +66,7 @@ fn copy_usage(transaction: &Transaction<'_>, shelf: &Shelf) -> rusqlite::Result<
     Ok(())
 }
 
-fn copy_ads(transaction: &Transaction<'_>, shelf: &Shelf) -> rusqlite::Result<()> {
+fn copy_ads(transaction: &Transaction<'_>, shelf: &BlockStore) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare("INSERT INTO ads_revenue VALUES (?1, ?2, ?3, ?4, ?5)")?;
     for day in shelf.ads.iter() {
         for run in (0..day.len()).filter_map(|run| day.open::<AdsRun>(run)) {

@@ -8,9 +8,9 @@ use std::thread::JoinHandle;
 
 use rusqlite::{Connection, OptionalExtension};
 
-use super::blocks::{AdsRun, PackedDay, Run, SharedShelf, Shelf};
+use super::blocks::{AdsRun, BlockStore, PackedDay, Run, SharedShelf};
 use super::location::Location;
-use super::query::Desk;
+use super::query::QueryConnection;
 use super::rows::{Entry, LAYOUT, RowWriter, create};
 use crate::world::events::{Facts, UsageRows};
 use crate::world::params::Params;
@@ -171,8 +171,8 @@ impl Projector {
     ///
     /// # Errors
     /// The database cannot be opened for reading.
-    pub fn desk(&self) -> Result<Desk, ProjectionError> {
-        Desk::open(&self.location, &self.shelf, self.gate.clone()).map_err(told)
+    pub fn desk(&self) -> Result<QueryConnection, ProjectionError> {
+        QueryConnection::open(&self.location, &self.shelf, self.gate.clone()).map_err(told)
     }
 
     /// Leaves the database this many pages beside those it has, as a full disk does.
@@ -353,7 +353,7 @@ fn open_existing(
 ///
 /// # Errors
 /// There is none, or it is no database of a run.
-pub fn desk_of(location: &Location) -> Result<(Desk, Position), ProjectionError> {
+pub fn query_connection(location: &Location) -> Result<(QueryConnection, Position), ProjectionError> {
     let missing = || ProjectionError("there is no database yet".to_owned());
     if location.path().is_none_or(|path| !path.exists()) {
         return Err(missing());
@@ -366,7 +366,7 @@ pub fn desk_of(location: &Location) -> Result<(Desk, Position), ProjectionError>
     let shelf = SharedShelf::default();
     *shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner()) =
         load_shelf(&connection).ok_or_else(missing)?;
-    let desk = Desk::open(location, &shelf, Arc::new(RwLock::new(()))).map_err(told)?;
+    let desk = QueryConnection::open(location, &shelf, Arc::new(RwLock::new(()))).map_err(told)?;
     Ok((desk, position))
 }
 
@@ -402,8 +402,8 @@ pub fn owner_of(location: &Location) -> Option<u32> {
     (owner != 0).then_some(owner as u32)
 }
 
-fn load_shelf(connection: &Connection) -> Option<Shelf> {
-    Some(Shelf {
+fn load_shelf(connection: &Connection) -> Option<BlockStore> {
+    Some(BlockStore {
         usage: Arc::new(load::<UsageRows>(connection, "usage_blocks")?),
         ads: Arc::new(load::<AdsRun>(connection, "ads_blocks")?),
     })

@@ -14,7 +14,7 @@ use rusqlite::hooks::{AuthContext, Authorization};
 use rusqlite::types::ValueRef;
 
 use super::block_table;
-use super::blocks::{Seen, SharedShelf, Shelf};
+use super::blocks::{BlockStore, Seen, SharedShelf};
 use super::guard::{
     Guard, InnerViews, Objection, Objections, is_hidden_table, is_inside, is_of_engine, limit,
 };
@@ -113,7 +113,7 @@ pub struct Limits {
 const MOST_TEXT: usize = 64 << 20;
 
 /// A place to ask questions.
-pub struct Desk {
+pub struct QueryConnection {
     released: Released,
     connection: Connection,
     objections: Objections,
@@ -128,13 +128,13 @@ pub struct Desk {
     seen: Arc<Seen>,
 }
 
-impl Desk {
+impl QueryConnection {
     /// Opens a guarded connection.
     pub(super) fn open(
         location: &Location,
         shelf: &SharedShelf,
         gate: Arc<RwLock<()>>,
-    ) -> rusqlite::Result<Desk> {
+    ) -> rusqlite::Result<QueryConnection> {
         let released = Released::open()?;
         let mut connection = location.open_reader()?;
         let seen = Arc::new(Seen::default());
@@ -160,7 +160,7 @@ impl Desk {
         let clock = interrupt.clone();
         connection.progress_handler(STEPS_BETWEEN_LOOKS as i32, Some(move || clock.must_end()))?;
         let shelf = shelf.clone();
-        Ok(Desk { released, connection, objections, views, trusted, interrupt, gate, shelf, seen })
+        Ok(QueryConnection { released, connection, objections, views, trusted, interrupt, gate, shelf, seen })
     }
 
     /// A handle that stops the queries of this desk.
@@ -246,7 +246,7 @@ impl Desk {
     }
 
     fn look_away(&self) -> Result<(), QueryError> {
-        self.seen.see(Shelf::default());
+        self.seen.see(BlockStore::default());
         // Where memory runs out, SQLite has ended the transaction by itself.
         if self.connection.is_autocommit() {
             return Ok(());

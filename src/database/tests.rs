@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::query::Limits;
-use super::{Cell, Desk, Entry, Location, Position, Projector, QueryError, Rows, number_at, text_at};
+use super::{
+    Cell, Entry, Location, Position, Projector, QueryConnection, QueryError, Rows, number_at, text_at,
+};
 use crate::world::day::{step_day, tests::policy_p};
 use crate::world::events::{
     EndCause, Facts, IssueOpened, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus,
@@ -59,7 +61,7 @@ impl Company {
         Company { world, params, streams: Streams::new(42), projector }
     }
 
-    fn weeks(&mut self, weeks: u32) -> Desk {
+    fn weeks(&mut self, weeks: u32) -> QueryConnection {
         for _ in 0..weeks {
             for _ in 0..7 {
                 let mut facts = Facts::default();
@@ -73,11 +75,11 @@ impl Company {
     }
 }
 
-fn rows(desk: &Desk, sql: &str) -> Rows {
+fn rows(desk: &QueryConnection, sql: &str) -> Rows {
     desk.ask(sql, LIMITS).unwrap_or_else(|error| panic!("{sql}: {} {}", error.code, error.message))
 }
 
-fn one(desk: &Desk, sql: &str) -> f64 {
+fn one(desk: &QueryConnection, sql: &str) -> f64 {
     match rows(desk, sql).rows.first().and_then(|row| row.first()) {
         Some(Cell::Integer(number)) => *number as f64,
         Some(Cell::Real(number)) => *number,
@@ -85,7 +87,7 @@ fn one(desk: &Desk, sql: &str) -> f64 {
     }
 }
 
-fn refused(desk: &Desk, sql: &str) -> QueryError {
+fn refused(desk: &QueryConnection, sql: &str) -> QueryError {
     match desk.ask(sql, LIMITS) {
         Ok(rows) => panic!("{sql} was answered: {rows:?}"),
         Err(error) => error,
@@ -601,7 +603,7 @@ fn a_database_of_another_layout_is_made_anew() {
     file.execute_batch("DROP INDEX ledger_by_day; PRAGMA user_version = 0").expect("an older layout");
     drop(file);
     assert!(!super::has_layout_of_now(&location));
-    assert!(super::desk_of(&location).is_err());
+    assert!(super::query_connection(&location).is_err());
     let (projector, found) =
         Projector::start(location.clone(), 1, Arc::new(Params::shipped()), |_| true).expect("it opens");
     assert_eq!(found, None);

@@ -6,9 +6,11 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value, json};
 
 use crate::database::query::Limits;
-use crate::database::{Cell, Desk, Interrupt, Location, QueryError, Rows, Ticket, desk_of};
+use crate::database::{
+    Cell, Interrupt, Location, QueryConnection, QueryError, Rows, Ticket, query_connection,
+};
 use crate::notation::json_number;
-use crate::session::resume::witness::is_as_left;
+use crate::session::resume::integrity::is_as_left;
 use crate::session::state::Session;
 use crate::session::trajectory::Record;
 use crate::session::trajectory::record::Query;
@@ -54,7 +56,7 @@ impl Session {
     ///
     /// # Errors
     /// The run has no database, or it cannot be read.
-    pub fn open_desk(&self) -> Result<Desk, Refusal> {
+    pub fn open_desk(&self) -> Result<QueryConnection, Refusal> {
         let Some(projector) = &self.projector else {
             return Err(Refusal::new("sql_error", "this run is played without a database"));
         };
@@ -108,7 +110,7 @@ impl Session {
         self.asked.drain(..surplus);
     }
 
-    pub(super) fn desk(&mut self) -> Result<&Desk, Refusal> {
+    pub(super) fn desk(&mut self) -> Result<&QueryConnection, Refusal> {
         if let Err(problem) = self.wait_for_database() {
             // There may be room again.
             self.mend_database().map_err(|_| problem)?;
@@ -143,11 +145,11 @@ impl From<QueryError> for Refusal {
 ///
 /// # Errors
 /// The file is missing, no database of a run, or not the one that the program left when the run was closed.
-pub fn desk_of_file(folder: &Path) -> Result<(Desk, crate::database::Position), Refusal> {
+pub fn connection_to_file(folder: &Path) -> Result<(QueryConnection, crate::database::Position), Refusal> {
     if !is_as_left(folder) {
         return Err(Refusal::new("sql_error", "world.db was changed after the run was closed"));
     }
-    desk_of(&Location::File(folder.join("world.db")))
+    query_connection(&Location::File(folder.join("world.db")))
         .map_err(|error| Refusal::new("sql_error", error.to_string()))
 }
 

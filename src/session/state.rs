@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use crate::database::{Desk, Position, Projector};
+use crate::database::{Position, Projector, QueryConnection};
 use crate::session::error::RunError;
 use crate::session::figures::changes::Decisions;
 use crate::session::figures::groups::GroupWeek;
@@ -53,7 +53,7 @@ pub struct Session {
     /// Every confirmed call is on the disk before it is confirmed; headless runs sync once a week.
     pub(super) sync_calls: bool,
     pub(super) projector: Option<Projector>,
-    pub(super) desk: Option<Desk>,
+    pub(super) desk: Option<QueryConnection>,
     /// Cash at the end of each day, day 0 first.
     pub(super) cash_by_day: Vec<f64>,
     /// Every full or shortened week that ran.

@@ -43,7 +43,7 @@ pub use time::{FORECAST_KEYS, Forecast, forecasts, rationale};
 pub use view::{PublicPost, View};
 
 use crate::notation::plain_numbers;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::settings::Settings;
 
 /// An action or reading of the player.
@@ -60,7 +60,7 @@ pub trait Tool: Sync {
     ///
     /// # Errors
     /// The refusals that its [`Spec`] lists, in the order of its checks.
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal>;
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal>;
 
     /// What the session has to do for an accepted call besides its effect on the world.
     fn task(&self, _view: &View<'_>, _arguments: &Arguments) -> Option<Task> {
@@ -68,15 +68,15 @@ pub trait Tool: Sync {
     }
 
     /// The settings family that a call leaves, as its row shows it: amounts are numbers with a decimal point.
-    fn row(&self, _arguments: &Arguments, deed: &Deed) -> Option<Value> {
-        match deed {
-            Deed::Set(change) => change.family(),
+    fn row(&self, _arguments: &Arguments, resolved: &ResolvedCommand) -> Option<Value> {
+        match resolved {
+            ResolvedCommand::Set(change) => change.family(),
             _ => None,
         }
     }
 
     /// The data of the answer, given what was decided.
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, deed: &Deed) -> Value;
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, resolved: &ResolvedCommand) -> Value;
 }
 
 /// A settings family as answers show it: whole numbers without a decimal point.
@@ -84,10 +84,10 @@ fn as_data(family: &impl serde::Serialize) -> Value {
     plain_numbers(serde_json::to_value(family).unwrap_or(Value::Null))
 }
 
-/// The settings family that a deed leaves, as answers show it.
-fn family_of(deed: &Deed) -> Value {
-    match deed {
-        Deed::Set(change) => plain_numbers(change.family().unwrap_or(Value::Null)),
+/// The settings family that a resolved leaves, as answers show it.
+fn family_of(resolved: &ResolvedCommand) -> Value {
+    match resolved {
+        ResolvedCommand::Set(change) => plain_numbers(change.family().unwrap_or(Value::Null)),
         _ => Value::Null,
     }
 }

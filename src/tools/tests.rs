@@ -4,7 +4,7 @@ mod engine;
 mod market;
 mod order;
 
-use crate::world::effect::Deed;
+use crate::world::command::ResolvedCommand;
 use serde_json::{Value, json};
 
 use super::{Arguments, Refusal, View, find};
@@ -34,10 +34,10 @@ impl Company {
         let arguments = Arguments::of(tool.spec(), &arguments)?;
         let effect = tool.plan(&view, &arguments)?;
         super::bounds::hold(tool.spec(), &arguments)?;
-        let deed = self.world.resolve(effect, &self.params, &self.streams);
-        let data = tool.answer(&view, &arguments, &deed);
-        if !deed.only_reads() {
-            self.world.apply(deed, &self.params, &mut Facts::default());
+        let resolved = self.world.resolve(effect, &self.params, &self.streams);
+        let data = tool.answer(&view, &arguments, &resolved);
+        if !resolved.only_reads() {
+            self.world.apply(resolved, &self.params, &mut Facts::default());
         }
         Ok(data)
     }
@@ -670,7 +670,7 @@ fn get_social_posts() {
     let tool = find("get_social_posts").expect("the tool exists");
     let read = |arguments: Value| {
         let arguments = Arguments::of(tool.spec(), &arguments).expect("right arguments");
-        tool.answer(&view, &arguments, &Deed::None)
+        tool.answer(&view, &arguments, &ResolvedCommand::None)
     };
     let all = read(json!({"days": 1}));
     assert_eq!(all["total"], json!(3));

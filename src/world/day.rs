@@ -71,7 +71,7 @@ pub fn step_day(
     let ads = AdLoad::of(&settings.ads_strength, params);
     let tenure = TenureTable::up_to(day, &params.quality);
     let penalty = service_penalty(service.overload, service.outage, &params.quality);
-    let hotline = issues::Hotline { day, outage: service.outage, params, streams };
+    let hotline = issues::IssueContext { day, outage: service.outage, params, streams };
     let felt =
         satisfaction::Conditions { morning: &morning, service: &service, ads: &ads, tenure: &tenure, params };
     let scene = Scene {
@@ -96,7 +96,7 @@ pub fn step_day(
     issues::allot(&mut calls, settings, customers, issue_desk, &hotline);
 
     // Issues are settled; those whose day it is decide, and pay if they stay.
-    let judgement = renewal::Judgement {
+    let judgement = renewal::RenewalContext {
         morning: &morning,
         settings,
         service_penalty: penalty,

@@ -4,9 +4,9 @@
 //! it touches, and every formula a small pure function with check values as its test (`docs/mechanics/README.md`).
 
 pub mod canonical;
+pub mod command;
 pub mod customers;
 pub mod day;
-pub mod effect;
 pub mod enterprise;
 pub mod events;
 pub mod finance;

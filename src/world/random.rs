@@ -8,9 +8,9 @@
 //! numbers come from the inverse distribution function (algorithm AS 241 of Wichura), which needs one word,
 //! no rejection, and no more than a logarithm.
 
-#[cfg_attr(not(target_arch = "x86_64"), path = "random/no_lanes.rs")]
-mod lanes;
 mod quantile;
+#[cfg_attr(not(target_arch = "x86_64"), path = "random/no_simd_streams.rs")]
+mod simd_streams;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -139,7 +139,9 @@ impl Streams {
         together(
             entities,
             |entity| self.key(part, entity),
-            |some| lanes::keys(&self.keys[part as usize], some).map(|keys| keys.map(StreamKey::of_words)),
+            |some| {
+                simd_streams::keys(&self.keys[part as usize], some).map(|keys| keys.map(StreamKey::of_words))
+            },
         )
     }
 
@@ -148,7 +150,7 @@ impl Streams {
         together(
             entities,
             |entity| self.open(part, entity).word(),
-            |some| lanes::first_words(&self.keys[part as usize], some).map(|words| words.map(Word)),
+            |some| simd_streams::first_words(&self.keys[part as usize], some).map(|words| words.map(Word)),
         )
     }
 }
@@ -157,7 +159,7 @@ impl Streams {
 fn together<E: Copy, R>(
     entities: &[E],
     single: impl Fn(E) -> R,
-    eight: impl Fn(&[E; lanes::LANES]) -> Option<[R; lanes::LANES]>,
+    eight: impl Fn(&[E; simd_streams::LANES]) -> Option<[R; simd_streams::LANES]>,
 ) -> Vec<R> {
     let mut results = Vec::with_capacity(entities.len());
     let (eights, last) = entities.as_chunks();
@@ -176,7 +178,7 @@ fn together<E: Copy, R>(
 pub struct StreamKey([u8; 32]);
 
 impl StreamKey {
-    fn of_words(words: lanes::Key) -> StreamKey {
+    fn of_words(words: simd_streams::Key) -> StreamKey {
         let mut bytes = [0u8; 32];
         for (bytes, word) in bytes.chunks_exact_mut(4).zip(words) {
             bytes.copy_from_slice(&word.to_le_bytes());

@@ -21,7 +21,7 @@ use novamind::world::product::quality::TenureTable;
 use novamind::world::product::usage;
 use novamind::world::random::Streams;
 use novamind::world::retention::billing::{self, Terms};
-use novamind::world::retention::issues::{self, Hotline};
+use novamind::world::retention::issues::{self, IssueContext};
 use novamind::world::retention::satisfaction;
 use novamind::world::state::World;
 
@@ -101,7 +101,7 @@ fn usage_metering(bencher: Bencher<'_, '_>) {
 fn issue_pass(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     let (params, streams, settings) = (&*company.params, &company.streams, &company.world.settings);
-    let hotline = Hotline { day: DAYS + 1, outage: false, params, streams };
+    let hotline = IssueContext { day: DAYS + 1, outage: false, params, streams };
     on_customers(bencher, company.subscribers(), |customers| {
         let (mut desk, mut facts) = (company.world.issue_desk.clone(), Facts::default());
         let mut calls =

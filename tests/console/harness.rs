@@ -6,27 +6,27 @@ use std::path::Path;
 use crossterm::event::Event;
 use novamind::console::app::Settings;
 use novamind::console::glyphs::Glyphs;
+use novamind::console::headless::Headless;
 use novamind::console::keys::Keys;
-use novamind::console::rehearsal::Rehearsal;
 use novamind::console::theme::Theme;
 use novamind::session::Configuration;
 use ratatui::buffer::Buffer;
 
 /// A console that is played by a test.
 pub struct Console {
-    rehearsal: Option<Rehearsal>,
+    rehearsal: Option<Headless>,
 }
 
 impl Deref for Console {
-    type Target = Rehearsal;
+    type Target = Headless;
 
-    fn deref(&self) -> &Rehearsal {
+    fn deref(&self) -> &Headless {
         self.rehearsal.as_ref().expect("it is there until it is dropped")
     }
 }
 
 impl DerefMut for Console {
-    fn deref_mut(&mut self) -> &mut Rehearsal {
+    fn deref_mut(&mut self) -> &mut Headless {
         self.rehearsal.as_mut().expect("it is there until it is dropped")
     }
 }
@@ -47,7 +47,7 @@ impl Console {
             runs: runs.to_owned(),
             again: "novamind --run latest".to_owned(),
         };
-        let mut console = Console { rehearsal: Some(Rehearsal::new(settings, size)) };
+        let mut console = Console { rehearsal: Some(Headless::new(settings, size)) };
         console.settle().expect("the menu");
         console
     }

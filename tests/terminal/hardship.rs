@@ -112,7 +112,7 @@ fn what_was_chosen_by_key_is_there_the_next_time() {
     terminal.wait_for("Needs you");
     assert!(!terminal.contents().is_ascii());
     terminal.type_keys(";c");
-    terminal.wait_for("theme light, from now on");
+    terminal.wait_for("theme high-contrast, from now on");
     terminal.type_keys(";d");
     terminal.wait_for("drawn with blocks");
     terminal.type_keys(";d");
@@ -122,7 +122,7 @@ fn what_was_chosen_by_key_is_there_the_next_time() {
     terminal.wait_until_true("the choice is kept", is_kept);
     terminal.type_keys("q");
     assert_eq!(terminal.end().0, 0);
-    assert!(std::fs::read_to_string(&chosen).expect("a file").contains("light"));
+    assert!(std::fs::read_to_string(&chosen).expect("a file").contains("high-contrast"));
     let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (100, 30));
     terminal.wait_for("Needs you");
     assert!(terminal.contents().is_ascii(), "{}", terminal.contents());

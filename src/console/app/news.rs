@@ -48,7 +48,7 @@ impl App {
             News::Replays(company, interrupt, place) => {
                 self.opened(company, interrupt, Some(Viewer::new(*place)));
             }
-            News::Went(arrival) => self.arrived(*arrival, true),
+            News::SeekResult(arrival) => self.arrived(*arrival, true),
             News::WentOn(arrival) => self.arrived(*arrival, false),
             News::NotOpened(problem, instead) => {
                 self.busy = None;

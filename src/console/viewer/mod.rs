@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use crate::session::Place;
+use crate::session::PlaybackPosition;
 
 /// Pauses between two weeks, in milliseconds, and how fast that is.
 const SPEEDS: [(u64, &str); 6] = [
@@ -23,7 +23,7 @@ const SPEEDS: [(u64, &str); 6] = [
 /// A replay on the screen.
 pub struct Viewer {
     /// Where it is.
-    pub place: Place,
+    pub place: PlaybackPosition,
     /// It goes on by itself.
     pub playing: bool,
     /// The decisions stand beside the screen, where there is room.
@@ -46,7 +46,7 @@ impl Viewer {
     pub const BESIDE: u16 = 120;
 
     /// A replay that stands still.
-    pub fn new(place: Place) -> Viewer {
+    pub fn new(place: PlaybackPosition) -> Viewer {
         Viewer {
             place,
             playing: false,
@@ -61,7 +61,7 @@ impl Viewer {
     }
 
     /// It has got somewhere, as asked or by itself.
-    pub fn arrive(&mut self, place: Place, asked: bool) {
+    pub fn arrive(&mut self, place: PlaybackPosition, asked: bool) {
         if place.line != self.place.line {
             self.scroll = 0;
         }

@@ -5,7 +5,7 @@ use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped};
 use crate::session::record::{Advance, Branch, Call, Closing, Outcome, Query};
-use crate::session::{Chapter, Place, Record, RecordView, Reversal, ScoredForecast, naively};
+use crate::session::{Chapter, PlaybackPosition, Record, RecordView, Reversal, ScoredForecast, naively};
 
 /// Longest JSON that is written in one line, in bytes.
 const ONE_LINE: usize = 90;
@@ -101,7 +101,7 @@ fn verdict(scored: &ScoredForecast) -> &'static str {
 }
 
 /// Everything that was decided, with arguments, statements and answers.
-pub fn whole(place: &Place) -> String {
+pub fn whole(place: &PlaybackPosition) -> String {
     let chapter = &place.chapter;
     let mut parts = vec![format!(
         "Day {}, before week {}. Outcomes marked “later” come from later in the record; nobody knew them then.",

@@ -10,7 +10,7 @@ use super::{BETWEEN_DAYS, Open, Recorded, SessionThread};
 use crate::console::company::Company;
 use crate::console::message::{Arrival, Instead, Message, News};
 use crate::session::{
-    Access, Goal, Mode, Playback, RunError, Session, Went, find_run, find_run_to_read, rescue,
+    Access, Goal, Mode, Playback, RunError, SeekResult, Session, find_run, find_run_to_read, rescue,
 };
 
 /// Lines of somebody else are looked for this often.
@@ -124,7 +124,7 @@ impl SessionThread {
     pub(super) fn go(&mut self, goal: Goal, stop: &AtomicBool) {
         self.due = None;
         if let Some(arrival) = self.arrive(goal, stop) {
-            self.say(News::Went(Box::new(arrival)));
+            self.say(News::SeekResult(Box::new(arrival)));
         }
     }
 
@@ -136,7 +136,7 @@ impl SessionThread {
             false => self.tell(&mut told, day),
         });
         // What went wrong on the way has led to a new session, too.
-        let anew = !matches!(went, Ok(Went::There | Went::Stopped));
+        let anew = !matches!(went, Ok(SeekResult::There | SeekResult::Stopped));
         let interrupt = if anew { self.hand_desks(playback.session()) } else { None };
         let before = self.company.take().filter(|_| !anew);
         let company = Arc::new(company_of(&playback, before.as_deref()));
@@ -144,7 +144,7 @@ impl SessionThread {
         let place = playback.place();
         self.open = Some(Open::Replayed(playback));
         let problem = match went {
-            Ok(Went::Stopped) => Some("seeking stopped".to_owned()),
+            Ok(SeekResult::Stopped) => Some("seeking stopped".to_owned()),
             Ok(_) => None,
             Err(error) => Some(error.to_string()),
         };

@@ -15,7 +15,7 @@ use serde_json::Value;
 
 use crate::session::ToolId;
 use crate::session::{
-    CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Mode, Observation, Session, Terms,
+    CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Mode, Observation, Session, ToolLimits,
     WeekFigures,
 };
 use crate::world::identifiers::{ByGroup, Group};
@@ -114,7 +114,7 @@ struct Situation<'a> {
     decisions: &'a [Decisions],
     quality: Vec<DeliveredQuality>,
     estimates: Vec<Estimates>,
-    terms: Terms,
+    terms: ToolLimits,
     session: &'a Session,
 }
 

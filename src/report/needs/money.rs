@@ -105,7 +105,17 @@ fn largest_budget(situation: &Situation<'_>) -> Budget {
     ];
     let largest = budgets.into_iter().max_by(|left, right| left.1.total_cmp(&right.1));
     let (name, dollars, place) = largest.filter(|budget| budget.1 > 0.0).unwrap_or(("", 0.0, Place::Books));
-    Budget { name, dollars, kept: kept(dollars), place }
+    // What the form holds is told, rounded down cell by cell as it is.
+    let kept = if let Place::Call(_, arguments) = &place { sum(arguments) } else { 0.0 };
+    Budget { name, dollars, kept, place }
+}
+
+/// Sum of the numbers in arguments.
+fn sum(arguments: &Value) -> f64 {
+    match arguments {
+        Value::Object(fields) => fields.values().map(sum).sum(),
+        other => other.as_f64().unwrap_or(0.0),
+    }
 }
 
 /// Plans whose individual subscribers cost more in compute than they pay.

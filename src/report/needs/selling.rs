@@ -372,12 +372,16 @@ pub(super) fn unwanted(situation: &Situation<'_>) -> Vec<Need> {
             count(recent.len() as u32, "week"),
             money(ads)
         );
+        // Nothing on sale now is known to fail them: what can be named is what the ads cost.
         let (told, proposal, place) = match offers.missing() {
             missing @ (Missing::Quota | Missing::Quality) => {
                 let (told, proposal, place) = offers.remedy(missing)?;
                 (format!("{text}; {told}"), Some(proposal), place)
             }
-            Missing::Price | Missing::Balance => (text, None, Place::Group(own.group)),
+            Missing::Price | Missing::Balance => {
+                let saved = format!("without these ads {} a day stay in cash", money(ads));
+                (text, Some(saved), without_ads(situation, own.group))
+            }
         };
         Some(Need {
             problem: Problem::Unwanted(own.group),
@@ -389,4 +393,20 @@ pub(super) fn unwanted(situation: &Situation<'_>) -> Vec<Need> {
         })
     });
     unwanted.collect()
+}
+
+/// The form of advertising without the budgets of a group.
+fn without_ads(situation: &Situation<'_>, group: Group) -> Place {
+    let mut spend = situation.session.settings().targeted_ads.targeted_spend.clone();
+    spend.values_mut().for_each(|groups| {
+        groups.entry(group).and_modify(|dollars| *dollars = 0.0);
+    });
+    let spend: Map<String, Value> = spend
+        .iter()
+        .map(|(channel, groups)| {
+            let groups = groups.iter().map(|(group, dollars)| (group.id().to_owned(), json_number(*dollars)));
+            (channel.id().to_owned(), Value::Object(groups.collect()))
+        })
+        .collect();
+    Place::Call(ToolId::SetTargetedAdSpend, json!({ "targeted_spend": spend }))
 }

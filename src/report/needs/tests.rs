@@ -303,6 +303,9 @@ fn four_weeks_of_cash_come_before_everything_else() {
         &["cash lasts", "the largest budget is development for single groups"],
     );
     let Place::Call(ToolId::SetTargetedDevSpend, arguments) = &need.place else { panic!("{need:?}") };
+    let proposed = arguments["targeted_spend"]["S1"].as_f64().expect("an amount");
+    let told = format!("at {} a day cash lasts 8 weeks", crate::report::words::money(proposed));
+    assert!(need.in_words().contains(&told), "{}: {told}", need.in_words());
     let mut mended = session;
     mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");
     assert!(
@@ -331,6 +334,55 @@ fn companies_that_no_plan_is_good_enough_for_are_found() {
     assert!(found.iter().all(|need| need.text.contains("none asked for an offer")), "{found:#?}");
     // All seats of a company share one quota.
     assert!(found.iter().any(|need| need.text.contains("of the use of a small company")), "{found:#?}");
+}
+
+#[test]
+fn a_budget_of_many_cells_is_told_as_the_form_holds_it() {
+    let each = json!({"S1": 99, "S2": 99, "S3": 99, "E1": 2_999, "E2": 2_999});
+    let ads = json!({"targeted_spend": {"linkedin": each, "social_media": each}});
+    let session = company(3, 400_000.0, &but(&[("set_targeted_ad_spend", ads)]), 1);
+    let need = is_first(&session, Problem::Runway, &["the largest budget is advertising"]);
+    let Place::Call(ToolId::SetTargetedAdSpend, arguments) = &need.place else { panic!("{need:?}") };
+    let mut mended = session;
+    mended.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
+    let kept = mended.settings().targeted_ads.total();
+    let told = format!("at {} a day", crate::report::words::money(kept));
+    assert!(need.in_words().contains(&told), "{}: {told}", need.in_words());
+}
+
+#[test]
+fn companies_that_ask_for_nothing_although_the_plans_are_good_enough_cost_their_ads() {
+    let people = json!({"S1": 200, "S2": 200, "S3": 200, "E1": 1_000, "E2": 1_000});
+    let spend = json!({"social_media": people, "linkedin": {"E1": 1_500, "E2": 1_500, "E3": 500}});
+    let calls = but(&[
+        ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
+        ("set_model_tiers", json!({"A": 2, "B": 3, "C": 4})),
+        ("set_usage_quotas", json!({"A": 3_000, "B": 30_000, "C": 1_000_000})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {"E1": 3_000, "E2": 3_000}})),
+        ("set_targeted_ad_spend", json!({ "targeted_spend": spend })),
+        ("set_daily_spend", json!({"operations": 300, "development": 400})),
+        ("set_capacity_tier", json!({"tier": 1})),
+    ]);
+    let session = company(23, 1e6, &calls, 7);
+    let all = needs(&session);
+    let of_ads = |need: &&Need| {
+        let ads = matches!(need.place, Place::Call(ToolId::SetTargetedAdSpend, _));
+        ads && matches!(need.problem, Problem::Unwanted(_))
+    };
+    let need = all.iter().find(of_ads).unwrap_or_else(|| panic!("{all:#?}"));
+    let Problem::Unwanted(group) = need.problem else { panic!("{need:?}") };
+    let Place::Call(_, arguments) = &need.place else { panic!("{need:?}") };
+    let before = session.settings().targeted_ads.clone();
+    let mut mended = session;
+    mended.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
+    let after = &mended.settings().targeted_ads;
+    let saved = before.total() - after.total();
+    assert!(
+        saved > 0.0
+            && after.targeted_spend.values().all(|groups| groups.get(&group).is_none_or(|it| *it == 0.0))
+    );
+    let told = format!("without these ads {} a day stay in cash", crate::report::words::money(saved));
+    assert!(need.in_words().contains(&told), "{}: {told}", need.in_words());
 }
 
 #[test]

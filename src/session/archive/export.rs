@@ -13,8 +13,8 @@ use crate::session::archive::{DATABASE, MANIFEST, MEMO, SEAL, TRAJECTORY, is_com
 use crate::session::error::RunError;
 use crate::session::folder::manifest::{Manifest, sync_folder};
 use crate::session::play::memo::notes_file;
+use crate::session::resume::integrity::Integrity;
 use crate::session::resume::open::{Access, check_start};
-use crate::session::resume::witness::Witnesses;
 use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
 
@@ -140,15 +140,15 @@ impl Export {
     }
 }
 
-/// Reads a trajectory that somebody may be writing, and checks it against manifest and witnesses. They are asked first:
+/// Reads a trajectory that somebody may be writing, and checks it against manifest and integrity. They are asked first:
 /// whatever they remember is then in what is read.
 fn read_settled(folder: &Path, manifest: &Manifest) -> Result<(Vec<u8>, Trajectory), RunError> {
     let path = folder.join(TRAJECTORY);
-    let witnesses = Witnesses::of(folder, manifest);
+    let integrity = Integrity::of(folder, manifest);
     let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
     let trajectory = Trajectory::of_file(&path, &bytes)?;
     check_start(&path, trajectory.lines.first(), manifest)?;
-    witnesses.check(&path, &trajectory)?;
+    integrity.check(&path, &trajectory)?;
     Ok((bytes, trajectory))
 }
 

@@ -11,6 +11,6 @@ pub(in crate::session) mod observe;
 pub(in crate::session) mod pace;
 pub(in crate::session) mod scored_forecast;
 pub(in crate::session) mod setting;
-pub(in crate::session) mod terms;
+pub(in crate::session) mod tool_limits;
 pub(in crate::session) mod week;
 pub(in crate::session) mod xray;

@@ -3,8 +3,8 @@
 pub(in crate::session) mod agreement;
 pub(in crate::session) mod configuration;
 pub(in crate::session) mod consent;
-pub(in crate::session) mod course;
 pub(in crate::session) mod create;
+pub(in crate::session) mod history;
 pub mod library;
 pub(in crate::session) mod manifest;
 pub(in crate::session) mod mode;

@@ -14,7 +14,7 @@ use crate::session::state::Session;
 use crate::session::trajectory::record::{Call, Outcome, RefusalRecord, Reversal, Via};
 use crate::session::trajectory::{Durability, Record};
 use crate::tools::{Arguments, Kind, Refusal, Task, Tool, ToolId, View, bounds, find};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::enterprise::letters::Letter;
 use crate::world::events::Offering;
 use crate::world::settings::Settings;
@@ -52,8 +52,8 @@ impl Session {
             changes: Vec::new(),
         };
         match effect {
-            Effect::None | Effect::ReadInsights(_) => {}
-            Effect::Set(change) => {
+            Command::None | Command::ReadInsights(_) => {}
+            Command::Set(change) => {
                 let now = &self.world.settings;
                 let mut after = now.clone();
                 after.set(change);
@@ -61,24 +61,24 @@ impl Session {
                 preview.effect_day = Some(self.world.day + 1);
                 preview.changes = changes(now, &after);
             }
-            Effect::Post(_) => preview.effect_day = Some(self.world.day + 1),
-            Effect::StartResearch(tier) => {
+            Command::Post(_) => preview.effect_day = Some(self.world.day + 1),
+            Command::StartResearch(tier) => {
                 preview.cost_now = f64::from(self.params.research(tier).cost);
                 preview.effect_day = Some(self.world.day + self.params.development.rd_min_duration_days);
             }
-            Effect::ResearchMarket => {
+            Command::ResearchMarket => {
                 preview.cost_now = self.params.market_research.discovery_cost_level_1;
                 preview.effect_day = Some(self.world.day);
             }
-            Effect::ResearchGroup(_, target) => {
+            Command::ResearchGroup(_, target) => {
                 let level = self.params.level(target);
                 preview.cost_now = level.cost;
                 preview.effect_day = Some(self.world.day + level.delay_days);
             }
-            Effect::SendDeals(_) => {
+            Command::SendDeals(_) => {
                 preview.effect_day = Some(self.world.day + self.params.enterprise.reply_delay_min_days);
             }
-            Effect::RejectDeals(_) => preview.effect_day = Some(self.world.day),
+            Command::RejectDeals(_) => preview.effect_day = Some(self.world.day),
         }
         Ok(preview)
     }
@@ -93,8 +93,8 @@ impl Session {
             return Err(Refusal::new("not_a_reading", format!("{} does more than read", tool.spec().name())));
         }
         let (arguments, effect) = self.plan(tool, arguments)?;
-        let deed = self.world.resolve(effect, &self.params, &self.streams);
-        Ok(tool.answer(&self.view(), &arguments, &deed))
+        let resolved = self.world.resolve(effect, &self.params, &self.streams);
+        Ok(tool.answer(&self.view(), &arguments, &resolved))
     }
 
     /// Calls a tool; `next_week` and `query` have functions of their own.
@@ -117,16 +117,16 @@ impl Session {
         let tool = self.tool(name)?;
         let allowed = self.refuse_if_over(tool.spec().kind);
         let planned = allowed.and_then(|()| self.plan(tool, arguments)).and_then(|(arguments, effect)| {
-            let deed = self.world.resolve(effect, &self.params, &self.streams);
+            let resolved = self.world.resolve(effect, &self.params, &self.streams);
             let task = tool.task(&self.view(), &arguments);
             if task.as_ref().is_some_and(Task::leaves_something) {
                 self.refuse_if_only_read()?;
             }
             let answer = match &task {
                 Some(Task::Run { code, seconds }) => self.run_statements(code, *seconds)?,
-                _ => tool.answer(&self.view(), &arguments, &deed),
+                _ => tool.answer(&self.view(), &arguments, &resolved),
             };
-            Ok((arguments, deed, task, answer))
+            Ok((arguments, resolved, task, answer))
         });
         let took_ms = started.elapsed().as_secs_f64() * 1e3;
         let called = |args: Value, outcome| {
@@ -146,7 +146,7 @@ impl Session {
                 let _ = self.record_call(&record, Durability::Written);
                 Err(refusal)
             }
-            Ok((given, deed, task, answer)) => {
+            Ok((given, resolved, task, answer)) => {
                 let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
                 let record = called(Value::Object(given.as_map().clone()), Outcome::Accepted(answer.clone()));
                 // Statements can be kept even when the run is over, and then their line comes after its end.
@@ -156,26 +156,32 @@ impl Session {
                 };
                 recorded.map_err(not_saved)?;
                 task.iter().for_each(|task| self.apply_task(task));
-                self.apply(tool, &given, reversal, deed);
+                self.apply(tool, &given, reversal, resolved);
                 Ok(answer)
             }
         }
     }
 
-    fn apply(&mut self, tool: &'static dyn Tool, given: &Arguments, reversal: Option<Reversal>, deed: Deed) {
+    fn apply(
+        &mut self,
+        tool: &'static dyn Tool,
+        given: &Arguments,
+        reversal: Option<Reversal>,
+        resolved: ResolvedCommand,
+    ) {
         let (spec, seq) = (tool.spec(), self.position.seq);
-        if !deed.only_reads() {
+        if !resolved.only_reads() {
             let args = Value::Object(given.as_map().clone());
             let (day, tool) = (self.world.day, spec.id);
             self.journal.push(JournalEntry::Call { seq, day, tool, args, reversal });
         }
-        self.this_week.done.extend(self.in_words(&deed));
-        if matches!(deed, Deed::None | Deed::ReadInsights(_)) {
+        self.this_week.done.extend(self.in_words(&resolved));
+        if matches!(resolved, ResolvedCommand::None | ResolvedCommand::ReadInsights(_)) {
             return;
         }
-        let settings = tool.row(given, &deed);
-        let before = matches!(deed, Deed::Set(_)).then(|| self.world.settings.clone());
-        self.world.apply(deed, &self.params, to_fill(&mut self.facts, self.projector.as_ref()));
+        let settings = tool.row(given, &resolved);
+        let before = matches!(resolved, ResolvedCommand::Set(_)).then(|| self.world.settings.clone());
+        self.world.apply(resolved, &self.params, to_fill(&mut self.facts, self.projector.as_ref()));
         if let Some(restores) = before {
             let changed = restores != self.world.settings;
             self.this_week.keep(Step { seq, tool: spec.id, restores }, changed, reversal);
@@ -184,24 +190,24 @@ impl Session {
         self.after_call(settings);
     }
 
-    /// What cannot be taken back of a deed, in words.
-    fn in_words(&self, deed: &Deed) -> Vec<String> {
-        match deed {
-            Deed::None | Deed::Set(_) | Deed::ReadInsights(_) => Vec::new(),
-            Deed::Post(_) => vec!["post published, read tomorrow".to_owned()],
-            Deed::StartResearch(project, _) => {
+    /// What cannot be taken back of a resolved, in words.
+    fn in_words(&self, resolved: &ResolvedCommand) -> Vec<String> {
+        match resolved {
+            ResolvedCommand::None | ResolvedCommand::Set(_) | ResolvedCommand::ReadInsights(_) => Vec::new(),
+            ResolvedCommand::Post(_) => vec!["post published, read tomorrow".to_owned()],
+            ResolvedCommand::StartResearch(project, _) => {
                 vec![format!("R&D project {} started, done on day {}", project.id(), project.due_day)]
             }
-            Deed::ResearchMarket(attempt) => vec![match attempt.found {
+            ResolvedCommand::ResearchMarket(attempt) => vec![match attempt.found {
                 Some(group) => format!("market research found group {group}"),
                 None => "market research found nothing".to_owned(),
             }],
-            Deed::ResearchGroup(study, _) => {
+            ResolvedCommand::ResearchGroup(study, _) => {
                 let (group, level, day) = (study.group, study.target, study.due_day);
                 vec![format!("study of {group} to level {level} ordered, done on day {day}")]
             }
-            Deed::SendDeals(letters) => letters.iter().map(letter_in_words).collect(),
-            Deed::RejectDeals(threads) => {
+            ResolvedCommand::SendDeals(letters) => letters.iter().map(letter_in_words).collect(),
+            ResolvedCommand::RejectDeals(threads) => {
                 let ended = self.world.enterprise.threads.iter();
                 let ended = ended.filter(|thread| threads.contains(&thread.number));
                 ended.map(|thread| format!("thread with customer {} ended", thread.customer)).collect()
@@ -209,7 +215,7 @@ impl Session {
         }
     }
 
-    /// What follows every applied deed, live or replayed; with the settings family that it leaves.
+    /// What follows every applied resolved, live or replayed; with the settings family that it leaves.
     fn after_call(&mut self, settings: Option<Value>) {
         if let Some(last) = self.cash_by_day.last_mut() {
             *last = self.world.finance.cash;
@@ -253,14 +259,18 @@ impl Session {
         View::new(&self.world, &self.params).within(&self.office).with_posts(&self.feed.posts)
     }
 
-    fn plan(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Effect), Refusal> {
+    fn plan(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Command), Refusal> {
         let (arguments, effect) = self.plan_again(tool, arguments)?;
         bounds::hold(tool.spec(), &arguments)?;
         Ok((arguments, effect))
     }
 
     /// Plans a call that was accepted once, by a version that may have taken larger numbers.
-    fn plan_again(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Effect), Refusal> {
+    fn plan_again(
+        &self,
+        tool: &'static dyn Tool,
+        arguments: &Value,
+    ) -> Result<(Arguments, Command), Refusal> {
         let arguments = Arguments::of(tool.spec(), arguments)?;
         let effect = tool.plan(&self.view(), &arguments)?;
         Ok((arguments, effect))
@@ -356,17 +366,17 @@ impl Session {
     pub(in crate::session) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
         let tool = call.tool.tool();
         let (given, effect) = self.plan_again(tool, &call.args).map_err(|refusal| refusal.to_string())?;
-        let deed = self.world.resolve(effect, &self.params, &self.streams);
+        let resolved = self.world.resolve(effect, &self.params, &self.streams);
         let task = tool.task(&self.view(), &given);
         // What statements said is not asked again: the database may be ahead of this line. And documents may be worded
         // differently by now.
         let runs = matches!(task, Some(Task::Run { .. }));
         let documents = tool.spec().kind == Kind::Engine && task.is_none();
-        if !runs && !documents && *answer != tool.answer(&self.view(), &given, &deed) {
+        if !runs && !documents && *answer != tool.answer(&self.view(), &given, &resolved) {
             return Err("the call answers differently now".to_owned());
         }
         task.iter().for_each(|task| self.apply_task(task));
-        self.apply(tool, &given, call.reversal, deed);
+        self.apply(tool, &given, call.reversal, resolved);
         Ok(())
     }
 

@@ -2,12 +2,12 @@
 
 pub(in crate::session) mod act;
 pub(in crate::session) mod advance;
-pub(in crate::session) mod aftermath;
 pub(in crate::session) mod facts_chain;
 pub(in crate::session) mod feed;
 pub(in crate::session) mod judging;
 pub(in crate::session) mod memo;
 pub(in crate::session) mod office;
+pub(in crate::session) mod projection;
 pub(in crate::session) mod recording;
 pub(in crate::session) mod scripts;
 pub(in crate::session) mod this_week;

@@ -3,7 +3,7 @@
 //! The lines of the trajectory are applied one after the other to a session of its own, whose database is in memory;
 //! nothing on the disk changes. Forward means more lines for the same session, backward a new one from the start.
 
-pub(in crate::session) mod place;
+pub(in crate::session) mod position;
 pub(in crate::session) mod record_view;
 
 use std::ops::ControlFlow;
@@ -15,7 +15,7 @@ use crate::session::error::RunError;
 use crate::session::figures::week::week_of;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
-use crate::session::playback::place::{Chapter, Goal, Place, Went};
+use crate::session::playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
 use crate::session::playback::record_view::RecordView;
 use crate::session::resume::open::check_start;
 use crate::session::state::Session;
@@ -99,7 +99,7 @@ impl Playback {
         &mut self,
         goal: Goal,
         progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
-    ) -> Result<Went, RunError> {
+    ) -> Result<SeekResult, RunError> {
         let line = self.line_of(goal).clamp(1, self.good);
         let before = self.good;
         let went = if line < self.applied { self.back(line, progress) } else { self.forward(line, progress) };
@@ -140,7 +140,7 @@ impl Playback {
         &mut self,
         line: usize,
         progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
-    ) -> Result<Went, RunError> {
+    ) -> Result<SeekResult, RunError> {
         let lines = &self.trajectory.lines[..line.min(self.trajectory.lines.len())];
         let (applied, end) = apply(&mut self.session, &self.origin.path, lines, self.applied, progress);
         self.applied = applied;
@@ -152,16 +152,16 @@ impl Playback {
         &mut self,
         line: usize,
         progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
-    ) -> Result<Went, RunError> {
+    ) -> Result<SeekResult, RunError> {
         let (mut session, from) = self.session_before()?;
         let lines = &self.trajectory.lines[..line];
         let (applied, end) = apply(&mut session, &self.origin.path, lines, from, progress);
         let went = self.end(end)?;
-        if went == Went::Stopped {
+        if went == SeekResult::Stopped {
             return Ok(went);
         }
         (self.session, self.applied) = (session, applied);
-        Ok(Went::Anew)
+        Ok(SeekResult::Anew)
     }
 
     /// A session that stands before the line looked for, and the lines it holds: the beginning. Whatever is stored of
@@ -170,10 +170,10 @@ impl Playback {
         begin(&self.origin).map(|session| (session, 0))
     }
 
-    fn end(&mut self, end: Result<ControlFlow<()>, (usize, RunError)>) -> Result<Went, RunError> {
+    fn end(&mut self, end: Result<ControlFlow<()>, (usize, RunError)>) -> Result<SeekResult, RunError> {
         match end {
-            Ok(ControlFlow::Continue(())) => Ok(Went::There),
-            Ok(ControlFlow::Break(())) => Ok(Went::Stopped),
+            Ok(ControlFlow::Continue(())) => Ok(SeekResult::There),
+            Ok(ControlFlow::Break(())) => Ok(SeekResult::Stopped),
             Err((line, error)) => {
                 self.good = line;
                 Err(error)
@@ -240,9 +240,9 @@ impl Playback {
     }
 
     /// Where it is, and what was decided there.
-    pub fn place(&self) -> Place {
+    pub fn place(&self) -> PlaybackPosition {
         let recorded_day = self.stops.last().map_or(0, |stop| stop.day);
-        Place {
+        PlaybackPosition {
             line: self.applied,
             lines: self.good,
             day: self.session.day(),

@@ -65,7 +65,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     entries.map(|path| (path.clone(), std::fs::read(path).expect("a file"))).collect()
 }
 
-fn go(playback: &mut Playback, goal: Goal) -> Went {
+fn go(playback: &mut Playback, goal: Goal) -> SeekResult {
     playback.go(goal, &mut |_| ControlFlow::Continue(())).expect("it goes there")
 }
 
@@ -91,7 +91,7 @@ fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
         assert_eq!(days.rows[0][0], crate::session::Cell::Integer(i64::from(7 * week)), "the database");
     };
     for week in 1..=5 {
-        assert_eq!(go(&mut playback, Goal::Weeks(1)), Went::There);
+        assert_eq!(go(&mut playback, Goal::Weeks(1)), SeekResult::There);
         check(&mut playback, week);
     }
     assert_eq!(
@@ -101,7 +101,7 @@ fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
     );
     assert!(playback.at_end());
     for week in [4, 3] {
-        assert_eq!(go(&mut playback, Goal::Weeks(-1)), Went::Anew);
+        assert_eq!(go(&mut playback, Goal::Weeks(-1)), SeekResult::Anew);
         check(&mut playback, week);
     }
     for week in [1, 5, 2, 4] {
@@ -186,11 +186,11 @@ fn nothing_can_be_done_and_a_long_way_can_be_stopped() {
         days.push(day);
         if day < 14 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
-    assert_eq!((stopped.expect("no problem"), playback.session().day()), (Went::Stopped, 14));
+    assert_eq!((stopped.expect("no problem"), playback.session().day()), (SeekResult::Stopped, 14));
     assert_eq!(days, [7, 14]);
     go(&mut playback, Goal::Last);
     let back = playback.go(Goal::Week(2), &mut |_| ControlFlow::Break(())).expect("no problem");
-    assert_eq!((back, playback.session().day()), (Went::Stopped, 28), "back is all or nothing");
+    assert_eq!((back, playback.session().day()), (SeekResult::Stopped, 28), "back is all or nothing");
 }
 
 #[test]

@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
+use super::integrity::Integrity;
 use super::open::{Access, open_projector, usable};
-use super::witness::Witnesses;
 use crate::database::{Location, ProjectionError, Projector, is_consistent};
 use crate::session::error::RunError;
 use crate::session::state::Session;
@@ -33,9 +33,9 @@ impl Session {
         let sound = is_consistent(&Location::File(folder.join("world.db")));
         let run = (&self.manifest, &self.params);
         let database = open_projector(&folder, Access::Write, run, &read, sound)?;
-        let witnesses = Witnesses::of(&folder, &self.manifest);
+        let integrity = Integrity::of(&folder, &self.manifest);
         let rows = database.1.as_ref().map_or(0, |position| position.seq);
-        let snapshot = usable(&witnesses, &self.manifest, &read, Some(rows));
+        let snapshot = usable(&integrity, &self.manifest, &read, Some(rows));
         let (manifest, params) = (self.manifest.clone(), Arc::clone(&self.params));
         let (mut other, seen) = Session::before_replay(manifest, &folder, None, params, snapshot);
         other.replay(&path, &read, seen, Some(database), &mut |_| {})?;

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
+use super::integrity::Integrity;
 use super::snapshot::Snapshot;
-use super::witness::Witnesses;
 use crate::database::{Location, Position, Projector};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
@@ -38,22 +38,22 @@ impl Session {
             Access::Read => None,
         };
         let path = folder.join("trajectory.jsonl");
-        let mut witnesses = Witnesses::of(folder, &manifest);
+        let mut integrity = Integrity::of(folder, &manifest);
         let trajectory = Trajectory::read(&path)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;
-        witnesses.check(&path, &trajectory)?;
+        integrity.check(&path, &trajectory)?;
         let database = match projection {
             false => None,
             true => {
-                let sound = access == Access::Write && witnesses.vouch_for_database(folder);
+                let sound = access == Access::Write && integrity.vouch_for_database(folder);
                 Some(open_projector(folder, access, (&manifest, &params), &trajectory, sound)?)
             }
         };
         // The number of the line up to which rows are there; rows that lack need the facts before them.
         let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
-        let snapshot = usable(&witnesses, &manifest, &trajectory, rows);
+        let snapshot = usable(&integrity, &manifest, &trajectory, rows);
         let (mut session, seen) = Session::before_replay(manifest.clone(), folder, lock, params, snapshot);
-        session.remarks.append(&mut witnesses.remarks);
+        session.remarks.append(&mut integrity.remarks);
         session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
         if access == Access::Write {
             session.trajectory = Some(TrajectoryWriter::resume(&path, &trajectory)?);
@@ -255,12 +255,12 @@ pub(in crate::session) fn open_projector(
 
 /// The snapshot from which the run can go on: its line is in the trajectory, and the database lacks no row before it.
 pub(in crate::session) fn usable<'a>(
-    witnesses: &'a Witnesses,
+    integrity: &'a Integrity,
     manifest: &Manifest,
     trajectory: &Trajectory,
     rows_from: Option<u64>,
 ) -> Option<&'a Snapshot> {
-    let snapshot = witnesses.snapshot.as_ref().filter(|snapshot| snapshot.fits(manifest))?;
+    let snapshot = integrity.snapshot.as_ref().filter(|snapshot| snapshot.fits(manifest))?;
     let position = snapshot.position();
     let line = trajectory.lines.get(position.seq as usize)?;
     let complete = rows_from.is_none_or(|seq| seq >= position.seq);

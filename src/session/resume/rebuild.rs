@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::integrity::Integrity;
 use super::open::{Access, check_start, open_projector, usable};
-use super::witness::Witnesses;
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::lock_run;
@@ -21,21 +21,21 @@ pub fn rebuild_database(folder: &Path, progress: &mut dyn FnMut(u32, u32)) -> Re
     let params = Arc::new(manifest.params()?);
     let lock = lock_run(folder, &manifest.id)?;
     let path = folder.join("trajectory.jsonl");
-    let mut witnesses = Witnesses::of(folder, &manifest);
+    let mut integrity = Integrity::of(folder, &manifest);
     let trajectory = Trajectory::read(&path)?;
     check_start(&path, trajectory.lines.first(), &manifest)?;
-    witnesses.check(&path, &trajectory)?;
-    let sound = witnesses.vouch_for_database(folder);
+    integrity.check(&path, &trajectory)?;
+    let sound = integrity.vouch_for_database(folder);
     let database = open_projector(folder, Access::Write, (&manifest, &params), &trajectory, sound)?;
     let rows = database.1.as_ref().map_or(0, |position| position.seq);
-    let snapshot = usable(&witnesses, &manifest, &trajectory, Some(rows));
+    let snapshot = usable(&integrity, &manifest, &trajectory, Some(rows));
     let days = manifest.days;
     let (mut session, seen) = Session::before_replay(manifest.clone(), folder, Some(lock), params, snapshot);
     session.replay(&path, &trajectory, seen, Some(database), &mut |day| progress(day, days))?;
     let Some(projector) = &session.projector else { return Ok(()) };
     projector.wait()?;
     // The file is another one now: what vouched for the old one would call it damaged.
-    if let Some(closed) = witnesses.snapshot.filter(|snapshot| snapshot.database().is_some()) {
+    if let Some(closed) = integrity.snapshot.filter(|snapshot| snapshot.database().is_some()) {
         let folder = folder.to_owned();
         projector.then(true, move |digest| closed.vouch_for(&folder, digest));
         projector.wait()?;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::witness::Witnesses;
+use super::integrity::Integrity;
 use crate::session::error::RunError;
 use crate::session::playback::{Origin, read};
 use crate::session::state::Session;
@@ -31,7 +31,7 @@ pub fn verify(path: &Path) -> Result<Verification, RunError> {
     let (origin, trajectory) = read(path)?;
     let Origin { path, folder, manifest, params } = origin;
     if let Some(folder) = &folder {
-        Witnesses::of(folder, &manifest).check(&path, &trajectory)?;
+        Integrity::of(folder, &manifest).check(&path, &trajectory)?;
     }
     let run = manifest.id.clone();
     let mut session = Session::unwritten(manifest, None, params, None);

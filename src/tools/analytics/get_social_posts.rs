@@ -4,7 +4,7 @@ use super::super::arguments::{Arguments, integer, wrong_type};
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, PublicPost, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
 
 /// Reads the newest posts of others.
@@ -89,13 +89,13 @@ impl Tool for GetSocialPosts {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         number(arguments, "days")?;
         number(arguments, "limit")?;
-        Ok(Effect::None)
+        Ok(Command::None)
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
         let limit = number(arguments, "limit").ok().flatten();
         let limit = limit.unwrap_or_else(|| i64::from(view.params().limits.get_social_posts_default_limit));
         let limit = usize::try_from(limit).unwrap_or(usize::MAX);

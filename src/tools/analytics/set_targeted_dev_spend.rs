@@ -7,7 +7,7 @@ use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
 use crate::world::settings::SettingsChange;
 use crate::world::settings::{Settings, TargetedDevelopment};
@@ -56,14 +56,16 @@ impl Tool for SetTargetedDevSpend {
         )])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let given = arguments.get("targeted_spend").unwrap_or(&Value::Null);
         let targeted_spend = per_group(given, "targeted_spend", BUDGET, view)?;
-        Ok(Effect::Set(SettingsChange::TargetedDevelopment(TargetedDevelopment { targeted_spend })))
+        Ok(Command::Set(SettingsChange::TargetedDevelopment(TargetedDevelopment { targeted_spend })))
     }
 
-    fn row(&self, arguments: &Arguments, deed: &Deed) -> Option<Value> {
-        let Deed::Set(SettingsChange::TargetedDevelopment(development)) = deed else { return None };
+    fn row(&self, arguments: &Arguments, resolved: &ResolvedCommand) -> Option<Value> {
+        let ResolvedCommand::Set(SettingsChange::TargetedDevelopment(development)) = resolved else {
+            return None;
+        };
         let sent = |group: &Group| arguments.get("targeted_spend").and_then(|map| map.get(group.id()));
         let amount =
             |(group, amount): (&Group, &f64)| (group.id().to_owned(), amount_as_sent(*amount, sent(group)));
@@ -71,9 +73,9 @@ impl Tool for SetTargetedDevSpend {
         Some(json!({ "targeted_spend": amounts }))
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        match deed {
-            Deed::Set(SettingsChange::TargetedDevelopment(development)) => json!({
+    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        match resolved {
+            ResolvedCommand::Set(SettingsChange::TargetedDevelopment(development)) => json!({
                 "targeted_spend": as_data(&development.targeted_spend),
                 "total_extra_per_day": json_number(development.total()),
             }),

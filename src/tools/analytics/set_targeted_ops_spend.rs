@@ -7,7 +7,7 @@ use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::settings::Settings;
 use crate::world::settings::SettingsChange;
 
@@ -91,7 +91,7 @@ impl Tool for SetTargetedOpsSpend {
         }
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let mut operations = view.settings().targeted_operations.clone();
         let by_group = match (arguments.get("by_group"), arguments.get("targeted_spend")) {
             (Some(_), Some(_)) => {
@@ -113,11 +113,13 @@ impl Tool for SetTargetedOpsSpend {
         if let Some(value) = arguments.get("by_customer") {
             operations.by_customer = per_customer(value, "by_customer", BUDGET)?;
         }
-        Ok(Effect::Set(SettingsChange::TargetedOperations(operations)))
+        Ok(Command::Set(SettingsChange::TargetedOperations(operations)))
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        let Deed::Set(SettingsChange::TargetedOperations(operations)) = deed else { return Value::Null };
+    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let ResolvedCommand::Set(SettingsChange::TargetedOperations(operations)) = resolved else {
+            return Value::Null;
+        };
         let mut data = as_data(operations);
         if let Value::Object(map) = &mut data {
             map.insert("total_extra_per_day".to_owned(), json_number(operations.total()));

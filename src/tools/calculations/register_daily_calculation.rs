@@ -4,7 +4,7 @@ use super::super::arguments::{Arguments, text};
 use super::super::{
     Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
 };
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Keeps a calculation for the dashboard.
 pub struct RegisterDailyCalculation;
@@ -54,10 +54,10 @@ impl Tool for RegisterDailyCalculation {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         text(arguments, "name")?;
         text(arguments, "code")?;
-        Ok(Effect::None)
+        Ok(Command::None)
     }
 
     fn task(&self, _: &View<'_>, arguments: &Arguments) -> Option<Task> {
@@ -65,7 +65,7 @@ impl Tool for RegisterDailyCalculation {
         Some(Task::Keep { what: Kept::Calculation, name: name.to_owned(), code: code.to_owned() })
     }
 
-    fn answer(&self, _: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, _: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
         let code = text(arguments, "code").unwrap_or_default();
         json!({ "name": arguments.get("name"), "code_length": code.chars().count() })
     }

@@ -5,7 +5,7 @@ use super::super::{
     Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
 };
 use super::{kept, not_found};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Drops a calculation.
 pub struct RemoveDailyCalculation;
@@ -43,10 +43,10 @@ impl Tool for RemoveDailyCalculation {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let name = text(arguments, "name")?;
         match kept(view).get(name) {
-            Some(_) => Ok(Effect::None),
+            Some(_) => Ok(Command::None),
             None => Err(not_found(name, view)),
         }
     }
@@ -56,7 +56,7 @@ impl Tool for RemoveDailyCalculation {
         Some(Task::Forget { what: Kept::Calculation, name })
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
         let name = text(arguments, "name").unwrap_or_default();
         json!({ "name": name, "remaining": kept(view).names_without(name) })
     }

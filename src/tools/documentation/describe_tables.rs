@@ -5,7 +5,7 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, TableDocument, Tool, ToolId, View, When,
 };
 use super::chosen;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Describes tables.
 pub struct DescribeTables;
@@ -44,12 +44,12 @@ impl Tool for DescribeTables {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let known: Vec<&str> = view.surroundings().tables().iter().map(|table| table.name).collect();
-        chosen(arguments, "table_names", &known, "table_not_found").map(|_| Effect::None)
+        chosen(arguments, "table_names", &known, "table_not_found").map(|_| Command::None)
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
         let tables = view.surroundings().tables();
         let known: Vec<&str> = tables.iter().map(|table| table.name).collect();
         let names = chosen(arguments, "table_names", &known, "table_not_found").unwrap_or_default();

@@ -6,7 +6,7 @@ use super::super::{
     Argument, ArgumentKind, CATALOGUE, Kind, Module, Numbers, Output, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::chosen;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Documents tools.
 pub struct GetToolDocumentation;
@@ -45,11 +45,11 @@ impl Tool for GetToolDocumentation {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
-        chosen(arguments, "tool_names", &all_names(), "tool_not_found").map(|_| Effect::None)
+    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
+        chosen(arguments, "tool_names", &all_names(), "tool_not_found").map(|_| Command::None)
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
         let names = chosen(arguments, "tool_names", &all_names(), "tool_not_found").unwrap_or_default();
         let tools = CATALOGUE.iter().filter(|tool| names.contains(&tool.spec().name()));
         let numbers = Numbers::of(view.params());

@@ -2,7 +2,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::arguments::Arguments;
 use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Lists the tables.
 pub struct ListAllTables;
@@ -33,11 +33,11 @@ impl Tool for ListAllTables {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
-        Ok(Effect::None)
+    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
+        Ok(Command::None)
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
         let tables = view.surroundings().tables();
         let lines: Map<String, Value> =
             tables.iter().map(|table| (table.name.to_owned(), table.description.into())).collect();

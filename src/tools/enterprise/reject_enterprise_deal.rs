@@ -4,7 +4,7 @@ use super::super::arguments::Arguments;
 use super::super::{Argument, ArgumentKind, Kind, Module, Refusal, Spec, Tool, ToolId, View, When};
 use super::reading::{Unreadable, customer, elements, malformed};
 use super::{Failure, Fate, RESULTS, results, unless_all_failed};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Ends talks with companies.
 pub struct RejectEnterpriseDeal;
@@ -40,13 +40,13 @@ impl Tool for RejectEnterpriseDeal {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let (fates, threads) = read(view, arguments)?;
         unless_all_failed(&fates)?;
-        Ok(Effect::RejectDeals(threads))
+        Ok(Command::RejectDeals(threads))
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
         read(view, arguments).map_or(Value::Null, |(fates, _)| results(&fates))
     }
 }

@@ -4,8 +4,8 @@ use super::super::arguments::Arguments;
 use super::super::{Argument, ArgumentKind, Kind, Module, Refusal, Spec, Tool, ToolId, View, When};
 use super::reading::{Unreadable, customer, elements, malformed, offerings};
 use super::{Failure, Fate, RESULTS, results, unless_all_failed};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::customers::FIRST_CUSTOMER;
-use crate::world::effect::{Deed, Effect};
 use crate::world::enterprise::letters::Proposal;
 
 /// Offers companies plans at prices.
@@ -63,13 +63,13 @@ impl Tool for SendEnterpriseDeal {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let (fates, proposals) = read(view, arguments)?;
         unless_all_failed(&fates)?;
-        Ok(Effect::SendDeals(proposals))
+        Ok(Command::SendDeals(proposals))
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
         read(view, arguments).map_or(Value::Null, |(fates, _)| results(&fates))
     }
 }

@@ -2,7 +2,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::arguments::Arguments;
 use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Shows the price list.
 pub struct GetCostInfo;
@@ -42,11 +42,11 @@ impl Tool for GetCostInfo {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
-        Ok(Effect::None)
+    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
+        Ok(Command::None)
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
         let models: Map<String, Value> = view
             .params()
             .model_tier

@@ -5,7 +5,7 @@ use super::super::pricing::core_of;
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::settings::Settings;
 use crate::world::settings::SettingsChange;
 
@@ -51,18 +51,18 @@ impl Tool for SetCapacityTier {
         Map::from_iter([("tier".to_owned(), Value::from(settings.core.capacity_tier))])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let given = arguments.get("tier").or_else(|| arguments.get("capacity_tier")).unwrap_or(&Value::Null);
         let mut core = view.settings().core;
         core.capacity_tier = integer(given)
             .filter(|tier| (0..=7).contains(tier))
             .ok_or_else(|| Refusal::at("tier", "capacity_out_of_range", "the capacity tier must be 0 to 7"))?
             as u8;
-        Ok(Effect::Set(SettingsChange::Core(core)))
+        Ok(Command::Set(SettingsChange::Core(core)))
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        let tier = view.params().capacity(core_of(deed, &view.settings().core).capacity_tier);
+    fn answer(&self, view: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let tier = view.params().capacity(core_of(resolved, &view.settings().core).capacity_tier);
         json!({ "tier": tier.tier, "capacity_units": tier.capacity_units, "cost_per_day": tier.cost_per_day })
     }
 }

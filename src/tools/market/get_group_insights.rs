@@ -4,7 +4,7 @@ use super::super::arguments::Arguments;
 use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use super::{known_group, noise_label, segment};
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
 use crate::world::market::insights::Insights;
 
@@ -65,12 +65,12 @@ impl Tool for GetGroupInsights {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
-        known_group(arguments, view).map(Effect::ReadInsights)
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
+        known_group(arguments, view).map(Command::ReadInsights)
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        let Deed::ReadInsights(Some(insights)) = deed else { return Value::Null };
+    fn answer(&self, view: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let ResolvedCommand::ReadInsights(Some(insights)) = resolved else { return Value::Null };
         json!({
             "group_id": insights.group,
             "group_name": view.params().group(insights.group).name,

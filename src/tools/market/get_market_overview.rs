@@ -4,7 +4,7 @@ use super::super::arguments::Arguments;
 use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use super::{noise_label, segment};
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
 
 /// Shows the known groups and the economy.
@@ -45,11 +45,11 @@ impl Tool for GetMarketOverview {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
-        Ok(Effect::None)
+    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
+        Ok(Command::None)
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
         let mut known: Vec<Group> = view.known_groups().collect();
         known.sort_by_key(|group| group.id());
         let entry = |group: Group| {

@@ -6,7 +6,7 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::known_group;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
 use crate::world::market::studies::default_target;
 
@@ -86,7 +86,7 @@ impl Tool for ResearchGroup {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let group = known_group(arguments, view)?;
         let target = target_of(arguments, group, view)?;
         if let Some(study) = view.world().market.running_study(group) {
@@ -95,11 +95,11 @@ impl Tool for ResearchGroup {
             return Err(Refusal::at("group_id", "study_in_progress", message));
         }
         affordable(view.params().level(target).cost, view)?;
-        Ok(Effect::ResearchGroup(group, target))
+        Ok(Command::ResearchGroup(group, target))
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        let Deed::ResearchGroup(study, _) = deed else { return Value::Null };
+    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let ResolvedCommand::ResearchGroup(study, _) = resolved else { return Value::Null };
         json!({
             "group_id": study.group,
             "new_level": study.target,

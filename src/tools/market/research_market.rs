@@ -4,7 +4,7 @@ use super::super::arguments::Arguments;
 use super::super::research::affordable;
 use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Pays for an attempt to find a group.
 pub struct ResearchMarket;
@@ -38,13 +38,13 @@ impl Tool for ResearchMarket {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
         affordable(view.params().market_research.discovery_cost_level_1, view)?;
-        Ok(Effect::ResearchMarket)
+        Ok(Command::ResearchMarket)
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        let Deed::ResearchMarket(attempt) = deed else { return Value::Null };
+    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let ResolvedCommand::ResearchMarket(attempt) = resolved else { return Value::Null };
         match attempt.found {
             Some(group) => json!({ "discovered_group_id": group }),
             None => json!({ "cost": json_number(attempt.cost) }),

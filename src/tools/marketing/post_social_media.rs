@@ -4,7 +4,7 @@ use super::super::arguments::{Arguments, integer, wrong_type};
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use crate::world::effect::{Deed, Draft, Effect};
+use crate::world::command::{Command, Draft, ResolvedCommand};
 
 /// Publishes a post of the company.
 pub struct PostSocialMedia;
@@ -71,7 +71,7 @@ impl Tool for PostSocialMedia {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let content = content(view, arguments)?.to_owned();
         let social = &view.world().market.social;
         if social.own.iter().any(|post| post.day == view.day()) {
@@ -95,11 +95,11 @@ impl Tool for PostSocialMedia {
                 })?)
             }
         };
-        Ok(Effect::Post(Draft { content, reply_to }))
+        Ok(Command::Post(Draft { content, reply_to }))
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        let Deed::Post(made) = deed else { return Value::Null };
+    fn answer(&self, view: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let ResolvedCommand::Post(made) = resolved else { return Value::Null };
         json!({
             "agent_post_id": made.post,
             "day": view.day(),

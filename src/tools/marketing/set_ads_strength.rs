@@ -6,7 +6,7 @@ use super::super::{
 };
 use super::super::{as_data, family_of};
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::settings::Settings;
 use crate::world::settings::SettingsChange;
 
@@ -71,7 +71,7 @@ impl Tool for SetAdsStrength {
         ])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let mut ads = view.settings().ads_strength.clone();
         if let Some(value) = arguments.get("global_strength") {
             ads.global = number(value).filter(|strength| Range::SHARE.holds(*strength)).ok_or_else(|| {
@@ -85,10 +85,10 @@ impl Tool for SetAdsStrength {
         if let Some(value) = arguments.get("by_customer") {
             ads.by_customer = per_customer(value, "by_customer", STRENGTH)?;
         }
-        Ok(Effect::Set(SettingsChange::AdsStrength(ads)))
+        Ok(Command::Set(SettingsChange::AdsStrength(ads)))
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        family_of(deed)
+    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        family_of(resolved)
     }
 }

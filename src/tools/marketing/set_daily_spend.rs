@@ -6,7 +6,7 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use crate::notation::{json_number, plain_numbers};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::settings::SettingsChange;
 use crate::world::settings::{CoreSettings, Settings};
 
@@ -69,7 +69,7 @@ impl Tool for SetDailySpend {
         budgets(&settings.core)
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         if arguments.is_empty() {
             return Err(Refusal::new(
                 "nothing_given",
@@ -101,11 +101,11 @@ impl Tool for SetDailySpend {
             }
             if key == "operations" { core.operations = amount } else { core.development = amount }
         }
-        Ok(Effect::Set(SettingsChange::Core(core)))
+        Ok(Command::Set(SettingsChange::Core(core)))
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, deed: &Deed) -> Value {
-        let core = core_of(deed, &view.settings().core);
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let core = core_of(resolved, &view.settings().core);
         json!({
             "updated": plain_numbers(Value::Object(arguments.as_map().clone())),
             "current": budgets(core),

@@ -7,7 +7,7 @@ use super::super::{
 };
 use super::super::{as_data, family_of};
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::settings::Settings;
 use crate::world::settings::SettingsChange;
 
@@ -78,7 +78,7 @@ impl Tool for SetLeadPromotion {
         ])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let mut promotion = view.settings().lead_promotion.clone();
         promotion.global = global_discount(arguments, promotion.global)?;
         if let Some(value) = arguments.get("by_group") {
@@ -90,10 +90,10 @@ impl Tool for SetLeadPromotion {
         if let Some(value) = arguments.get("by_channel_group") {
             promotion.by_channel_group = per_channel_group(value, "by_channel_group", DISCOUNT, view)?;
         }
-        Ok(Effect::Set(SettingsChange::LeadPromotion(promotion)))
+        Ok(Command::Set(SettingsChange::LeadPromotion(promotion)))
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        family_of(deed)
+    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        family_of(resolved)
     }
 }

@@ -7,7 +7,7 @@ use super::super::{
 };
 use super::BUDGET;
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::{Channel, Group};
 use crate::world::settings::SettingsChange;
 use crate::world::settings::{PerGroup, Settings, TargetedAds};
@@ -94,15 +94,15 @@ impl Tool for SetTargetedAdSpend {
         Map::from_iter([("targeted_spend".to_owned(), as_data(&settings.targeted_ads.targeted_spend))])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let given = arguments.get("targeted_spend").unwrap_or(&Value::Null);
         let matrix = upright(given, view)?;
         let targeted_spend = per_channel_group(&matrix, "targeted_spend", BUDGET, view)?;
-        Ok(Effect::Set(SettingsChange::TargetedAds(TargetedAds { targeted_spend })))
+        Ok(Command::Set(SettingsChange::TargetedAds(TargetedAds { targeted_spend })))
     }
 
-    fn row(&self, arguments: &Arguments, deed: &Deed) -> Option<Value> {
-        let Deed::Set(SettingsChange::TargetedAds(ads)) = deed else { return None };
+    fn row(&self, arguments: &Arguments, resolved: &ResolvedCommand) -> Option<Value> {
+        let ResolvedCommand::Set(SettingsChange::TargetedAds(ads)) = resolved else { return None };
         let given = arguments.get("targeted_spend");
         let sent = |channel: Channel, group: Group| {
             let (channel, group) = (channel.id(), group.id());
@@ -121,9 +121,9 @@ impl Tool for SetTargetedAdSpend {
         Some(json!({ "targeted_spend": matrix }))
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        match deed {
-            Deed::Set(SettingsChange::TargetedAds(ads)) => json!({
+    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        match resolved {
+            ResolvedCommand::Set(SettingsChange::TargetedAds(ads)) => json!({
                 "targeted_spend": as_data(&ads.targeted_spend),
                 "total_per_day": json_number(ads.total()),
             }),

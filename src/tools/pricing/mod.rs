@@ -15,7 +15,7 @@ use serde_json::{Map, Value};
 use super::arguments::{Amount, Arguments};
 use super::refusal::Refusal;
 use super::spec::Range;
-use crate::world::effect::Deed;
+use crate::world::command::ResolvedCommand;
 use crate::world::identifiers::{ByPlan, Plan};
 use crate::world::settings::CoreSettings;
 use crate::world::settings::SettingsChange;
@@ -60,10 +60,10 @@ fn updated_and_current(arguments: &Arguments, current: &ByPlan<Value>) -> Value 
     })
 }
 
-/// The core settings a deed leaves.
-pub(super) fn core_of<'a>(deed: &'a Deed, now: &'a CoreSettings) -> &'a CoreSettings {
-    match deed {
-        Deed::Set(SettingsChange::Core(core)) => core,
+/// The core settings a resolved leaves.
+pub(super) fn core_of<'a>(resolved: &'a ResolvedCommand, now: &'a CoreSettings) -> &'a CoreSettings {
+    match resolved {
+        ResolvedCommand::Set(SettingsChange::Core(core)) => core,
         _ => now,
     }
 }

@@ -5,7 +5,7 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::{by_plan, core_of, some_plans, updated_and_current};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::{ByPlan, Plan};
 use crate::world::settings::Settings;
 use crate::world::settings::SettingsChange;
@@ -53,7 +53,7 @@ impl Tool for SetModelTiers {
         by_plan(|plan| Value::from(settings.core.tiers[plan]))
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         some_plans(arguments)?;
         let mut core = view.settings().core;
         for (key, value) in arguments.as_map() {
@@ -63,11 +63,11 @@ impl Tool for SetModelTiers {
                 Refusal::at(key.clone(), "tier_out_of_range", message)
             })? as u8;
         }
-        Ok(Effect::Set(SettingsChange::Core(core)))
+        Ok(Command::Set(SettingsChange::Core(core)))
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, deed: &Deed) -> Value {
-        let core = core_of(deed, &view.settings().core);
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let core = core_of(resolved, &view.settings().core);
         updated_and_current(arguments, &ByPlan::from_fn(|plan| Value::from(core.tiers[plan])))
     }
 }

@@ -6,7 +6,7 @@ use super::super::{
 };
 use super::{by_plan, core_of, some_plans, updated_and_current};
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::{ByPlan, Plan};
 use crate::world::settings::Settings;
 use crate::world::settings::SettingsChange;
@@ -55,7 +55,7 @@ impl Tool for SetPrices {
         by_plan(|plan| json_number(settings.core.prices[plan]))
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         some_plans(arguments)?;
         let mut core = view.settings().core;
         for (key, value) in arguments.as_map() {
@@ -67,11 +67,11 @@ impl Tool for SetPrices {
             }
             core.prices[plan] = price;
         }
-        Ok(Effect::Set(SettingsChange::Core(core)))
+        Ok(Command::Set(SettingsChange::Core(core)))
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, deed: &Deed) -> Value {
-        let core = core_of(deed, &view.settings().core);
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let core = core_of(resolved, &view.settings().core);
         updated_and_current(arguments, &ByPlan::from_fn(|plan| json_number(core.prices[plan])))
     }
 }

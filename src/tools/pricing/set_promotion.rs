@@ -7,7 +7,7 @@ use super::super::{
 use super::super::{as_data, family_of};
 use super::{DISCOUNT, global_discount};
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::settings::Settings;
 use crate::world::settings::SettingsChange;
 
@@ -75,7 +75,7 @@ impl Tool for SetPromotion {
         ])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let mut promotion = view.settings().promotion.clone();
         promotion.global = global_discount(arguments, promotion.global)?;
         if let Some(value) = arguments.get("by_group") {
@@ -87,10 +87,10 @@ impl Tool for SetPromotion {
         if let Some(value) = arguments.get("by_group_plan") {
             promotion.by_group_plan = per_group_plan(value, "by_group_plan", DISCOUNT, view)?;
         }
-        Ok(Effect::Set(SettingsChange::Promotion(promotion)))
+        Ok(Command::Set(SettingsChange::Promotion(promotion)))
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        family_of(deed)
+    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        family_of(resolved)
     }
 }

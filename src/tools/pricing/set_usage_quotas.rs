@@ -7,7 +7,7 @@ use super::super::{
 };
 use super::{by_plan, core_of};
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Plan;
 use crate::world::quota::Quota;
 use crate::world::settings::Settings;
@@ -53,7 +53,7 @@ impl Tool for SetUsageQuotas {
         by_plan(|plan| json_number(settings.core.quotas[plan].units()))
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let mut core = view.settings().core;
         for plan in Plan::ALL {
             let Some(value) = arguments.get(plan.id()) else {
@@ -70,11 +70,11 @@ impl Tool for SetUsageQuotas {
                 None => return Err(too_large(MOST_UNITS, plan.id(), "units/day")),
             };
         }
-        Ok(Effect::Set(SettingsChange::Core(core)))
+        Ok(Command::Set(SettingsChange::Core(core)))
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        let core = core_of(deed, &view.settings().core);
+    fn answer(&self, view: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let core = core_of(resolved, &view.settings().core);
         json!({ "quotas": by_plan(|plan| json_number(core.quotas[plan].units())) })
     }
 }

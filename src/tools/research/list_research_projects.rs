@@ -3,7 +3,7 @@ use serde_json::{Value, json};
 use super::super::arguments::Arguments;
 use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::market::economy::round_to;
 use crate::world::params::ResearchTier;
 
@@ -37,11 +37,11 @@ impl Tool for ListResearchProjects {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
-        Ok(Effect::None)
+    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
+        Ok(Command::None)
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
         let decimals = view.params().development.rd_report_decimals;
         let entry = |tier: &ResearchTier| {
             let own = || view.world().product.research.iter().filter(|project| project.tier == tier.tier);

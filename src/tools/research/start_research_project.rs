@@ -6,7 +6,7 @@ use super::super::{
 };
 use super::affordable;
 use crate::notation::json_number;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::market::economy::round_to;
 
 /// Buys an R&D project.
@@ -60,7 +60,7 @@ impl Tool for StartResearchProject {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         let tier = tier_of(arguments)?;
         let running = |p: &&crate::world::events::Project| p.tier == tier && p.completed_day.is_none();
         if let Some(project) = view.world().product.research.iter().find(running) {
@@ -68,11 +68,11 @@ impl Tool for StartResearchProject {
             return Err(Refusal::at("tier", "rd_in_progress", message));
         }
         affordable(f64::from(view.params().research(tier).cost), view)?;
-        Ok(Effect::StartResearch(tier))
+        Ok(Command::StartResearch(tier))
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, deed: &Deed) -> Value {
-        let Deed::StartResearch(project, cost) = deed else { return Value::Null };
+    fn answer(&self, view: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
+        let ResolvedCommand::StartResearch(project, cost) = resolved else { return Value::Null };
         let decimals = view.params().development.rd_report_decimals;
         json!({
             "project_id": project.id(),

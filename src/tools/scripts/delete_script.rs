@@ -5,7 +5,7 @@ use super::super::{
     Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
 };
 use super::{find, stored};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Deletes a script.
 pub struct DeleteScript;
@@ -43,8 +43,8 @@ impl Tool for DeleteScript {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
-        find(arguments, view).map(|_| Effect::None)
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
+        find(arguments, view).map(|_| Command::None)
     }
 
     fn task(&self, view: &View<'_>, arguments: &Arguments) -> Option<Task> {
@@ -52,7 +52,7 @@ impl Tool for DeleteScript {
         Some(Task::Forget { what: Kept::Script, name: name.to_owned() })
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
         let Ok((name, _)) = find(arguments, view) else { return Value::Null };
         json!({ "name": name, "remaining": stored(view).names_without(name) })
     }

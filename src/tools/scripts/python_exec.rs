@@ -5,7 +5,7 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Task, Tool, ToolId, View, When,
 };
 use super::LONGEST_SECONDS;
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Runs statements at once.
 pub struct PythonExec;
@@ -61,10 +61,10 @@ impl Tool for PythonExec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         text(arguments, "code")?;
         seconds(arguments)?;
-        Ok(Effect::None)
+        Ok(Command::None)
     }
 
     fn task(&self, _: &View<'_>, arguments: &Arguments) -> Option<Task> {
@@ -72,7 +72,7 @@ impl Tool for PythonExec {
         Some(Task::Run { code, seconds: seconds(arguments).ok()? })
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, _: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
         Value::Null
     }
 }

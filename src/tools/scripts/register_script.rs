@@ -4,7 +4,7 @@ use super::super::arguments::{Arguments, text};
 use super::super::{
     Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
 };
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Stores a script.
 pub struct RegisterScript;
@@ -52,12 +52,12 @@ impl Tool for RegisterScript {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         if text(arguments, "name")?.trim().is_empty() {
             return Err(Refusal::at("name", "script_name_blank", "the script needs a name"));
         }
         text(arguments, "code")?;
-        Ok(Effect::None)
+        Ok(Command::None)
     }
 
     fn task(&self, _: &View<'_>, arguments: &Arguments) -> Option<Task> {
@@ -65,7 +65,7 @@ impl Tool for RegisterScript {
         Some(Task::Keep { what: Kept::Script, name: name.to_owned(), code: code.to_owned() })
     }
 
-    fn answer(&self, _: &View<'_>, arguments: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, _: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
         let name = text(arguments, "name").unwrap_or_default().trim();
         let code = text(arguments, "code").unwrap_or_default();
         json!({ "name": name, "code_length": code.chars().count() })

@@ -5,7 +5,7 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
 };
 use super::{LONGEST_SECONDS, find};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Runs a stored script.
 pub struct RunScript;
@@ -44,8 +44,8 @@ impl Tool for RunScript {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
-        find(arguments, view).map(|_| Effect::None)
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
+        find(arguments, view).map(|_| Command::None)
     }
 
     fn task(&self, view: &View<'_>, arguments: &Arguments) -> Option<Task> {
@@ -53,7 +53,7 @@ impl Tool for RunScript {
         Some(Task::Run { code: code.to_owned(), seconds: LONGEST_SECONDS })
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, _: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
         Value::Null
     }
 }

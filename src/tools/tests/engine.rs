@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::super::{
     Arguments, ColumnDocument, Kept, Notebook, Refusal, Surroundings, TableDocument, Task, View, find,
 };
-use crate::world::effect::Deed;
+use crate::world::command::ResolvedCommand;
 use crate::world::events::Facts;
 use crate::world::events::Reading;
 use crate::world::params::Params;
@@ -54,7 +54,7 @@ impl Desk {
         let view = View::new(&world, &params).within(self);
         let arguments = Arguments::of(tool.spec(), given)?;
         tool.plan(&view, &arguments)?;
-        let answer = tool.answer(&view, &arguments, &Deed::None);
+        let answer = tool.answer(&view, &arguments, &ResolvedCommand::None);
         let task = tool.task(&view, &arguments);
         task.iter().for_each(|task| self.notebook.apply(task));
         Ok((answer, task))

@@ -2,7 +2,7 @@ use serde_json::{Value, json};
 
 use super::super::arguments::Arguments;
 use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Tells the day.
 pub struct GetVars;
@@ -30,11 +30,11 @@ impl Tool for GetVars {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
-        Ok(Effect::None)
+    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
+        Ok(Command::None)
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
         json!({ "current_day": view.day() })
     }
 }

@@ -4,7 +4,7 @@ use serde_json::Value;
 use super::super::arguments::{Arguments, number};
 use super::super::bounds::{MOST_FORECAST, refuse_beyond};
 use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Lets a week pass. The session does it; this entry documents it and checks what must be filed first.
 pub struct NextWeek;
@@ -65,13 +65,13 @@ impl Tool for NextWeek {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Effect, Refusal> {
+    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
         rationale(arguments.get("rationale").unwrap_or(&Value::Null))?;
         forecasts(arguments.get("predictions").unwrap_or(&Value::Null), &[7, 28, 84, 182])?;
-        Ok(Effect::None)
+        Ok(Command::None)
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, _: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
         Value::Null
     }
 }

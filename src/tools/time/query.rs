@@ -2,7 +2,7 @@ use serde_json::Value;
 
 use super::super::arguments::Arguments;
 use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::effect::{Deed, Effect};
+use crate::world::command::{Command, ResolvedCommand};
 
 /// Asks the database. The session answers it; this entry documents it.
 pub struct Query;
@@ -47,11 +47,11 @@ impl Tool for Query {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Effect, Refusal> {
-        Ok(Effect::None)
+    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
+        Ok(Command::None)
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, _: &Deed) -> Value {
+    fn answer(&self, _: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
         Value::Null
     }
 }

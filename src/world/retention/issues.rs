@@ -5,7 +5,7 @@
 //! moves and settled after it: block by block in the rounds of [`crate::world::day`]; in between the money of the day
 //! is shared out.
 
-use super::pools::Resolution;
+use super::support_budget::Resolution;
 use crate::world::canonical::canonical;
 use crate::world::customers::Customers;
 use crate::world::customers::columns::{BLOCK, Block, place_in_block};
@@ -74,8 +74,8 @@ impl Default for IssueDesk {
     }
 }
 
-/// Calls of one block, read at the start of the day: positions of rows.
-pub struct Calls {
+/// IssueBatch of one block, read at the start of the day: positions of rows.
+pub struct IssueBatch {
     pub(super) group: Group,
     pub(super) block: u32,
     /// Rows with an open issue.
@@ -90,7 +90,7 @@ pub struct Calls {
 
 /// What issues depend on, the same for everybody.
 #[derive(Clone, Copy)]
-pub struct Hotline<'a> {
+pub struct IssueContext<'a> {
     /// Day.
     pub day: u32,
     /// Whether the service failed today.
@@ -107,8 +107,8 @@ const ROWS: usize = u64::BITS as usize;
 /// Reads who of a block has an issue and who opens one today.
 ///
 /// Hardly anybody's answer can be foreseen, so nothing branches on it: answers are bits first and lists afterwards.
-pub fn read_calls(group: Group, number: u32, block: &Block, hotline: &Hotline<'_>) -> Calls {
-    let &Hotline { day, outage, params, streams } = hotline;
+pub fn read_calls(group: Group, number: u32, block: &Block, hotline: &IssueContext<'_>) -> IssueBatch {
+    let &IssueContext { day, outage, params, streams } = hotline;
     let keys = [u64::from(day), group.index() as u64, u64::from(number)];
     let mut words = [0u32; BLOCK as usize];
     streams.open(Part::IssueOpening, keys).fill(&mut words);
@@ -137,7 +137,7 @@ pub fn read_calls(group: Group, number: u32, block: &Block, hotline: &Hotline<'_
     }
     let (open, new) = (positions(&waiting), positions(&calling));
     let solved = vec![false; open.len()];
-    Calls { group, block: number, open, new, solved, first_issue: 0 }
+    IssueBatch { group, block: number, open, new, solved, first_issue: 0 }
 }
 
 /// Positions of the bits that are set, ascending.
@@ -155,13 +155,13 @@ fn positions(bits: &[u64]) -> Vec<u16> {
 
 /// Shares out the money of the day among the open issues and numbers the new ones, in the order of their blocks.
 pub fn allot(
-    calls: &mut [Calls],
+    calls: &mut [IssueBatch],
     settings: &Settings,
     customers: &Customers,
     desk: &mut IssueDesk,
-    hotline: &Hotline<'_>,
+    hotline: &IssueContext<'_>,
 ) {
-    let &Hotline { day, params, streams, .. } = hotline;
+    let &IssueContext { day, params, streams, .. } = hotline;
     Resolution { day, calls, customers, params, streams }.run(settings);
     for own in calls {
         own.first_issue = desk.next_issue;
@@ -181,8 +181,8 @@ pub struct Settled {
 }
 
 /// Solves, ages and opens issues of a block; nobody may have left since the calls were read.
-pub fn settle(block: &mut Block, own: &Calls, hotline: &Hotline<'_>) -> Settled {
-    let &Hotline { outage, params, .. } = hotline;
+pub fn settle(block: &mut Block, own: &IssueBatch, hotline: &IssueContext<'_>) -> Settled {
+    let &IssueContext { outage, params, .. } = hotline;
     Settled {
         any_open: !own.open.is_empty(),
         resolved: settle_open(block, own, outage, params),
@@ -200,7 +200,7 @@ pub fn record(by_block: Vec<Settled>, facts: &mut Facts) {
 }
 
 /// Solves or ages the open issues of a block; returns the numbers of the solved ones.
-fn settle_open(block: &mut Block, own: &Calls, outage: bool, params: &Params) -> Vec<u32> {
+fn settle_open(block: &mut Block, own: &IssueBatch, outage: bool, params: &Params) -> Vec<u32> {
     let mut resolved = Vec::with_capacity(own.solved.iter().filter(|solved| **solved).count());
     for (&at, &solved) in own.open.iter().zip(&own.solved) {
         let at = usize::from(at);
@@ -218,7 +218,7 @@ fn settle_open(block: &mut Block, own: &Calls, outage: bool, params: &Params) ->
 }
 
 /// Opens the new issues of a block.
-fn open_new(block: &mut Block, own: &Calls, params: &Params) -> Vec<IssueOpened> {
+fn open_new(block: &mut Block, own: &IssueBatch, params: &Params) -> Vec<IssueOpened> {
     let open = |(issue, &at): (u32, &u16)| {
         let at = usize::from(at);
         block.open_issue_days[at] = params.issues.new_issue_open_days;
@@ -311,7 +311,7 @@ mod tests {
         let mut settings = Settings::opening(&params);
         settings.core.operations = operations;
         let (mut facts, mut desk) = (Facts::default(), IssueDesk { next_issue: 10_000 });
-        let hotline = Hotline { day: 3, outage: false, params: &params, streams: &streams };
+        let hotline = IssueContext { day: 3, outage: false, params: &params, streams: &streams };
         let mut calls = customers.sweep(|group, number, block| read_calls(group, number, block, &hotline));
         allot(&mut calls, &settings, customers, &mut desk, &hotline);
         let settled = customers.sweep_with(calls, |_, _, block, own| settle(block, &own, &hotline));

@@ -2,9 +2,9 @@
 
 pub mod billing;
 pub mod issues;
-mod pools;
 pub mod renewal;
 pub mod satisfaction;
+mod support_budget;
 
 use super::customers::columns::Block;
 use super::customers::curve::{Curve, required_quality};

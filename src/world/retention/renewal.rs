@@ -82,7 +82,7 @@ pub struct Renewals {
 }
 
 /// What the decisions of a day share.
-pub struct Judgement<'a> {
+pub struct RenewalContext<'a> {
     /// Values frozen this morning.
     pub morning: &'a Morning,
     /// Settings of today.
@@ -141,8 +141,8 @@ pub fn conclude(
 }
 
 /// What each of them does to the reputation of their group.
-fn damages(gave_up: &[GaveUp], judgement: &Judgement<'_>) -> Vec<f64> {
-    let &Judgement { morning, params, streams, .. } = judgement;
+fn damages(gave_up: &[GaveUp], judgement: &RenewalContext<'_>) -> Vec<f64> {
+    let &RenewalContext { morning, params, streams, .. } = judgement;
     let keys_of = |person: &GaveUp| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
     let keys: Vec<[u64; 4]> = gave_up.iter().map(keys_of).collect();
     let rolls = streams.first_words(Part::ReputationEvent, &keys);
@@ -154,7 +154,7 @@ fn damages(gave_up: &[GaveUp], judgement: &Judgement<'_>) -> Vec<f64> {
 }
 
 /// Lets the individuals of a block whose billing day it is decide; takes out those who leave.
-pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &Judgement<'_>) -> Decisions {
+pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalContext<'_>) -> Decisions {
     let mut outcome = Decisions::default();
     if group.is_enterprise() {
         return outcome;
@@ -222,8 +222,8 @@ fn person(group: Group, block: &Block, at: usize, day: u32) -> GaveUp {
     }
 }
 
-fn chosen_plan(group: Group, block: &Block, at: usize, judgement: &Judgement<'_>) -> Option<Plan> {
-    let &Judgement { morning, settings, params, .. } = judgement;
+fn chosen_plan(group: Group, block: &Block, at: usize, judgement: &RenewalContext<'_>) -> Option<Plan> {
+    let &RenewalContext { morning, settings, params, .. } = judgement;
     let prices = ByPlan::from_fn(|plan| {
         let discount = ongoing_discount(block.customer[at], group, plan, settings, params);
         (morning.core.prices[plan] - discount).max(params.billing.effective_price_min)
@@ -235,8 +235,8 @@ fn chosen_plan(group: Group, block: &Block, at: usize, judgement: &Judgement<'_>
 }
 
 /// Perceived quality of each plan at a billing decision (`docs/mechanics/product/quality.md#who-feels-what`).
-fn renewal_quality(group: Group, block: &Block, at: usize, judgement: &Judgement<'_>) -> ByPlan<f64> {
-    let &Judgement { morning, params, .. } = judgement;
+fn renewal_quality(group: Group, block: &Block, at: usize, judgement: &RenewalContext<'_>) -> ByPlan<f64> {
+    let &RenewalContext { morning, params, .. } = judgement;
     let quality = &params.quality;
     let rate = block.usage_rate[at];
     let demand = quota_demand(rate * morning.weekday, rate, params);
@@ -281,9 +281,9 @@ fn switch(
     block: &mut Block,
     at: usize,
     plan: Plan,
-    judgement: &Judgement<'_>,
+    judgement: &RenewalContext<'_>,
 ) -> (bool, TermsChanged) {
-    let &Judgement { morning, settings, params, .. } = judgement;
+    let &RenewalContext { morning, settings, params, .. } = judgement;
     let listed_price = morning.core.prices[plan];
     let upgrade = listed_price > block.listed_price[at];
     let promotion = ongoing_discount(block.customer[at], group, plan, settings, params);
@@ -330,12 +330,12 @@ mod tests {
         day: &Morning,
         settings: &Settings,
         willingness: f64,
-        check: impl FnOnce(&Judgement<'_>) -> R,
+        check: impl FnOnce(&RenewalContext<'_>) -> R,
     ) -> R {
         let (params, streams) = (Params::shipped(), Streams::new(1));
         let ads = AdLoad::of(&settings.ads_strength, &params);
         let tenure = TenureTable::up_to(600, &params.quality);
-        check(&Judgement {
+        check(&RenewalContext {
             morning: day,
             settings,
             service_penalty: 0.0,

@@ -2,11 +2,11 @@
 
 mod bars;
 mod curve;
-mod falls;
 mod forecasts;
 mod model;
 #[cfg(test)]
 mod tests;
+mod waterfall;
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -362,7 +362,7 @@ impl Cash {
         let most = if focused { usize::MAX } else { inside.height.saturating_sub(1) as usize };
         let steps = waterfall(&self.books, company, week, most);
         let selected = focused.then(|| self.step.min(steps.len().saturating_sub(1)));
-        falls::draw(canvas, inside, &steps, selected, FALLS);
+        waterfall::draw(canvas, inside, &steps, selected, FALLS);
         self.week_keys(canvas, area, look, focused);
     }
 

@@ -4,7 +4,7 @@ use super::model::Thread;
 use crate::notation::grouped;
 use crate::world::identifiers::Plan;
 
-/// Terms of an offer, at most as many as a company accepts in one message.
+/// ToolLimits of an offer, at most as many as a company accepts in one message.
 pub const TERMS: usize = 3;
 
 /// The plan of a term.

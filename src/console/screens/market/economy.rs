@@ -11,13 +11,13 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Line, Side, Unit, chart};
 use crate::notation::grouped;
-use crate::session::Terms;
+use crate::session::ToolLimits;
 
 /// Marks of how many news of rivals a column holds, beside the fullest one.
 const MARKS: [&str; 4] = ["▁", "▃", "▅", "█"];
 
 /// Day on which the next measurement is published.
-pub fn next_day(economy: &[Published], terms: &Terms) -> u32 {
+pub fn next_day(economy: &[Published], terms: &ToolLimits) -> u32 {
     let measured = economy.last().map_or(1, |last| last.day + terms.economy_every_days);
     measured + terms.economy_lag_days
 }

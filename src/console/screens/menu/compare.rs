@@ -8,7 +8,7 @@ use crate::console::canvas::{Align, Canvas, rows_of};
 use crate::console::theme::Role;
 use crate::console::widgets::spark::spark;
 use crate::notation::{compact, dollars};
-use crate::session::{Mode, RunCourse, RunSummary};
+use crate::session::{Mode, RunHistory, RunSummary};
 
 /// Columns of the figures: title, width, side. A narrow window has the first of them: the curve in a row tells runs
 /// apart where colours do not.
@@ -33,7 +33,7 @@ impl Menu {
         let for_figures = (runs.len() as u16 + 3).min(area.height);
         let above = Rect { height: area.height - for_figures, ..area };
         let below = Rect { y: above.bottom(), height: for_figures, ..area };
-        let courses: Vec<(usize, &RunCourse)> = runs
+        let courses: Vec<(usize, &RunHistory)> = runs
             .iter()
             .enumerate()
             .filter_map(|(at, run)| known(&self.courses, &run.id).map(|course| (at, course)))
@@ -71,9 +71,9 @@ impl Menu {
     }
 }
 
-fn cells(at: usize, run: &RunSummary, course: Option<&RunCourse>) -> [String; 8] {
+fn cells(at: usize, run: &RunSummary, course: Option<&RunHistory>) -> [String; 8] {
     let figure =
-        |read: fn(&RunCourse) -> f64| course.map_or("…".to_owned(), |course| compact(read(course)));
+        |read: fn(&RunHistory) -> f64| course.map_or("…".to_owned(), |course| compact(read(course)));
     [
         format!("{}━", at + 1),
         run.id.clone(),

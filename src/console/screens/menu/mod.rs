@@ -19,7 +19,7 @@ use crate::console::effect::Effect;
 use crate::console::message::Instead;
 use crate::console::theme::Role;
 use crate::console::widgets::Table;
-use crate::session::{Configuration, RunCourse, RunSummary};
+use crate::session::{Configuration, RunHistory, RunSummary};
 use form::{Form, ROWS};
 use home::Choice;
 use runs::Asked;
@@ -28,7 +28,7 @@ use runs::Asked;
 const PAGE: u16 = 10;
 
 /// How runs went, by their names; none while it is being read.
-type Courses = BTreeMap<String, Option<Result<RunCourse, String>>>;
+type Courses = BTreeMap<String, Option<Result<RunHistory, String>>>;
 
 /// The start menu.
 pub struct Menu {
@@ -105,7 +105,7 @@ impl Menu {
     }
 
     /// Takes how a run went.
-    pub fn learn(&mut self, id: String, course: Result<RunCourse, String>) {
+    pub fn learn(&mut self, id: String, course: Result<RunHistory, String>) {
         self.courses.insert(id, Some(course));
     }
 

@@ -14,7 +14,7 @@ use crate::console::widgets::chart::zero_if_near;
 use crate::console::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
 use crate::console::worker::Recorded;
 use crate::notation::{dollars, grouped};
-use crate::session::{Ended, Goal, Mode, NewRun, RunCourse, RunSummary};
+use crate::session::{Ended, Goal, Mode, NewRun, RunHistory, RunSummary};
 
 /// Something that cannot be taken back and is asked about first.
 #[derive(Debug, Clone, PartialEq)]
@@ -290,7 +290,7 @@ fn minute(at: &str) -> String {
 /// Figures of a run.
 pub(super) fn facts(
     run: &RunSummary,
-    course: Option<&Result<RunCourse, String>>,
+    course: Option<&Result<RunHistory, String>>,
 ) -> Vec<(&'static str, String)> {
     if let Some(problem) = &run.problem {
         return vec![("problem", problem.clone())];
@@ -322,7 +322,7 @@ pub(super) fn facts(
 pub(super) fn draw_course(
     canvas: &mut Canvas<'_>,
     area: Rect,
-    course: Option<&Result<RunCourse, String>>,
+    course: Option<&Result<RunHistory, String>>,
     unreadable: bool,
 ) {
     match course {
@@ -335,9 +335,9 @@ pub(super) fn draw_course(
 }
 
 /// Curves of cash over days, each in the colour of its number.
-pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, courses: &[(usize, &RunCourse)]) {
+pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, courses: &[(usize, &RunHistory)]) {
     let points =
-        |course: &RunCourse| course.cash.iter().map(|(day, cash)| (f64::from(*day), *cash)).collect();
+        |course: &RunHistory| course.cash.iter().map(|(day, cash)| (f64::from(*day), *cash)).collect();
     let lines: Vec<Line> =
         courses.iter().map(|(number, course)| Line::through(points(course), Role::Series(*number))).collect();
     let values = courses.iter().flat_map(|(_, course)| course.cash.iter().map(|point| point.1));
@@ -347,7 +347,7 @@ pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, courses: &[(usize
 }
 
 /// A course that is known.
-pub(super) fn known<'a>(courses: &'a Courses, id: &str) -> Option<&'a RunCourse> {
+pub(super) fn known<'a>(courses: &'a Courses, id: &str) -> Option<&'a RunHistory> {
     courses.get(id)?.as_ref()?.as_ref().ok()
 }
 

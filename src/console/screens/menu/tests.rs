@@ -33,9 +33,9 @@ fn menu(runs: Vec<RunSummary>) -> Menu {
     menu
 }
 
-fn course() -> RunCourse {
+fn course() -> RunHistory {
     let cash = (0..=12).map(|week| (week * 7, 1e6 + f64::from(week * week) * 2e4)).collect();
-    RunCourse { cash, subscribers: 41_950, seats: 1_240, recurring_revenue: 812_345.0 }
+    RunHistory { cash, subscribers: 41_950, seats: 1_240, recurring_revenue: 812_345.0 }
 }
 
 fn three() -> Menu {

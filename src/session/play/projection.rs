@@ -17,7 +17,7 @@ use crate::world::params::Params;
 use crate::world::random::Streams;
 
 /// The parts of a session that a day leaves its traces in.
-struct Aftermath<'a> {
+struct Projection<'a> {
     feed: &'a mut Feed,
     facts_chain: &'a mut FactsChain,
     projector: Option<&'a Projector>,
@@ -25,7 +25,7 @@ struct Aftermath<'a> {
     streams: &'a Streams,
 }
 
-impl Aftermath<'_> {
+impl Projection<'_> {
     /// Facts are not copied for the database: the writer reads what the session still shows, and the session fills new
     /// ones while the writer needs these.
     /// Nothing follows where there are no notices: nothing is left to be followed.
@@ -47,10 +47,10 @@ impl Session {
         let Session { world, params, streams, facts, facts_before, feed, facts_chain, projector, .. } = self;
         let projector = projector.as_ref();
         let today = to_fill(facts, projector);
-        let aftermath = Aftermath { feed, facts_chain, projector, params, streams };
+        let projection = Projection { feed, facts_chain, projector, params, streams };
         let ((figures, trace), ()) = rayon::join(
             || step_day(world, params, streams, today),
-            || aftermath.follow(facts_before, day_before, None),
+            || projection.follow(facts_before, day_before, None),
         );
         self.trace = trace;
         figures
@@ -60,7 +60,7 @@ impl Session {
     pub(in crate::session) fn follow_up(&mut self, settings: Option<Value>) {
         let notices = self.notice_texts();
         let Session { params, streams, facts, feed, facts_chain, projector, .. } = self;
-        Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams }.follow(
+        Projection { feed, facts_chain, projector: projector.as_ref(), params, streams }.follow(
             facts,
             Some(notices),
             settings,
@@ -70,8 +70,8 @@ impl Session {
     /// What follows from the last day of some, if there was any, with its notices; meanwhile the state is hashed.
     pub(in crate::session) fn end_days(&mut self, last_day: Option<Vec<String>>) -> StateHash {
         let Session { world, params, streams, facts, feed, facts_chain, projector, .. } = self;
-        let aftermath = Aftermath { feed, facts_chain, projector: projector.as_ref(), params, streams };
-        let (parts, ()) = rayon::join(|| world.part_hashes(), || aftermath.follow(facts, last_day, None));
+        let projection = Projection { feed, facts_chain, projector: projector.as_ref(), params, streams };
+        let (parts, ()) = rayon::join(|| world.part_hashes(), || projection.follow(facts, last_day, None));
         state_hash(parts, self.facts_chain.hash())
     }
 }

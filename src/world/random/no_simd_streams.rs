@@ -1,4 +1,4 @@
-//! For processors without the registers of `lanes.rs`: streams are opened one by one.
+//! For processors without the registers of `simd_streams.rs`: streams are opened one by one.
 
 /// Streams that would be opened together.
 pub const LANES: usize = 8;

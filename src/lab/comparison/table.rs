@@ -1,6 +1,6 @@
 //! Runs side by side as text for people and as rows for programs.
 
-use super::{Beside, Range, Row};
+use super::{Comparison, Range, Row};
 use crate::notation::{dollars, grouped, percent};
 use crate::report::ranking::published;
 
@@ -8,7 +8,7 @@ use crate::report::ranking::published;
 const CASH_ROWS: usize = 20;
 
 /// The comparison as text: aligned columns.
-pub fn as_text(beside: &Beside) -> String {
+pub fn as_text(beside: &Comparison) -> String {
     let mut head = vec![String::new()];
     head.extend(beside.runs.iter().cloned());
     head.push("published".to_owned());
@@ -82,7 +82,7 @@ fn aligned(rows: &[Vec<String>]) -> String {
     text
 }
 
-fn decisions(beside: &Beside) -> String {
+fn decisions(beside: &Comparison) -> String {
     let mut text = "\nDecisions\n".to_owned();
     for decided in &beside.decisions {
         text += &format!("  day {}\n", decided.day);
@@ -110,7 +110,7 @@ fn agents() -> String {
 }
 
 /// The comparison as rows of a table, the first of them names: a figure and a day a row.
-pub fn as_rows(beside: &Beside) -> Vec<Vec<String>> {
+pub fn as_rows(beside: &Comparison) -> Vec<Vec<String>> {
     let mut head = ["figure", "of", "unit"].map(str::to_owned).to_vec();
     head.extend(beside.runs.iter().cloned());
     head.extend(["published_least", "published_most", "published_what"].map(str::to_owned));

@@ -74,7 +74,7 @@ pub struct Range {
 
 /// Runs side by side.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Beside {
+pub struct Comparison {
     /// Names of the runs.
     pub runs: Vec<String>,
     /// Who played them.
@@ -99,10 +99,10 @@ pub struct Decided {
 }
 
 /// Puts runs side by side.
-pub fn beside(runs: &[Compared]) -> Beside {
+pub fn beside(runs: &[Compared]) -> Comparison {
     let mut figures: Vec<Row> = FIGURES.iter().map(|figure| figure.row(runs)).collect();
     figures.extend(figures::by_group(runs));
-    Beside {
+    Comparison {
         runs: runs.iter().map(|run| run.logbook.run.clone()).collect(),
         participants: runs.iter().map(|run| run.logbook.participant.clone()).collect(),
         figures,

@@ -1,7 +1,7 @@
 //! Which open issues are solved today: pools of money share them out, one after the other
 //! (`docs/mechanics/retention/issues.md#pools`).
 
-use super::issues::{Calls, mean_resolved};
+use super::issues::{IssueBatch, mean_resolved};
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::identifiers::{ByGroup, Group, Plan};
@@ -11,7 +11,7 @@ use crate::world::settings::Settings;
 
 /// A pool of open issues that shares one amount of money.
 #[derive(Debug, Clone, Copy)]
-enum Pool {
+enum SupportBudget {
     Everybody,
     Group(Group),
     Plan(Plan),
@@ -19,37 +19,37 @@ enum Pool {
     Customer(u32),
 }
 
-impl Pool {
+impl SupportBudget {
     /// Keys of the pool's stream: kind and which one.
     fn keys(self) -> [u64; 2] {
         match self {
-            Pool::Everybody => [0, 0],
-            Pool::Group(group) => [1, group.index() as u64],
-            Pool::Plan(plan) => [2, plan.index() as u64],
-            Pool::GroupPlan(group, plan) => [3, (group.index() * 3 + plan.index()) as u64],
-            Pool::Customer(customer) => [4, u64::from(customer)],
+            SupportBudget::Everybody => [0, 0],
+            SupportBudget::Group(group) => [1, group.index() as u64],
+            SupportBudget::Plan(plan) => [2, plan.index() as u64],
+            SupportBudget::GroupPlan(group, plan) => [3, (group.index() * 3 + plan.index()) as u64],
+            SupportBudget::Customer(customer) => [4, u64::from(customer)],
         }
     }
 
     fn holds(self, group: Group, block: &Block, at: usize) -> bool {
         match self {
-            Pool::Everybody => true,
-            Pool::Group(own) => group == own,
-            Pool::Plan(plan) => block.plan[at] == plan,
-            Pool::GroupPlan(own, plan) => group == own && block.plan[at] == plan,
-            Pool::Customer(customer) => block.customer[at] == customer,
+            SupportBudget::Everybody => true,
+            SupportBudget::Group(own) => group == own,
+            SupportBudget::Plan(plan) => block.plan[at] == plan,
+            SupportBudget::GroupPlan(own, plan) => group == own && block.plan[at] == plan,
+            SupportBudget::Customer(customer) => block.customer[at] == customer,
         }
     }
 
     /// Whether it holds everybody of a group.
     fn holds_all_of(self, group: Group) -> bool {
-        matches!(self, Pool::Everybody) || matches!(self, Pool::Group(own) if own == group)
+        matches!(self, SupportBudget::Everybody) || matches!(self, SupportBudget::Group(own) if own == group)
     }
 
     /// The only group a pool can hold, where it names one.
     fn only_group(self) -> Option<Group> {
         match self {
-            Pool::Group(group) | Pool::GroupPlan(group, _) => Some(group),
+            SupportBudget::Group(group) | SupportBudget::GroupPlan(group, _) => Some(group),
             _ => None,
         }
     }
@@ -58,7 +58,7 @@ impl Pool {
 /// The solving of a day.
 pub(super) struct Resolution<'a> {
     pub day: u32,
-    pub calls: &'a mut [Calls],
+    pub calls: &'a mut [IssueBatch],
     pub customers: &'a Customers,
     pub params: &'a Params,
     pub streams: &'a Streams,
@@ -68,27 +68,27 @@ impl Resolution<'_> {
     /// Pools from the widest to the narrowest; each works on what the earlier ones left.
     pub fn run(&mut self, settings: &Settings) {
         let base = self.params.issues.issue_resolution_base_rate;
-        self.work(Pool::Everybody, base, settings.core.operations);
+        self.work(SupportBudget::Everybody, base, settings.core.operations);
         let targeted = &settings.targeted_operations;
         for (&group, &spend) in &targeted.by_group {
-            self.work(Pool::Group(group), 0.0, spend);
+            self.work(SupportBudget::Group(group), 0.0, spend);
         }
         for (&plan, &spend) in &targeted.by_plan {
-            self.work(Pool::Plan(plan), 0.0, spend);
+            self.work(SupportBudget::Plan(plan), 0.0, spend);
         }
         for (&group, plans) in &targeted.by_group_plan {
             for (&plan, &spend) in plans {
-                self.work(Pool::GroupPlan(group, plan), 0.0, spend);
+                self.work(SupportBudget::GroupPlan(group, plan), 0.0, spend);
             }
         }
         for (&customer, &spend) in &targeted.by_customer {
             if let Ok(customer) = u32::try_from(customer) {
-                self.work(Pool::Customer(customer), 0.0, spend);
+                self.work(SupportBudget::Customer(customer), 0.0, spend);
             }
         }
     }
 
-    fn work(&mut self, pool: Pool, base: f64, spend: f64) {
+    fn work(&mut self, pool: SupportBudget, base: f64, spend: f64) {
         if base <= 0.0 && spend <= 0.0 {
             return;
         }
@@ -113,7 +113,7 @@ impl Resolution<'_> {
     }
 
     /// Open issues that a pool holds and nobody has solved yet, by group.
-    fn members(&self, pool: Pool) -> ByGroup<Members> {
+    fn members(&self, pool: SupportBudget) -> ByGroup<Members> {
         let mut members: ByGroup<Members> = ByGroup::default();
         let calls = (0..).zip(&*self.calls);
         for (number, own) in calls.filter(|(_, own)| pool.only_group().is_none_or(|group| group == own.group))
@@ -169,7 +169,7 @@ impl Members {
     }
 
     /// Solves the issues of the chosen ones; `chosen` says it of every member.
-    fn solve(&self, chosen: &[bool], calls: &mut [Calls]) {
+    fn solve(&self, chosen: &[bool], calls: &mut [IssueBatch]) {
         let ends = self.runs.iter().skip(1).map(|next| next.first).chain([self.count]);
         for (run, end) in self.runs.iter().zip(ends) {
             let chosen = &chosen[run.first as usize..end as usize];
@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn members_are_solved_whether_they_came_alone_or_by_the_block() {
-        let block = |open: u16| Calls {
+        let block = |open: u16| IssueBatch {
             group: Group::at(0).expect("S1"),
             block: 0,
             open: (0..open).collect(),
@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(members.count(), 7);
         members.solve(&[false, true, true, true, false, false, true], &mut calls);
         let solved =
-            |own: &Calls| -> Vec<usize> { (0..own.solved.len()).filter(|at| own.solved[*at]).collect() };
+            |own: &IssueBatch| -> Vec<usize> { (0..own.solved.len()).filter(|at| own.solved[*at]).collect() };
         let solved: Vec<Vec<usize>> = calls.iter().map(solved).collect();
         assert_eq!(solved, [vec![1, 2], vec![], vec![7], vec![], vec![1]]);
     }

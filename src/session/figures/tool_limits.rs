@@ -1,4 +1,4 @@
-//! Terms that the documentation of the tools tells everybody: prices, delays, errors and limits.
+//! ToolLimits that the documentation of the tools tells everybody: prices, delays, errors and limits.
 
 use crate::session::state::Session;
 use crate::world::identifiers::Group;
@@ -40,9 +40,9 @@ pub struct ModelTier {
     pub multiplier: f64,
 }
 
-/// Terms of the tools.
+/// ToolLimits of the tools.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Terms {
+pub struct ToolLimits {
     /// Longest post, in characters.
     pub post_characters: usize,
     /// Dollars of an attempt at market research.
@@ -69,8 +69,8 @@ pub struct Terms {
     pub rivals: Vec<String>,
 }
 
-impl Terms {
-    /// Terms of a level.
+impl ToolLimits {
+    /// ToolLimits of a level.
     pub fn level(&self, level: u8) -> Option<&StudyLevel> {
         self.levels.iter().find(|own| own.level == level)
     }
@@ -88,8 +88,8 @@ pub struct RunningStudy {
 }
 
 impl Session {
-    /// Terms of the tools in this run.
-    pub fn terms(&self) -> Terms {
+    /// ToolLimits of the tools in this run.
+    pub fn terms(&self) -> ToolLimits {
         let params = &self.params;
         let level = |level: &crate::world::params::InfoLevel| StudyLevel {
             level: level.level,
@@ -97,7 +97,7 @@ impl Session {
             days: level.delay_days,
             noise: level.noise,
         };
-        Terms {
+        ToolLimits {
             post_characters: params.limits.post_max_chars as usize,
             attempt_cost: params.market_research.discovery_cost_level_1,
             attempt_chance: params.market_research.market_research_discover_prob,

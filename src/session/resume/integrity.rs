@@ -14,7 +14,7 @@ use crate::session::folder::manifest::Manifest;
 use crate::session::trajectory::{BRANCH_THEM, Record, Trajectory};
 
 /// What stood beside the trajectory before it was read.
-pub(in crate::session) struct Witnesses {
+pub(in crate::session) struct Integrity {
     /// The snapshot, if there is one that is whole.
     pub snapshot: Option<Snapshot>,
     /// How far the database has come, if it can be read.
@@ -25,9 +25,9 @@ pub(in crate::session) struct Witnesses {
     pub remarks: Vec<String>,
 }
 
-impl Witnesses {
+impl Integrity {
     /// Asks them. Has to come before the trajectory is read, which may grow in between.
-    pub(in crate::session) fn of(folder: &Path, manifest: &Manifest) -> Witnesses {
+    pub(in crate::session) fn of(folder: &Path, manifest: &Manifest) -> Integrity {
         let mut remarks = Vec::new();
         let snapshot = Snapshot::read(folder).unwrap_or_else(|problem| {
             remarks
@@ -39,7 +39,7 @@ impl Witnesses {
         let foreign = owner_of(&location(folder)).is_some_and(|owner| owner != manifest.number());
         // Nor does a stranger's database.
         let database = if foreign { None } else { position_of(&location(folder)) };
-        Witnesses { snapshot, database, foreign, remarks }
+        Integrity { snapshot, database, foreign, remarks }
     }
 
     /// Whether the trajectory goes as far as they remember.
@@ -99,7 +99,7 @@ fn location(folder: &Path) -> Location {
 /// Whether nobody has changed the database's file since the run was closed.
 pub(in crate::session) fn is_as_left(folder: &Path) -> bool {
     let Ok(manifest) = Manifest::read(folder) else { return false };
-    Witnesses::of(folder, &manifest).is_as_closed(folder).unwrap_or(true)
+    Integrity::of(folder, &manifest).is_as_closed(folder).unwrap_or(true)
 }
 
 /// Line, from 1, that a remembered position shows to be missing or changed.

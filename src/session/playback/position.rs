@@ -19,7 +19,7 @@ pub enum Goal {
 
 /// What became of going somewhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Went {
+pub enum SeekResult {
     /// It is there.
     There,
     /// It is there with a new session: desks on the old one's database tell nothing new.
@@ -30,7 +30,7 @@ pub enum Went {
 
 /// Where a playback is.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Place {
+pub struct PlaybackPosition {
     /// Lines that were applied.
     pub line: usize,
     /// Lines that there are.

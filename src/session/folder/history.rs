@@ -14,7 +14,7 @@ use crate::session::trajectory::{Line, Record};
 
 /// The course of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct RunCourse {
+pub struct RunHistory {
     /// Day and cash: day 0, then every day on which a week ended.
     pub cash: Vec<(u32, f64)>,
     /// Active subscriptions of individuals after the last week.
@@ -29,12 +29,12 @@ pub struct RunCourse {
 ///
 /// # Errors
 /// The run or its files are not there.
-pub fn run_course(runs: &Path, id: &str) -> Result<RunCourse, RunError> {
+pub fn run_history(runs: &Path, id: &str) -> Result<RunHistory, RunError> {
     let folder = run_folder(runs, id);
     let manifest = Manifest::read(&folder)?;
     let path = folder.join("trajectory.jsonl");
     let file = std::fs::File::open(&path).map_err(RunError::io(&path))?;
-    let mut course = RunCourse { cash: vec![(0, manifest.cash)], ..RunCourse::default() };
+    let mut course = RunHistory { cash: vec![(0, manifest.cash)], ..RunHistory::default() };
     let closing = ["\"kind\":\"week\"", "\"kind\":\"step\"", "\"kind\":\"end\""];
     for line in BufReader::new(file).split(b'\n') {
         let line = line.map_err(RunError::io(&path))?;
@@ -49,7 +49,7 @@ pub fn run_course(runs: &Path, id: &str) -> Result<RunCourse, RunError> {
     Ok(course)
 }
 
-impl RunCourse {
+impl RunHistory {
     fn add(&mut self, day: u32, record: &Record) {
         let cash = match record {
             Record::Week(closing) | Record::Step(closing) => closing.cash,
@@ -93,14 +93,14 @@ mod tests {
         };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
         let id = session.manifest().id.clone();
-        assert_eq!(run_course(runs.path(), &id).expect("day 0").cash, [(0, 1_000_000.0)]);
+        assert_eq!(run_history(runs.path(), &id).expect("day 0").cash, [(0, 1_000_000.0)]);
         session.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
         session.call("set_daily_spend", &json!({"operations": 200}), Via::Form).expect("spend");
         for _ in 0..3 {
             let forecasts = session.naive_forecasts();
             session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
         }
-        let course = run_course(runs.path(), &id).expect("a course");
+        let course = run_history(runs.path(), &id).expect("a course");
         let days: Vec<u32> = course.cash.iter().map(|point| point.0).collect();
         assert_eq!(days, [0, 7, 14, 17]);
         for (day, cash) in &course.cash {
@@ -131,8 +131,8 @@ mod tests {
             json!({"kind": "end", "day": 7, "reason": "horizon", "cash": 4, "score": 4}).to_string(),
         ];
         std::fs::write(folder.join("trajectory.jsonl"), lines.join("\n")).expect("written");
-        let course = run_course(runs.path(), "0123abcd").expect("a course");
+        let course = run_history(runs.path(), "0123abcd").expect("a course");
         assert_eq!(course.cash, [(0, 1_000_000.0), (7, 4.0)]);
-        assert!(run_course(runs.path(), "nothing").is_err());
+        assert!(run_history(runs.path(), "nothing").is_err());
     }
 }

@@ -22,7 +22,7 @@ use crate::session::Goal;
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A console that nobody sees.
-pub struct Rehearsal {
+pub struct Headless {
     /// The application.
     pub app: App,
     /// Columns and rows of the window.
@@ -40,12 +40,12 @@ pub struct Rehearsal {
     waiting: u32,
 }
 
-impl Rehearsal {
+impl Headless {
     /// A console that has shown nothing yet.
-    pub fn new(settings: Settings, size: (u16, u16)) -> Rehearsal {
+    pub fn new(settings: Settings, size: (u16, u16)) -> Headless {
         let (sender, messages) = channel();
         let workers = Workers::start(sender.clone(), settings.configuration.clone());
-        Rehearsal {
+        Headless {
             app: App::new(settings),
             size,
             left: None,

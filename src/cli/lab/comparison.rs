@@ -6,7 +6,7 @@ use serde_json::json;
 use crate::cli::run::progress_bar;
 use crate::cli::runs::as_csv;
 use crate::cli::{Context, Failure, print};
-use crate::lab::beside::{Compared, as_rows, as_text, beside};
+use crate::lab::comparison::{Compared, as_rows, as_text, beside};
 use crate::report::ranking::published;
 use crate::session::{Access, Session, Trajectory, find_run_to_read};
 

@@ -1,6 +1,6 @@
 //! What a tool can do to the world: an effect is decided, its draws are made, and then it cannot fail.
 //!
-//! The three steps are apart so that a tool call can be checked without consequence ([`Effect`]), recorded
+//! The three steps are apart so that a tool call can be checked without consequence ([`Command`]), recorded
 //! with its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
 use super::enterprise::letters::{Letter, Proposal};
@@ -18,7 +18,7 @@ use super::state::World;
 /// A decided change.
 #[expect(clippy::large_enum_variant, reason = "there is one at a time")]
 #[derive(Debug, Clone, PartialEq)]
-pub enum Effect {
+pub enum Command {
     /// Nothing changes: the tool only reads.
     None,
     /// A family of settings, complete after the change.
@@ -51,7 +51,7 @@ pub struct Draft {
 /// A decided change whose draws are known.
 #[expect(clippy::large_enum_variant, reason = "there is one at a time")]
 #[derive(Debug, Clone, PartialEq)]
-pub enum Deed {
+pub enum ResolvedCommand {
     /// Nothing changes.
     None,
     /// A family of settings.
@@ -72,74 +72,76 @@ pub enum Deed {
     Post(OwnPostMade),
 }
 
-impl Deed {
+impl ResolvedCommand {
     /// Whether it changes nothing.
     pub fn only_reads(&self) -> bool {
-        matches!(self, Deed::None | Deed::ReadInsights(_))
+        matches!(self, ResolvedCommand::None | ResolvedCommand::ReadInsights(_))
     }
 }
 
 impl World {
     /// Makes the draws of an effect; changes nothing.
-    pub fn resolve(&self, effect: Effect, params: &Params, streams: &Streams) -> Deed {
+    pub fn resolve(&self, effect: Command, params: &Params, streams: &Streams) -> ResolvedCommand {
         match effect {
-            Effect::None => Deed::None,
-            Effect::Set(change) => Deed::Set(change),
-            Effect::StartResearch(tier) => {
+            Command::None => ResolvedCommand::None,
+            Command::Set(change) => ResolvedCommand::Set(change),
+            Command::StartResearch(tier) => {
                 let project = research::draw(&self.product, self.day, tier, params, streams);
-                Deed::StartResearch(project, f64::from(params.research(tier).cost))
+                ResolvedCommand::StartResearch(project, f64::from(params.research(tier).cost))
             }
-            Effect::ResearchMarket => Deed::ResearchMarket(self.market.next_attempt(params, streams)),
-            Effect::ResearchGroup(group, target) => {
+            Command::ResearchMarket => {
+                ResolvedCommand::ResearchMarket(self.market.next_attempt(params, streams))
+            }
+            Command::ResearchGroup(group, target) => {
                 let study = self.market.plan_study(group, target, self.day, params);
-                Deed::ResearchGroup(study, params.level(target).cost)
+                ResolvedCommand::ResearchGroup(study, params.level(target).cost)
             }
-            Effect::ReadInsights(group) => {
-                Deed::ReadInsights(insights(group, &self.market, params, streams).map(Box::new))
+            Command::ReadInsights(group) => {
+                ResolvedCommand::ReadInsights(insights(group, &self.market, params, streams).map(Box::new))
             }
-            Effect::SendDeals(proposals) => Deed::SendDeals(self.enterprise.address(
+            Command::SendDeals(proposals) => ResolvedCommand::SendDeals(self.enterprise.address(
                 &proposals,
                 self.day,
                 &self.customers,
                 params,
                 streams,
             )),
-            Effect::RejectDeals(threads) => Deed::RejectDeals(threads),
-            Effect::Post(Draft { content, reply_to }) => {
+            Command::RejectDeals(threads) => ResolvedCommand::RejectDeals(threads),
+            Command::Post(Draft { content, reply_to }) => {
                 let post = self.market.social.own.len() as u32 + 1;
-                Deed::Post(OwnPostMade { post, content, reply_to })
+                ResolvedCommand::Post(OwnPostMade { post, content, reply_to })
             }
         }
     }
 
-    /// Applies a deed. What it does carries the day already simulated; `facts` receives it.
-    pub fn apply(&mut self, deed: Deed, params: &Params, facts: &mut Facts) {
+    /// Applies a resolved. What it does carries the day already simulated; `facts` receives it.
+    pub fn apply(&mut self, resolved: ResolvedCommand, params: &Params, facts: &mut Facts) {
         facts.begin(self.day);
-        match deed {
-            Deed::None | Deed::ReadInsights(_) => {}
-            Deed::Set(change) => {
+        match resolved {
+            ResolvedCommand::None | ResolvedCommand::ReadInsights(_) => {}
+            ResolvedCommand::Set(change) => {
                 self.settings.set(change.clone());
                 facts.settings.push(change);
             }
-            Deed::StartResearch(project, cost) => {
+            ResolvedCommand::StartResearch(project, cost) => {
                 let note = LedgerNote::Project(project.tier, project.number);
                 self.finance
                     .book(LedgerEntry { category: Category::ResearchProject, amount: -cost, note }, facts);
                 self.product.research.push(project);
                 facts.research.push(ResearchChange::Started(project));
             }
-            Deed::ResearchMarket(attempt) => self.research_market(&attempt, params, facts),
-            Deed::ResearchGroup(study, cost) => {
+            ResolvedCommand::ResearchMarket(attempt) => self.research_market(&attempt, params, facts),
+            ResolvedCommand::ResearchGroup(study, cost) => {
                 let note = LedgerNote::Study(study);
                 self.finance
                     .book(LedgerEntry { category: Category::GroupResearch, amount: -cost, note }, facts);
                 self.market.studies.push(study);
             }
-            Deed::SendDeals(letters) => {
+            ResolvedCommand::SendDeals(letters) => {
                 self.enterprise.send(&letters, self.day, &mut self.customers, facts);
             }
-            Deed::RejectDeals(threads) => self.enterprise.reject(&threads, self.day, facts),
-            Deed::Post(made) => {
+            ResolvedCommand::RejectDeals(threads) => self.enterprise.reject(&threads, self.day, facts),
+            ResolvedCommand::Post(made) => {
                 let own = OwnPost::new(self.day, made.content.clone(), made.reply_to);
                 self.market.social.own.push(own);
                 facts.own_posts.push(made);
@@ -172,12 +174,13 @@ mod tests {
         let mut facts = Facts::default();
         let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
         let before = world.part_hashes();
-        let deed = world.resolve(Effect::StartResearch(1), &params, &streams);
+        let resolved = world.resolve(Command::StartResearch(1), &params, &streams);
         assert_eq!(world.part_hashes(), before);
-        assert_eq!(deed, world.resolve(Effect::StartResearch(1), &params, &streams));
-        world.apply(deed, &params, &mut facts);
+        assert_eq!(resolved, world.resolve(Command::StartResearch(1), &params, &streams));
+        world.apply(resolved, &params, &mut facts);
         assert_eq!(world.finance.cash, 833_333.0);
-        let Deed::StartResearch(second, _) = world.resolve(Effect::StartResearch(1), &params, &streams)
+        let ResolvedCommand::StartResearch(second, _) =
+            world.resolve(Command::StartResearch(1), &params, &streams)
         else {
             panic!("a start");
         };

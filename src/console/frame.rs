@@ -275,10 +275,15 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     // Two blanks before a message and one after it.
     let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 3).min(row.width);
     let mut x = row.x + 1;
-    for action in actions_shown(app) {
-        let Some(key) = app.keys.label(action) else { continue };
-        // An arrow says by its name what it does.
-        let title = Some(action.entry().title).filter(|title| *title != key).unwrap_or_default();
+    let mut actions = actions_shown(app).into_iter().peekable();
+    while let Some(action) = actions.next() {
+        let Some(mut key) = app.keys.label(action) else { continue };
+        // An arrow says by its name what it does; both together choose.
+        let mut title = Some(action.entry().title).filter(|title| *title != key).unwrap_or_default();
+        if action == Action::Left && actions.next_if_eq(&Action::Right).is_some() {
+            key = format!("{key} {}", app.keys.label(Action::Right).unwrap_or_default());
+            title = "choose";
+        }
         let width = (key.width() + usize::from(!title.is_empty()) + title.width()) as u16;
         if x + width + taken > row.right() {
             break;

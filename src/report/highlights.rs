@@ -52,7 +52,7 @@ fn firsts(weeks: &[WeekFigures], add: &mut impl FnMut(u32, String)) {
     }
     if let Some(week) = first(|week| week.enterprise_seats > 0) {
         let seats = count(week.enterprise_seats, "seat");
-        add(week.day, format!("first company signed: {seats}"));
+        add(week.day, format!("first company signed that week: {seats}"));
     }
     if let Some(week) = first(|week| week.cash_change > 0.0) {
         add(week.day, format!("first profitable week: {}", signed_dollars(week.cash_change)));
@@ -128,7 +128,7 @@ mod tests {
                 "14 first subscribers: 30 that week",
                 "14 first profitable week: +$20",
                 "14 peak subscribers: 30",
-                "21 first company signed: 12 seats",
+                "21 first company signed that week: 12 seats",
                 "21 best week for cash: +$90",
                 "21 peak enterprise seats: 12",
                 "21 peak cash: $160",

@@ -6,7 +6,7 @@ use super::measures::{ENOUGH_LEADS, Measures, PLANNING_WORDS};
 use super::page::{Bar, Block, Fact, Page, Table};
 use super::ranking::{Whose, published_targeted_shares};
 use super::story::{Ruin, Story};
-use super::words::{count, money, number, whole};
+use super::words::{count, money, whole};
 use crate::notation::{grouped, percent, signed_dollars};
 use crate::session::Ended;
 
@@ -64,10 +64,11 @@ fn result(story: &Story) -> Vec<Fact> {
     let last_day = whole(f64::from(seen.last_day));
     let most = story.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = story.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
+    // Cash over what the settings commit to and what recent weeks brought and used: not the change since the start.
     let runway = match (seen.ended, seen.weeks_of_cash()) {
         (Some(_), _) => String::new(),
-        (None, None) => "at this pace cash lasts to the last day".to_owned(),
-        (None, Some(weeks)) => format!("at this pace cash lasts {}", count(weeks, "week")),
+        (None, None) => "at present costs and income cash lasts to the last day".to_owned(),
+        (None, Some(weeks)) => format!("at present costs and income cash lasts {}", count(weeks, "week")),
     };
     let change = signed_dollars(seen.cash - story.start_cash);
     vec![
@@ -239,7 +240,7 @@ fn forecasts(story: &Story) -> Vec<Block> {
     let (naive, all) = story.measures.filled_naively;
     if naive > 0 {
         blocks.push(Block::Note(format!(
-            "In {naive} of {}, forecasts were filled by the naive projection.",
+            "In {naive} of {}, at least one forecast was filled by the naive projection.",
             count(all, "week")
         )));
     }
@@ -265,7 +266,9 @@ fn behaviour(measures: &Measures) -> Vec<Block> {
                 .as_ref()
                 .and_then(|skill| skill.share)
                 .map_or_else(none, |share| percent(share, 0)),
-            format!("of groups with two paid channels and a best of {ENOUGH_LEADS} leads or more"),
+            format!(
+                "of the spend on groups with two paid channels and a best of {ENOUGH_LEADS} leads or more"
+            ),
         ),
         Fact::new(
             "Targeted development",
@@ -274,7 +277,7 @@ fn behaviour(measures: &Measures) -> Vec<Block> {
         ),
         Fact::new(
             "Calls a week",
-            number((measures.tools.per_week * 10.0).round() / 10.0),
+            format!("{:.2}", measures.tools.per_week),
             format!("{} in all", whole(f64::from(measures.tools.calls))),
         ),
         Fact::new(

@@ -10,6 +10,7 @@ pub fn money_lines(seen: &Observation) -> Vec<String> {
     let change = now - seen.committed_before;
     let changed = match change {
         0.0 => String::new(),
+        _ if seen.day == 0 => String::new(),
         change if change > 0.0 => format!(", {} more than last week", money(change * 7.0)),
         change => format!(", {} less than last week", money(-change * 7.0)),
     };
@@ -63,7 +64,7 @@ mod tests {
         assert_eq!(
             money_lines(&session.observe()),
             [
-                "Committed: $5,585 a day = $39,095 a week, $38,500 more than last week",
+                "Committed: $5,585 a day = $39,095 a week",
                 "One-time costs since the last week: $25,000",
                 "No income yet; at this pace cash lasts 24 weeks",
             ]

@@ -33,7 +33,7 @@ const SUMS: f64 = 1e-12;
 const COSTS: [&str; 6] =
     ["running costs", "compute", "advertising", "operations", "development", "lead costs"];
 
-const FIGURES: [Figure; 28] = [
+const FIGURES: [Figure; 29] = [
     Figure(&["cash", "cash at week's end", "cash is"], "SELECT sum(amount) FROM ledger"),
     Figure(
         &["cash change", "cash change #, of it", CASH_MOVED],
@@ -115,7 +115,7 @@ const FIGURES: [Figure; 28] = [
         "SELECT sum(total_usage_units) FROM service_day WHERE day BETWEEN {from} AND {to}",
     ),
     Figure(
-        &["the busiest day used # units"],
+        &["the busiest day used # units", "the busiest day of the week used # units"],
         "SELECT max(total_usage_units) FROM service_day WHERE day BETWEEN {from} AND {to}",
     ),
     Figure(
@@ -139,6 +139,11 @@ const FIGURES: [Figure; 28] = [
         &["open issues", "issues # open"],
         "SELECT count(DISTINCT customer_id) FROM issues JOIN subscriptions USING (customer_id) \
          WHERE issues.status = 'open' AND subscriptions.status = 'subscribed'",
+    ),
+    Figure(
+        &["# waiting for you", "# awaiting your response", "# companies wait for an answer"],
+        "SELECT count(*) FROM (SELECT max(turn_number), day, sender, closed FROM enterprise_turns \
+         GROUP BY thread_id HAVING sender <> 'agent' AND closed = 0 AND day > {to} - 7)",
     ),
 ];
 
@@ -190,6 +195,10 @@ fn value_of(name: &str, cell: &str) -> Option<Written> {
     // Bytes of both are compared, so a letter that changes its length in small letters is left out.
     if low.len() != cell.len() {
         return None;
+    }
+    if before.is_empty() {
+        let (written, left) = number(cell.trim_start_matches([' ', '-', '!', '*']))?;
+        return left.starts_with(after).then_some(written);
     }
     let mut from = 0;
     while let Some(at) = low[from..].find(before).map(|at| at + from) {
@@ -382,5 +391,6 @@ fn figures_are_read_where_they_stand() {
     assert_eq!(of("cash $9 (-$7 over the last week)"), [("cash", 9.0), ("cash change", -7.0)]);
     assert_eq!(of("subscribers 65 → 150; of it 7"), [("subscribers", 150.0)]);
     assert_eq!(of("New Individual Subscribers: 3"), [("new subscribers", 3.0)]);
+    assert_eq!(of("! 4 companies wait for an answer (9 seats)"), [("# waiting for you", 4.0)]);
     assert_eq!(of("operations: 0 → 100 $/day · cash lasts 12 weeks"), [("runway", 12.0)]);
 }

@@ -243,7 +243,7 @@ impl App {
         self.changed(company.clone());
         match changes {
             Ok(changes) => self.say(format!("{what}: {}", in_words(changes))),
-            Err(refusal) => self.complain(refusal.to_string()),
+            Err(refusal) => self.complain(refusal.message.clone()),
         }
     }
 

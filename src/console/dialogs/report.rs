@@ -135,6 +135,11 @@ impl Report {
         let remark = self.remark.iter().flat_map(|remark| wrapped(remark, width as usize));
         lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
         lines.extend(told.due.iter().take(forecasts).map(|due| forecast_line(canvas, due)));
+        // Forecasts without room are still counted: the journal holds them.
+        let left_out = told.due.len().saturating_sub(forecasts);
+        if let (Some(last), true) = (lines.last_mut(), left_out > 0) {
+            last.spans.push(canvas.span(format!(" · {left_out} more"), Role::Dim));
+        }
         lines
     }
 }

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::{AHEAD, MONTH, Need, Place, Problem, Situation, rounded_up};
-use crate::notation::{json_number, percent};
+use crate::notation::{cents, json_number, percent};
 use crate::report::words::{count, money, whole};
 use crate::session::ToolId;
 use crate::session::{DeliveredQuality, Estimates, GroupWeek};
@@ -92,9 +92,12 @@ pub(super) fn no_leads(situation: &Situation<'_>) -> Option<Need> {
     if situation.ads > 0.0 || came > 0 || !silent {
         return None;
     }
+    // The plans as they are come first, then what a better model could deliver, then what they pay.
     let group = situation.individuals().min_by(|left, right| {
+        let now = |own: &Estimates| (own.floor - delivered_now(situation, own.group)).max(0.0);
         let missing = |own: &Estimates| (own.floor - within_reach(situation, own.group)).max(0.0);
-        missing(left).total_cmp(&missing(right)).then_with(|| right.budget.total_cmp(&left.budget))
+        let reach = || missing(left).total_cmp(&missing(right));
+        now(left).total_cmp(&now(right)).then_with(reach).then_with(|| right.budget.total_cmp(&left.budget))
     })?;
     let group = group.group;
     let each: Map<String, Value> = Channel::ALL
@@ -114,6 +117,12 @@ pub(super) fn no_leads(situation: &Situation<'_>) -> Option<Need> {
         at_risk: situation.commitments_ahead(),
         urgent: true,
     })
+}
+
+/// The best quality that any plan delivers to a group today.
+fn delivered_now(situation: &Situation<'_>, group: Group) -> f64 {
+    let delivered = |quality: &DeliveredQuality| Plan::ALL.map(|plan| quality.by_plan[plan]);
+    situation.quality(group).map_or(0.0, |quality| delivered(quality).into_iter().fold(0.0, f64::max))
 }
 
 /// The quality that the best model would deliver to a group today.
@@ -317,7 +326,13 @@ fn better_model(
     let better = models.iter().filter(|model| model.tier > now.tier && pays(model.unit_cost));
     let enough = better.into_iter().find(|model| product * model.multiplier >= floor)?;
     Some((
-        format!("model tier {} delivers {:.4} on {plan}", enough.tier, product * enough.multiplier),
+        format!(
+            "model tier {} delivers {:.4} on {plan} at {} per 1,000 units instead of {}",
+            enough.tier,
+            product * enough.multiplier,
+            cents(enough.unit_cost * 1_000.0),
+            cents(now.unit_cost * 1_000.0)
+        ),
         Place::Call(ToolId::SetModelTiers, json!({ plan.id(): enough.tier })),
     ))
 }
@@ -344,9 +359,10 @@ fn better_quality(
     let days = ((floor - delivered) / gain).ceil();
     Some((
         format!(
-            "development for {group} at {} a day closes the gap in {}",
+            "development for {group} at {} a day closes the gap in {}, for {} in all",
             money(DOLLARS),
-            count(days as u32, "day")
+            count(days as u32, "day"),
+            money(DOLLARS * days)
         ),
         Place::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": { group.id(): DOLLARS } })),
     ))

@@ -194,7 +194,7 @@ impl Session {
     fn in_words(&self, resolved: &ResolvedCommand) -> Vec<String> {
         match resolved {
             ResolvedCommand::None | ResolvedCommand::Set(_) | ResolvedCommand::ReadInsights(_) => Vec::new(),
-            ResolvedCommand::Post(_) => vec!["post published, read tomorrow".to_owned()],
+            ResolvedCommand::Post(_) => vec!["post published".to_owned()],
             ResolvedCommand::StartResearch(project, _) => {
                 vec![format!("R&D project {} started, done on day {}", project.id(), project.due_day)]
             }

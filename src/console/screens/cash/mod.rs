@@ -103,7 +103,7 @@ impl Cash {
 
     fn drill(&self, company: &Company) -> Vec<Effect> {
         let selected = self.selected(company);
-        selected.map(|(subject, weeks)| Effect::EditSql(statement(&subject, weeks))).into_iter().collect()
+        selected.map(|(subject, weeks)| Effect::RunSql(statement(&subject, weeks))).into_iter().collect()
     }
 
     fn move_step(&mut self, action: Action, company: &Company) {

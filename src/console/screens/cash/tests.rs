@@ -54,7 +54,7 @@ fn a_category_leads_to_its_ledger_rows() {
     let company = Company::of(&session);
     let mut screen: Cash = shown(&mut session, &company);
     for _ in 0..20 {
-        let Some(Effect::EditSql(sql)) = act(&mut screen, Action::Open, &company).pop() else {
+        let Some(Effect::RunSql(sql)) = act(&mut screen, Action::Open, &company).pop() else {
             panic!("no statement");
         };
         assert!(sql.contains("day BETWEEN 14 AND 21") && sql.contains("BETWEEN 3 AND 3"), "{sql}");

@@ -206,7 +206,7 @@ impl Market {
         let rest = company.seen.cash - preview.cost_now;
         let what = match tool {
             FIND => format!(
-                "A market research attempt: {} % find one of the {} groups still unknown.",
+                "A market research attempt has a {} % chance to find one of the {} groups still unknown.",
                 grouped(company.terms.attempt_chance * 100.0, 0),
                 undiscovered(company)
             ),

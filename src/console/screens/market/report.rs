@@ -91,7 +91,7 @@ pub fn lines(company: &Company, group: Group) -> Vec<Line> {
             format!("{} – {}", figure(from), figure(to)),
         ));
     }
-    influence(&mut lines, told, "network_influence", "leads a day of 1,000 subscribers", &|rate| {
+    influence(&mut lines, told, "network_influence", "leads a day per 1,000 subscribers", &|rate| {
         figure(rate * 1000.0)
     });
     influence(&mut lines, told, "reputation_influence", "weight of reputation", &exact);

@@ -68,7 +68,10 @@ fn attempts_find_groups_and_are_listed() {
     let mut found = None;
     for _ in 0..25 {
         let (question, said) = order(&mut screen, &mut session, Action::FindGroup);
-        assert!(question.contains("30 % find") && question.contains("$25,000 at once"), "{question}");
+        assert!(
+            question.contains("30 % chance to find") && question.contains("$25,000 at once"),
+            "{question}"
+        );
         let [Effect::Say(text)] = &said[..] else { panic!("{said:?}") };
         if text.contains("was found") {
             found = screen.group();

@@ -223,7 +223,8 @@ impl Form {
         let here = at == self.at;
         let name = Rect { width: 15.min(row.width), ..row };
         let role = if here { Role::Selection } else { Role::Text };
-        canvas.text(name, &format!(" {:<14}", ROWS[at].0), role);
+        let mark = if here { "›" } else { " " };
+        canvas.text(name, &format!("{mark}{:<14}", ROWS[at].0), role);
         let place = Rect { x: row.x + VALUES, width: row.width.saturating_sub(VALUES), ..row };
         let field = match at {
             2 => Some(&self.seed),

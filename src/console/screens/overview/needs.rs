@@ -54,7 +54,7 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
             "thread",
             Some(format!(
                 "SELECT customer_id, thread_type, max(turn_number) AS turn, day, sender, seat_count\n\
-                 FROM enterprise_turns\nGROUP BY customer_id, thread_type\n\
+                 FROM enterprise_turns\nGROUP BY thread_id\n\
                  HAVING sender <> 'agent' AND closed = 0 AND day >= {from}\nORDER BY seat_count DESC"
             )),
         ),

@@ -131,8 +131,17 @@ fn draw_form(
     draw_sheet(form, leads, &lines, canvas, sheet, focused);
     let rest_from = (sheet.height + u16::from(sheet.height > 0)).min(below.height);
     let rest = Rect { y: below.y + rest_from, height: below.height - rest_from, ..below };
-    let shown: Vec<TextLine<'_>> =
+    let mut shown: Vec<TextLine<'_>> =
         outcome.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
+    // What has no room here stands in the manual.
+    if shown.len() > rest.height as usize && rest.height > 0 {
+        shown.truncate(rest.height as usize - 1);
+        let more = format!(
+            "… {} in the list of tools explains the rest",
+            look.keys.label(Action::Explain).unwrap_or_default()
+        );
+        shown.push(TextLine::from(canvas.span(more, Role::Dim)));
+    }
     canvas.lines(rest, &shown);
     let used = (shown.len() as u16 + 1).min(rest.height);
     let below = Rect { y: rest.y + used, height: rest.height - used, ..rest };

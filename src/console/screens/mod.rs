@@ -8,6 +8,7 @@ pub mod journal;
 pub mod market;
 pub mod menu;
 pub mod overview;
+pub mod panes;
 pub mod product;
 pub mod social;
 pub mod sql;

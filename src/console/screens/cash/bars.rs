@@ -4,8 +4,13 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::symbols::Marker;
 
-use super::model::{Amounts, Books, CATEGORIES, COUNT, side};
+use super::model::{Amounts, Books, CATEGORIES, COUNT, money, side};
+use super::{Cash, ledger_rows, week_keys};
+use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, fit};
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
 use crate::console::theme::Role;
 use crate::console::widgets::Unit;
 use crate::console::widgets::chart::NO_DATA;
@@ -18,8 +23,51 @@ const WIDEST: u16 = 9;
 /// Width of the figures at the side.
 const SIDE: u16 = 8;
 
+/// Every week as a bar.
+pub struct WeeksPane;
+
+impl Pane<Cash> for WeeksPane {
+    fn hints(&self, _: &Cash) -> Vec<Action> {
+        vec![Action::Left, Action::Right, Action::Open]
+    }
+
+    fn figure(&self, cash: &Cash, _: &Look<'_>) -> Option<Figure> {
+        cash.figure_of(cash.subject_of_week())
+    }
+
+    fn act(&self, cash: &mut Cash, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        match action {
+            Action::Open => return ledger_rows(cash.subject_of_week()),
+            // Up and down choose the category whose weeks are compared.
+            action if !cash.walk_weeks(action) => {
+                cash.table.act(action, look.page);
+            }
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    fn click(&self, cash: &mut Cash, week: usize, _: &Look<'_>) -> Vec<Effect> {
+        cash.move_week(week as i64 - i64::from(cash.week()));
+        Vec::new()
+    }
+
+    fn border(&self, cash: &Cash, _: Rect, look: &Look<'_>) -> Border {
+        let week = cash.week();
+        let note = cash.subject().map_or(String::new(), |subject| {
+            let amount = subject.of(&cash.books.week(week));
+            format!("week {week}: {} {}", subject.name(), money(amount))
+        });
+        Border { title: "Income and costs by week".to_owned(), note, keys: week_keys(look) }
+    }
+
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+        draw(canvas, seat.area, &cash.books, cash.week(), seat.number);
+    }
+}
+
 /// Draws the bars. `pane` is the number of the pane for clicks, whose rows are the weeks.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &Books, selected: u32, pane: usize) {
+fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &Books, selected: u32, pane: usize) {
     if area.width < SIDE + 2 * NARROWEST || area.height < 5 {
         return;
     }

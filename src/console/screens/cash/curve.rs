@@ -2,9 +2,14 @@
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::model::{cash_around, days_of};
+use super::model::{Subject, cash_around, days_of};
+use super::{Cash, Selected, ledger_rows, week_keys};
+use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas};
 use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
 use crate::console::text::{arrow, short_dollars};
 use crate::console::theme::Role;
 use crate::console::widgets::chart::{note_room, summary, zero_if_near};
@@ -14,29 +19,60 @@ use crate::notation::dollars;
 /// Width of the figures beside the bars of the weeks.
 const SIDE: u16 = 8;
 
-/// Draws the curve, and below it the change of every week where there is room.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, week: u32, focused: bool) {
-    let title = "Cash";
-    let words = match cash_around(company, week) {
-        Some((before, after)) => {
-            let change = after - before;
-            format!("week {week}: {} {}", dollars(after), arrow(change, &dollars(change.abs())))
+/// Cash by day.
+pub struct CurvePane;
+
+impl Pane<Cash> for CurvePane {
+    fn hints(&self, _: &Cash) -> Vec<Action> {
+        vec![Action::Left, Action::Right, Action::Open]
+    }
+
+    fn figure(&self, cash: &Cash, _: &Look<'_>) -> Option<Figure> {
+        cash.figure_of(net(cash))
+    }
+
+    fn act(&self, cash: &mut Cash, action: Action, _: &Look<'_>) -> Vec<Effect> {
+        if action == Action::Open {
+            return ledger_rows(net(cash));
         }
-        None => summary(&company.cash_by_day, &short_dollars, note_room(area, title)),
-    };
-    let inside = canvas.pane(area, title, &words, focused);
-    let changes = if inside.height >= 11 { inside.height / 3 } else { 0 };
-    let [above, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(changes)]).areas(inside);
-    let cash = &company.cash_by_day;
-    let plot = Plot {
-        lines: &[Line::of(cash, Role::Series(0))],
-        band: None,
-        mark: focused.then(|| f64::from(days_of(week).1)),
-        x: &Axis { write: &|day| format!("day {day:.0}"), holds: &[] },
-        y: &Side { unit: Unit::Dollars, holds: zero_if_near(cash.iter().copied()) },
-    };
-    plot.draw(canvas, above);
-    draw_changes(canvas, below, company, week);
+        cash.walk_weeks(action);
+        Vec::new()
+    }
+
+    fn border(&self, cash: &Cash, area: Rect, look: &Look<'_>) -> Border {
+        let (title, company, week) = ("Cash", look.company, cash.week());
+        let note = match cash_around(company, week) {
+            Some((before, after)) => {
+                let change = after - before;
+                format!("week {week}: {} {}", dollars(after), arrow(change, &dollars(change.abs())))
+            }
+            None => summary(&company.cash_by_day, &short_dollars, note_room(area, title)),
+        };
+        Border { title: title.to_owned(), note, keys: week_keys(look) }
+    }
+
+    /// The curve, and below it the change of every week where there is room.
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let (company, week) = (look.company, cash.week());
+        let changes = if seat.area.height >= 11 { seat.area.height / 3 } else { 0 };
+        let [above, below] =
+            Layout::vertical([Constraint::Min(0), Constraint::Length(changes)]).areas(seat.area);
+        let cash = &company.cash_by_day;
+        let plot = Plot {
+            lines: &[Line::of(cash, Role::Series(0))],
+            band: None,
+            mark: seat.focused.then(|| f64::from(days_of(week).1)),
+            x: &Axis { write: &|day| format!("day {day:.0}"), holds: &[] },
+            y: &Side { unit: Unit::Dollars, holds: zero_if_near(cash.iter().copied()) },
+        };
+        plot.draw(canvas, above);
+        draw_changes(canvas, below, company, week);
+    }
+}
+
+/// What the week that is looked at earned.
+fn net(cash: &Cash) -> Option<Selected> {
+    Some((Subject::Net, (cash.week(), cash.week())))
 }
 
 /// Bars of the weekly changes, the newest at the right: gains above the line, losses below.

@@ -2,15 +2,68 @@
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
+use super::Cash;
 use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click};
+use crate::console::canvas::Canvas;
 use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::{Figure, Look};
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Band, Cell, Column, Line, Plot, Side, Table, Unit};
 use crate::notation::percent;
 use crate::session::{ScoredForecast, Verdict, filed_forecasts};
+
+/// Forecasts of one horizon, as a curve and as a list.
+pub struct ForecastsPane;
+
+impl Pane<Cash> for ForecastsPane {
+    fn hints(&self, _: &Cash) -> Vec<Action> {
+        vec![Action::Left, Action::Right, Action::Open]
+    }
+
+    fn figure(&self, cash: &Cash, _: &Look<'_>) -> Option<Figure> {
+        cash.outlook.figure()
+    }
+
+    fn act(&self, cash: &mut Cash, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        if action == Action::Open {
+            return vec![Effect::Do(Action::Journal)];
+        }
+        cash.outlook.act(action, look.page);
+        Vec::new()
+    }
+
+    fn click(&self, cash: &mut Cash, row: usize, _: &Look<'_>) -> Vec<Effect> {
+        cash.outlook.table.select_place(row);
+        Vec::new()
+    }
+
+    fn border(&self, cash: &Cash, _: Rect, look: &Look<'_>) -> Border {
+        let label = |action| look.keys.label(action).unwrap_or_default();
+        let horizons = format!("{} {} other horizons", label(Action::Left), label(Action::Right));
+        let weeks = cash.outlook.horizon() / 7;
+        Border {
+            title: format!("Forecasts {weeks} week{} ahead", if weeks == 1 { "" } else { "s" }),
+            note: cash.outlook.score(look.company),
+            keys: format!("{horizons} · {} journal", label(Action::Open)),
+        }
+    }
+
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let (outlook, inside) = (&cash.outlook, seat.area);
+        if outlook.all.is_empty() {
+            let text = format!("no forecasts yet: {} asks for four", look.hint(Action::NextWeek));
+            canvas.text(inside, &text, Role::Dim);
+            return;
+        }
+        let list = if inside.height >= 13 { (inside.height / 3).max(5) } else { inside.height };
+        let [above, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(list)]).areas(inside);
+        outlook.draw_curve(canvas, above, look.company);
+        outlook.table.draw(canvas, below, seat.focused, seat.number);
+    }
+}
 
 /// Forecasts of one horizon.
 #[derive(Default)]
@@ -55,7 +108,7 @@ impl Outlook {
     }
 
     /// Does an action.
-    pub fn act(&mut self, action: Action, page: u16) {
+    fn act(&mut self, action: Action, page: u16) {
         let last = self.horizons.len().saturating_sub(1);
         match action {
             Action::Left => self.horizon = self.horizon.saturating_sub(1),
@@ -70,11 +123,6 @@ impl Outlook {
         self.table.act(Action::First, page);
     }
 
-    /// Selects a row.
-    pub fn select_place(&mut self, row: usize) {
-        self.table.select_place(row);
-    }
-
     /// Forecasts in the order of the table: what is known comes first, the newest at the top; what is still open
     /// follows.
     fn listed(&self) -> impl Iterator<Item = &ScoredForecast> {
@@ -83,7 +131,7 @@ impl Outlook {
     }
 
     /// The forecast that is selected.
-    pub fn figure(&self) -> Option<Figure> {
+    fn figure(&self) -> Option<Figure> {
         let filed = self.listed().nth(self.table.selected()?)?;
         let sql = format!(
             "SELECT p.*, (SELECT sum(amount) FROM ledger WHERE day <= p.submit_day + p.horizon_days) AS cash\n\
@@ -92,29 +140,6 @@ impl Outlook {
         );
         let title = format!("forecast of day {} for day {}", filed.day, filed.due());
         Some(Figure { title, term: "forecast", sql: Some(sql) })
-    }
-
-    /// Draws the pane.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>, focused: bool, pane: usize) {
-        let company = look.company;
-        canvas.click(area, Click::Pane(pane));
-        let weeks = self.horizon() / 7;
-        let title = format!("Forecasts {weeks} week{} ahead", if weeks == 1 { "" } else { "s" });
-        let inside = canvas.pane(area, &title, &self.score(company), focused);
-        if focused {
-            let label = |action| look.keys.label(action).unwrap_or_default();
-            let keys = format!("{} {} other horizons", label(Action::Left), label(Action::Right));
-            canvas.pane_keys(area, &format!("{keys} · {} journal", label(Action::Open)));
-        }
-        if self.all.is_empty() {
-            let text = format!("no forecasts yet: {} asks for four", look.hint(Action::NextWeek));
-            canvas.text(inside, &text, Role::Dim);
-            return;
-        }
-        let list = if inside.height >= 13 { (inside.height / 3).max(5) } else { inside.height };
-        let [above, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(list)]).areas(inside);
-        self.draw_curve(canvas, above, company);
-        self.table.draw(canvas, below, focused, pane);
     }
 
     fn score(&self, company: &Company) -> String {

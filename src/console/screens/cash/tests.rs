@@ -1,5 +1,6 @@
 use super::model::*;
 use super::*;
+use crate::console::screens::Screen;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
 use crate::session::{Cell as Value, WEEK_OF_ENTRY, filed_forecasts};
 
@@ -61,7 +62,7 @@ fn a_category_leads_to_its_ledger_rows() {
         session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
         act(&mut screen, Action::Down, &company);
     }
-    screen.set_focus(WEEKS);
+    screen.focus_on(CashPane::Weeks);
     act(&mut screen, Action::Left, &company);
     assert_eq!((screen.week(), screen.week), (2, Some(2)));
     act(&mut screen, Action::First, &company);
@@ -107,7 +108,7 @@ fn every_pane_says_which_figure_is_selected() {
     let keys = crate::console::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     let title = |screen: &Cash| screen.figure(&look).expect("a figure").title;
-    screen.set_focus(FALLS);
+    screen.focus_on(CashPane::Waterfall);
     assert_eq!(title(&screen), "net of week 5");
     act(&mut screen, Action::Down, &company);
     assert_eq!(title(&screen), "payments of week 5");
@@ -115,12 +116,12 @@ fn every_pane_says_which_figure_is_selected() {
     assert_eq!(title(&screen), "payments of week 4");
     act(&mut screen, Action::Last, &company);
     assert_eq!(title(&screen), "net of week 4");
-    screen.set_focus(CURVE);
+    screen.focus_on(CashPane::Curve);
     assert_eq!(title(&screen), "net of week 4");
-    screen.set_focus(WEEKS);
+    screen.focus_on(CashPane::Weeks);
     act(&mut screen, Action::Down, &company);
     assert_eq!(title(&screen), "income of week 4");
-    screen.set_focus(FORECASTS);
+    screen.focus_on(CashPane::Forecasts);
     assert_eq!(title(&screen), "forecast of day 28 for day 35");
     let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
     assert_eq!(session.query(&sql).expect("an answer").rows.len(), 1);
@@ -132,13 +133,13 @@ fn a_pane_can_have_the_whole_screen() {
     let company = Company::of(&session);
     let mut screen: Cash = shown(&mut session, &company);
     for (pane, words) in [
-        (TABLE, "Books of week 5"),
-        (WEEKS, "Income and costs by week"),
-        (FORECASTS, "Forecasts 1 week"),
-        (FALLS, "From week 4"),
-        (CURVE, "week 5: $"),
+        (CashPane::Books, "Books of week 5"),
+        (CashPane::Weeks, "Income and costs by week"),
+        (CashPane::Forecasts, "Forecasts 1 week"),
+        (CashPane::Waterfall, "From week 4"),
+        (CashPane::Curve, "week 5: $"),
     ] {
-        screen.set_focus(pane);
+        screen.focus_on(pane);
         let text = crate::console::test_kit::zoomed(&screen, &company, 80, 21);
         assert!(text.lines().next().is_some_and(|line| line.contains(words)), "{words} in\n{text}");
         assert_eq!(text.matches('┌').count(), 1, "{text}");

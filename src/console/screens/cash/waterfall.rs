@@ -2,15 +2,86 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{Step, money};
+use super::model::{Step, cash_around, money, waterfall};
+use super::{Cash, Selected, ledger_rows, week_keys};
+use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
-use crate::console::text::short_dollars;
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::console::text::{arrow, short_dollars};
 use crate::console::theme::Role;
 use crate::console::widgets::chart::NO_DATA;
 use crate::console::widgets::table::first_row;
+use crate::notation::dollars;
+
+/// The steps of a week.
+pub struct WaterfallPane;
+
+impl Pane<Cash> for WaterfallPane {
+    fn hints(&self, _: &Cash) -> Vec<Action> {
+        vec![Action::Left, Action::Right, Action::Open]
+    }
+
+    fn figure(&self, cash: &Cash, look: &Look<'_>) -> Option<Figure> {
+        cash.figure_of(selected(cash, look.company))
+    }
+
+    fn act(&self, cash: &mut Cash, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let last = cash.steps(look.company).len().saturating_sub(1);
+        match action {
+            Action::Open => return ledger_rows(selected(cash, look.company)),
+            Action::Left | Action::Right => {
+                cash.walk_weeks(action);
+            }
+            Action::Close if cash.week.is_some() => {
+                cash.walk_weeks(action);
+            }
+            Action::Up => cash.step = cash.step.min(last).saturating_sub(1),
+            Action::Down => cash.step = (cash.step + 1).min(last),
+            Action::First => cash.step = 0,
+            Action::Last => cash.step = last,
+            action => {
+                cash.table.act(action, look.page);
+            }
+        }
+        Vec::new()
+    }
+
+    fn click(&self, cash: &mut Cash, row: usize, _: &Look<'_>) -> Vec<Effect> {
+        cash.step = row;
+        Vec::new()
+    }
+
+    fn border(&self, cash: &Cash, _: Rect, look: &Look<'_>) -> Border {
+        let week = cash.week();
+        let change = cash_around(look.company, week).map_or(0.0, |(before, after)| after - before);
+        Border {
+            title: format!("From week {} to {week}", week.saturating_sub(1)),
+            note: arrow(change, &dollars(change.abs())),
+            keys: week_keys(look),
+        }
+    }
+
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        // Without the focus all of the way is seen, small steps together; with it every step can be reached.
+        let most = if seat.focused { usize::MAX } else { seat.area.height.saturating_sub(1) as usize };
+        let steps = waterfall(&cash.books, look.company, cash.week(), most);
+        let selected = seat.focused.then(|| cash.step.min(steps.len().saturating_sub(1)));
+        draw(canvas, seat.area, &steps, selected, seat.number);
+    }
+}
+
+/// The subject of the selected step.
+fn selected(cash: &Cash, company: &Company) -> Option<Selected> {
+    let (steps, week) = (cash.steps(company), cash.week());
+    let step = steps.get(cash.step.min(steps.len().saturating_sub(1)))?;
+    Some((step.subject, (week, week)))
+}
 
 /// Draws steps, one in a row. The bars begin at the lowest level on the way, or changes would be too small to see.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step], selected: Option<usize>, pane: usize) {
+fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step], selected: Option<usize>, pane: usize) {
     if steps.is_empty() {
         canvas.text(area, NO_DATA, Role::Dim);
         return;

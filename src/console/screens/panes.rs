@@ -1,0 +1,273 @@
+//! Screens made of panes: what a pane is, and the host that owns the focus, borders, filters, clicks and zoom.
+//!
+//! A screen keeps the state, because its panes share it; each pane is one type that says how its part looks and acts.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use super::{Figure, Look, Screen};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, Click};
+use crate::console::effect::Effect;
+use crate::console::message::News;
+use crate::console::readings::Reading;
+use crate::console::widgets::{Field, Table};
+use crate::session::Rows;
+
+/// What stands in the border of a pane.
+#[derive(Default)]
+pub struct Border {
+    /// What the pane is.
+    pub title: String,
+    /// What is worth knowing about it, at the right.
+    pub note: String,
+    /// Keys that work in it, in the lower border while it has the focus.
+    pub keys: String,
+}
+
+/// Where a pane is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Seat {
+    /// Its inside.
+    pub area: Rect,
+    /// Whether it has the focus.
+    pub focused: bool,
+    /// Its number on the screen, for clicks on its rows.
+    pub number: usize,
+}
+
+/// One pane of a screen `S`.
+pub trait Pane<S> {
+    /// Its table, if it is made of one: the host moves in it, filters and sorts it.
+    fn table<'a>(&self, _: &'a S) -> Option<&'a Table> {
+        None
+    }
+
+    /// The same, to be changed.
+    fn table_mut<'a>(&self, _: &'a mut S) -> Option<&'a mut Table> {
+        None
+    }
+
+    /// Scopes while it has the focus, the innermost first.
+    fn scopes(&self, screen: &S) -> Vec<Scope> {
+        match self.table(screen) {
+            Some(table) if table.is_typing() => vec![Scope::Field, Scope::List],
+            _ => vec![Scope::List],
+        }
+    }
+
+    /// Actions worth showing in the footer.
+    fn hints(&self, _: &S) -> Vec<Action> {
+        Vec::new()
+    }
+
+    /// The figure that is selected.
+    fn figure(&self, _: &S, _: &Look<'_>) -> Option<Figure> {
+        None
+    }
+
+    /// Does an action.
+    fn act(&self, screen: &mut S, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        if let Some(table) = self.table_mut(screen) {
+            table.act(action, look.page);
+        }
+        Vec::new()
+    }
+
+    /// Takes a key that is typed into a text.
+    fn key(&self, screen: &mut S, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
+        self.filter(screen, &mut |field| {
+            field.key(key);
+        });
+        Vec::new()
+    }
+
+    /// Takes pasted text.
+    fn paste(&self, screen: &mut S, text: &str, _: &Look<'_>) -> Vec<Effect> {
+        self.filter(screen, &mut |field| field.insert(text));
+        Vec::new()
+    }
+
+    /// Changes the filter while it is typed.
+    fn filter(&self, screen: &mut S, edit: &mut dyn FnMut(&mut Field)) {
+        if let Some(table) = self.table_mut(screen) {
+            table.edit_filter(edit);
+        }
+    }
+
+    /// A row was clicked; a second click on the same row opens it.
+    fn click(&self, screen: &mut S, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        let Some(table) = self.table_mut(screen) else { return Vec::new() };
+        let before = table.selected();
+        table.select_place(row);
+        if before == table.selected() { self.act(screen, Action::Open, look) } else { Vec::new() }
+    }
+
+    /// What stands in its border when it has an area.
+    fn border(&self, screen: &S, area: Rect, look: &Look<'_>) -> Border;
+
+    /// Draws its inside.
+    fn draw(&self, screen: &S, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>);
+}
+
+/// A screen made of panes.
+pub trait Paned: Sized + 'static {
+    /// Names of its panes.
+    type Name: Copy + PartialEq + 'static;
+
+    /// The panes that can have the focus now, in the order of the tab key.
+    fn panes(&self) -> &'static [Self::Name];
+
+    /// What a name stands for.
+    fn pane(name: Self::Name) -> &'static dyn Pane<Self>;
+
+    /// The pane with the focus.
+    fn focused(&self) -> Self::Name;
+
+    /// Moves the focus to a pane.
+    fn focus_on(&mut self, name: Self::Name);
+
+    /// Does what an action means whichever pane has the focus; none where that depends on the pane.
+    fn act_anywhere(&mut self, _: Action, _: &Look<'_>) -> Option<Vec<Effect>> {
+        None
+    }
+
+    /// Lays the panes out, each with [`draw_pane`].
+    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
+
+    /// See [`Screen::readings`].
+    fn readings(&self) -> &'static [Reading] {
+        &[]
+    }
+
+    /// See [`Screen::take`].
+    fn take(&mut self, _: Reading, _: &Rows, _: &Look<'_>) {}
+
+    /// See [`Screen::looked_at`].
+    fn looked_at(&mut self) {}
+
+    /// See [`Screen::unseen`].
+    fn unseen(&self) -> usize {
+        0
+    }
+
+    /// See [`Screen::renew`].
+    fn renew(&mut self, _: &Look<'_>) {}
+
+    /// See [`Screen::hear`].
+    fn hear(&mut self, _: &News, _: &Look<'_>) -> Vec<Effect> {
+        Vec::new()
+    }
+
+    /// See [`Screen::holds_unsent_text`].
+    fn holds_unsent_text(&self) -> bool {
+        false
+    }
+}
+
+/// Draws a pane: its border, its inside, and where it can be clicked.
+pub fn draw_pane<S: Paned>(screen: &S, name: S::Name, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    let pane = S::pane(name);
+    let number = number_of(screen, name);
+    let focused = screen.focused() == name;
+    canvas.click(area, Click::Pane(number));
+    let border = pane.border(screen, area, look);
+    let inside = canvas.pane(area, &border.title, &border.note, focused);
+    if focused && !border.keys.is_empty() {
+        canvas.pane_keys(area, &border.keys);
+    }
+    pane.draw(screen, canvas, Seat { area: inside, focused, number }, look);
+}
+
+fn number_of<S: Paned>(screen: &S, name: S::Name) -> usize {
+    screen.panes().iter().position(|own| *own == name).unwrap_or(0)
+}
+
+fn focused<S: Paned>(screen: &S) -> &'static dyn Pane<S> {
+    S::pane(screen.focused())
+}
+
+impl<S: Paned> Screen for S {
+    fn scopes(&self) -> Vec<Scope> {
+        focused(self).scopes(self)
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        focused(self).hints(self)
+    }
+
+    fn panes(&self) -> usize {
+        Paned::panes(self).len()
+    }
+
+    fn focus(&self) -> usize {
+        number_of(self, self.focused())
+    }
+
+    fn set_focus(&mut self, pane: usize) {
+        let panes = Paned::panes(self);
+        if let Some(name) = panes.get(pane).or(panes.last()) {
+            self.focus_on(*name);
+        }
+    }
+
+    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
+        focused(self).figure(self, look)
+    }
+
+    fn readings(&self) -> &'static [Reading] {
+        Paned::readings(self)
+    }
+
+    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
+        Paned::take(self, reading, rows, look);
+    }
+
+    fn looked_at(&mut self) {
+        Paned::looked_at(self);
+    }
+
+    fn unseen(&self) -> usize {
+        Paned::unseen(self)
+    }
+
+    fn renew(&mut self, look: &Look<'_>) {
+        Paned::renew(self, look);
+    }
+
+    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
+        Paned::hear(self, news, look)
+    }
+
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        match self.act_anywhere(action, look) {
+            Some(effects) => effects,
+            None => focused(self).act(self, action, look),
+        }
+    }
+
+    fn key(&mut self, key: &KeyEvent, look: &Look<'_>) -> Vec<Effect> {
+        focused(self).key(self, key, look)
+    }
+
+    fn paste(&mut self, text: &str, look: &Look<'_>) -> Vec<Effect> {
+        focused(self).paste(self, text, look)
+    }
+
+    fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        self.set_focus(pane);
+        focused(self).click(self, row, look)
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        if canvas.zoomed {
+            draw_pane(self, self.focused(), canvas, area, look);
+        } else {
+            self.arrange(canvas, area, look);
+        }
+    }
+
+    fn holds_unsent_text(&self) -> bool {
+        Paned::holds_unsent_text(self)
+    }
+}

@@ -28,7 +28,7 @@ pub struct Border {
 /// Where a pane is drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct Seat {
-    /// Its inside.
+    /// Its area, or the inside of its border.
     pub area: Rect,
     /// Whether it has the focus.
     pub focused: bool,
@@ -108,6 +108,27 @@ pub trait Pane<S> {
 
     /// Draws its inside.
     fn draw(&self, screen: &S, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>);
+
+    /// Draws all of it into its area; a pane of more than one box does so itself.
+    fn show(&self, screen: &S, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        draw_framed(self, screen, canvas, seat, look);
+    }
+}
+
+/// Draws the border of a pane and its inside into an area.
+pub fn draw_framed<S>(
+    pane: &(impl Pane<S> + ?Sized),
+    screen: &S,
+    canvas: &mut Canvas<'_>,
+    seat: Seat,
+    look: &Look<'_>,
+) {
+    let border = pane.border(screen, seat.area, look);
+    let inside = canvas.pane(seat.area, &border.title, &border.note, seat.focused);
+    if seat.focused && !border.keys.is_empty() {
+        canvas.pane_keys(seat.area, &border.keys);
+    }
+    pane.draw(screen, canvas, Seat { area: inside, ..seat }, look);
 }
 
 /// A screen made of panes.
@@ -165,18 +186,12 @@ pub trait Paned: Sized + 'static {
     }
 }
 
-/// Draws a pane: its border, its inside, and where it can be clicked.
+/// Draws a pane where it can be clicked.
 pub fn draw_pane<S: Paned>(screen: &S, name: S::Name, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-    let pane = S::pane(name);
     let number = number_of(screen, name);
-    let focused = screen.focused() == name;
     canvas.click(area, Click::Pane(number));
-    let border = pane.border(screen, area, look);
-    let inside = canvas.pane(area, &border.title, &border.note, focused);
-    if focused && !border.keys.is_empty() {
-        canvas.pane_keys(area, &border.keys);
-    }
-    pane.draw(screen, canvas, Seat { area: inside, focused, number }, look);
+    let seat = Seat { area, focused: screen.focused() == name, number };
+    S::pane(name).show(screen, canvas, seat, look);
 }
 
 fn number_of<S: Paned>(screen: &S, name: S::Name) -> usize {

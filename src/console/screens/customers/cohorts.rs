@@ -4,10 +4,15 @@ use std::collections::BTreeMap;
 
 use ratatui::layout::Rect;
 
+use super::Customers;
+use super::opened::show_rows;
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click};
-use crate::console::screens::Figure;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
 use crate::console::theme::Role;
+use crate::console::widgets::chart::note_room;
 use crate::console::widgets::table::first_row;
 use crate::notation::{compact, percent};
 use crate::session::Rows;
@@ -17,6 +22,48 @@ use crate::world::identifiers::Group;
 /// Width of the names of cohorts with their sizes, and of a cell.
 const NAMES: u16 = 14;
 const CELL: u16 = 5;
+
+/// The triangle.
+pub struct CohortsPane;
+
+impl Pane<Customers> for CohortsPane {
+    fn hints(&self, _: &Customers) -> Vec<Action> {
+        vec![Action::Open, Action::FocusNext, Action::Close]
+    }
+
+    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+        customers.opened.cohort.figure(&customers.cohorts, customers.group(look.company)?)
+    }
+
+    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let Some(group) = customers.group(look.company) else { return Vec::new() };
+        if action == Action::Open {
+            return show_rows(self.figure(customers, look));
+        }
+        customers.opened.cohort.act(action, &customers.cohorts, group, look.company.seen.week);
+        Vec::new()
+    }
+
+    fn click(&self, customers: &mut Customers, row: usize, _: &Look<'_>) -> Vec<Effect> {
+        customers.opened.cohort = Place { cohort: row / 1000, since: row % 1000 };
+        Vec::new()
+    }
+
+    fn border(&self, customers: &Customers, area: Rect, look: &Look<'_>) -> Border {
+        let title = "Retention, %";
+        let week = look.company.seen.week;
+        let note = customers
+            .group(look.company)
+            .map_or(String::new(), |group| customers.cohorts.summary(group, week, note_room(area, title)));
+        Border { title: title.to_owned(), note, ..Border::default() }
+    }
+
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let Some(group) = customers.group(look.company) else { return };
+        let place = seat.focused.then_some(customers.opened.cohort);
+        draw(canvas, seat.area, &customers.cohorts, (group, look.company.seen.week), place, seat.number);
+    }
+}
 
 /// Those who signed in a week.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -148,7 +195,7 @@ fn shade(share: f64) -> &'static str {
 }
 
 /// Draws the triangle; cells are rows of the pane for clicks, a thousand to a cohort.
-pub fn draw(
+fn draw(
     canvas: &mut Canvas<'_>,
     area: Rect,
     cohorts: &Cohorts,

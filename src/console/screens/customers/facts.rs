@@ -1,23 +1,104 @@
 //! What is known of a group, line by line: plans, sources, money. Every line with a figure can be selected.
 
+use ratatui::layout::Rect;
+
+use super::Customers;
 use super::model::{Facts, Market, ad_budgets, development_budget};
+use super::opened::show_rows;
+use crate::console::action::Action;
+use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::company::Company;
-use crate::console::screens::Figure;
+use crate::console::effect::Effect;
+use crate::console::screens::market::model::name_of;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
 use crate::console::theme::Role;
 use crate::console::widgets::spark::bar;
+use crate::console::widgets::table::first_row;
 use crate::notation::{cents, compact, dollars, grouped, percent};
 use crate::world::identifiers::{Group, Plan};
 
+/// What is known of a group.
+pub struct FactsPane;
+
+impl FactsPane {
+    fn lines(&self, customers: &Customers, look: &Look<'_>, bars: usize) -> Vec<Fact> {
+        customers.group(look.company).map_or(Vec::new(), |group| {
+            facts(look.company, &customers.market, &customers.market.of(group), group, bars)
+        })
+    }
+}
+
+impl Pane<Customers> for FactsPane {
+    fn hints(&self, _: &Customers) -> Vec<Action> {
+        vec![Action::Open, Action::FocusNext, Action::Close]
+    }
+
+    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+        self.lines(customers, look, 0).into_iter().nth(customers.opened.fact)?.figure
+    }
+
+    /// Moves to the next line that holds a figure.
+    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        if action == Action::Open {
+            return show_rows(self.figure(customers, look));
+        }
+        let lines = self.lines(customers, look, 0);
+        let held: Vec<usize> = (0..lines.len()).filter(|at| lines[*at].figure.is_some()).collect();
+        let fact = &mut customers.opened.fact;
+        let place = held.iter().position(|at| *at >= *fact).unwrap_or(0);
+        let place = match action {
+            Action::Up => place.saturating_sub(1),
+            Action::Down if held.get(place) == Some(fact) => place + 1,
+            Action::First => 0,
+            Action::Last => held.len(),
+            _ => place,
+        };
+        *fact = held.get(place.min(held.len().saturating_sub(1))).copied().unwrap_or(0);
+        Vec::new()
+    }
+
+    fn click(&self, customers: &mut Customers, row: usize, _: &Look<'_>) -> Vec<Effect> {
+        customers.opened.fact = row;
+        Vec::new()
+    }
+
+    fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {
+        customers.group(look.company).map_or_else(Border::default, |group| {
+            let segment = if group.is_enterprise() { "enterprise" } else { "individual" };
+            let note = name_of(look.company, group).to_owned();
+            Border { title: format!("{group} · {segment}"), note, ..Border::default() }
+        })
+    }
+
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let selected = seat.focused.then_some(customers.opened.fact);
+        let bars = (seat.area.width as usize).saturating_sub(32).min(16);
+        let lines = self.lines(customers, look, bars);
+        let from = first_row(selected.unwrap_or(0), seat.area.height as usize, lines.len());
+        for (row, (at, fact)) in rows_of(seat.area).zip(lines.iter().enumerate().skip(from)) {
+            let here = selected == Some(at) && fact.figure.is_some();
+            let role = if here { Role::Selection } else { fact.role };
+            if here {
+                canvas.clear(row, role);
+            }
+            canvas.text(row, &fact.words, role);
+            canvas.aligned(row, &fact.figures, role, Align::Right);
+            canvas.click(row, Click::Row(seat.number, at));
+        }
+    }
+}
+
 /// A line.
-pub struct Fact {
+struct Fact {
     /// Words at the left.
-    pub words: String,
+    words: String,
     /// Figures at the right.
-    pub figures: String,
+    figures: String,
     /// Meaning.
-    pub role: Role,
+    role: Role,
     /// The figure it shows; none for a head.
-    pub figure: Option<Figure>,
+    figure: Option<Figure>,
 }
 
 fn head(words: &str, figures: String) -> Fact {
@@ -29,7 +110,7 @@ fn fact(words: String, figures: String, title: String, term: &'static str, sql: 
 }
 
 /// The lines of a group; bars have so many cells.
-pub fn facts(company: &Company, market: &Market, facts: &Facts, group: Group, bars: usize) -> Vec<Fact> {
+fn facts(company: &Company, market: &Market, facts: &Facts, group: Group, bars: usize) -> Vec<Fact> {
     // A small window has room for the parts that change most; money comes last.
     let mut lines = companies(company, group);
     lines.extend(plans(facts, group, bars));

@@ -2,17 +2,62 @@
 
 use ratatui::layout::Rect;
 
+use super::Customers;
 use super::model::{Market, ad_budget};
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click};
 use crate::console::company::Company;
-use crate::console::screens::Figure;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
 use crate::console::text::count;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{dollars, grouped};
 use crate::report::measures::ENOUGH_LEADS;
+use crate::tools::ToolId;
 use crate::world::identifiers::Channel;
+
+/// The map.
+pub struct ChannelsPane;
+
+impl Pane<Customers> for ChannelsPane {
+    fn hints(&self, _: &Customers) -> Vec<Action> {
+        vec![Action::Open]
+    }
+
+    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+        figure(look.company, customers.place)
+    }
+
+    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        if action == Action::Open {
+            return vec![Effect::ShowTool(ToolId::SetTargetedAdSpend)];
+        }
+        customers.place.act(action, look.company.seen.known_groups.len());
+        Vec::new()
+    }
+
+    fn click(&self, customers: &mut Customers, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        let groups = look.company.seen.known_groups.len().max(1);
+        customers.place = Place { channel: row / groups, group: row % groups };
+        Vec::new()
+    }
+
+    fn border(&self, _: &Customers, _: Rect, look: &Look<'_>) -> Border {
+        let open = look.keys.label(Action::Open).unwrap_or_default();
+        Border {
+            title: "Leads per $1,000".to_owned(),
+            note: "measured over 28 days · █ best of the group".to_owned(),
+            keys: format!("{open} set_targeted_ad_spend"),
+        }
+    }
+
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let (market, place) = (&customers.market, customers.place);
+        draw(canvas, seat.area, look.company, market, place, seat.focused, seat.number);
+    }
+}
 
 /// Place on the map.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -24,8 +69,8 @@ pub struct Place {
 }
 
 impl Place {
-    /// Moves on a map of so many groups; false if the action is none of the map.
-    pub fn act(&mut self, action: Action, groups: usize) -> bool {
+    /// Moves on a map of so many groups.
+    fn act(&mut self, action: Action, groups: usize) {
         let (last_channel, last_group) = (Channel::ALL.len() - 1, groups.saturating_sub(1));
         match action {
             Action::Up => self.channel = self.channel.saturating_sub(1),
@@ -34,9 +79,8 @@ impl Place {
             Action::Right => self.group = (self.group + 1).min(last_group),
             Action::First => self.group = 0,
             Action::Last => self.group = last_group,
-            _ => return false,
+            _ => {}
         }
-        true
     }
 }
 
@@ -46,7 +90,7 @@ const NAMES: u16 = 18;
 const CELL: u16 = 9;
 
 /// Draws the map. The shade compares channels within a group: groups differ too much among each other.
-pub fn draw(
+fn draw(
     canvas: &mut Canvas<'_>,
     area: Rect,
     company: &Company,
@@ -123,7 +167,7 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, value: Option<f64>, best: f64,
 }
 
 /// The selected figure and its rows.
-pub fn figure(company: &Company, place: Place) -> Option<Figure> {
+fn figure(company: &Company, place: Place) -> Option<Figure> {
     let (channel, group) = (Channel::ALL.get(place.channel)?, company.seen.known_groups.get(place.group)?);
     let sql = format!(
         "SELECT day, leads_generated, spend\nFROM ad_channel_leads\nWHERE channel_id = '{}' AND group_id = '{group}'\n    \

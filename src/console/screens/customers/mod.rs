@@ -3,39 +3,68 @@
 mod cohorts;
 mod columns;
 mod facts;
-mod group;
+mod groups;
 mod heat;
 mod model;
+mod opened;
+mod study;
 #[cfg(test)]
 mod tests;
+mod ways;
+mod weeks;
 
-use crossterm::event::KeyEvent;
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use self::cohorts::Cohorts;
 use self::columns::{columns, row_of};
-use self::group::{Known, Opened};
 use self::model::Market;
-use super::{Figure, Look, Screen};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click};
+use self::opened::Opened;
+use super::Look;
+use super::panes::{Pane, Paned, draw_pane};
+use crate::console::action::Action;
+use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::readings::Reading;
-use crate::console::text::count;
 use crate::console::widgets::Table;
 use crate::session::Rows;
-use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
-/// Panes.
-const GROUPS: usize = 0;
-const CHANNELS: usize = 1;
+/// Its panes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CustomersPane {
+    /// Every known group in a row.
+    #[default]
+    Groups,
+    /// Leads of a thousand dollars by channel.
+    Channels,
+    /// Where the open group leads.
+    Ways,
+    /// What is known of it.
+    Facts,
+    /// Its weeks.
+    Weeks,
+    /// Who stayed.
+    Cohorts,
+    /// What its study says.
+    Study,
+}
+
+/// The panes while no group is open, and those of the open one.
+const LISTED: [CustomersPane; 2] = [CustomersPane::Groups, CustomersPane::Channels];
+const OPENED: [CustomersPane; 5] = [
+    CustomersPane::Ways,
+    CustomersPane::Facts,
+    CustomersPane::Weeks,
+    CustomersPane::Cohorts,
+    CustomersPane::Study,
+];
 
 /// The screen.
 #[derive(Default)]
 pub struct Customers {
-    focus: usize,
+    /// The pane that has the focus while no group is open.
+    focus: CustomersPane,
     market: Market,
     table: Table,
     place: heat::Place,
@@ -48,12 +77,32 @@ pub struct Customers {
 impl Customers {
     /// Opens a group, if it is known.
     pub fn show(&mut self, group: Group, company: &Company) {
-        self.focus = GROUPS;
+        self.focus = CustomersPane::Groups;
         self.open = company.seen.known_groups.iter().position(|own| *own == group);
         self.opened = Opened::default();
+        self.select_open();
+    }
+
+    /// The group that is open, or selected in the list.
+    fn group(&self, company: &Company) -> Option<Group> {
+        company.seen.known_groups.get(self.open.or(self.table.selected())?).copied()
+    }
+
+    /// Opens another group instead of the open one.
+    fn turn_to(&mut self, other: impl Fn(usize) -> usize, company: &Company) {
+        let last = company.seen.known_groups.len().saturating_sub(1);
+        self.open = self.open.map(|open| other(open).min(last));
+        self.select_open();
+    }
+
+    fn select_open(&mut self) {
         if let Some(open) = self.open {
             self.table.select(open);
         }
+    }
+
+    fn is_on(&self, pane: CustomersPane) -> bool {
+        self.focused() == pane
     }
 
     fn refresh(&mut self, company: &Company) {
@@ -68,80 +117,40 @@ impl Customers {
         self.open = self.open.map(|open| open.min(last)).filter(|_| !groups.is_empty());
         self.place.group = self.place.group.min(last);
     }
-
-    fn known<'a>(&'a self, company: &'a Company) -> Known<'a> {
-        Known { company, market: &self.market, cohorts: &self.cohorts }
-    }
-
-    fn act_open(&mut self, open: usize, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        let groups = &look.company.seen.known_groups;
-        let Some(group) = groups.get(open).copied() else { return Vec::new() };
-        let last = groups.len().saturating_sub(1);
-        match (self.opened.focus, action) {
-            (_, Action::Close) => self.open = None,
-            (group::WAYS, Action::Left) => self.open = Some(open.saturating_sub(1)),
-            (group::WAYS, Action::Right) => self.open = Some((open + 1).min(last)),
-            (group::WAYS, Action::Open) => return vec![group::choose(self.opened.choice, group)],
-            (_, Action::Open) => {
-                let figure = self.opened.figure(self.known(look.company), group);
-                return figure.and_then(|figure| figure.sql).map(Effect::EditSql).into_iter().collect();
-            }
-            _ => {
-                let known = Known { company: look.company, market: &self.market, cohorts: &self.cohorts };
-                self.opened.act(action, known, group);
-            }
-        }
-        if let Some(open) = self.open {
-            self.table.select(open);
-        }
-        Vec::new()
-    }
 }
 
-impl Screen for Customers {
-    fn scopes(&self) -> Vec<Scope> {
-        match self.open.is_none() && self.focus == GROUPS && self.table.is_typing() {
-            true => vec![Scope::Field, Scope::List],
-            false => vec![Scope::List],
+impl Paned for Customers {
+    type Name = CustomersPane;
+
+    fn panes(&self) -> &'static [CustomersPane] {
+        if self.open.is_some() { &OPENED } else { &LISTED }
+    }
+
+    fn pane(name: CustomersPane) -> &'static dyn Pane<Customers> {
+        match name {
+            CustomersPane::Groups => &groups::GroupsPane,
+            CustomersPane::Channels => &heat::ChannelsPane,
+            CustomersPane::Ways => &ways::WaysPane,
+            CustomersPane::Facts => &facts::FactsPane,
+            CustomersPane::Weeks => &weeks::WeeksPane,
+            CustomersPane::Cohorts => &cohorts::CohortsPane,
+            CustomersPane::Study => &study::StudyPane,
         }
     }
 
-    fn hints(&self) -> Vec<Action> {
-        match (self.open, self.focus) {
-            (Some(_), _) => vec![Action::Open, Action::FocusNext, Action::Close],
-            (None, GROUPS) => vec![Action::Open, Action::Sort, Action::Filter],
-            (None, _) => vec![Action::Open],
-        }
-    }
-
-    fn panes(&self) -> usize {
-        if self.open.is_some() { group::PANES } else { 2 }
-    }
-
-    fn focus(&self) -> usize {
+    fn focused(&self) -> CustomersPane {
         if self.open.is_some() { self.opened.focus } else { self.focus }
     }
 
-    fn set_focus(&mut self, pane: usize) {
+    fn focus_on(&mut self, name: CustomersPane) {
         match self.open {
-            Some(_) => self.opened.focus = pane.min(group::PANES - 1),
-            None => self.focus = pane.min(CHANNELS),
+            Some(_) => self.opened.focus = name,
+            None => self.focus = name,
         }
     }
 
-    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
-        let company = look.company;
-        let groups = &company.seen.known_groups;
-        if let Some(group) = self.open.and_then(|open| groups.get(open)) {
-            return self.opened.figure(self.known(company), *group);
-        }
-        match self.focus {
-            GROUPS => {
-                let group = groups.get(self.table.selected()?)?;
-                columns::figure(*group, self.table.selected_column(), company)
-            }
-            _ => heat::figure(company, self.place),
-        }
+    fn act_anywhere(&mut self, action: Action, _: &Look<'_>) -> Option<Vec<Effect>> {
+        (action == Action::Close && self.open.take().is_some()).then(Vec::new)
     }
 
     fn readings(&self) -> &'static [Reading] {
@@ -167,118 +176,22 @@ impl Screen for Customers {
         self.refresh(look.company);
     }
 
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        if let Some(open) = self.open {
-            return self.act_open(open, action, look);
-        }
-        match (self.focus, action) {
-            (GROUPS, Action::Open) => {
-                self.open = self.table.selected();
-                self.opened = Opened::default();
-            }
-            (CHANNELS, Action::Open) => return vec![Effect::ShowTool(ToolId::SetTargetedAdSpend)],
-            (CHANNELS, action) => {
-                self.place.act(action, look.company.seen.known_groups.len());
-            }
-            (_, action) => {
-                self.table.act(action, look.page);
-            }
-        }
-        Vec::new()
-    }
-
-    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
-        self.table.edit_filter(|field| {
-            field.key(key);
-        });
-        Vec::new()
-    }
-
-    fn paste(&mut self, text: &str, _: &Look<'_>) -> Vec<Effect> {
-        self.table.edit_filter(|field| field.insert(text));
-        Vec::new()
-    }
-
-    fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
+    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         if self.open.is_some() {
-            let before = self.opened.choice;
-            self.set_focus(pane);
-            self.opened.click(row);
-            let again = pane == group::WAYS && before == self.opened.choice;
-            return if again { self.act(Action::Open, look) } else { Vec::new() };
-        }
-        if pane == CHANNELS {
-            let groups = look.company.seen.known_groups.len().max(1);
-            self.place = heat::Place { channel: row / groups, group: row % groups };
-            return Vec::new();
-        }
-        let before = self.table.selected();
-        self.table.select_place(row);
-        if before == self.table.selected() { self.act(Action::Open, look) } else { Vec::new() }
-    }
-
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let groups = &look.company.seen.known_groups;
-        let known = self.known(look.company);
-        if let Some(group) = self.open.and_then(|open| groups.get(open)) {
-            return match canvas.zoomed {
-                true => self.opened.draw_pane(canvas, area, look, known, *group, self.opened.focus),
-                false => self.opened.draw(canvas, area, look, known, *group),
-            };
-        }
-        if canvas.zoomed {
-            return match self.focus {
-                GROUPS => self.draw_table(canvas, area, look),
-                _ => self.draw_channels(canvas, area, look),
-            };
+            return opened::arrange(self, canvas, area, look);
         }
         let map = (heat::HEIGHT + 2).min(area.height / 2);
-        let list = (groups.len() as u16 + 3).min(area.height - map);
+        let list = (look.company.seen.known_groups.len() as u16 + 3).min(area.height - map);
         let rest = area.height - map - list;
         // What room is left shows the selected group; without it the list takes it all.
         let (list, rest) = if rest >= 14 { (list, rest) } else { (list + rest, 0) };
         let [table, channels, preview] =
             Layout::vertical([Constraint::Length(list), Constraint::Length(map), Constraint::Length(rest)])
                 .areas(area);
-        self.draw_table(canvas, table, look);
-        self.draw_channels(canvas, channels, look);
-        let selected = self.table.selected().and_then(|row| groups.get(row));
-        if let Some(group) = selected.filter(|_| rest > 0) {
-            group::draw_preview(canvas, preview, known, *group);
-        }
-    }
-}
-
-impl Customers {
-    fn draw_table(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let seen = &look.company.seen;
-        let note = match self.table.note() {
-            note if note.is_empty() => format!(
-                "{} · {} · week {}",
-                count(f64::from(seen.subscribers), "subscriber"),
-                count(f64::from(seen.seats), "seat"),
-                seen.week
-            ),
-            note => note,
-        };
-        canvas.click(area, Click::Pane(GROUPS));
-        let focused = self.focus == GROUPS;
-        let inside = canvas.pane(area, "Groups", &note, focused);
-        self.table.draw(canvas, inside, focused, GROUPS);
-        if focused {
-            canvas.pane_keys(area, &look.hints(&[Action::Open, Action::Sort, Action::Filter]));
-        }
-    }
-
-    fn draw_channels(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        canvas.click(area, Click::Pane(CHANNELS));
-        let focused = self.focus == CHANNELS;
-        let inside =
-            canvas.pane(area, "Leads per $1,000", "measured over 28 days · █ best of the group", focused);
-        heat::draw(canvas, inside, look.company, &self.market, self.place, focused, CHANNELS);
-        if focused {
-            let open = look.keys.label(Action::Open).unwrap_or_default();
-            canvas.pane_keys(area, &format!("{open} set_targeted_ad_spend"));
+        draw_pane(self, CustomersPane::Groups, canvas, table, look);
+        draw_pane(self, CustomersPane::Channels, canvas, channels, look);
+        if rest > 0 && self.table.selected().is_some() {
+            opened::draw_preview(self, canvas, preview, look);
         }
     }
 }

@@ -1,5 +1,6 @@
 use super::model::*;
 use super::*;
+use crate::console::screens::Screen;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
 use crate::session::{Cell as Value, Session};
 use crate::tools::ToolId;
@@ -70,7 +71,7 @@ fn a_group_opens_and_leads_to_its_tools() {
     let mut screen: Customers = shown(&mut session, &company);
     act(&mut screen, Action::Down, &company);
     act(&mut screen, Action::Open, &company);
-    assert_eq!((screen.open, screen.panes()), (Some(1), group::PANES));
+    assert_eq!((screen.open, Screen::panes(&screen)), (Some(1), OPENED.len()));
     let text = drawn(&screen, &company, 80, 21);
     assert!(text.contains("S2 · individual") && text.contains("set_targeted_dev_spend"), "{text}");
     act(&mut screen, Action::Down, &company);
@@ -144,7 +145,7 @@ fn the_triangle_is_made_of_customers_who_stayed() {
     let keys = crate::console::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     screen.show(group("S1"), &company);
-    screen.set_focus(3);
+    screen.focus_on(CustomersPane::Cohorts);
     act(&mut screen, Action::Last, &company);
     for _ in 0..9 {
         let figure = screen.figure(&look).expect("a figure");
@@ -174,7 +175,7 @@ fn every_pane_of_a_group_has_its_figures() {
     let look = Look { company: &company, keys: &keys, page: 5 };
     screen.show(group("S1"), &company);
     let mut rows = 0;
-    for pane in 1..screen.panes() {
+    for pane in 1..Screen::panes(&screen) {
         screen.set_focus(pane);
         act(&mut screen, Action::First, &company);
         for _ in 0..20 {
@@ -186,7 +187,7 @@ fn every_pane_of_a_group_has_its_figures() {
         }
     }
     assert!(rows > 40, "{rows}");
-    screen.set_focus(2);
+    screen.focus_on(CustomersPane::Weeks);
     let title = |screen: &Customers| screen.figure(&look).expect("a figure").title;
     act(&mut screen, Action::First, &company);
     act(&mut screen, Action::Left, &company);

@@ -1,0 +1,64 @@
+//! Every known group in a row.
+
+use ratatui::layout::Rect;
+
+use super::opened::Opened;
+use super::{Customers, columns};
+use crate::console::action::Action;
+use crate::console::canvas::Canvas;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::console::text::count;
+use crate::console::widgets::Table;
+
+/// The table of the groups.
+pub struct GroupsPane;
+
+impl Pane<Customers> for GroupsPane {
+    fn table<'a>(&self, customers: &'a Customers) -> Option<&'a Table> {
+        Some(&customers.table)
+    }
+
+    fn table_mut<'a>(&self, customers: &'a mut Customers) -> Option<&'a mut Table> {
+        Some(&mut customers.table)
+    }
+
+    fn hints(&self, _: &Customers) -> Vec<Action> {
+        vec![Action::Open, Action::Sort, Action::Filter]
+    }
+
+    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+        let group = customers.group(look.company)?;
+        columns::figure(group, customers.table.selected_column(), look.company)
+    }
+
+    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        if action == Action::Open {
+            customers.open = customers.table.selected();
+            customers.opened = Opened::default();
+        } else {
+            customers.table.act(action, look.page);
+        }
+        Vec::new()
+    }
+
+    fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {
+        let seen = &look.company.seen;
+        let note = match customers.table.note() {
+            note if note.is_empty() => format!(
+                "{} · {} · week {}",
+                count(f64::from(seen.subscribers), "subscriber"),
+                count(f64::from(seen.seats), "seat"),
+                seen.week
+            ),
+            note => note,
+        };
+        let keys = look.hints(&[Action::Open, Action::Sort, Action::Filter]);
+        Border { title: "Groups".to_owned(), note, keys }
+    }
+
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+        customers.table.draw(canvas, seat.area, seat.focused, seat.number);
+    }
+}

@@ -1,0 +1,110 @@
+//! A group opened: where the person is in it, and how its panes are laid out.
+
+use ratatui::layout::{Constraint, Layout, Rect};
+
+use super::cohorts::{self, CohortsPane};
+use super::facts::FactsPane;
+use super::ways::CHOICES;
+use super::weeks::WeeksPane;
+use super::{Customers, CustomersPane};
+use crate::console::action::Action;
+use crate::console::canvas::Canvas;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Pane, Seat, draw_pane};
+use crate::console::screens::{Figure, Look};
+
+/// Where the person is in an open group.
+#[derive(Debug)]
+pub struct Opened {
+    /// The pane that has the focus.
+    pub focus: CustomersPane,
+    /// The way that is chosen.
+    pub choice: usize,
+    /// The line of the facts.
+    pub fact: usize,
+    /// Weeks before the last one.
+    pub back: u32,
+    /// The flow that is selected.
+    pub flow: usize,
+    /// The cell of the triangle.
+    pub cohort: cohorts::Place,
+    /// First line of the study.
+    pub line: usize,
+}
+
+impl Default for Opened {
+    fn default() -> Opened {
+        let focus = CustomersPane::Ways;
+        Opened { focus, choice: 0, fact: 0, back: 0, flow: 0, cohort: cohorts::Place::default(), line: 0 }
+    }
+}
+
+/// A place in a list after an action.
+pub fn moved(at: usize, last: usize, action: Action) -> usize {
+    match action {
+        Action::Up => at.min(last).saturating_sub(1),
+        Action::Down => (at + 1).min(last),
+        Action::First => 0,
+        Action::Last => last,
+        _ => at,
+    }
+}
+
+/// Leads to the rows behind a figure, to look further.
+pub fn show_rows(figure: Option<Figure>) -> Vec<Effect> {
+    figure.and_then(|figure| figure.sql).map(Effect::EditSql).into_iter().collect()
+}
+
+/// Lays out the panes of the open group.
+pub fn arrange(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    use CustomersPane::{Cohorts, Facts, Study, Ways, Weeks};
+    let mut draw = |area: Rect, pane: CustomersPane| draw_pane(customers, pane, canvas, area, look);
+    let split = |area: Rect, first: u16| {
+        Layout::vertical([Constraint::Length(first), Constraint::Min(0)]).areas::<2>(area)
+    };
+    let columns = |constraints: [Constraint; 3]| Layout::horizontal(constraints).areas::<3>(area);
+    let (ways, focus) = (CHOICES as u16 + 2, customers.opened.focus);
+    if area.width >= 150 && area.height >= 30 {
+        let [left, middle, right] =
+            columns([Constraint::Percentage(40), Constraint::Min(0), Constraint::Length(44)]);
+        let [above, below] = split(middle, (area.height / 2).min(20));
+        let [facts, go] = split(right, area.height - ways);
+        for (area, pane) in [(left, Weeks), (above, Cohorts), (below, Study), (facts, Facts), (go, Ways)] {
+            draw(area, pane);
+        }
+    } else if area.width >= 104 && area.height >= 30 {
+        let [left, _, right] = columns([Constraint::Min(0), Constraint::Length(0), Constraint::Length(44)]);
+        let [above, below] = split(left, area.height * 3 / 5);
+        let [facts, go] = split(right, area.height - ways);
+        draw(above, Weeks);
+        draw(below, if focus == Study { Study } else { Cohorts });
+        draw(facts, Facts);
+        draw(go, Ways);
+    } else if focus == Cohorts {
+        // The triangle needs the width.
+        draw(area, Cohorts);
+    } else {
+        let [left, _, right] =
+            columns([Constraint::Min(0), Constraint::Length(0), Constraint::Percentage(50)]);
+        let [facts, go] = split(right, area.height.saturating_sub(ways));
+        draw(left, if focus == Study { Study } else { Weeks });
+        draw(facts, Facts);
+        draw(go, Ways);
+    }
+}
+
+/// Draws what the selected group is, below the list of all groups; it cannot be clicked.
+pub fn draw_preview(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    let middle = if area.width >= 150 { area.width * 3 / 10 } else { 0 };
+    let right = Constraint::Length(46.min(area.width / 2));
+    let [curves, kept, side] =
+        Layout::horizontal([Constraint::Min(0), Constraint::Length(middle), right]).areas(area);
+    let clicks = canvas.clicks.len();
+    let seat = |area: Rect| Seat { area, focused: false, number: 0 };
+    WeeksPane.show(customers, canvas, seat(curves), look);
+    if middle > 0 {
+        CohortsPane.show(customers, canvas, seat(kept), look);
+    }
+    FactsPane.show(customers, canvas, seat(side), look);
+    canvas.clicks.truncate(clicks);
+}

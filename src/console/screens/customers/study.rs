@@ -1,0 +1,53 @@
+//! What the study of a group says.
+
+use ratatui::layout::Rect;
+
+use super::Customers;
+use super::opened::{moved, show_rows};
+use crate::console::action::Action;
+use crate::console::canvas::Canvas;
+use crate::console::effect::Effect;
+use crate::console::screens::market::model::level_of;
+use crate::console::screens::market::report;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::notation::percent;
+
+/// Its estimates.
+pub struct StudyPane;
+
+impl Pane<Customers> for StudyPane {
+    fn hints(&self, _: &Customers) -> Vec<Action> {
+        vec![Action::Open, Action::FocusNext, Action::Close]
+    }
+
+    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+        let title = format!("what the study of {} says", customers.group(look.company)?);
+        Some(Figure { title, term: "info-level", sql: None })
+    }
+
+    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let Some(group) = customers.group(look.company) else { return Vec::new() };
+        if action == Action::Open {
+            return show_rows(self.figure(customers, look));
+        }
+        let last = report::lines(look.company, group).len().saturating_sub(1);
+        customers.opened.line = moved(customers.opened.line, last, action);
+        Vec::new()
+    }
+
+    fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {
+        customers.group(look.company).map_or_else(Border::default, |group| {
+            let level = level_of(look.company, group);
+            let noise = look.company.terms.level(level).map_or(0.0, |level| level.noise);
+            let note = format!("level {level} · ±{}", percent(noise, 0));
+            Border { title: format!("Study of {group}"), note, ..Border::default() }
+        })
+    }
+
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        if let Some(group) = customers.group(look.company) {
+            report::draw_estimates(canvas, seat.area, look.company, group, customers.opened.line);
+        }
+    }
+}

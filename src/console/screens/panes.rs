@@ -104,7 +104,9 @@ pub trait Pane<S> {
     }
 
     /// What stands in its border when it has an area.
-    fn border(&self, screen: &S, area: Rect, look: &Look<'_>) -> Border;
+    fn border(&self, _: &S, _: Rect, _: &Look<'_>) -> Border {
+        Border::default()
+    }
 
     /// Draws its inside.
     fn draw(&self, screen: &S, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>);
@@ -148,6 +150,11 @@ pub trait Paned: Sized + 'static {
     /// Moves the focus to a pane.
     fn focus_on(&mut self, name: Self::Name);
 
+    /// What lies over the panes for a while and takes every key; clicks on its rows have the number of panes.
+    fn over(&self) -> Option<&'static dyn Pane<Self>> {
+        None
+    }
+
     /// Does what an action means whichever pane has the focus; none where that depends on the pane.
     fn act_anywhere(&mut self, _: Action, _: &Look<'_>) -> Option<Vec<Effect>> {
         None
@@ -188,6 +195,9 @@ pub trait Paned: Sized + 'static {
 
 /// Draws a pane where it can be clicked.
 pub fn draw_pane<S: Paned>(screen: &S, name: S::Name, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    if area.is_empty() {
+        return;
+    }
     let number = number_of(screen, name);
     canvas.click(area, Click::Pane(number));
     let seat = Seat { area, focused: screen.focused() == name, number };
@@ -198,8 +208,9 @@ fn number_of<S: Paned>(screen: &S, name: S::Name) -> usize {
     screen.panes().iter().position(|own| *own == name).unwrap_or(0)
 }
 
+/// What takes the keys.
 fn focused<S: Paned>(screen: &S) -> &'static dyn Pane<S> {
-    S::pane(screen.focused())
+    screen.over().unwrap_or_else(|| S::pane(screen.focused()))
 }
 
 impl<S: Paned> Screen for S {
@@ -220,8 +231,7 @@ impl<S: Paned> Screen for S {
     }
 
     fn set_focus(&mut self, pane: usize) {
-        let panes = Paned::panes(self);
-        if let Some(name) = panes.get(pane).or(panes.last()) {
+        if let Some(name) = Paned::panes(self).get(pane) {
             self.focus_on(*name);
         }
     }
@@ -255,6 +265,9 @@ impl<S: Paned> Screen for S {
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        if let Some(over) = self.over() {
+            return over.act(self, action, look);
+        }
         match self.act_anywhere(action, look) {
             Some(effects) => effects,
             None => focused(self).act(self, action, look),
@@ -270,6 +283,10 @@ impl<S: Paned> Screen for S {
     }
 
     fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        // What lies below can be seen but not clicked.
+        if self.over().is_some() && pane < Screen::panes(self) {
+            return Vec::new();
+        }
         self.set_focus(pane);
         focused(self).click(self, row, look)
     }
@@ -279,6 +296,9 @@ impl<S: Paned> Screen for S {
             draw_pane(self, self.focused(), canvas, area, look);
         } else {
             self.arrange(canvas, area, look);
+        }
+        if let Some(over) = self.over() {
+            over.draw(self, canvas, Seat { area, focused: true, number: Screen::panes(self) }, look);
         }
     }
 

@@ -6,7 +6,7 @@ use ratatui::layout::Rect;
 
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
-use crate::console::screens::Look;
+use crate::console::screens::panes::Seat;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
@@ -81,17 +81,18 @@ impl Browser {
         self.typing.is_some()
     }
 
-    /// The field of the filter.
-    pub fn typing(&mut self) -> Option<&mut Field> {
-        self.typing.as_mut()
-    }
-
-    /// Applies the filter as far as it is typed.
-    pub fn typed(&mut self) {
-        if let Some(field) = &self.typing {
+    /// Changes the filter while it is typed.
+    pub fn edit_filter(&mut self, edit: &mut dyn FnMut(&mut Field)) {
+        if let Some(field) = &mut self.typing {
+            edit(field);
             self.filter = field.text().to_owned();
             self.stay_inside();
         }
+    }
+
+    /// The filter, for the border.
+    pub fn note(&self) -> String {
+        if self.filter.is_empty() { String::new() } else { format!("\"{}\"", self.filter) }
     }
 
     fn stay_inside(&mut self) {
@@ -136,19 +137,12 @@ impl Browser {
     }
 
     /// Draws the tree, and below it what the selected row means.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, pane: usize, look: &Look<'_>) {
-        canvas.click(area, Click::Pane(pane));
-        let entries = self.entries();
-        let note = if self.filter.is_empty() { String::new() } else { format!("\"{}\"", self.filter) };
-        let inside = canvas.pane(area, "Tables", &note, focused);
+    pub fn draw(&self, canvas: &mut Canvas<'_>, seat: Seat) {
+        let (inside, focused) = (seat.area, seat.focused);
         if inside.is_empty() {
             return;
         }
-        if focused {
-            let label = |action| look.keys.label(action).unwrap_or_default();
-            let keys = (label(Action::Open), label(Action::Right), label(Action::Left));
-            canvas.pane_keys(area, &format!("{} insert · {} columns · {} fold", keys.0, keys.1, keys.2));
-        }
+        let entries = self.entries();
         let words = if focused { self.explanation(inside.width as usize) } else { Vec::new() };
         let below = (words.len() as u16).min(inside.height / 3);
         let filter_row = u16::from(self.typing.is_some());
@@ -163,7 +157,7 @@ impl Browser {
         let from = first_row(self.selected, height as usize, entries.len());
         for (row, (at, entry)) in rows_of(tree).zip(entries.iter().enumerate().skip(from)) {
             self.draw_entry(canvas, row, *entry, (at == self.selected).then_some(focused));
-            canvas.click(row, Click::Row(pane, at));
+            canvas.click(row, Click::Row(seat.number, at));
         }
         let under = Rect { y: tree.bottom(), height: below, ..inside };
         for (row, line) in rows_of(under).zip(&words) {
@@ -237,8 +231,7 @@ mod tests {
         let mut browser = Browser::default();
         browser.act(Action::Last, 5);
         browser.act(Action::Filter, 5);
-        browser.typing().expect("a field").insert("amount");
-        browser.typed();
+        browser.edit_filter(&mut |field| field.insert("amount"));
         let names: Vec<&str> = browser.entries().into_iter().map(Entry::name).collect();
         assert!(names.contains(&"ledger") && names.contains(&"amount"), "{names:?}");
         assert!(browser.selected().is_some());

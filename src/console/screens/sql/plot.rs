@@ -2,9 +2,9 @@
 
 use ratatui::layout::Rect;
 
-use super::RESULTS;
 use super::values::{decimals_shown, is_numeric};
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
+use crate::console::screens::panes::Seat;
 use crate::console::text::{arrow, number};
 use crate::console::theme::Role;
 use crate::console::widgets::bars::{Bar, SIGNS, Scale};
@@ -202,7 +202,8 @@ impl Plot {
     }
 
     /// Draws the words, and the chart below them.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, rows: &Rows, table: &Table, focused: bool) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, seat: Seat, rows: &Rows, table: &Table) {
+        let area = seat.area;
         // The chart needs some rows more than the words above it.
         let said = self.ys.len().min(usize::from(area.height.saturating_sub(5)));
         for (row, (series, column)) in rows_of(area).zip(self.ys.iter().enumerate().take(said)) {
@@ -213,7 +214,7 @@ impl Plot {
         let below = Rect { y: area.y + said as u16, height: area.height - said as u16, ..area };
         match self.kind {
             ChartKind::Line => self.draw_lines(canvas, below, rows, table),
-            ChartKind::Bar => self.draw_bars(canvas, below, rows, table, focused),
+            ChartKind::Bar => self.draw_bars(canvas, Seat { area: below, ..seat }, rows, table),
         }
     }
 
@@ -254,7 +255,8 @@ impl Plot {
         chart(canvas, area, &lines, &x, &y);
     }
 
-    fn draw_bars(&self, canvas: &mut Canvas<'_>, area: Rect, rows: &Rows, table: &Table, focused: bool) {
+    fn draw_bars(&self, canvas: &mut Canvas<'_>, seat: Seat, rows: &Rows, table: &Table) {
+        let (area, focused) = (seat.area, seat.focused);
         let shown = table.shown();
         let names: Vec<String> = shown.iter().map(|row| self.name(table, *row)).collect();
         let selected = table.selected();
@@ -282,7 +284,7 @@ impl Plot {
         let from = first_row(place, fit, shown.len());
         for (row, (place, series)) in rows_of(area).zip(all.skip(from * each)) {
             scale.draw(canvas, row, &bar(place, series));
-            canvas.click(row, Click::Row(RESULTS, place));
+            canvas.click(row, Click::Row(seat.number, place));
         }
     }
 }

@@ -6,11 +6,11 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::plot::Plot;
-use super::{RESULTS, takeout, values};
+use super::{takeout, values};
 use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::canvas::{Canvas, rows_of};
 use crate::console::effect::Effect;
-use crate::console::screens::Look;
+use crate::console::screens::panes::Seat;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Table;
@@ -83,13 +83,13 @@ impl Results {
     }
 
     /// The table of rows.
-    pub fn table(&mut self) -> &mut Table {
-        &mut self.table
+    pub fn table(&self) -> &Table {
+        &self.table
     }
 
-    /// Whether a filter is being typed.
-    pub fn is_typing(&self) -> bool {
-        self.table.is_typing()
+    /// The same, to be changed.
+    pub fn table_mut(&mut self) -> &mut Table {
+        &mut self.table
     }
 
     /// Whether a chart is shown.
@@ -222,44 +222,10 @@ impl Results {
         if again { self.act(Action::WholeCell, page) } else { Vec::new() }
     }
 
-    /// Whether nothing was asked yet.
-    pub fn is_empty(&self) -> bool {
-        matches!(self.answer, Answer::None)
-    }
-
-    /// Draws the pane before anything was asked: what to try, and what the library holds as far as there is room.
-    pub fn draw_nothing(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, library: &Library) {
-        if area.is_empty() {
-            return;
-        }
-        canvas.click(area, Click::Pane(RESULTS));
-        let inside = canvas.pane(area, "Result", "no query yet", focused);
-        let used = (text(canvas, inside, "", LESSON, Role::Text) + 1).min(inside.height);
-        let below = Rect { y: inside.y + used, height: inside.height - used, ..inside };
-        let titles = library.queries().iter().map(|query| query.title.width()).max().unwrap_or(0) as u16;
-        for (row, query) in rows_of(below).zip(library.queries()) {
-            canvas.text(Rect { width: titles.min(row.width), ..row }, &query.title, Role::Text);
-            let what = Rect { x: row.x + titles + 2, width: row.width.saturating_sub(titles + 2), ..row };
-            canvas.text(what, &query.what, Role::Dim);
-        }
-    }
-
-    /// Draws the pane.
-    pub fn draw(
-        &self,
-        canvas: &mut Canvas<'_>,
-        area: Rect,
-        focused: bool,
-        running: Option<Duration>,
-        look: &Look<'_>,
-    ) {
-        if area.is_empty() {
-            return;
-        }
-        canvas.click(area, Click::Pane(RESULTS));
-        let (title, note) = match &self.answer {
-            _ if running.is_some() => ("Result".to_owned(), String::new()),
-            Answer::None => return,
+    /// What stands above the answer: what it is, and how its rows are filtered and sorted.
+    pub fn head(&self) -> (String, String) {
+        match &self.answer {
+            Answer::None => ("Result".to_owned(), "no query yet".to_owned()),
             Answer::Refused(refusal) if refusal.code == "sql_timeout" => {
                 ("Result · stopped".to_owned(), String::new())
             }
@@ -268,30 +234,33 @@ impl Results {
                 let drawn = self.plot.as_ref().map(|plot| format!(" · {}", plot.title(rows)));
                 (title(rows, *took) + &drawn.unwrap_or_default(), self.table.note())
             }
-        };
-        let inside = canvas.pane(area, &title, &note, focused);
-        if focused {
-            canvas.pane_keys(area, &look.hints(self.keys()));
-        }
-        if let Some(since) = running {
-            let seconds = match since.as_secs() {
-                0 => String::new(),
-                seconds => format!("{seconds} s "),
-            };
-            let row = Rect { height: 1.min(inside.height), ..inside };
-            return canvas.text(row, &format!("running {seconds}… esc cancels"), Role::Warning);
-        }
-        match &self.answer {
-            Answer::None => {}
-            Answer::Refused(refusal) => {
-                let role = if refusal.code == "sql_timeout" { Role::Warning } else { Role::Bad };
-                text(canvas, inside, refusal.code, &refusal.message, role);
-            }
-            Answer::Rows(rows, _) => self.draw_rows(canvas, inside, focused, rows),
         }
     }
 
-    fn draw_rows(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, rows: &Rows) {
+    /// Draws that a statement is being answered.
+    pub fn draw_running(&self, canvas: &mut Canvas<'_>, area: Rect, since: Duration) {
+        let seconds = match since.as_secs() {
+            0 => String::new(),
+            seconds => format!("{seconds} s "),
+        };
+        let row = Rect { height: 1.min(area.height), ..area };
+        canvas.text(row, &format!("running {seconds}… esc cancels"), Role::Warning);
+    }
+
+    /// Draws the answer.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, seat: Seat, library: &Library) {
+        match &self.answer {
+            Answer::None => draw_nothing(canvas, seat.area, library),
+            Answer::Refused(refusal) => {
+                let role = if refusal.code == "sql_timeout" { Role::Warning } else { Role::Bad };
+                text(canvas, seat.area, refusal.code, &refusal.message, role);
+            }
+            Answer::Rows(rows, _) => self.draw_rows(canvas, seat, rows),
+        }
+    }
+
+    fn draw_rows(&self, canvas: &mut Canvas<'_>, seat: Seat, rows: &Rows) {
+        let area = seat.area;
         let remark = match (&rows.warning, &rows.hint) {
             (Some(warning), _) => Some(warning.clone()),
             (None, Some(hint)) => Some(format!("no rows: {hint}")),
@@ -314,8 +283,8 @@ impl Results {
         };
         let below = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
         match &self.plot {
-            Some(plot) => plot.draw(canvas, below, rows, &self.table, focused),
-            None => self.table.draw(canvas, below, focused, RESULTS),
+            Some(plot) => plot.draw(canvas, Seat { area: below, ..seat }, rows, &self.table),
+            None => self.table.draw(canvas, below, seat.focused, seat.number),
         }
     }
 
@@ -329,7 +298,7 @@ impl Results {
     }
 
     /// What can be done with what is shown.
-    fn keys(&self) -> &'static [Action] {
+    pub fn keys(&self) -> &'static [Action] {
         match (self.is_chart(), &self.answer) {
             (true, _) => &[
                 Action::ChartX,
@@ -351,6 +320,18 @@ impl Results {
                 Action::CopyRow,
             ],
         }
+    }
+}
+
+/// Before anything was asked: what to try, and what the library holds as far as there is room.
+fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, library: &Library) {
+    let used = (text(canvas, area, "", LESSON, Role::Text) + 1).min(area.height);
+    let below = Rect { y: area.y + used, height: area.height - used, ..area };
+    let titles = library.queries().iter().map(|query| query.title.width()).max().unwrap_or(0) as u16;
+    for (row, query) in rows_of(below).zip(library.queries()) {
+        canvas.text(Rect { width: titles.min(row.width), ..row }, &query.title, Role::Text);
+        let what = Rect { x: row.x + titles + 2, width: row.width.saturating_sub(titles + 2), ..row };
+        canvas.text(what, &query.what, Role::Dim);
     }
 }
 

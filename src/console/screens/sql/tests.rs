@@ -2,9 +2,13 @@
 
 use std::time::Duration;
 
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+
 use super::*;
+use crate::console::action::Scope;
 use crate::console::company::Company;
 use crate::console::keys::Keys;
+use crate::console::screens::Screen;
 use crate::console::test_kit::{company, picture, session, sweep};
 use crate::session::{Cell, Refusal, Rows};
 
@@ -29,7 +33,7 @@ fn write(screen: &mut Sql, company: &Company, text: &str) {
 
 fn hear(screen: &mut Sql, company: &Company, answer: Result<Rows, Refusal>) {
     let news = News::Answered(1, answer, Duration::from_micros(12_400));
-    with_look(company, |look| screen.hear(&news, look));
+    with_look(company, |look| Screen::hear(screen, &news, look));
 }
 
 fn three_rows() -> Rows {
@@ -161,11 +165,11 @@ fn earlier_statements_are_found_by_typing_and_esc_loses_nothing() {
     let lines = picture(&screen, &company, 80, 21);
     assert!(holds(&lines, "SELECT 'of yesterday'") && holds(&lines, "1 of 2"), "{lines:#?}");
     act(&mut screen, &company, Action::Discard);
-    assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT 1 + half", EDITOR));
+    assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT 1 + half", SqlPane::Editor));
     act(&mut screen, &company, Action::History);
     act(&mut screen, &company, Action::History);
     act(&mut screen, &company, Action::Commit);
-    assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT 'of yesterday'", EDITOR));
+    assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT 'of yesterday'", SqlPane::Editor));
     act(&mut screen, &company, Action::History);
     let lines = picture(&screen, &company, 80, 21);
     assert!(holds(&lines, "draft SELECT 1 + half"), "what was replaced is not lost: {lines:#?}");
@@ -206,7 +210,7 @@ fn with_result(company: &Company, sql: &str, rows: Rows) -> Sql {
     screen.edit(sql);
     act(&mut screen, company, Action::RunQuery);
     hear(&mut screen, company, Ok(rows));
-    screen.set_focus(RESULTS);
+    screen.focus_on(SqlPane::Results);
     screen
 }
 
@@ -271,7 +275,7 @@ fn words_alone_cannot_be_drawn() {
     let mut screen = with_result(&company, "SELECT 1", rows);
     assert!(matches!(&act(&mut screen, &company, Action::Chart)[..], [Effect::Complain(_)]));
     let mut empty = Sql::default();
-    empty.set_focus(RESULTS);
+    empty.focus_on(SqlPane::Results);
     for action in [Action::Chart, Action::Export] {
         assert!(matches!(&act(&mut empty, &company, action)[..], [Effect::Complain(_)]));
     }
@@ -281,11 +285,11 @@ fn words_alone_cannot_be_drawn() {
 fn names_come_from_the_browser() {
     let company = company();
     let mut screen = Sql::default();
-    screen.set_focus(BROWSER);
+    screen.focus_on(SqlPane::Tables);
     act(&mut screen, &company, Action::Open);
     assert_eq!(screen.editor.text(), "SELECT * FROM customers LIMIT 100");
     screen.edit("SELECT");
-    screen.set_focus(BROWSER);
+    screen.focus_on(SqlPane::Tables);
     for action in [Action::Right, Action::Down, Action::Open] {
         act(&mut screen, &company, action);
     }
@@ -318,24 +322,24 @@ fn no_size_is_too_small() {
     let mut screen = Sql::default();
     sweep(&mut screen, &company);
     // A sweep leaves the focus on the last pane.
-    screen.set_focus(EDITOR);
+    screen.focus_on(SqlPane::Editor);
     write(&mut screen, &company, "SELECT * FROM ledger WHERE am");
     sweep(&mut screen, &company);
     act(&mut screen, &company, Action::RunQuery);
     hear(&mut screen, &company, Ok(three_rows()));
-    for focus in [RESULTS, BROWSER] {
-        screen.set_focus(focus);
+    for focus in [SqlPane::Results, SqlPane::Tables] {
+        screen.focus_on(focus);
         act(&mut screen, &company, Action::Right);
         act(&mut screen, &company, Action::Filter);
         assert_eq!(screen.scopes(), [Scope::Field]);
         sweep(&mut screen, &company);
-        screen.set_focus(focus);
+        screen.focus_on(focus);
         act(&mut screen, &company, Action::Discard);
     }
-    screen.set_focus(RESULTS);
+    screen.focus_on(SqlPane::Results);
     act(&mut screen, &company, Action::Chart);
     for change in [Action::MoreSeries, Action::ChartKind] {
-        screen.set_focus(RESULTS);
+        screen.focus_on(SqlPane::Results);
         act(&mut screen, &company, change);
         assert_eq!(screen.scopes()[0], Scope::Chart);
         sweep(&mut screen, &company);

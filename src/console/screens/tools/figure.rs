@@ -3,7 +3,6 @@
 use std::sync::LazyLock;
 
 use super::super::Figure;
-use super::Tools;
 use super::form::Form;
 use crate::tools::{ArgumentKind, CATALOGUE, Key, Spec, ToolId};
 
@@ -21,17 +20,13 @@ fn term_of(tool: ToolId, argument: &str) -> Option<&'static str> {
         .find(|name| name.split_once('.').is_some_and(|(own, rest)| own == tool.name() && rest == argument))
 }
 
-/// The figure that is selected.
-pub(super) fn of(tools: &Tools) -> Option<Figure> {
-    let spec = tools.here()?;
-    let whole = || Figure { title: spec.summary.to_owned(), term: spec.name(), sql: None };
-    match tools.seen_form().filter(|_| tools.focus == 1) {
-        Some(form) => of_cell(form).or_else(|| Some(whole())),
-        None => Some(whole()),
-    }
+/// A tool as a whole.
+pub(super) fn of_tool(spec: &'static Spec) -> Figure {
+    Figure { title: spec.summary.to_owned(), term: spec.name(), sql: None }
 }
 
-fn of_cell(form: &Form) -> Option<Figure> {
+/// The value that is selected in a form.
+pub(super) fn of_cell(form: &Form) -> Option<Figure> {
     let block = form.sheet.blocks.get(form.at.block)?;
     form.sheet.slot(form.at)?;
     let tool = form.spec.id;

@@ -209,16 +209,7 @@ impl Form {
             self.edit();
             return Vec::new();
         }
-        self.typing = None;
-        let scalar = self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_scalar);
-        if let Some(slot) = self.sheet.slot_mut(self.at) {
-            let text = slot.draft.as_ref().map_or("", Field::text).trim();
-            let same = !slot.is_changed() && parse_number(text).is_some();
-            // What was typed is what holds, or a number was emptied: the cell counts as untouched.
-            if same || (scalar && text.is_empty()) {
-                slot.draft = None;
-            }
-        }
+        self.settle();
         let left = self.at;
         match action {
             Action::CommitNext => self.walk(Action::Right),
@@ -230,6 +221,28 @@ impl Form {
             self.edit();
         }
         self.check()
+    }
+
+    /// Takes what was typed into a cell as its draft.
+    fn settle(&mut self) {
+        self.typing = None;
+        let scalar = self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_scalar);
+        if let Some(slot) = self.sheet.slot_mut(self.at) {
+            let text = slot.draft.as_ref().map_or("", Field::text).trim();
+            let same = !slot.is_changed() && parse_number(text).is_some();
+            // What was typed is what holds, or a number was emptied: the cell counts as untouched.
+            if same || (scalar && text.is_empty()) {
+                slot.draft = None;
+            }
+        }
+    }
+
+    /// Ends typing where it is; what was typed stays a draft.
+    pub fn stop_typing(&mut self) {
+        self.adding = None;
+        if self.typing.is_some() {
+            self.settle();
+        }
     }
 
     fn same_down(&mut self) -> Vec<Effect> {

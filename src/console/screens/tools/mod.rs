@@ -1,10 +1,11 @@
 //! Forms of all tools, made from the catalogue.
 
-mod draw;
 mod earlier;
 mod figure;
 mod form;
+mod form_pane;
 mod grid;
+mod list_pane;
 mod outcome;
 mod reference;
 mod sheet;
@@ -13,12 +14,13 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-use crossterm::event::KeyEvent;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::Value;
+use strum::VariantArray;
 
-use super::{Figure, Look, Screen, ScreenId};
-use crate::console::action::{Action, Scope};
+use super::panes::{Pane, Paned, draw_pane};
+use super::{Look, ScreenId};
+use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
@@ -30,11 +32,20 @@ use crate::tools::{CATALOGUE, Spec, ToolId};
 use form::{Form, spaced};
 use outcome::Leads;
 
+/// Its panes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
+pub enum ToolsPane {
+    /// Every tool.
+    #[default]
+    List,
+    /// The form of the selected one.
+    Form,
+}
+
 /// The screen.
 #[derive(Default)]
 pub struct Tools {
-    /// 0 the list, 1 the form.
-    focus: usize,
+    focus: ToolsPane,
     /// Place among the tools that are shown.
     selected: usize,
     filter: String,
@@ -76,7 +87,7 @@ impl Tools {
         self.typing = None;
         if let Some(place) = self.shown().iter().position(|spec| spec.id == tool) {
             self.selected = place;
-            self.focus = 1;
+            self.focus = ToolsPane::Form;
             if let Some(form) = self.form(company) {
                 form.at = sheet::Place::default();
             }
@@ -152,84 +163,32 @@ impl Tools {
         lines.push(String::new());
         lines.join("\n")
     }
-
-    fn act_in_list(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        let last = self.shown().len().saturating_sub(1);
-        match action {
-            Action::Up => self.selected = self.selected.saturating_sub(1),
-            Action::Down => self.selected = (self.selected + 1).min(last),
-            Action::PageUp => self.selected = self.selected.saturating_sub(look.page as usize),
-            Action::PageDown => self.selected = (self.selected + look.page as usize).min(last),
-            Action::First => self.selected = 0,
-            Action::Last => self.selected = last,
-            Action::Filter => self.typing = Some(Field::of(self.filter.clone())),
-            Action::Close | Action::Discard => {
-                self.typing = None;
-                self.filter.clear();
-                self.selected = 0;
-            }
-            Action::Commit | Action::CommitDown | Action::CommitNext => self.typing = None,
-            Action::Open | Action::Right => {
-                if let Some(effect) = self.elsewhere() {
-                    return if action == Action::Open { vec![effect] } else { Vec::new() };
-                }
-                self.focus = 1;
-            }
-            _ => {}
-        }
-        self.form(look.company);
-        Vec::new()
-    }
-
-    fn is_typing(&self) -> bool {
-        self.focus == 1 && self.seen_form().is_some_and(Form::is_typing)
-    }
 }
 
-impl Screen for Tools {
-    fn scopes(&self) -> Vec<Scope> {
-        match self.focus {
-            0 if self.typing.is_some() => vec![Scope::Field],
-            0 => vec![Scope::List],
-            _ if self.is_typing() => vec![Scope::Field, Scope::Form],
-            _ => vec![Scope::Form, Scope::List],
+impl Paned for Tools {
+    type Name = ToolsPane;
+
+    fn panes(&self) -> &'static [ToolsPane] {
+        ToolsPane::VARIANTS
+    }
+
+    fn pane(name: ToolsPane) -> &'static dyn Pane<Tools> {
+        match name {
+            ToolsPane::List => &list_pane::ListPane,
+            ToolsPane::Form => &form_pane::FormPane,
         }
     }
 
-    fn hints(&self) -> Vec<Action> {
-        match self.focus {
-            0 if self.typing.is_some() => vec![Action::Commit, Action::Discard],
-            0 => vec![Action::Open, Action::Filter],
-            _ if self.is_typing() => {
-                vec![Action::CommitDown, Action::CommitNext, Action::Apply, Action::Discard]
-            }
-            _ => vec![
-                Action::EditCell,
-                Action::Apply,
-                Action::SameDown,
-                Action::ResetForm,
-                Action::CopyCall,
-                Action::SaveCalls,
-                Action::Close,
-                Action::ClearCell,
-            ],
-        }
-    }
-
-    fn panes(&self) -> usize {
-        2
-    }
-
-    fn focus(&self) -> usize {
+    fn focused(&self) -> ToolsPane {
         self.focus
     }
 
-    fn set_focus(&mut self, pane: usize) {
-        self.focus = pane.min(1);
-    }
-
-    fn figure(&self, _: &Look<'_>) -> Option<Figure> {
-        figure::of(self)
+    fn focus_on(&mut self, name: ToolsPane) {
+        self.focus = name;
+        if name == ToolsPane::List {
+            // What was typed stays a draft; the form is not typed into any more when one comes back.
+            self.forms.values_mut().for_each(Form::stop_typing);
+        }
     }
 
     fn readings(&self) -> &'static [Reading] {
@@ -264,7 +223,7 @@ impl Screen for Tools {
                         form.reset(look.company);
                         // What was sent is done with; keys are those of the list again.
                         if form.spec.kind.acts() {
-                            self.focus = 0;
+                            self.focus = ToolsPane::List;
                         }
                     } else if let Err(refusal) = answer
                         && let Some(place) =
@@ -280,62 +239,18 @@ impl Screen for Tools {
         Vec::new()
     }
 
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        if self.focus == 0 {
-            return self.act_in_list(action, look);
-        }
-        if action == Action::Close || (action == Action::EditCell && self.elsewhere().is_some()) {
-            self.focus = 0;
-            return match action {
-                Action::EditCell => self.elsewhere().into_iter().collect(),
-                _ => Vec::new(),
-            };
-        }
-        if action == Action::SaveCalls {
-            return vec![Effect::Write("calls.txt".to_owned(), self.calls(look.company).into_bytes())];
-        }
-        match self.form(look.company) {
-            Some(form) => form.act(action, look.company),
-            None => Vec::new(),
-        }
-    }
-
-    fn key(&mut self, key: &KeyEvent, look: &Look<'_>) -> Vec<Effect> {
-        if self.focus == 0 {
-            if let Some(field) = &mut self.typing {
-                field.key(key);
-                self.filter = field.text().to_owned();
-                self.selected = 0;
-                self.form(look.company);
-            }
-            return Vec::new();
-        }
-        self.form(look.company).map_or(Vec::new(), |form| form.key(key))
-    }
-
-    fn paste(&mut self, text: &str, look: &Look<'_>) -> Vec<Effect> {
-        match self.focus {
-            0 => Vec::new(),
-            _ => self.form(look.company).map_or(Vec::new(), |form| form.paste(text)),
-        }
-    }
-
-    fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
-        if pane == 0 {
-            self.selected = row.min(self.shown().len().saturating_sub(1));
-            self.form(look.company);
-        } else if let Some(form) = self.form(look.company).filter(|form| !form.is_typing()) {
-            let place = form.sheet.places().nth(row);
-            if place == Some(form.at) {
-                return form.act(Action::EditCell, look.company);
-            }
-            form.at = place.unwrap_or(form.at);
-        }
-        Vec::new()
-    }
-
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        draw::draw(self, canvas, area, look);
+    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let narrow = area.width < 100;
+        let list = match self.focus {
+            ToolsPane::Form if narrow => 0,
+            _ if narrow => 34,
+            _ if area.width < 112 => 32,
+            // The longest name, its code, and what is between them.
+            _ => 37,
+        };
+        let [left, right] = Layout::horizontal([Constraint::Length(list), Constraint::Min(0)]).areas(area);
+        draw_pane(self, ToolsPane::List, canvas, left, look);
+        draw_pane(self, ToolsPane::Form, canvas, right, look);
     }
 
     fn holds_unsent_text(&self) -> bool {

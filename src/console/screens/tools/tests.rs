@@ -1,7 +1,9 @@
 use serde_json::json;
 
 use super::*;
+use crate::console::action::Scope;
 use crate::console::keys::{Chord, Keys};
+use crate::console::screens::Screen;
 use crate::console::test_kit::{act, company, drawn, played, shown, sweep};
 use crate::session::{Refusal, Via};
 use crate::tools::ToolId;
@@ -48,6 +50,20 @@ fn tab_leaves_the_last_cell_as_it_was_typed_and_a_form_opens_at_its_first() {
 }
 
 #[test]
+fn leaving_the_form_ends_typing_and_keeps_what_was_typed() {
+    let (mut tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "down", "backspace"]);
+    assert!(tools.seen_form().is_some_and(Form::is_typing));
+    // A click on the list, while a number is emptied in the form.
+    tools.focus_on(ToolsPane::List);
+    let form = tools.seen_form().expect("a form");
+    assert!(!form.is_typing(), "enter would end typing instead of beginning it");
+    assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12})), "an emptied number is none");
+    let (mut tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2"]);
+    tools.focus_on(ToolsPane::List);
+    assert_eq!(tools.typed_arguments(), Some(json!({"A": 12})));
+}
+
+#[test]
 fn keys_pressed_outside_a_cell_type_nothing() {
     let (tools, _) = typed(ToolId::SetTargetedAdSpend, &["9", "$", "-", "5"]);
     let form = tools.seen_form().expect("a form");
@@ -85,12 +101,12 @@ fn after_a_call_the_keys_are_those_of_the_list_again() {
     let (company, keys) = (company(), Keys::shipped());
     let look = Look { company: &company, keys: &keys, page: 10 };
     let refused = Refusal::at("A", "price_not_positive", "no");
-    tools.hear(&News::Called(ToolId::SetPrices, Err(refused), company.clone().into()), &look);
-    assert_eq!(tools.focus(), 1, "a refused call is mended where it was typed");
-    tools.hear(&News::Called(ToolId::SetPrices, Ok(json!({})), company.clone().into()), &look);
-    assert_eq!((tools.focus(), tools.scopes()), (0, vec![Scope::List]));
+    Screen::hear(&mut tools, &News::Called(ToolId::SetPrices, Err(refused), company.clone().into()), &look);
+    assert_eq!(tools.focus, ToolsPane::Form, "a refused call is mended where it was typed");
+    Screen::hear(&mut tools, &News::Called(ToolId::SetPrices, Ok(json!({})), company.clone().into()), &look);
+    assert_eq!((tools.focus, tools.scopes()), (ToolsPane::List, vec![Scope::List]));
     assert!(tools.seen_form().expect("a form").answer.is_some());
-    tools.hear(&News::Undone(Ok(Vec::new()), company.clone().into()), &look);
+    Screen::hear(&mut tools, &News::Undone(Ok(Vec::new()), company.clone().into()), &look);
     assert!(tools.seen_form().expect("a form").answer.is_none(), "what was answered holds no longer");
 }
 
@@ -104,7 +120,7 @@ fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
     let Some(Effect::ConfirmCall { tool, arguments, text }) = effects.first() else { panic!("{effects:?}") };
     assert_eq!((*tool, arguments), (ToolId::SendEnterpriseDeal, &json!({"deals": [[7, [["B", 30]]]]})));
     assert!(text.contains("cannot be undone"), "{text}");
-    assert!(tools.holds_unsent_text());
+    assert!(Screen::holds_unsent_text(&tools));
     let (_, effects) = typed(ToolId::SendEnterpriseDeal, &["enter", "[", "7", "enter", "ctrl-s"]);
     assert!(
         matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: a list")),
@@ -143,10 +159,10 @@ fn drafts_stay_when_another_tool_is_looked_at() {
     let (company, keys) = (company(), Keys::shipped());
     let look = Look { company: &company, keys: &keys, page: 10 };
     tools.show(ToolId::SetDailySpend, &company);
-    tools.renew(&look);
+    Screen::renew(&mut tools, &look);
     tools.show(ToolId::SetPrices, &company);
     assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
-    assert!(tools.holds_unsent_text());
+    assert!(Screen::holds_unsent_text(&tools));
 }
 
 #[test]
@@ -164,7 +180,7 @@ fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
             None => tools.key(&chord.event(), &look),
         };
     }
-    assert_eq!(tools.focus(), 0, "esc has left the form");
+    assert_eq!(tools.focus, ToolsPane::List, "esc has left the form");
     for (width, height) in [(120, 37), (200, 57)] {
         let text = drawn(&tools, &company, width, height);
         for words in [
@@ -178,9 +194,9 @@ fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
         }
     }
     let effects = act(&mut tools, Action::Open, &company);
-    assert!(effects.is_empty() && tools.holds_unsent_text());
+    assert!(effects.is_empty() && Screen::holds_unsent_text(&tools));
     act(&mut tools, Action::ResetForm, &company);
-    assert!(!tools.holds_unsent_text());
+    assert!(!Screen::holds_unsent_text(&tools));
 }
 
 #[test]
@@ -209,7 +225,7 @@ fn a_matrix_says_what_its_sums_were_and_what_a_channel_brought() {
         assert!(text.contains(words), "{words} in\n{text}");
     }
     assert!(!drawn(&tools, &company, 80, 21).contains("(yours)"));
-    tools.set_focus(1);
+    tools.focus_on(ToolsPane::Form);
     sweep(&mut tools, &company);
 }
 
@@ -261,7 +277,7 @@ fn a_field_names_its_term_and_its_history() {
                 session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
             }
         }
-        tools.set_focus(0);
+        tools.focus_on(ToolsPane::List);
         assert_eq!(tools.figure(&look).expect("a figure").term, spec.name());
     }
     tools.show(ToolId::SetPrices, &company);

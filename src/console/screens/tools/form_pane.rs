@@ -1,0 +1,232 @@
+//! The form of the selected tool: what it does, its values, what the call would do, how it was used before.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+use ratatui::text::Line as TextLine;
+
+use super::form::Form;
+use super::grid::{draw_sheet, form_lines};
+use super::outcome::outcome_lines;
+use super::sheet::Block;
+use super::{Tools, ToolsPane, figure};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, rows_of};
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat, draw_framed};
+use crate::console::screens::{Figure, Look};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::tools::{Numbers, Spec, ToolId, When, describe};
+
+/// The form.
+pub struct FormPane;
+
+impl Pane<Tools> for FormPane {
+    fn scopes(&self, tools: &Tools) -> Vec<Scope> {
+        let typing = tools.seen_form().is_some_and(Form::is_typing);
+        if typing { vec![Scope::Field, Scope::Form] } else { vec![Scope::Form, Scope::List] }
+    }
+
+    fn hints(&self, tools: &Tools) -> Vec<Action> {
+        if tools.seen_form().is_some_and(Form::is_typing) {
+            return vec![Action::CommitDown, Action::CommitNext, Action::Apply, Action::Discard];
+        }
+        vec![
+            Action::EditCell,
+            Action::Apply,
+            Action::SameDown,
+            Action::ResetForm,
+            Action::CopyCall,
+            Action::SaveCalls,
+            Action::Close,
+            Action::ClearCell,
+        ]
+    }
+
+    fn figure(&self, tools: &Tools, _: &Look<'_>) -> Option<Figure> {
+        let cell = tools.seen_form().and_then(figure::of_cell);
+        cell.or_else(|| tools.here().map(figure::of_tool))
+    }
+
+    fn act(&self, tools: &mut Tools, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        match action {
+            Action::Close => {
+                tools.focus = ToolsPane::List;
+                return Vec::new();
+            }
+            Action::EditCell if tools.elsewhere().is_some() => {
+                tools.focus = ToolsPane::List;
+                return tools.elsewhere().into_iter().collect();
+            }
+            Action::SaveCalls => {
+                let calls = tools.calls(look.company);
+                return vec![Effect::Write("calls.txt".to_owned(), calls.into_bytes())];
+            }
+            _ => {}
+        }
+        tools.form(look.company).map_or(Vec::new(), |form| form.act(action, look.company))
+    }
+
+    fn key(&self, tools: &mut Tools, key: &KeyEvent, look: &Look<'_>) -> Vec<Effect> {
+        tools.form(look.company).map_or(Vec::new(), |form| form.key(key))
+    }
+
+    fn paste(&self, tools: &mut Tools, text: &str, look: &Look<'_>) -> Vec<Effect> {
+        tools.form(look.company).map_or(Vec::new(), |form| form.paste(text))
+    }
+
+    fn click(&self, tools: &mut Tools, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        let Some(form) = tools.form(look.company).filter(|form| !form.is_typing()) else { return Vec::new() };
+        let place = form.sheet.places().nth(row);
+        if place == Some(form.at) {
+            return form.act(Action::EditCell, look.company);
+        }
+        form.at = place.unwrap_or(form.at);
+        Vec::new()
+    }
+
+    fn border(&self, tools: &Tools, _: Rect, _: &Look<'_>) -> Border {
+        match (tools.here(), tools.seen_form()) {
+            (Some(spec), Some(_)) => Border {
+                title: format!("{} · {} · {}", spec.name(), spec.module.id(), spec.code),
+                note: when(spec).to_owned(),
+                ..Border::default()
+            },
+            (spec, _) => {
+                let title = spec.map_or("Form", |spec| spec.name()).to_owned();
+                Border { title, ..Border::default() }
+            }
+        }
+    }
+
+    fn draw(&self, tools: &Tools, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let Some(form) = tools.seen_form() else { return };
+        let inside = Rect { x: seat.area.x + 1, width: seat.area.width.saturating_sub(2), ..seat.area };
+        let below = draw_head(form.spec, canvas, inside, look);
+        let lines = form_lines(form);
+        let outcome = outcome_lines(form, &tools.leads, look, inside.width as usize);
+        let room = below.height.saturating_sub(outcome.len().min(below.height as usize / 2) as u16);
+        let sheet = Rect { height: (lines.len() as u16).min(room), ..below };
+        draw_sheet(form, &tools.leads, &lines, canvas, sheet, seat.focused);
+        let rest = under(below, sheet.height + u16::from(sheet.height > 0));
+        let used = draw_outcome(&outcome, canvas, rest, look);
+        let below = under(rest, used + 1);
+        let used = draw_earlier(&form.earlier, canvas, below);
+        draw_manual(form.spec, canvas, under(below, used), look);
+    }
+
+    /// Its keys are always shown: they say what the form can do before one goes there.
+    fn show(&self, tools: &Tools, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        draw_framed(self, tools, canvas, seat, look);
+        if let Some(form) = tools.seen_form() {
+            canvas.pane_keys(seat.area, &keys(form, look));
+        }
+    }
+}
+
+/// What is left of an area below its first rows.
+fn under(area: Rect, rows: u16) -> Rect {
+    let rows = rows.min(area.height);
+    Rect { y: area.y + rows, height: area.height - rows, ..area }
+}
+
+/// What the tool does and costs; returns the area below, after a blank row.
+fn draw_head(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) -> Rect {
+    let width = area.width as usize;
+    let summary = wrapped(&format!("{}.", spec.summary), width);
+    let terms = wrapped(&terms(spec, &look.company.numbers, look.company.seen.day), width);
+    let line = |text: &String, role| TextLine::from(canvas.span(text.clone(), role));
+    let summary = summary.iter().map(|text| line(text, Role::Strong));
+    let head: Vec<TextLine<'_>> = summary.chain(terms.iter().map(|text| line(text, Role::Text))).collect();
+    canvas.lines(area, &head);
+    under(area, head.len() as u16 + 1)
+}
+
+/// What the call would do, and what came of it; returns the rows taken.
+fn draw_outcome(lines: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) -> u16 {
+    let mut shown: Vec<TextLine<'_>> =
+        lines.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
+    // What has no room here stands in the manual.
+    if shown.len() > area.height as usize && area.height > 0 {
+        shown.truncate(area.height as usize - 1);
+        let explain = look.keys.label(Action::Explain).unwrap_or_default();
+        let more = format!("… {explain} in the list of tools explains the rest");
+        shown.push(TextLine::from(canvas.span(more, Role::Dim)));
+    }
+    canvas.lines(area, &shown);
+    shown.len() as u16
+}
+
+/// How the tool was used before, where there is room for it; returns the rows taken, with a blank one.
+fn draw_earlier(calls: &[(u32, String)], canvas: &mut Canvas<'_>, area: Rect) -> u16 {
+    if calls.is_empty() || area.height < 3 {
+        return 0;
+    }
+    let used = (calls.len() as u16 + 2).min(area.height);
+    let mut rows = rows_of(area);
+    if let Some(row) = rows.next() {
+        canvas.text(row, "earlier in this run", Role::Header);
+    }
+    for (row, (day, arguments)) in rows.zip(calls) {
+        canvas.text(row, &format!("day {day:>3}  {arguments}"), Role::Dim);
+    }
+    used
+}
+
+/// The manual of the tool, in large windows.
+fn draw_manual(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    if area.height < 8 {
+        return;
+    }
+    let mut rows = rows_of(area);
+    if let Some(row) = rows.next() {
+        canvas.text(row, "manual", Role::Header);
+    }
+    for (row, line) in rows.zip(wrapped(&describe::manual(spec, &look.company.numbers), area.width as usize))
+    {
+        canvas.text(row, &line, Role::Text);
+    }
+}
+
+fn keys(form: &Form, look: &Look<'_>) -> String {
+    match form.spec.id {
+        ToolId::NextWeek => return "n opens the next-week dialog".to_owned(),
+        ToolId::Query => return "enter opens the SQL screen".to_owned(),
+        _ => {}
+    }
+    match form.sheet.blocks.is_empty() {
+        true => "enter runs it".to_owned(),
+        false if form.is_typing() => look.hints(&[Action::CommitDown, Action::Apply, Action::Discard]),
+        false => format!(
+            "{} {} · {} · {} · {} · {}",
+            look.hint(Action::EditCell),
+            if form.sheet.blocks.iter().all(Block::is_text) { "the list (JSON)" } else { "the value" },
+            look.hint(Action::Apply),
+            look.hint(Action::ResetForm),
+            look.hint(Action::CopyCall),
+            look.hint(Action::SaveCalls)
+        ),
+    }
+}
+
+fn when(spec: &Spec) -> &'static str {
+    match spec.when {
+        When::NextDay => "acts from tomorrow",
+        When::NextBilling => "acts on each next bill",
+        When::Now => "acts at once",
+        When::AtCompletion => "acts when it is done",
+        When::CustomerReply => "acts when the customer answers",
+        When::Never => "reads",
+    }
+}
+
+/// Cost and effect date of any call of the tool, before anything is typed.
+fn terms(spec: &Spec, numbers: &Numbers, today: u32) -> String {
+    let from = match spec.when {
+        When::NextDay => format!(" Acts from day {}.", today + 1),
+        When::NextBilling => format!(" From day {} on, each customer with the next bill.", today + 1),
+        When::Now if spec.kind.acts() => format!(" Acts at once, on day {today}."),
+        _ => String::new(),
+    };
+    format!("Costs {}.{from}", numbers.fill(spec.cost))
+}

@@ -126,35 +126,8 @@ pub struct Figure {
     pub sql: Option<String>,
 }
 
-/// One screen.
-pub trait Screen {
-    /// Scopes of the focused place, the innermost first; the global one is added by the caller. A text scope first
-    /// means that characters are typed.
-    fn scopes(&self) -> Vec<Scope>;
-
-    /// Actions worth showing in the footer.
-    fn hints(&self) -> Vec<Action> {
-        Vec::new()
-    }
-
-    /// Number of panes that can have the focus.
-    fn panes(&self) -> usize {
-        1
-    }
-
-    /// The pane that has the focus.
-    fn focus(&self) -> usize {
-        0
-    }
-
-    /// Moves the focus to a pane.
-    fn set_focus(&mut self, _: usize) {}
-
-    /// The figure that is selected.
-    fn figure(&self, _: &Look<'_>) -> Option<Figure> {
-        None
-    }
-
+/// What a screen keeps: it is told what happened, and what the database answered.
+pub trait ScreenState {
     /// What it asks the database for.
     fn readings(&self) -> &'static [Reading] {
         &[]
@@ -162,14 +135,6 @@ pub trait Screen {
 
     /// Takes what the database answered.
     fn take(&mut self, _: Reading, _: &Rows, _: &Look<'_>) {}
-
-    /// The person sees it now, or saw it until now.
-    fn looked_at(&mut self) {}
-
-    /// How much on it was not looked at yet, for the badge.
-    fn unseen(&self) -> usize {
-        0
-    }
 
     /// The company has changed.
     fn renew(&mut self, _: &Look<'_>) {}
@@ -179,29 +144,53 @@ pub trait Screen {
         Vec::new()
     }
 
-    /// Does an action of its scopes.
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect>;
+    /// The person sees it now, or saw it until now.
+    fn looked_at(&mut self) {}
 
-    /// Takes a key that is typed into a text.
-    fn key(&mut self, _: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
-        Vec::new()
+    /// How much on it was not looked at yet, for the badge.
+    fn unseen(&self) -> usize {
+        0
     }
-
-    /// Takes pasted text.
-    fn paste(&mut self, _: &str, _: &Look<'_>) -> Vec<Effect> {
-        Vec::new()
-    }
-
-    /// A row of a pane was clicked; again if it was selected before.
-    fn click(&mut self, _pane: usize, _row: usize, _: &Look<'_>) -> Vec<Effect> {
-        Vec::new()
-    }
-
-    /// Draws itself.
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
 
     /// Whether text would be lost with the program.
     fn holds_unsent_text(&self) -> bool {
         false
     }
+}
+
+/// One screen: how it acts and is drawn. Screens made of panes have it from [`panes::Paned`].
+pub trait Screen: ScreenState {
+    /// Scopes of the focused place, the innermost first; the global one is added by the caller. A text scope first
+    /// means that characters are typed.
+    fn scopes(&self) -> Vec<Scope>;
+
+    /// Actions worth showing in the footer.
+    fn hints(&self) -> Vec<Action>;
+
+    /// Number of panes that can have the focus.
+    fn panes(&self) -> usize;
+
+    /// Number of the pane that has the focus.
+    fn focus(&self) -> usize;
+
+    /// Moves the focus to a pane.
+    fn set_focus(&mut self, pane: usize);
+
+    /// The figure that is selected.
+    fn figure(&self, look: &Look<'_>) -> Option<Figure>;
+
+    /// Does an action of its scopes.
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect>;
+
+    /// Takes a key that is typed into a text.
+    fn key(&mut self, key: &KeyEvent, look: &Look<'_>) -> Vec<Effect>;
+
+    /// Takes pasted text.
+    fn paste(&mut self, text: &str, look: &Look<'_>) -> Vec<Effect>;
+
+    /// A row of a pane was clicked; again if it was selected before.
+    fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect>;
+
+    /// Draws itself.
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
 }

@@ -5,14 +5,11 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Figure, Look, Screen};
+use super::{Figure, Look, Screen, ScreenState};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click};
 use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::console::readings::Reading;
 use crate::console::widgets::{Field, Table};
-use crate::session::Rows;
 
 /// What stands in the border of a pane.
 #[derive(Default)]
@@ -134,7 +131,7 @@ pub fn draw_framed<S>(
 }
 
 /// A screen made of panes.
-pub trait Paned: Sized + 'static {
+pub trait Paned: ScreenState + Sized + 'static {
     /// Names of its panes.
     type Name: Copy + PartialEq + 'static;
 
@@ -162,35 +159,6 @@ pub trait Paned: Sized + 'static {
 
     /// Lays the panes out, each with [`draw_pane`].
     fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
-
-    /// See [`Screen::readings`].
-    fn readings(&self) -> &'static [Reading] {
-        &[]
-    }
-
-    /// See [`Screen::take`].
-    fn take(&mut self, _: Reading, _: &Rows, _: &Look<'_>) {}
-
-    /// See [`Screen::looked_at`].
-    fn looked_at(&mut self) {}
-
-    /// See [`Screen::unseen`].
-    fn unseen(&self) -> usize {
-        0
-    }
-
-    /// See [`Screen::renew`].
-    fn renew(&mut self, _: &Look<'_>) {}
-
-    /// See [`Screen::hear`].
-    fn hear(&mut self, _: &News, _: &Look<'_>) -> Vec<Effect> {
-        Vec::new()
-    }
-
-    /// See [`Screen::holds_unsent_text`].
-    fn holds_unsent_text(&self) -> bool {
-        false
-    }
 }
 
 /// Draws a pane where it can be clicked.
@@ -240,30 +208,6 @@ impl<S: Paned> Screen for S {
         focused(self).figure(self, look)
     }
 
-    fn readings(&self) -> &'static [Reading] {
-        Paned::readings(self)
-    }
-
-    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
-        Paned::take(self, reading, rows, look);
-    }
-
-    fn looked_at(&mut self) {
-        Paned::looked_at(self);
-    }
-
-    fn unseen(&self) -> usize {
-        Paned::unseen(self)
-    }
-
-    fn renew(&mut self, look: &Look<'_>) {
-        Paned::renew(self, look);
-    }
-
-    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
-        Paned::hear(self, news, look)
-    }
-
     fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
         if let Some(over) = self.over() {
             return over.act(self, action, look);
@@ -300,9 +244,5 @@ impl<S: Paned> Screen for S {
         if let Some(over) = self.over() {
             over.draw(self, canvas, Seat { area, focused: true, number: Screen::panes(self) }, look);
         }
-    }
-
-    fn holds_unsent_text(&self) -> bool {
-        Paned::holds_unsent_text(self)
     }
 }

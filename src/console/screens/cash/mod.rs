@@ -16,7 +16,7 @@ use self::books::table_of;
 use self::forecasts::Outlook;
 use self::model::{Books, Step, Subject, statement, waterfall};
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Figure, Look};
+use super::{Figure, Look, ScreenState};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
@@ -137,6 +137,14 @@ fn week_keys(look: &Look<'_>) -> String {
     format!("{keys} · {} ledger rows", label(Action::Open))
 }
 
+impl ScreenState for Cash {
+    fn renew(&mut self, look: &Look<'_>) {
+        self.books = Books::of(look.company);
+        self.refresh();
+        self.outlook.renew(look.company);
+    }
+}
+
 impl Paned for Cash {
     type Name = CashPane;
 
@@ -160,12 +168,6 @@ impl Paned for Cash {
 
     fn focus_on(&mut self, name: CashPane) {
         self.focus = name;
-    }
-
-    fn renew(&mut self, look: &Look<'_>) {
-        self.books = Books::of(look.company);
-        self.refresh();
-        self.outlook.renew(look.company);
     }
 
     fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {

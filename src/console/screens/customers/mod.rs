@@ -19,8 +19,8 @@ use self::cohorts::Cohorts;
 use self::columns::{columns, row_of};
 use self::model::Market;
 use self::opened::Opened;
-use super::Look;
 use super::panes::{Pane, Paned, draw_pane};
+use super::{Look, ScreenState};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
@@ -119,6 +119,31 @@ impl Customers {
     }
 }
 
+impl ScreenState for Customers {
+    fn readings(&self) -> &'static [Reading] {
+        &[
+            Reading::Subscribers,
+            Reading::Arrivals,
+            Reading::Departures,
+            Reading::LeadsByChannel,
+            Reading::Usage,
+            Reading::Cohorts,
+        ]
+    }
+
+    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
+        match reading {
+            Reading::Cohorts => self.cohorts = Cohorts::of(rows),
+            reading => self.market.take(reading, rows),
+        }
+        self.refresh(look.company);
+    }
+
+    fn renew(&mut self, look: &Look<'_>) {
+        self.refresh(look.company);
+    }
+}
+
 impl Paned for Customers {
     type Name = CustomersPane;
 
@@ -151,29 +176,6 @@ impl Paned for Customers {
 
     fn act_anywhere(&mut self, action: Action, _: &Look<'_>) -> Option<Vec<Effect>> {
         (action == Action::Close && self.open.take().is_some()).then(Vec::new)
-    }
-
-    fn readings(&self) -> &'static [Reading] {
-        &[
-            Reading::Subscribers,
-            Reading::Arrivals,
-            Reading::Departures,
-            Reading::LeadsByChannel,
-            Reading::Usage,
-            Reading::Cohorts,
-        ]
-    }
-
-    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
-        match reading {
-            Reading::Cohorts => self.cohorts = Cohorts::of(rows),
-            reading => self.market.take(reading, rows),
-        }
-        self.refresh(look.company);
-    }
-
-    fn renew(&mut self, look: &Look<'_>) {
-        self.refresh(look.company);
     }
 
     fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {

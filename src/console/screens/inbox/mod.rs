@@ -18,7 +18,7 @@ use self::estimate::Usage;
 use self::model::{Letters, State, Thread};
 use self::offer::{Choice, Offer, TERMS};
 use self::rows::{columns, row_of};
-use super::{Figure, Look, Screen, ScreenId};
+use super::{Figure, Look, Screen, ScreenId, ScreenState};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
@@ -269,6 +269,40 @@ fn list_prices(company: &Company) -> [f64; 3] {
     ["A", "B", "C"].map(|plan| company.setting(ToolId::SetPrices, plan))
 }
 
+impl ScreenState for Inbox {
+    fn readings(&self) -> &'static [Reading] {
+        &[Reading::EnterpriseTurns, Reading::Companies, Reading::Usage]
+    }
+
+    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
+        if reading == Reading::Usage {
+            self.usage = Usage::read(rows);
+            return;
+        }
+        self.letters.take(reading, rows);
+        self.refresh(look.company);
+    }
+
+    fn renew(&mut self, look: &Look<'_>) {
+        self.refresh(look.company);
+    }
+
+    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
+        match news {
+            News::Called(tool, Ok(answer), _) => {
+                let effects = self.sent(*tool, answer);
+                self.refresh(look.company);
+                effects
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    fn holds_unsent_text(&self) -> bool {
+        !self.drafts.is_empty() || (self.rule.is_some() && !self.marked.is_empty())
+    }
+}
+
 impl Screen for Inbox {
     fn scopes(&self) -> Vec<Scope> {
         match (self.typing.is_some(), self.focus == LIST && self.table.is_typing()) {
@@ -328,34 +362,6 @@ impl Screen for Inbox {
             _ => post::figure(thread, "thread with", "thread"),
         };
         Some(figure)
-    }
-
-    fn readings(&self) -> &'static [Reading] {
-        &[Reading::EnterpriseTurns, Reading::Companies, Reading::Usage]
-    }
-
-    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
-        if reading == Reading::Usage {
-            self.usage = Usage::read(rows);
-            return;
-        }
-        self.letters.take(reading, rows);
-        self.refresh(look.company);
-    }
-
-    fn renew(&mut self, look: &Look<'_>) {
-        self.refresh(look.company);
-    }
-
-    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
-        match news {
-            News::Called(tool, Ok(answer), _) => {
-                let effects = self.sent(*tool, answer);
-                self.refresh(look.company);
-                effects
-            }
-            _ => Vec::new(),
-        }
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
@@ -453,9 +459,5 @@ impl Screen for Inbox {
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         draw::draw(self, canvas, area, look);
-    }
-
-    fn holds_unsent_text(&self) -> bool {
-        !self.drafts.is_empty() || (self.rule.is_some() && !self.marked.is_empty())
     }
 }

@@ -6,7 +6,7 @@ mod scores;
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::{Figure, Look, Screen};
+use super::{Figure, Look, Screen, ScreenState};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click};
 use crate::console::effect::Effect;
@@ -70,6 +70,33 @@ impl Journal {
     }
 }
 
+impl ScreenState for Journal {
+    fn renew(&mut self, look: &Look<'_>) {
+        let mut rows = Vec::new();
+        self.wholes.clear();
+        self.figures.clear();
+        for line in entries::lines(look.company) {
+            rows.push(vec![
+                Cell::number(f64::from(line.day), line.day.to_string()).role(Role::Dim),
+                Cell::words(line.text).role(line.role),
+            ]);
+            self.figures.push(Figure { title: line.title.clone(), term: line.term, sql: line.sql });
+            self.wholes.push((line.title, line.whole));
+        }
+        self.table.set_rows(rows);
+        // The editor has its own idea of line ends: only like is compared with like.
+        let kept = Editor::of(&look.company.memo);
+        if !self.is_draft() && kept.text() != self.kept {
+            self.notes = kept.clone();
+        }
+        self.kept = kept.text();
+    }
+
+    fn holds_unsent_text(&self) -> bool {
+        self.is_draft()
+    }
+}
+
 impl Screen for Journal {
     fn scopes(&self) -> Vec<Scope> {
         match self.focus {
@@ -108,27 +135,6 @@ impl Screen for Journal {
             SCORES => scores::figure(look.company, self.horizon),
             _ => None,
         }
-    }
-
-    fn renew(&mut self, look: &Look<'_>) {
-        let mut rows = Vec::new();
-        self.wholes.clear();
-        self.figures.clear();
-        for line in entries::lines(look.company) {
-            rows.push(vec![
-                Cell::number(f64::from(line.day), line.day.to_string()).role(Role::Dim),
-                Cell::words(line.text).role(line.role),
-            ]);
-            self.figures.push(Figure { title: line.title.clone(), term: line.term, sql: line.sql });
-            self.wholes.push((line.title, line.whole));
-        }
-        self.table.set_rows(rows);
-        // The editor has its own idea of line ends: only like is compared with like.
-        let kept = Editor::of(&look.company.memo);
-        if !self.is_draft() && kept.text() != self.kept {
-            self.notes = kept.clone();
-        }
-        self.kept = kept.text();
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
@@ -186,10 +192,6 @@ impl Screen for Journal {
         let before = self.table.selected();
         self.table.select_place(row);
         if before == self.table.selected() { self.open() } else { Vec::new() }
-    }
-
-    fn holds_unsent_text(&self) -> bool {
-        self.is_draft()
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {

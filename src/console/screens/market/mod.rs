@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 
 use self::model::{Facts, Known, level_of, name_of, study_of, target_of, undiscovered};
 use self::news::Item;
-use super::{Figure, Look, Screen, ScreenId};
+use super::{Figure, Look, Screen, ScreenId, ScreenState};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
@@ -294,42 +294,7 @@ impl Market {
     }
 }
 
-impl Screen for Market {
-    fn scopes(&self) -> Vec<Scope> {
-        let typing = match self.focus {
-            GROUPS => self.table.is_typing(),
-            ATTEMPTS => self.attempts.is_typing(),
-            NEWS => self.headlines.is_typing(),
-            _ => false,
-        };
-        if typing { vec![Scope::Field] } else { vec![Scope::Market, Scope::List] }
-    }
-
-    fn hints(&self) -> Vec<Action> {
-        match self.focus {
-            NEWS => vec![Action::Open, Action::Filter, Action::FindGroup],
-            ECONOMY => vec![Action::Left, Action::Right, Action::Open, Action::FindGroup],
-            ATTEMPTS => vec![Action::FindGroup, Action::Sort, Action::Filter],
-            _ => vec![Action::Open, Action::StudyGroup, Action::LevelUp, Action::FindGroup, Action::Filter],
-        }
-    }
-
-    fn panes(&self) -> usize {
-        5
-    }
-
-    fn focus(&self) -> usize {
-        self.focus
-    }
-
-    fn set_focus(&mut self, pane: usize) {
-        self.focus = pane.min(ECONOMY);
-    }
-
-    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
-        figure::of(self, look.company)
-    }
-
+impl ScreenState for Market {
     fn readings(&self) -> &'static [Reading] {
         &[Reading::Knowledge, Reading::Attempts, Reading::Economy]
     }
@@ -371,6 +336,43 @@ impl Screen for Market {
             }
             _ => Vec::new(),
         }
+    }
+}
+
+impl Screen for Market {
+    fn scopes(&self) -> Vec<Scope> {
+        let typing = match self.focus {
+            GROUPS => self.table.is_typing(),
+            ATTEMPTS => self.attempts.is_typing(),
+            NEWS => self.headlines.is_typing(),
+            _ => false,
+        };
+        if typing { vec![Scope::Field] } else { vec![Scope::Market, Scope::List] }
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        match self.focus {
+            NEWS => vec![Action::Open, Action::Filter, Action::FindGroup],
+            ECONOMY => vec![Action::Left, Action::Right, Action::Open, Action::FindGroup],
+            ATTEMPTS => vec![Action::FindGroup, Action::Sort, Action::Filter],
+            _ => vec![Action::Open, Action::StudyGroup, Action::LevelUp, Action::FindGroup, Action::Filter],
+        }
+    }
+
+    fn panes(&self) -> usize {
+        5
+    }
+
+    fn focus(&self) -> usize {
+        self.focus
+    }
+
+    fn set_focus(&mut self, pane: usize) {
+        self.focus = pane.min(ECONOMY);
+    }
+
+    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
+        figure::of(self, look.company)
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -14,7 +14,7 @@ use unicode_width::UnicodeWidthStr;
 use self::figures::METRICS;
 use self::news::Item;
 use super::product::model::{Day, projects, service};
-use super::{Figure, Look, Screen, ScreenId};
+use super::{Figure, Look, Screen, ScreenId, ScreenState};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Align, Canvas, Click, fit};
 use crate::console::company::Company;
@@ -116,6 +116,40 @@ fn quality_rows(company: &Company) -> (Vec<Column>, Vec<Vec<Cell>>) {
     (columns.collect(), company.quality.iter().map(row).collect())
 }
 
+impl ScreenState for Overview {
+    fn readings(&self) -> &'static [Reading] {
+        &[Reading::Service, Reading::WeekNotices, Reading::Research]
+    }
+
+    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
+        match reading {
+            Reading::Service => self.days = service(rows),
+            Reading::WeekNotices => self.notices = news::of_notices(rows),
+            _ => self.research = news::of_research(&projects(rows), look.company.seen.day),
+        }
+        self.gather(look.company);
+    }
+
+    fn renew(&mut self, look: &Look<'_>) {
+        let company = look.company;
+        self.gather(company);
+        self.need = self.need.min(company.needs.len().saturating_sub(1));
+        let rows = METRICS.iter().map(|metric| figures::row_of(metric, company)).collect();
+        let first = self.week.rows().is_empty();
+        if first {
+            self.week = Table::default().by_cell();
+            self.quality = Table::default().by_cell();
+        }
+        self.week.set(figures::columns(), rows);
+        let (columns, rows) = quality_rows(company);
+        self.quality.set(columns, rows);
+        if first {
+            self.week.act(Action::Right, 1);
+            self.quality.act(Action::Right, 1);
+        }
+    }
+}
+
 impl Screen for Overview {
     fn scopes(&self) -> Vec<Scope> {
         let typing = match self.focus {
@@ -165,38 +199,6 @@ impl Screen for Overview {
                 Some(Figure { title, term: "delivered-quality", sql: None })
             }
             _ => Some(figures::figure(&METRICS[0], 0, company)),
-        }
-    }
-
-    fn readings(&self) -> &'static [Reading] {
-        &[Reading::Service, Reading::WeekNotices, Reading::Research]
-    }
-
-    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
-        match reading {
-            Reading::Service => self.days = service(rows),
-            Reading::WeekNotices => self.notices = news::of_notices(rows),
-            _ => self.research = news::of_research(&projects(rows), look.company.seen.day),
-        }
-        self.gather(look.company);
-    }
-
-    fn renew(&mut self, look: &Look<'_>) {
-        let company = look.company;
-        self.gather(company);
-        self.need = self.need.min(company.needs.len().saturating_sub(1));
-        let rows = METRICS.iter().map(|metric| figures::row_of(metric, company)).collect();
-        let first = self.week.rows().is_empty();
-        if first {
-            self.week = Table::default().by_cell();
-            self.quality = Table::default().by_cell();
-        }
-        self.week.set(figures::columns(), rows);
-        let (columns, rows) = quality_rows(company);
-        self.quality.set(columns, rows);
-        if first {
-            self.week.act(Action::Right, 1);
-            self.quality.act(Action::Right, 1);
         }
     }
 

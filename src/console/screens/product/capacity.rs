@@ -1,16 +1,20 @@
-//! The capacity ladder, how much of it is used, and how the service runs.
+//! The capacity ladder, and how much of it is used.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::model::{Day, Rung, last_week};
-use crate::console::canvas::{Align, Canvas, Click, rows_of};
+use super::part::{Part, tier};
+use super::{Product, ProductPane};
+use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::company::Company;
-use crate::console::text::number;
+use crate::console::effect::Effect;
+use crate::console::screens::Figure;
+use crate::console::screens::panes::Seat;
 use crate::console::theme::Role;
 use crate::console::widgets::chart::NO_DATA;
 use crate::console::widgets::table::first_row;
-use crate::console::widgets::{Axis, Line, Side, Unit, chart, spark};
-use crate::notation::{compact, dollars, grouped, percent};
+use crate::console::widgets::{Axis, Line, Side, Unit, chart};
+use crate::notation::{compact, dollars, percent};
 use crate::tools::ToolId;
 
 /// The tier that served last, and the tier that is set.
@@ -19,7 +23,7 @@ pub fn tiers(company: &Company, days: &[Day]) -> (Option<u32>, u32) {
 }
 
 /// One line on capacity.
-pub fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> String {
+fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> String {
     let (_, set) = tiers(company, days);
     let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return String::new() };
     match last_week(days) {
@@ -43,49 +47,62 @@ fn share(units: f64, of: f64) -> String {
     }
 }
 
-/// Draws the ladder, and the history of usage beside or below it where there is room.
-#[allow(clippy::too_many_arguments)]
-pub fn draw(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    company: &Company,
-    rungs: &[Rung],
-    days: &[Day],
-    selected: usize,
-    focused: bool,
-    pane: usize,
-) {
-    let rows = rungs.len() as u16 + 1;
-    let (list, history) = if area.height >= rows + 7 {
-        let [list, history] = Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(area);
-        (list, history)
-    } else if area.width >= 90 {
-        let [list, history] = Layout::horizontal([Constraint::Length(54), Constraint::Min(0)]).areas(area);
-        (list, history)
-    } else {
-        (area, Rect::default())
-    };
-    draw_ladder(canvas, list, company, rungs, days, selected, focused, pane);
-    draw_history(canvas, history, rungs, days);
+/// The ladder, and the history of usage beside or below it where there is room.
+pub struct Capacity;
+
+impl Part for Capacity {
+    fn name(&self) -> ProductPane {
+        ProductPane::Capacity
+    }
+
+    fn rows(&self, product: &Product, _: &Company) -> usize {
+        product.rungs.len()
+    }
+
+    fn summary(&self, product: &Product, company: &Company) -> String {
+        summary(company, &product.rungs, &product.days)
+    }
+
+    fn destination(&self, _: &Product) -> &'static str {
+        ToolId::SetCapacityTier.name()
+    }
+
+    fn open(&self, product: &Product, _: &Company) -> Effect {
+        let rung = product.rungs.get(product.place(self.name()));
+        tier(ToolId::SetCapacityTier, rung.map(|rung| rung.tier))
+    }
+
+    fn selected(&self, product: &Product, _: &Company) -> Option<Figure> {
+        let tier = product.rungs.get(product.place(self.name()))?.tier;
+        let sql = "SELECT day, total_usage_units, capacity_units, capacity_tier FROM service_day\n\
+                   WHERE day > (SELECT max(day) FROM service_day) - 7 ORDER BY day DESC";
+        let title = format!("use of tier {tier} in the last week");
+        Some(Figure { title, term: "capacity-tier", sql: Some(sql.to_owned()) })
+    }
+
+    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
+        let (area, rows) = (seat.area, product.rungs.len() as u16 + 1);
+        let [list, history] = if area.height >= rows + 7 {
+            Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(area)
+        } else if area.width >= 90 {
+            Layout::horizontal([Constraint::Length(54), Constraint::Min(0)]).areas(area)
+        } else {
+            [area, Rect::default()]
+        };
+        draw_ladder(product, canvas, Seat { area: list, ..seat }, company);
+        draw_history(canvas, history, &product.rungs, &product.days);
+    }
 }
 
-#[allow(clippy::too_many_arguments)]
-fn draw_ladder(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    company: &Company,
-    rungs: &[Rung],
-    days: &[Day],
-    selected: usize,
-    focused: bool,
-    pane: usize,
-) {
+fn draw_ladder(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
+    let (area, rungs, days) = (seat.area, &product.rungs, &product.days);
+    let selected = product.place(ProductPane::Capacity);
     let head = format!("{:<6}{:>10}{:>10}{:>9}{:>9}{:>8}", "tier", "units/day", "$/day", "mean", "peak", "");
     canvas.text(area, &head, Role::Header);
     let (in_force, set) = tiers(company, days);
     let used = last_week(days);
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-    if focused {
+    if seat.focused {
         canvas.page = below.height.max(1);
     }
     let from = first_row(selected, below.height as usize, rungs.len());
@@ -100,7 +117,7 @@ fn draw_ladder(
             _ if used.is_some_and(|(_, peak)| peak > rung.units) => "! too small",
             _ => "",
         };
-        let role = match (focused && at == selected, rung.tier == set, mark.starts_with('!')) {
+        let role = match (seat.focused && at == selected, rung.tier == set, mark.starts_with('!')) {
             (true, ..) => Role::Selection,
             (_, true, _) => Role::Strong,
             (_, _, true) => Role::Dim,
@@ -114,7 +131,7 @@ fn draw_ladder(
             dollars(rung.cost)
         );
         canvas.text(row, &text, role);
-        canvas.click(row, Click::Row(pane, at));
+        canvas.click(row, Click::Row(seat.number, at));
     }
 }
 
@@ -146,85 +163,4 @@ fn draw_history(canvas: &mut Canvas<'_>, area: Rect, rungs: &[Rung], days: &[Day
     let lines: Vec<Line> = dotted.into_iter().chain(curves).collect();
     let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[] };
     chart(canvas, area, &lines, &x, &Side { unit: Unit::Number, holds: &[0.0] });
-}
-
-/// A measure of the service: name, how it is read and written, and how several days are taken together.
-type Measure = (&'static str, fn(&Day) -> f64, fn(f64) -> String, fn(&[f64]) -> f64);
-
-static MEASURES: [Measure; 4] = [
-    ("utilisation", Day::utilisation, |share| percent(share, 0), peak),
-    ("latency p95, ms", |day| day.latency, |value| grouped(value, 0), peak),
-    ("error rate", |day| day.errors, |share| percent(share, 2), peak),
-    ("outage, minutes", |day| day.downtime, number, |days| days.iter().sum()),
-];
-
-fn peak(days: &[f64]) -> f64 {
-    days.iter().copied().fold(0.0, f64::max)
-}
-
-/// One line on the service.
-pub fn service_summary(days: &[Day]) -> String {
-    let Some(last) = days.last() else { return NO_DATA.to_owned() };
-    let minutes: f64 = days.iter().rev().take(28).map(|day| day.downtime).sum();
-    format!(
-        "p95 {} ms · errors {} · outage {} min in 28 days",
-        grouped(last.latency, 0),
-        percent(last.errors, 2),
-        number(minutes)
-    )
-}
-
-/// Draws the measures of the service by day, then the last outages.
-pub fn draw_service(canvas: &mut Canvas<'_>, area: Rect, days: &[Day]) {
-    let head = format!("{:<16}{:>8}{:>9}{:>9}  ", "", "last", "7-day", "28-day");
-    canvas.text(area, &head, Role::Header);
-    let trend = area.width.saturating_sub(44);
-    canvas.text(
-        Rect { x: area.x + 44.min(area.width), width: trend, ..area },
-        &format!("last {} days", (trend as usize).min(days.len())),
-        Role::Header,
-    );
-    let rows = rows_of(Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area });
-    let figures = MEASURES.iter().map(Some).chain(std::iter::once(None));
-    for (row, measure) in rows.zip(figures) {
-        match measure {
-            Some(measure) => draw_measure(canvas, row, measure, days),
-            None => draw_outages(canvas, row, days),
-        }
-    }
-}
-
-fn draw_measure(canvas: &mut Canvas<'_>, row: Rect, (name, read, write, together): &Measure, days: &[Day]) {
-    let values: Vec<f64> = days.iter().map(read).collect();
-    let of_days = |count: usize| match &values[values.len().saturating_sub(count)..] {
-        [] => "–".to_owned(),
-        last => write(together(last)),
-    };
-    let last = values.last().map_or("–".to_owned(), |value| write(*value));
-    let text = format!("{name:<16}{last:>8}{:>9}{:>9}", of_days(7), of_days(28));
-    canvas.text(row, &text, Role::Text);
-    if row.width > 44 {
-        let room = row.width - 44;
-        let place = Rect { x: row.x + 44, width: room, ..row };
-        canvas.text(place, &spark(&values, room as usize), Role::Series(0));
-    }
-    let overloaded = *name == "utilisation" && values.last().is_some_and(|value| *value > 1.0);
-    if overloaded {
-        canvas.aligned(Rect { width: 43.min(row.width), ..row }, "!", Role::Bad, Align::Right);
-    }
-}
-
-fn draw_outages(canvas: &mut Canvas<'_>, row: Rect, days: &[Day]) {
-    let outages: Vec<String> = days
-        .iter()
-        .rev()
-        .filter(|day| day.downtime > 0.0)
-        .take(6)
-        .map(|day| format!("day {} {} min", day.day, number(day.downtime)))
-        .collect();
-    let text = match outages.is_empty() {
-        true => "no outages so far; 7-day and 28-day figures are peaks".to_owned(),
-        false => format!("outages: {}", outages.join(" · ")),
-    };
-    canvas.text(row, &text, Role::Dim);
 }

@@ -5,10 +5,17 @@ use std::collections::BTreeMap;
 use ratatui::layout::Rect;
 
 use super::model::Ages;
+use super::part::{Part, cell};
+use super::{Product, ProductPane};
 use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::Figure;
+use crate::console::screens::panes::Seat;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::grouped;
+use crate::tools::ToolId;
 
 /// What the bars are made of, the youngest first: the older, the denser.
 const SHADES: [char; 4] = ['░', '▒', '▓', '█'];
@@ -17,35 +24,71 @@ const SHADES: [char; 4] = ['░', '▒', '▓', '█'];
 const FIGURES: u16 = 45;
 
 /// One line on issues; nothing is said before they were read.
-pub fn summary(issues: Option<&BTreeMap<String, Ages>>) -> String {
+fn summary(issues: Option<&BTreeMap<String, Ages>>) -> String {
     let Some(issues) = issues else { return String::new() };
     let all: f64 = issues.values().flatten().fold(0.0, |sum, count| sum + count);
     let old: f64 = issues.values().fold(0.0, |sum, ages| sum + ages[2] + ages[3]);
     format!("{} open, {} for 8 days or more", grouped(all, 0), grouped(old, 0))
 }
 
-/// The list of groups.
-pub struct List<'a> {
-    /// Open issues, once they were read.
-    pub issues: Option<&'a BTreeMap<String, Ages>>,
-    /// The selected group.
-    pub selected: usize,
-    /// Whether it has the focus.
-    pub focused: bool,
-    /// Its pane.
-    pub pane: usize,
+/// The groups whose customers wait for support.
+pub struct Issues;
+
+impl Issues {
+    fn group<'a>(&self, product: &'a Product) -> Option<&'a String> {
+        product.issues.as_ref()?.keys().nth(product.place(self.name()))
+    }
+}
+
+impl Part for Issues {
+    fn name(&self) -> ProductPane {
+        ProductPane::Issues
+    }
+
+    fn rows(&self, product: &Product, _: &Company) -> usize {
+        product.issues.as_ref().map_or(0, BTreeMap::len)
+    }
+
+    fn summary(&self, product: &Product, _: &Company) -> String {
+        summary(product.issues.as_ref())
+    }
+
+    fn destination(&self, _: &Product) -> &'static str {
+        ToolId::SetTargetedOpsSpend.name()
+    }
+
+    fn open(&self, product: &Product, _: &Company) -> Effect {
+        cell(ToolId::SetTargetedOpsSpend, self.group(product).cloned())
+    }
+
+    fn selected(&self, product: &Product, _: &Company) -> Option<Figure> {
+        let group = self.group(product)?;
+        let sql = format!(
+            "SELECT i.issue_id, i.customer_id, i.open_day, i.days_open\n\
+             FROM issues i JOIN subscriptions s ON s.customer_id = i.customer_id\n\
+             WHERE i.group_id = '{group}' AND i.status = 'open' AND s.status = 'subscribed'\n    \
+             AND i.open_day > (SELECT max(day) FROM service_day) - 112 ORDER BY i.days_open DESC"
+        );
+        Some(Figure { title: format!("open issues of {group}"), term: "issue", sql: Some(sql) })
+    }
+
+    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, _: &Company) {
+        draw(product, canvas, seat);
+    }
 }
 
 /// Draws all groups in the first row, and each of them in one of its own; bars share one scale.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, list: &List<'_>) {
+fn draw(product: &Product, canvas: &mut Canvas<'_>, seat: Seat) {
+    let (area, selected) = (seat.area, product.place(ProductPane::Issues));
     let head = ["to 3 d", "4-7 d", "8-14 d", "15+ d", "all"].map(str::to_owned);
     canvas.text(area, &line("group", &head), Role::Header);
     if area.height < 2 {
         return;
     }
     let below = Rect { y: area.y + 1, height: area.height - 1, ..area };
-    let Some(issues) = list.issues.filter(|issues| !issues.is_empty()) else {
-        let words = if list.issues.is_some() { "no customer is waiting for support" } else { "reading …" };
+    let Some(issues) = product.issues.as_ref().filter(|issues| !issues.is_empty()) else {
+        let words =
+            if product.issues.is_some() { "no customer is waiting for support" } else { "reading …" };
         return canvas.text(below, words, Role::Dim);
     };
     if area.width > FIGURES + 22 {
@@ -60,19 +103,19 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, list: &List<'_>) {
     let first = Rect { height: 1, ..below };
     canvas.text(first, &line("all", &cells(&all)), Role::Strong);
     let below = Rect { y: below.y + 1, height: below.height - 1, ..below };
-    if list.focused {
+    if seat.focused {
         canvas.page = below.height.max(1);
     }
-    let from = first_row(list.selected, below.height as usize, issues.len());
+    let from = first_row(selected, below.height as usize, issues.len());
     for (row, (at, (group, ages))) in rows_of(below).zip(issues.iter().enumerate().skip(from)) {
-        let role = match (list.focused && at == list.selected, ages[3] > 0.0) {
+        let role = match (seat.focused && at == selected, ages[3] > 0.0) {
             (true, _) => Role::Selection,
             (false, true) => Role::Warning,
             (false, false) => Role::Text,
         };
         canvas.clear(row, role);
         canvas.text(row, &line(group, &cells(ages)), role);
-        canvas.click(row, Click::Row(list.pane, at));
+        canvas.click(row, Click::Row(seat.number, at));
         if row.width > FIGURES + 8 {
             let place = Rect { x: row.x + FIGURES + 2, width: row.width - FIGURES - 2, ..row };
             let text = stacked(ages, whole, place.width as usize);

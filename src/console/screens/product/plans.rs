@@ -1,66 +1,110 @@
-//! Quality by group, and what each plan costs and earns.
+//! What each plan costs and earns.
 
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::model::PlanFacts;
+use super::part::{Part, cell};
+use super::{Product, ProductPane};
+use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::company::Company;
-use crate::console::text::number;
+use crate::console::effect::Effect;
+use crate::console::screens;
+use crate::console::screens::panes::Seat;
+use crate::console::text::count;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{cents, compact, grouped, percent};
 use crate::tools::ToolId;
 use crate::world::identifiers::Plan;
 
-/// Draws the components of quality, one group in a row.
-pub fn draw_quality(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    company: &Company,
-    selected: usize,
-    focused: bool,
-    pane: usize,
-) {
-    let (base, shared) = company.quality_base;
-    let tier = |plan: &str| format!("{plan} T{}", number(company.setting(ToolId::SetModelTiers, plan)));
-    let wide = area.width >= 62;
-    let parts = if wide { format!(" {:>7} {:>8}", "base", "general") } else { String::new() };
-    let head = format!("group {parts} {:>8} {:>9} {:>8} {:>8}", "own +", tier("A"), tier("B"), tier("C"));
-    canvas.text(area, &head, Role::Header);
-    let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-    if focused {
-        canvas.page = below.height.max(1);
+/// The plans as columns; a row leads to the tool that sets it.
+pub struct Plans;
+
+impl Part for Plans {
+    fn name(&self) -> ProductPane {
+        ProductPane::Plans
     }
-    let from = first_row(selected, below.height as usize, company.quality.len());
-    for (row, (at, quality)) in rows_of(below).zip(company.quality.iter().enumerate().skip(from)) {
-        let parts = if wide { format!(" {base:>7.4} {shared:>+8.4}") } else { String::new() };
-        let own = match quality.group_bonus {
-            bonus if bonus > 0.0 => format!("{bonus:+.4}"),
-            _ => "–".to_owned(),
+
+    fn rows(&self, _: &Product, _: &Company) -> usize {
+        FIGURES.len()
+    }
+
+    fn summary(&self, product: &Product, _: &Company) -> String {
+        let plan = |(name, plan): (&Plan, &PlanFacts)| {
+            let margin = plan.margin().map_or("–".to_owned(), |margin| percent(margin, 0));
+            format!("{name} {}, margin {margin}", count(plan.customers, "customer"))
         };
-        let [a, b, c] = quality.by_plan.0;
-        let text = format!("{:<6}{parts} {own:>8} {a:>9.4} {b:>8.4} {c:>8.4}", quality.group.id());
-        let role = match (focused && at == selected, quality.group_bonus > 0.0) {
-            (true, _) => Role::Selection,
-            (false, true) => Role::Text,
-            (false, false) => Role::Dim,
+        Plan::ALL.iter().zip(&product.plans).map(plan).collect::<Vec<_>>().join(" · ")
+    }
+
+    fn note(&self, _: &Product, _: &Company) -> String {
+        "last day's usage, 30 days a month".to_owned()
+    }
+
+    fn destination(&self, product: &Product) -> &'static str {
+        tool_of(product.place(self.name())).name()
+    }
+
+    fn open(&self, product: &Product, _: &Company) -> Effect {
+        cell(tool_of(product.place(self.name())), Some(product.plan().to_string()))
+    }
+
+    fn selected(&self, product: &Product, _: &Company) -> Option<screens::Figure> {
+        Some(figure_of(product.place(self.name()), product.plan()))
+    }
+
+    fn turn(&self, product: &mut Product, action: Action) -> bool {
+        match action {
+            Action::Left if product.column > 0 => product.column -= 1,
+            Action::Right if product.column + 1 < Plan::ALL.len() => product.column += 1,
+            _ => return false,
+        }
+        true
+    }
+
+    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, _: &Company) {
+        let (area, plans, selected) = (seat.area, &product.plans, product.place(self.name()));
+        let line = |name: &str, cells: [String; 3]| {
+            let [a, b, c] = cells;
+            format!("{name:<18} {a:>10} {b:>10} {c:>10}")
         };
-        canvas.clear(row, role);
-        canvas.text(row, &text, role);
-        canvas.click(row, Click::Row(pane, at));
+        canvas.text(area, &line("per plan", Plan::ALL.map(|plan| plan.id().to_owned())), Role::Header);
+        let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
+        if seat.focused {
+            canvas.page = below.height.max(1);
+        }
+        let from = first_row(selected, below.height as usize, FIGURES.len());
+        for (row, (at, (name, write))) in rows_of(below).zip(FIGURES.iter().enumerate().skip(from)) {
+            let loses = *name == "gross margin"
+                && plans.iter().any(|plan| plan.margin().is_some_and(|margin| margin < 0.0));
+            let role = match (seat.focused && at == selected, loses) {
+                (true, _) => Role::Selection,
+                (false, true) => Role::Bad,
+                (false, false) => Role::Text,
+            };
+            canvas.clear(row, role);
+            canvas.text(row, &line(name, [0, 1, 2].map(|plan| write(&plans[plan]))), role);
+            if seat.focused && at == selected {
+                let place = Rect { x: row.x + 19 + 11 * product.column as u16, width: 10, ..row };
+                let mark = Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED);
+                canvas.buffer.set_style(place.intersection(row).intersection(canvas.area()), mark);
+            }
+            canvas.click(row, Click::Row(seat.number, at));
+        }
     }
 }
 
 /// A figure of a plan: name, how it is written.
-type Figure = (&'static str, fn(&PlanFacts) -> String);
+type Row = (&'static str, fn(&PlanFacts) -> String);
 
 fn or_none(value: Option<f64>, write: impl Fn(f64) -> String) -> String {
     value.map_or("–".to_owned(), write)
 }
 
 /// Figures of the plans, in the order of what is looked at first.
-pub static FIGURES: [Figure; 11] = [
+static FIGURES: [Row; 11] = [
     ("model tier", |plan| format!("T{}", plan.tier)),
     ("price a month", |plan| cents(plan.price)),
     ("quota a day", |plan| compact(plan.quota)),
@@ -79,49 +123,45 @@ pub static FIGURES: [Figure; 11] = [
     ("billed a month", |plan| format!("${}", compact(plan.monthly))),
 ];
 
-/// Draws the plans as columns; a row leads to the tool that sets it.
-pub fn draw_plans(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    plans: &[PlanFacts; 3],
-    (selected, column): (usize, usize),
-    focused: bool,
-    pane: usize,
-) {
-    let line = |name: &str, cells: [String; 3]| {
-        let [a, b, c] = cells;
-        format!("{name:<18} {a:>10} {b:>10} {c:>10}")
-    };
-    canvas.text(area, &line("per plan", Plan::ALL.map(|plan| plan.id().to_owned())), Role::Header);
-    let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-    if focused {
-        canvas.page = below.height.max(1);
-    }
-    let from = first_row(selected, below.height as usize, FIGURES.len());
-    for (row, (at, (name, write))) in rows_of(below).zip(FIGURES.iter().enumerate().skip(from)) {
-        let loses = *name == "gross margin"
-            && plans.iter().any(|plan| plan.margin().is_some_and(|margin| margin < 0.0));
-        let role = match (focused && at == selected, loses) {
-            (true, _) => Role::Selection,
-            (false, true) => Role::Bad,
-            (false, false) => Role::Text,
-        };
-        canvas.clear(row, role);
-        canvas.text(row, &line(name, [0, 1, 2].map(|plan| write(&plans[plan]))), role);
-        if focused && at == selected {
-            let place = Rect { x: row.x + 19 + 11 * column as u16, width: 10, ..row };
-            let mark = Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED);
-            canvas.buffer.set_style(place.intersection(row).intersection(canvas.area()), mark);
-        }
-        canvas.click(row, Click::Row(pane, at));
-    }
-}
-
 /// The tool that sets what a row shows.
-pub fn tool_of(row: usize) -> ToolId {
+fn tool_of(row: usize) -> ToolId {
     match row {
         0 | 3 | 9 => ToolId::SetModelTiers,
         2 | 6 | 8 => ToolId::SetUsageQuotas,
         _ => ToolId::SetPrices,
     }
+}
+
+/// A figure of a plan, by the rows of the table of plans.
+fn figure_of(row: usize, plan: Plan) -> screens::Figure {
+    let subscribers = || {
+        Some(format!(
+            "SELECT s.customer_id, c.group_id, s.effective_price, s.seat_count, s.start_day\n\
+             FROM subscriptions s JOIN customers c USING (customer_id)\n\
+             WHERE s.plan = '{plan}' AND s.status = 'subscribed' ORDER BY s.customer_id"
+        ))
+    };
+    let usage = || {
+        Some(format!(
+            "SELECT u.customer_id, s.seat_count, u.usage_units\n\
+             FROM daily_usage u JOIN subscriptions s USING (customer_id)\n\
+             WHERE u.day = (SELECT max(day) FROM service_day) AND s.plan = '{plan}' AND s.status = 'subscribed'"
+        ))
+    };
+    let setting =
+        |column: &str| Some(format!("SELECT day, \"{column}_{plan}\" FROM config_history ORDER BY day"));
+    let (name, term, sql) = match row {
+        0 => ("model tier", "model-tier", setting("tier")),
+        1 => ("price", "list-price", setting("price")),
+        2 => ("quota", "quota", setting("quota")),
+        3 => ("unit cost", "compute", setting("tier")),
+        4 => ("customers", "subscriber", subscribers()),
+        5 => ("billed seats", "billed-seats", subscribers()),
+        6 => ("usage a seat", "usage", usage()),
+        7 => ("paid a seat", "effective-price", subscribers()),
+        8 => ("compute a seat", "compute", usage()),
+        9 => ("gross margin", "gross-margin", subscribers()),
+        _ => ("billed a month", "billed-seats", subscribers()),
+    };
+    screens::Figure { title: format!("{name} of plan {plan}"), term, sql }
 }

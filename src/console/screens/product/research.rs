@@ -2,13 +2,19 @@
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::model::{Offer, Project};
+use super::model::Project;
+use super::part::{Part, tier};
+use super::{Product, ProductPane};
 use crate::console::canvas::{Align, Canvas, Click, fit, rows_of};
 use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::Figure;
+use crate::console::screens::panes::Seat;
 use crate::console::theme::Role;
 use crate::console::widgets::spark;
 use crate::console::widgets::table::first_row;
-use crate::notation::{compact, grouped, short_dollars};
+use crate::notation::{compact, dollars, grouped, short_dollars};
+use crate::tools::ToolId;
 
 /// Weekly spend on development and operations.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -20,7 +26,7 @@ pub struct Spent {
 }
 
 /// One line on R&D.
-pub fn summary(projects: &[Project]) -> String {
+fn summary(projects: &[Project]) -> String {
     let running = projects.iter().filter(|project| !project.done);
     let next = running.clone().min_by_key(|project| project.expected);
     let done = projects.iter().filter(|project| project.done).count();
@@ -32,27 +38,59 @@ pub fn summary(projects: &[Project]) -> String {
     }
 }
 
-/// Draws the pane.
-#[allow(clippy::too_many_arguments)]
-pub fn draw(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    company: &Company,
-    projects: &[Project],
-    offers: &[Offer],
-    spent: &Spent,
-    selected: usize,
-    focused: bool,
-    pane: usize,
-) {
-    let line = (projects.len() as u16 + 1).clamp(2, (area.height / 3).max(2));
-    let in_line = (focused && selected < projects.len()).then_some(selected);
-    let in_list = selected.checked_sub(projects.len()).filter(|_| focused);
-    let [money, line, list] =
-        Layout::vertical([Constraint::Length(2), Constraint::Length(line), Constraint::Min(0)]).areas(area);
-    draw_spent(canvas, money, spent);
-    draw_line(canvas, line, company, projects, in_line, pane);
-    draw_offers(canvas, list, company, offers, in_list, projects.len(), pane);
+/// The projects, and what can be started.
+pub struct Research;
+
+impl Part for Research {
+    fn name(&self) -> ProductPane {
+        ProductPane::Research
+    }
+
+    fn rows(&self, product: &Product, _: &Company) -> usize {
+        product.projects.len() + product.offers.len()
+    }
+
+    fn summary(&self, product: &Product, _: &Company) -> String {
+        summary(&product.projects)
+    }
+
+    fn note(&self, product: &Product, company: &Company) -> String {
+        match product.focus == self.name() {
+            true => format!("{} to spend", dollars(company.seen.cash)),
+            false => self.summary(product, company),
+        }
+    }
+
+    fn destination(&self, _: &Product) -> &'static str {
+        ToolId::StartResearchProject.name()
+    }
+
+    fn open(&self, product: &Product, _: &Company) -> Effect {
+        let offer = product.place(self.name()).checked_sub(product.projects.len());
+        let offer = offer.and_then(|at| product.offers.get(at));
+        tier(ToolId::StartResearchProject, offer.map(|offer| offer.tier))
+    }
+
+    fn selected(&self, product: &Product, _: &Company) -> Option<Figure> {
+        let (place, term) = (product.place(self.name()), "research-project");
+        if let Some(project) = product.projects.get(place) {
+            let sql = format!("SELECT * FROM research_projects WHERE project_id = '{}'", project.id);
+            return Some(Figure { title: format!("project {}", project.id), term, sql: Some(sql) });
+        }
+        let offer = product.offers.get(place - product.projects.len())?;
+        let sql = "SELECT * FROM research_projects ORDER BY started_day DESC".to_owned();
+        Some(Figure { title: format!("project of tier {}", offer.tier), term, sql: Some(sql) })
+    }
+
+    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
+        let line = (product.projects.len() as u16 + 1).clamp(2, (seat.area.height / 3).max(2));
+        let [money, line, list] =
+            Layout::vertical([Constraint::Length(2), Constraint::Length(line), Constraint::Min(0)])
+                .areas(seat.area);
+        draw_spent(canvas, money, &product.spent);
+        draw_line(product, canvas, Seat { area: line, ..seat }, company);
+        draw_offers(product, canvas, Seat { area: list, ..seat }, company);
+    }
 }
 
 fn draw_spent(canvas: &mut Canvas<'_>, area: Rect, spent: &Spent) {
@@ -68,14 +106,10 @@ fn draw_spent(canvas: &mut Canvas<'_>, area: Rect, spent: &Spent) {
 }
 
 /// The projects as bars over the days from the first start to the last end.
-fn draw_line(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    company: &Company,
-    projects: &[Project],
-    selected: Option<usize>,
-    pane: usize,
-) {
+fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
+    let (area, projects) = (seat.area, &product.projects);
+    let selected =
+        Some(product.place(ProductPane::Research)).filter(|at| seat.focused && *at < projects.len());
     let today = company.seen.day;
     let rows = area.height.saturating_sub(1) as usize;
     let skipped = first_row(selected.unwrap_or(0), rows, projects.len());
@@ -113,7 +147,7 @@ fn draw_line(
             (false, true) => Role::Dim,
             (false, false) => Role::Text,
         };
-        canvas.click(row, Click::Row(pane, skipped + at));
+        canvas.click(row, Click::Row(seat.number, skipped + at));
         let mark = if project.done { "✓" } else { "…" };
         let text = format!(
             "{:<7}{:>+8.4}{:>5} {:>4} {mark}",
@@ -136,15 +170,9 @@ fn draw_line(
     }
 }
 
-fn draw_offers(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    company: &Company,
-    offers: &[Offer],
-    selected: Option<usize>,
-    before: usize,
-    pane: usize,
-) {
+fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
+    let (area, offers, before) = (seat.area, &product.offers, product.projects.len());
+    let selected = product.place(ProductPane::Research).checked_sub(before).filter(|_| seat.focused);
     let head = format!(
         "{:>4} {:<17} {:>8} {:>5} {:>7} {:>8}  ",
         "tier", "project", "cost", "days", "quality", "$/0.01"
@@ -191,6 +219,6 @@ fn draw_offers(
             remarks
         );
         canvas.text(row, text.trim_end(), role);
-        canvas.click(row, Click::Row(pane, before + at));
+        canvas.click(row, Click::Row(seat.number, before + at));
     }
 }

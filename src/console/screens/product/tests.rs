@@ -1,5 +1,11 @@
+use serde_json::json;
+
 use super::model::*;
 use super::*;
+use crate::console::action::Action;
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::Screen;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
 use crate::tools::ToolId;
 
@@ -32,7 +38,7 @@ fn the_readings_agree_with_the_company() {
     let customers: f64 = screen.plans.iter().map(|plan| plan.customers).sum();
     assert_eq!(customers, f64::from(week.individual_subscribers + company.seen.companies));
     assert!(screen.plans.iter().any(|plan| plan.margin().is_some_and(|margin| margin > 0.0 && margin < 1.0)));
-    assert_eq!((screen.rungs.len(), screen.places[CAPACITY]), (8, 2));
+    assert_eq!((screen.rungs.len(), screen.places[ProductPane::Capacity as usize]), (8, 2));
     assert_eq!((screen.projects.len(), screen.projects[0].started), (1, 0));
     assert_eq!(screen.offers.iter().map(|offer| offer.counts.0 + offer.counts.1).sum::<u64>(), 1);
     assert_eq!(screen.spent.operations.last(), Some(&1400.0));
@@ -44,8 +50,8 @@ fn a_rung_of_the_ladder_leads_to_the_form_with_that_tier() {
     let mut session = played(2);
     let company = Company::of(&session);
     let mut screen: Product = shown(&mut session, &company);
-    screen.set_focus(CAPACITY);
-    screen.places[CAPACITY] = 5;
+    screen.focus_on(ProductPane::Capacity);
+    screen.places[ProductPane::Capacity as usize] = 5;
     let effects = act(&mut screen, Action::Open, &company);
     let [Effect::Prefill { tool: ToolId::SetCapacityTier, arguments }] = &effects[..] else {
         panic!("{effects:?}")
@@ -61,8 +67,8 @@ fn every_pane_leads_somewhere() {
     let mut session = played(2);
     let company = Company::of(&session);
     let mut screen: Product = shown(&mut session, &company);
-    for pane in 0..PANES.len() {
-        screen.set_focus(pane);
+    for pane in ProductPane::VARIANTS {
+        screen.focus_on(*pane);
         for _ in 0..12 {
             match act(&mut screen, Action::Open, &company).pop() {
                 Some(Effect::ShowTool(_)) => {}
@@ -88,7 +94,7 @@ fn every_pane_leads_somewhere() {
         }
     }
     act(&mut screen, Action::Right, &company);
-    assert_eq!(screen.focus(), 0);
+    assert_eq!(screen.focus, ProductPane::Quality);
 }
 
 #[test]
@@ -107,7 +113,8 @@ fn the_small_window_has_a_line_on_everything() {
     let company = Company::of(&session);
     let screen: Product = shown(&mut session, &company);
     let text = drawn(&screen, &company, 80, 21);
-    for words in PANES.iter().chain(&["tier 2", "margin", "units/day", "◆ now"]) {
+    let titles = ProductPane::VARIANTS.iter().map(|pane| pane.title());
+    for words in titles.chain(["tier 2", "margin", "units/day", "◆ now"]) {
         assert!(text.contains(words), "{words} in\n{text}");
     }
 }
@@ -122,9 +129,9 @@ fn figures_are_made_of_their_rows() {
     let mut screen: Product = shown(&mut session, &company);
     let keys = crate::console::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
-    for pane in 0..PANES.len() {
-        screen.set_focus(pane);
-        for _ in 0..screen.rows(pane, &company) {
+    for pane in ProductPane::VARIANTS {
+        screen.focus_on(*pane);
+        for _ in 0..pane.part().rows(&screen, &company) {
             let figure = screen.figure(&look).expect("a figure");
             if let Some(sql) = figure.sql {
                 session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
@@ -136,19 +143,22 @@ fn figures_are_made_of_their_rows() {
         let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
         session.query(&sql).expect("rows").rows
     };
-    screen.set_focus(PLANS);
-    (screen.places[PLANS], screen.column) = (4, 1);
+    screen.focus_on(ProductPane::Plans);
+    (screen.places[ProductPane::Plans as usize], screen.column) = (4, 1);
     assert_eq!(screen.figure(&look).expect("a figure").title, "customers of plan B");
     assert_eq!(rows(&screen).len() as f64, screen.plans[1].customers.min(MOST));
     act(&mut screen, Action::Right, &company);
-    assert_eq!((screen.focus(), rows(&screen).len() as f64), (PLANS, screen.plans[2].customers.min(MOST)));
-    screen.set_focus(ISSUES);
-    screen.places[ISSUES] = 0;
+    assert_eq!(
+        (screen.focus, rows(&screen).len() as f64),
+        (ProductPane::Plans, screen.plans[2].customers.min(MOST))
+    );
+    screen.focus_on(ProductPane::Issues);
+    screen.places[ProductPane::Issues as usize] = 0;
     let issues = screen.issues.clone().expect("issues");
     let first = issues.values().next().expect("a group with open issues");
     assert_eq!(rows(&screen).len() as f64, first.iter().sum::<f64>().min(MOST));
-    screen.set_focus(RESEARCH);
-    screen.places[RESEARCH] = 0;
+    screen.focus_on(ProductPane::Research);
+    screen.places[ProductPane::Research as usize] = 0;
     assert_eq!(rows(&screen).len(), 1, "the project that was started");
 }
 
@@ -157,7 +167,7 @@ fn what_was_not_read_yet_is_not_called_nothing() {
     let mut session = played(4);
     let company = Company::of(&session);
     let mut screen = Product::default();
-    screen.set_focus(ISSUES);
+    screen.focus_on(ProductPane::Issues);
     let text = drawn(&screen, &company, 120, 37);
     assert!(text.contains("reading …") && !text.contains("-0 open"), "{text}");
     let screen: Product = shown(&mut session, &company);
@@ -166,7 +176,7 @@ fn what_was_not_read_yet_is_not_called_nothing() {
         assert!(text.contains(words), "{words} in\n{text}");
     }
     let mut screen = screen;
-    screen.set_focus(RESEARCH);
+    screen.focus_on(ProductPane::Research);
     let text = crate::console::test_kit::zoomed(&screen, &company, 120, 37);
     assert!(text.contains("▼ now") && text.contains("$/0.01"), "{text}");
 }
@@ -176,10 +186,12 @@ fn a_zoomed_pane_has_the_window() {
     let mut session = played(3);
     let company = Company::of(&session);
     let mut screen: Product = shown(&mut session, &company);
-    for (pane, own, other) in
-        [(QUALITY, "Quality", "┌ Plans"), (ISSUES, "Issues", "┌ Capacity"), (RESEARCH, "R&D", "┌ Service")]
-    {
-        screen.set_focus(pane);
+    for (pane, own, other) in [
+        (ProductPane::Quality, "Quality", "┌ Plans"),
+        (ProductPane::Issues, "Issues", "┌ Capacity"),
+        (ProductPane::Research, "R&D", "┌ Service"),
+    ] {
+        screen.focus_on(pane);
         let text = crate::console::test_kit::zoomed(&screen, &company, 100, 30);
         let first = text.lines().next().expect("a line");
         assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");
@@ -196,9 +208,8 @@ fn load_is_the_share_of_the_capacity_that_is_used() {
 fn minutes_of_outage_add_up_to_the_minutes_in_the_title() {
     let day = |day: u32, downtime: f64| Day { day, downtime, capacity: 1.0, ..Day::default() };
     let days: Vec<Day> = (1..=28).map(|at| day(at, if at % 10 == 0 { 30.0 } else { 0.0 })).collect();
-    assert!(capacity::service_summary(&days).contains("outage 60 min in 28 days"));
-    let text =
-        crate::console::test_kit::painted(90, 8, |canvas, area| capacity::draw_service(canvas, area, &days));
+    assert!(service::summary(&days).contains("outage 60 min in 28 days"));
+    let text = crate::console::test_kit::painted(90, 8, |canvas, area| service::draw(canvas, area, &days));
     let line = text.iter().find(|line| line.starts_with("outage, minutes")).expect("a line");
     let figures: Vec<&str> = line.split_whitespace().skip(2).take(3).collect();
     assert_eq!(figures, ["0", "0", "60"], "{line}");

@@ -13,7 +13,7 @@ use ratatui::layout::Rect;
 use serde_json::{Value, json};
 
 use self::feed::{Filter, Kind, Post};
-use super::{Figure, Look, Screen};
+use super::{Figure, Look, Screen, ScreenState};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, fit};
 use crate::console::effect::Effect;
@@ -252,6 +252,58 @@ impl Social {
     }
 }
 
+impl ScreenState for Social {
+    fn readings(&self) -> &'static [Reading] {
+        &[Reading::OwnPosts]
+    }
+
+    fn take(&mut self, _: Reading, rows: &Rows, _: &Look<'_>) {
+        self.own = feed::own_posts(rows);
+        self.arrange();
+    }
+
+    fn looked_at(&mut self) {
+        self.seen = Some(self.others.iter().map(|post| post.number).max().unwrap_or(0));
+    }
+
+    fn unseen(&self) -> usize {
+        // Of a run that was just opened, what the last week brought is new.
+        let is_new = |post: &&Arc<Post>| match self.seen {
+            Some(seen) => post.number > seen,
+            None => post.day + 7 > self.day,
+        };
+        self.others.iter().filter(is_new).count()
+    }
+
+    fn renew(&mut self, look: &Look<'_>) {
+        self.day = look.company.seen.day;
+        if !Arc::ptr_eq(&self.others, &look.company.posts) {
+            self.others = look.company.posts.clone();
+            self.arrange();
+        }
+    }
+
+    fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
+        match news {
+            News::Checked(_, preview) => match (preview, self.sending.take()) {
+                (Ok(preview), Some(arguments)) => vec![self.ask(arguments, preview.effect_day)],
+                (Err(refusal), Some(_)) => vec![Effect::Complain(refusal.to_string())],
+                _ => Vec::new(),
+            },
+            News::Called(POST, Ok(_), _) => {
+                (self.draft, self.answers, self.editing) = (Editor::default(), None, false);
+                self.focus = FEED;
+                Vec::new()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    fn holds_unsent_text(&self) -> bool {
+        !self.draft.is_blank()
+    }
+}
+
 impl Screen for Social {
     fn scopes(&self) -> Vec<Scope> {
         match self.focus {
@@ -322,52 +374,6 @@ impl Screen for Social {
         Some(Figure { title, term, sql: Some(sql) })
     }
 
-    fn readings(&self) -> &'static [Reading] {
-        &[Reading::OwnPosts]
-    }
-
-    fn take(&mut self, _: Reading, rows: &Rows, _: &Look<'_>) {
-        self.own = feed::own_posts(rows);
-        self.arrange();
-    }
-
-    fn looked_at(&mut self) {
-        self.seen = Some(self.others.iter().map(|post| post.number).max().unwrap_or(0));
-    }
-
-    fn unseen(&self) -> usize {
-        // Of a run that was just opened, what the last week brought is new.
-        let is_new = |post: &&Arc<Post>| match self.seen {
-            Some(seen) => post.number > seen,
-            None => post.day + 7 > self.day,
-        };
-        self.others.iter().filter(is_new).count()
-    }
-
-    fn renew(&mut self, look: &Look<'_>) {
-        self.day = look.company.seen.day;
-        if !Arc::ptr_eq(&self.others, &look.company.posts) {
-            self.others = look.company.posts.clone();
-            self.arrange();
-        }
-    }
-
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
-        match news {
-            News::Checked(_, preview) => match (preview, self.sending.take()) {
-                (Ok(preview), Some(arguments)) => vec![self.ask(arguments, preview.effect_day)],
-                (Err(refusal), Some(_)) => vec![Effect::Complain(refusal.to_string())],
-                _ => Vec::new(),
-            },
-            News::Called(POST, Ok(_), _) => {
-                (self.draft, self.answers, self.editing) = (Editor::default(), None, false);
-                self.focus = FEED;
-                Vec::new()
-            }
-            _ => Vec::new(),
-        }
-    }
-
     fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
         match action {
             Action::Compose => self.write(None),
@@ -423,10 +429,6 @@ impl Screen for Social {
             _ => true,
         };
         if again { self.open() } else { Vec::new() }
-    }
-
-    fn holds_unsent_text(&self) -> bool {
-        !self.draft.is_blank()
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {

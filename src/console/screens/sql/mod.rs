@@ -21,8 +21,8 @@ use std::time::Instant;
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use super::Look;
 use super::panes::{Pane, Paned, draw_pane};
+use super::{Look, ScreenState};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::effect::Effect;
@@ -142,6 +142,24 @@ impl Sql {
     }
 }
 
+impl ScreenState for Sql {
+    fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
+        let (News::Answered(_, answer, took), Some(running)) = (news, self.running.take()) else {
+            return Vec::new();
+        };
+        // The place of an error is shown only in the text it belongs to.
+        if let Err(refusal) = answer
+            && let Some(place) = results::place_of(refusal)
+            && self.editor.text() == running.text
+        {
+            self.editor.mark(running.statement.from + place);
+            self.focus = SqlPane::Editor;
+        }
+        self.results.take(&running.statement.sql, answer.clone(), *took);
+        Vec::new()
+    }
+}
+
 impl Paned for Sql {
     type Name = SqlPane;
 
@@ -168,22 +186,6 @@ impl Paned for Sql {
     fn focus_on(&mut self, name: SqlPane) {
         self.focus = name;
         self.editor.hide_completion();
-    }
-
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
-        let (News::Answered(_, answer, took), Some(running)) = (news, self.running.take()) else {
-            return Vec::new();
-        };
-        // The place of an error is shown only in the text it belongs to.
-        if let Err(refusal) = answer
-            && let Some(place) = results::place_of(refusal)
-            && self.editor.text() == running.text
-        {
-            self.editor.mark(running.statement.from + place);
-            self.focus = SqlPane::Editor;
-        }
-        self.results.take(&running.statement.sql, answer.clone(), *took);
-        Vec::new()
     }
 
     fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {

@@ -33,7 +33,7 @@ fn write(screen: &mut Sql, company: &Company, text: &str) {
 
 fn hear(screen: &mut Sql, company: &Company, answer: Result<Rows, Refusal>) {
     let news = News::Answered(1, answer, Duration::from_micros(12_400));
-    with_look(company, |look| Screen::hear(screen, &news, look));
+    with_look(company, |look| screen.hear(&news, look));
 }
 
 fn three_rows() -> Rows {

@@ -19,7 +19,7 @@ use serde_json::Value;
 use strum::VariantArray;
 
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Look, ScreenId};
+use super::{Look, ScreenId, ScreenState};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
@@ -165,32 +165,7 @@ impl Tools {
     }
 }
 
-impl Paned for Tools {
-    type Name = ToolsPane;
-
-    fn panes(&self) -> &'static [ToolsPane] {
-        ToolsPane::VARIANTS
-    }
-
-    fn pane(name: ToolsPane) -> &'static dyn Pane<Tools> {
-        match name {
-            ToolsPane::List => &list_pane::ListPane,
-            ToolsPane::Form => &form_pane::FormPane,
-        }
-    }
-
-    fn focused(&self) -> ToolsPane {
-        self.focus
-    }
-
-    fn focus_on(&mut self, name: ToolsPane) {
-        self.focus = name;
-        if name == ToolsPane::List {
-            // What was typed stays a draft; the form is not typed into any more when one comes back.
-            self.forms.values_mut().for_each(Form::stop_typing);
-        }
-    }
-
+impl ScreenState for Tools {
     fn readings(&self) -> &'static [Reading] {
         &[Reading::LeadsByChannel]
     }
@@ -239,6 +214,37 @@ impl Paned for Tools {
         Vec::new()
     }
 
+    fn holds_unsent_text(&self) -> bool {
+        !self.unsent().is_empty()
+    }
+}
+
+impl Paned for Tools {
+    type Name = ToolsPane;
+
+    fn panes(&self) -> &'static [ToolsPane] {
+        ToolsPane::VARIANTS
+    }
+
+    fn pane(name: ToolsPane) -> &'static dyn Pane<Tools> {
+        match name {
+            ToolsPane::List => &list_pane::ListPane,
+            ToolsPane::Form => &form_pane::FormPane,
+        }
+    }
+
+    fn focused(&self) -> ToolsPane {
+        self.focus
+    }
+
+    fn focus_on(&mut self, name: ToolsPane) {
+        self.focus = name;
+        if name == ToolsPane::List {
+            // What was typed stays a draft; the form is not typed into any more when one comes back.
+            self.forms.values_mut().for_each(Form::stop_typing);
+        }
+    }
+
     fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let narrow = area.width < 100;
         let list = match self.focus {
@@ -251,9 +257,5 @@ impl Paned for Tools {
         let [left, right] = Layout::horizontal([Constraint::Length(list), Constraint::Min(0)]).areas(area);
         draw_pane(self, ToolsPane::List, canvas, left, look);
         draw_pane(self, ToolsPane::Form, canvas, right, look);
-    }
-
-    fn holds_unsent_text(&self) -> bool {
-        !self.unsent().is_empty()
     }
 }

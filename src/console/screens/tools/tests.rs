@@ -101,12 +101,12 @@ fn after_a_call_the_keys_are_those_of_the_list_again() {
     let (company, keys) = (company(), Keys::shipped());
     let look = Look { company: &company, keys: &keys, page: 10 };
     let refused = Refusal::at("A", "price_not_positive", "no");
-    Screen::hear(&mut tools, &News::Called(ToolId::SetPrices, Err(refused), company.clone().into()), &look);
+    tools.hear(&News::Called(ToolId::SetPrices, Err(refused), company.clone().into()), &look);
     assert_eq!(tools.focus, ToolsPane::Form, "a refused call is mended where it was typed");
-    Screen::hear(&mut tools, &News::Called(ToolId::SetPrices, Ok(json!({})), company.clone().into()), &look);
+    tools.hear(&News::Called(ToolId::SetPrices, Ok(json!({})), company.clone().into()), &look);
     assert_eq!((tools.focus, tools.scopes()), (ToolsPane::List, vec![Scope::List]));
     assert!(tools.seen_form().expect("a form").answer.is_some());
-    Screen::hear(&mut tools, &News::Undone(Ok(Vec::new()), company.clone().into()), &look);
+    tools.hear(&News::Undone(Ok(Vec::new()), company.clone().into()), &look);
     assert!(tools.seen_form().expect("a form").answer.is_none(), "what was answered holds no longer");
 }
 
@@ -120,7 +120,7 @@ fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
     let Some(Effect::ConfirmCall { tool, arguments, text }) = effects.first() else { panic!("{effects:?}") };
     assert_eq!((*tool, arguments), (ToolId::SendEnterpriseDeal, &json!({"deals": [[7, [["B", 30]]]]})));
     assert!(text.contains("cannot be undone"), "{text}");
-    assert!(Screen::holds_unsent_text(&tools));
+    assert!(tools.holds_unsent_text());
     let (_, effects) = typed(ToolId::SendEnterpriseDeal, &["enter", "[", "7", "enter", "ctrl-s"]);
     assert!(
         matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: a list")),
@@ -159,10 +159,10 @@ fn drafts_stay_when_another_tool_is_looked_at() {
     let (company, keys) = (company(), Keys::shipped());
     let look = Look { company: &company, keys: &keys, page: 10 };
     tools.show(ToolId::SetDailySpend, &company);
-    Screen::renew(&mut tools, &look);
+    tools.renew(&look);
     tools.show(ToolId::SetPrices, &company);
     assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
-    assert!(Screen::holds_unsent_text(&tools));
+    assert!(tools.holds_unsent_text());
 }
 
 #[test]
@@ -194,9 +194,9 @@ fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
         }
     }
     let effects = act(&mut tools, Action::Open, &company);
-    assert!(effects.is_empty() && Screen::holds_unsent_text(&tools));
+    assert!(effects.is_empty() && tools.holds_unsent_text());
     act(&mut tools, Action::ResetForm, &company);
-    assert!(!Screen::holds_unsent_text(&tools));
+    assert!(!tools.holds_unsent_text());
 }
 
 #[test]

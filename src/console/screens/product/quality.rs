@@ -1,0 +1,86 @@
+//! Delivered quality by group, with what it is made of.
+
+use ratatui::layout::Rect;
+
+use super::part::{Part, cell};
+use super::{Product, ProductPane};
+use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::Figure;
+use crate::console::screens::panes::Seat;
+use crate::console::text::number;
+use crate::console::theme::Role;
+use crate::console::widgets::table::first_row;
+use crate::tools::ToolId;
+
+/// The components of quality, one group in a row.
+pub struct Quality;
+
+impl Part for Quality {
+    fn name(&self) -> ProductPane {
+        ProductPane::Quality
+    }
+
+    fn rows(&self, _: &Product, company: &Company) -> usize {
+        company.quality.len()
+    }
+
+    fn summary(&self, _: &Product, company: &Company) -> String {
+        let (base, shared) = company.quality_base;
+        let best =
+            company.quality.iter().max_by(|left, right| left.group_bonus.total_cmp(&right.group_bonus));
+        let best = best.filter(|best| best.group_bonus > 0.0);
+        let best =
+            best.map_or(String::new(), |best| format!(" · {} {:+.4}", best.group.id(), best.group_bonus));
+        format!("base {base:.2} · general {shared:+.4}{best}")
+    }
+
+    fn destination(&self, _: &Product) -> &'static str {
+        ToolId::SetTargetedDevSpend.name()
+    }
+
+    fn open(&self, product: &Product, company: &Company) -> Effect {
+        let group = company.quality.get(product.place(self.name())).map(|quality| quality.group.to_string());
+        cell(ToolId::SetTargetedDevSpend, group)
+    }
+
+    fn selected(&self, product: &Product, company: &Company) -> Option<Figure> {
+        let group = company.quality.get(product.place(self.name()))?.group;
+        let sql = "SELECT day, amount, note FROM ledger WHERE category = 'development' ORDER BY day DESC";
+        let title = format!("delivered quality in {group}");
+        Some(Figure { title, term: "delivered-quality", sql: Some(sql.to_owned()) })
+    }
+
+    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
+        let (area, selected) = (seat.area, product.place(self.name()));
+        let (base, shared) = company.quality_base;
+        let tier = |plan: &str| format!("{plan} T{}", number(company.setting(ToolId::SetModelTiers, plan)));
+        let wide = area.width >= 62;
+        let parts = if wide { format!(" {:>7} {:>8}", "base", "general") } else { String::new() };
+        let head = format!("group {parts} {:>8} {:>9} {:>8} {:>8}", "own +", tier("A"), tier("B"), tier("C"));
+        canvas.text(area, &head, Role::Header);
+        let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
+        if seat.focused {
+            canvas.page = below.height.max(1);
+        }
+        let from = first_row(selected, below.height as usize, company.quality.len());
+        for (row, (at, quality)) in rows_of(below).zip(company.quality.iter().enumerate().skip(from)) {
+            let parts = if wide { format!(" {base:>7.4} {shared:>+8.4}") } else { String::new() };
+            let own = match quality.group_bonus {
+                bonus if bonus > 0.0 => format!("{bonus:+.4}"),
+                _ => "–".to_owned(),
+            };
+            let [a, b, c] = quality.by_plan.0;
+            let text = format!("{:<6}{parts} {own:>8} {a:>9.4} {b:>8.4} {c:>8.4}", quality.group.id());
+            let role = match (seat.focused && at == selected, quality.group_bonus > 0.0) {
+                (true, _) => Role::Selection,
+                (false, true) => Role::Text,
+                (false, false) => Role::Dim,
+            };
+            canvas.clear(row, role);
+            canvas.text(row, &text, role);
+            canvas.click(row, Click::Row(seat.number, at));
+        }
+    }
+}

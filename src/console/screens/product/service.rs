@@ -1,0 +1,130 @@
+//! How the service runs: its measures by day, and its outages.
+
+use ratatui::layout::Rect;
+
+use super::model::Day;
+use super::part::Part;
+use super::{Product, ProductPane};
+use crate::console::canvas::{Align, Canvas, rows_of};
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::Figure;
+use crate::console::screens::panes::Seat;
+use crate::console::text::number;
+use crate::console::theme::Role;
+use crate::console::widgets::chart::NO_DATA;
+use crate::console::widgets::spark;
+use crate::notation::{grouped, percent};
+
+/// The measures of the service.
+pub struct Service;
+
+impl Part for Service {
+    fn name(&self) -> ProductPane {
+        ProductPane::Service
+    }
+
+    fn summary(&self, product: &Product, _: &Company) -> String {
+        summary(&product.days)
+    }
+
+    fn destination(&self, _: &Product) -> &'static str {
+        "service_day"
+    }
+
+    fn open(&self, _: &Product, _: &Company) -> Effect {
+        Effect::EditSql("SELECT * FROM service_day ORDER BY day DESC".to_owned())
+    }
+
+    fn selected(&self, _: &Product, _: &Company) -> Option<Figure> {
+        let sql = "SELECT day, p95_ms, error_rate, downtime_minutes, total_usage_units, capacity_units\n\
+                   FROM service_day ORDER BY day DESC LIMIT 28";
+        let title = "the service in 28 days".to_owned();
+        Some(Figure { title, term: "outage", sql: Some(sql.to_owned()) })
+    }
+
+    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, _: &Company) {
+        draw(canvas, seat.area, &product.days);
+    }
+}
+
+/// A measure of the service: name, how it is read and written, and how several days are taken together.
+type Measure = (&'static str, fn(&Day) -> f64, fn(f64) -> String, fn(&[f64]) -> f64);
+
+static MEASURES: [Measure; 4] = [
+    ("utilisation", Day::utilisation, |share| percent(share, 0), peak),
+    ("latency p95, ms", |day| day.latency, |value| grouped(value, 0), peak),
+    ("error rate", |day| day.errors, |share| percent(share, 2), peak),
+    ("outage, minutes", |day| day.downtime, number, |days| days.iter().sum()),
+];
+
+fn peak(days: &[f64]) -> f64 {
+    days.iter().copied().fold(0.0, f64::max)
+}
+
+/// One line on the service.
+pub fn summary(days: &[Day]) -> String {
+    let Some(last) = days.last() else { return NO_DATA.to_owned() };
+    let minutes: f64 = days.iter().rev().take(28).map(|day| day.downtime).sum();
+    format!(
+        "p95 {} ms · errors {} · outage {} min in 28 days",
+        grouped(last.latency, 0),
+        percent(last.errors, 2),
+        number(minutes)
+    )
+}
+
+/// Draws the measures of the service by day, then the last outages.
+pub fn draw(canvas: &mut Canvas<'_>, area: Rect, days: &[Day]) {
+    let head = format!("{:<16}{:>8}{:>9}{:>9}  ", "", "last", "7-day", "28-day");
+    canvas.text(area, &head, Role::Header);
+    let trend = area.width.saturating_sub(44);
+    canvas.text(
+        Rect { x: area.x + 44.min(area.width), width: trend, ..area },
+        &format!("last {} days", (trend as usize).min(days.len())),
+        Role::Header,
+    );
+    let rows = rows_of(Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area });
+    let figures = MEASURES.iter().map(Some).chain(std::iter::once(None));
+    for (row, measure) in rows.zip(figures) {
+        match measure {
+            Some(measure) => draw_measure(canvas, row, measure, days),
+            None => draw_outages(canvas, row, days),
+        }
+    }
+}
+
+fn draw_measure(canvas: &mut Canvas<'_>, row: Rect, (name, read, write, together): &Measure, days: &[Day]) {
+    let values: Vec<f64> = days.iter().map(read).collect();
+    let of_days = |count: usize| match &values[values.len().saturating_sub(count)..] {
+        [] => "–".to_owned(),
+        last => write(together(last)),
+    };
+    let last = values.last().map_or("–".to_owned(), |value| write(*value));
+    let text = format!("{name:<16}{last:>8}{:>9}{:>9}", of_days(7), of_days(28));
+    canvas.text(row, &text, Role::Text);
+    if row.width > 44 {
+        let room = row.width - 44;
+        let place = Rect { x: row.x + 44, width: room, ..row };
+        canvas.text(place, &spark(&values, room as usize), Role::Series(0));
+    }
+    let overloaded = *name == "utilisation" && values.last().is_some_and(|value| *value > 1.0);
+    if overloaded {
+        canvas.aligned(Rect { width: 43.min(row.width), ..row }, "!", Role::Bad, Align::Right);
+    }
+}
+
+fn draw_outages(canvas: &mut Canvas<'_>, row: Rect, days: &[Day]) {
+    let outages: Vec<String> = days
+        .iter()
+        .rev()
+        .filter(|day| day.downtime > 0.0)
+        .take(6)
+        .map(|day| format!("day {} {} min", day.day, number(day.downtime)))
+        .collect();
+    let text = match outages.is_empty() {
+        true => "no outages so far; 7-day and 28-day figures are peaks".to_owned(),
+        false => format!("outages: {}", outages.join(" · ")),
+    };
+    canvas.text(row, &text, Role::Dim);
+}

@@ -20,6 +20,8 @@ pub struct Border {
     pub note: String,
     /// Keys that work in it, in the lower border while it has the focus.
     pub keys: String,
+    /// The keys stand there without the focus, too: they work from every pane, or say what the pane can do.
+    pub keys_always: bool,
 }
 
 /// Where a pane is drawn.
@@ -124,7 +126,7 @@ pub fn draw_framed<S>(
 ) {
     let border = pane.border(screen, seat.area, look);
     let inside = canvas.pane(seat.area, &border.title, &border.note, seat.focused);
-    if seat.focused && !border.keys.is_empty() {
+    if (seat.focused || border.keys_always) && !border.keys.is_empty() {
         canvas.pane_keys(seat.area, &border.keys);
     }
     pane.draw(screen, canvas, Seat { area: inside, ..seat }, look);

@@ -58,7 +58,12 @@ impl Pane<Cash> for WeeksPane {
             let amount = subject.of(&cash.books.week(week));
             format!("week {week}: {} {}", subject.name(), money(amount))
         });
-        Border { title: "Income and costs by week".to_owned(), note, keys: week_keys(look) }
+        Border {
+            title: "Income and costs by week".to_owned(),
+            note,
+            keys: week_keys(look),
+            ..Border::default()
+        }
     }
 
     fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {

@@ -57,6 +57,7 @@ impl Pane<Cash> for BooksPane {
                 note => note,
             },
             keys: format!("{open} ledger rows · {}", look.hint(Action::Sort)),
+            ..Border::default()
         }
     }
 

@@ -48,7 +48,7 @@ impl Pane<Cash> for CurvePane {
             }
             None => summary(&company.cash_by_day, &short_dollars, note_room(area, title)),
         };
-        Border { title: title.to_owned(), note, keys: week_keys(look) }
+        Border { title: title.to_owned(), note, keys: week_keys(look), ..Border::default() }
     }
 
     /// The curve, and below it the change of every week where there is room.

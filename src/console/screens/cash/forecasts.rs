@@ -48,6 +48,7 @@ impl Pane<Cash> for ForecastsPane {
             title: format!("Forecasts {weeks} week{} ahead", if weeks == 1 { "" } else { "s" }),
             note: cash.outlook.score(look.company),
             keys: format!("{horizons} · {} journal", label(Action::Open)),
+            ..Border::default()
         }
     }
 

@@ -61,6 +61,7 @@ impl Pane<Cash> for WaterfallPane {
             title: format!("From week {} to {week}", week.saturating_sub(1)),
             note: arrow(change, &dollars(change.abs())),
             keys: week_keys(look),
+            ..Border::default()
         }
     }
 

@@ -55,7 +55,7 @@ impl Pane<Customers> for GroupsPane {
             note => note,
         };
         let keys = look.hints(&[Action::Open, Action::Sort, Action::Filter]);
-        Border { title: "Groups".to_owned(), note, keys }
+        Border { title: "Groups".to_owned(), note, keys, ..Border::default() }
     }
 
     fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {

@@ -50,6 +50,7 @@ impl Pane<Customers> for ChannelsPane {
             title: "Leads per $1,000".to_owned(),
             note: "measured over 28 days · █ best of the group".to_owned(),
             keys: format!("{open} set_targeted_ad_spend"),
+            ..Border::default()
         }
     }
 

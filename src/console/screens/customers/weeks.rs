@@ -71,7 +71,7 @@ impl Pane<Customers> for WeeksPane {
             flow_words(&customers.market.of(group), week, flow, note_room(area, title))
         });
         let keys = format!("{left} {right} another week · {up} {down} another figure");
-        Border { title: title.to_owned(), note, keys }
+        Border { title: title.to_owned(), note, keys, ..Border::default() }
     }
 
     fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {

@@ -3,10 +3,15 @@
 
 use ratatui::layout::Rect;
 
+use super::Market;
 use super::model::Published;
 use super::news::Item;
+use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, rows_of};
 use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Line, Side, Unit, chart};
@@ -39,43 +44,94 @@ impl<'a> View<'a> {
     }
 }
 
-/// Draws the pane.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &View<'_>, focused: bool) {
-    let terms = &company.terms;
-    let Some(here) = view.selected() else {
-        let inside = canvas.pane(area, "Economy", "", focused);
-        let words = format!(
-            "no index yet: day 1 is published on day {}, {} days after measurement",
-            next_day(view.economy, terms),
-            terms.economy_lag_days
-        );
-        for (row, line) in rows_of(inside).zip(wrapped(&words, inside.width as usize)) {
-            canvas.text(row, &line, Role::Dim);
-        }
-        return;
-    };
-    let sign = if here.change < 0.0 { '-' } else { '+' };
-    let figures = format!("PMI {} ({sign}{})", grouped(here.value, 1), grouped(here.change.abs(), 1));
-    let inside = canvas.pane(area, "Economy", &format!("{figures} · {}", here.words), focused);
-    let width = inside.width as usize;
-    let lag = format!(
-        "measured on day {}, published on day {}; next on day {}",
-        here.day,
-        here.day + terms.economy_lag_days,
-        next_day(view.economy, terms)
-    );
-    let mut words = wrapped(&here.text, width);
-    words.extend(wrapped(&lag, width));
-    if inside.height >= 14 {
-        words.extend(wrapped("◆ published · ░ not yet published · ▁▃▅ news of rivals", width));
+/// The index of the economy.
+pub struct EconomyPane;
+
+impl Pane<Market> for EconomyPane {
+    fn scopes(&self, _: &Market) -> Vec<Scope> {
+        vec![Scope::Market, Scope::List]
     }
-    let room = (inside.height / 2) as usize;
-    let words = &words[words.len().saturating_sub(room.max(1))..];
-    let above = inside.height.saturating_sub(words.len() as u16);
-    draw_curve(canvas, Rect { height: above, ..inside }, company, view, here);
-    let below = Rect { y: inside.y + above, height: inside.height - above, ..inside };
-    for (row, line) in rows_of(below).zip(words) {
-        canvas.text(row, line, Role::Dim);
+
+    fn hints(&self, _: &Market) -> Vec<Action> {
+        vec![Action::Left, Action::Right, Action::Open, Action::FindGroup]
+    }
+
+    fn figure(&self, market: &Market, _: &Look<'_>) -> Option<Figure> {
+        let day = market.economy().selected()?.day;
+        Some(Figure {
+            title: format!("PMI of day {day}"),
+            term: "pmi",
+            sql: Some(format!("SELECT * FROM macroeconomic_conditions WHERE day = {day}")),
+        })
+    }
+
+    fn act(&self, market: &mut Market, action: Action, _: &Look<'_>) -> Vec<Effect> {
+        let last = market.facts.economy.len().saturating_sub(1);
+        let now = market.point.unwrap_or(last).min(last);
+        market.point = match action {
+            Action::Open => return market.economy().selected().map(read).into_iter().collect(),
+            Action::Left | Action::Down | Action::PageDown => Some(now.saturating_sub(1)),
+            Action::Right | Action::Up | Action::PageUp => Some((now + 1).min(last)),
+            Action::First => Some(0),
+            Action::Last | Action::Close => None,
+            _ => market.point,
+        };
+        Vec::new()
+    }
+
+    fn border(&self, market: &Market, _: Rect, look: &Look<'_>) -> Border {
+        let note = market.economy().selected().map_or(String::new(), |here| {
+            let sign = if here.change < 0.0 { '-' } else { '+' };
+            let figures = format!("PMI {} ({sign}{})", grouped(here.value, 1), grouped(here.change.abs(), 1));
+            format!("{figures} · {}", here.words)
+        });
+        let keys = [Action::Left, Action::Right].map(|action| look.keys.label(action).unwrap_or_default());
+        let keys = format!("{}/{} other readings", keys[0], keys[1]);
+        Border { title: "Economy".to_owned(), note, keys, ..Border::default() }
+    }
+
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let (view, inside) = (market.economy(), seat.area);
+        let Some(here) = view.selected() else {
+            return draw_nothing(canvas, inside, &view, &look.company.terms);
+        };
+        let terms = &look.company.terms;
+        let width = inside.width as usize;
+        let lag = format!(
+            "measured on day {}, published on day {}; next on day {}",
+            here.day,
+            here.day + terms.economy_lag_days,
+            next_day(view.economy, terms)
+        );
+        let mut words = wrapped(&here.text, width);
+        words.extend(wrapped(&lag, width));
+        if inside.height >= 14 {
+            words.extend(wrapped("◆ published · ░ not yet published · ▁▃▅ news of rivals", width));
+        }
+        let room = (inside.height / 2) as usize;
+        let words = &words[words.len().saturating_sub(room.max(1))..];
+        let above = inside.height.saturating_sub(words.len() as u16);
+        draw_curve(canvas, Rect { height: above, ..inside }, look.company, &view, here);
+        let below = Rect { y: inside.y + above, height: inside.height - above, ..inside };
+        for (row, line) in rows_of(below).zip(words) {
+            canvas.text(row, line, Role::Dim);
+        }
+    }
+}
+
+/// A measurement to read.
+fn read(point: &Published) -> Effect {
+    Effect::ShowText(format!("PMI of day {} · {}", point.day, point.words), point.text.clone())
+}
+
+fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, view: &View<'_>, terms: &ToolLimits) {
+    let words = format!(
+        "no index yet: day 1 is published on day {}, {} days after measurement",
+        next_day(view.economy, terms),
+        terms.economy_lag_days
+    );
+    for (row, line) in rows_of(area).zip(wrapped(&words, area.width as usize)) {
+        canvas.text(row, &line, Role::Dim);
     }
 }
 

@@ -1,21 +1,22 @@
 //! The market: groups and studies, finding others, the economy, and what the press tells of rivals.
 
-mod draw;
+mod attempts;
 mod economy;
-mod figure;
+mod groups;
 pub mod model;
 mod news;
 pub mod report;
 #[cfg(test)]
 mod tests;
 
-use crossterm::event::KeyEvent;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::{Value, json};
+use strum::VariantArray;
 
-use self::model::{Facts, Known, level_of, name_of, study_of, target_of, undiscovered};
+use self::model::{Facts, level_of, name_of, target_of, undiscovered};
 use self::news::Item;
-use super::{Figure, Look, Screen, ScreenId, ScreenState};
+use super::panes::{Pane, Paned, draw_pane};
+use super::{Figure, Look, ScreenId, ScreenState};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
@@ -23,26 +24,39 @@ use crate::console::effect::Effect;
 use crate::console::message::News;
 use crate::console::posts::Posts;
 use crate::console::readings::Reading;
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Field, Table};
-use crate::notation::{compact, dollars, grouped, percent};
+use crate::console::widgets::Table;
+use crate::notation::{dollars, grouped};
 use crate::session::{Preview, Rows};
 use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
-/// Panes.
-const GROUPS: usize = 0;
-const REPORT: usize = 1;
-const ATTEMPTS: usize = 2;
-const NEWS: usize = 3;
-const ECONOMY: usize = 4;
+/// Its panes, in the order of the tab key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
+pub enum MarketPane {
+    /// Every group in a row.
+    #[default]
+    Groups,
+    /// What the study of the selected group says.
+    Report,
+    /// Attempts to find more groups.
+    Attempts,
+    /// What the press writes.
+    News,
+    /// The index of the economy.
+    Economy,
+}
+
 const FIND: ToolId = ToolId::ResearchMarket;
 const STUDY: ToolId = ToolId::ResearchGroup;
+
+/// Actions worth showing where a group is selected.
+const GROUP_HINTS: [Action; 5] =
+    [Action::Open, Action::StudyGroup, Action::LevelUp, Action::FindGroup, Action::Filter];
 
 /// The screen.
 #[derive(Default)]
 pub struct Market {
-    focus: usize,
+    focus: MarketPane,
     facts: Facts,
     /// Groups in the order of the table: the known ones first.
     groups: Vec<Group>,
@@ -62,60 +76,10 @@ pub struct Market {
     asking: Option<(ToolId, Value)>,
 }
 
-fn columns() -> Vec<Column> {
-    let mut columns = vec![Column::words("group"), Column::words("name").at_most(20)];
-    columns.extend(["level", "error"].map(Column::numbers));
-    columns.push(Column::words("next study"));
-    columns.extend(["found", "studied"].map(Column::numbers));
-    columns
-}
-
-fn row_of(group: Group, known: Known, company: &Company) -> Vec<Cell> {
-    let level = level_of(company, group);
-    let none = || Cell::words("–").role(Role::Dim);
-    if level == 0 {
-        let not_found = Cell::words("not found yet").role(Role::Dim);
-        let id = Cell::words(group.id()).role(Role::Dim);
-        return vec![id, not_found, none(), none(), none(), none(), none()];
-    }
-    let day = |day: Option<u32>| match day {
-        Some(day) => Cell::number(f64::from(day), format!("day {day}")),
-        None => none(),
-    };
-    let found = match known.found {
-        Some(0) if known.studied.is_none() => Cell::number(0.0, "start").role(Role::Dim),
-        found => day(found),
-    };
-    // The table gives the day on which a group was found as that of its last study, too.
-    let studied = known.studied.filter(|day| level > 1 || known.found != Some(*day));
-    let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
-    let next = match study_of(company, group) {
-        Some(study) => {
-            Cell::words(format!("→{} due day {}", study.target, study.due_day)).role(Role::Warning)
-        }
-        None => {
-            let target = target_of(company, group, None);
-            let terms = company.terms.level(target).map_or(String::new(), |level| {
-                format!(" ${} {}d ±{}", compact(level.cost), level.days, percent(level.noise, 0))
-            });
-            Cell::words(format!("→{target}{terms}")).role(Role::Dim)
-        }
-    };
-    vec![
-        Cell::words(group.id()).role(Role::Strong),
-        Cell::words(name_of(company, group)),
-        Cell::number(f64::from(level), level.to_string()),
-        Cell::number(noise, format!("±{}", percent(noise, 0))),
-        next,
-        found,
-        day(studied),
-    ]
-}
-
 impl Market {
     /// Selects a group and shows its report.
     pub fn show(&mut self, group: Group) {
-        self.focus = GROUPS;
+        self.focus = MarketPane::Groups;
         // A filter may hide the group.
         self.table.act(Action::Close, 1);
         if let Some(row) = self.groups.iter().position(|own| *own == group) {
@@ -129,6 +93,22 @@ impl Market {
         (self.target, self.from) = (None, 0);
     }
 
+    /// The same, if another group was selected before.
+    fn turn_from(&mut self, before: Option<Group>) {
+        if before != self.group() {
+            self.turn();
+        }
+    }
+
+    /// Leads to the customers of the selected group.
+    fn show_customers(&self, company: &Company) -> Vec<Effect> {
+        let effect = self.group().map(|group| match level_of(company, group) {
+            0 => Effect::Complain(format!("{group} is not found yet; nothing is known of it")),
+            _ => Effect::ShowGroup(ScreenId::Customers, group),
+        });
+        effect.into_iter().collect()
+    }
+
     fn group(&self) -> Option<Group> {
         self.table.selected().and_then(|row| self.groups.get(row)).copied()
     }
@@ -138,52 +118,20 @@ impl Market {
         let known = |group: &Group| level_of(company, *group) > 0;
         self.groups = company.seen.known_groups.clone();
         self.groups.extend(Group::all().filter(|group| !known(group)));
-        let row =
-            |group: &Group| row_of(*group, self.facts.known.get(group).copied().unwrap_or_default(), company);
-        self.table.set(columns(), self.groups.iter().map(row).collect());
+        let known = |group: &Group| self.facts.known.get(group).copied().unwrap_or_default();
+        let rows = self.groups.iter().map(|group| groups::row_of(*group, known(group), company)).collect();
+        self.table.set(groups::columns(), rows);
         if let Some(row) = self.groups.iter().position(|own| Some(*own) == kept) {
             self.table.select(row);
         }
-        let attempt = |attempt: &model::Attempt| {
-            let found = match attempt.group {
-                Some(group) => Cell::words(format!("{group} {}", name_of(company, group))).role(Role::Good),
-                None => Cell::words("nothing").role(Role::Dim),
-            };
-            vec![
-                Cell::number(f64::from(attempt.day), attempt.day.to_string()),
-                Cell::number(attempt.cost, dollars(attempt.cost)),
-                found,
-            ]
-        };
-        let heads = vec![Column::numbers("day"), Column::numbers("cost"), Column::words("found")];
-        self.attempts.set(heads, self.facts.attempts.iter().map(attempt).collect());
+        let tried = self.facts.attempts.iter().map(|attempt| attempts::row_of(attempt, company)).collect();
+        self.attempts.set(attempts::columns(), tried);
         if std::sync::Arc::ptr_eq(&self.posts, &company.posts) {
             return;
         }
         self.posts = company.posts.clone();
         self.news = news::of(company);
-        let headline = |item: &Item| {
-            vec![
-                Cell::number(f64::from(item.post.day), item.post.day.to_string()).role(Role::Dim),
-                Cell::words(item.rival.as_deref().unwrap_or("economy")).role(match item.rival {
-                    Some(_) => Role::Strong,
-                    None => Role::Dim,
-                }),
-                Cell::words(item.post.text.replace('\n', " ")),
-            ]
-        };
-        let heads =
-            vec![Column::numbers("day"), Column::words("about"), Column::words("news").at_most(u16::MAX)];
-        self.headlines.set(heads, self.news.iter().map(headline).collect());
-    }
-
-    fn list(&mut self) -> Option<&mut Table> {
-        match self.focus {
-            GROUPS => Some(&mut self.table),
-            ATTEMPTS => Some(&mut self.attempts),
-            NEWS => Some(&mut self.headlines),
-            _ => None,
-        }
+        self.headlines.set(news::columns(), self.news.iter().map(news::row_of).collect());
     }
 
     fn check(&mut self, tool: ToolId, arguments: Value) -> Vec<Effect> {
@@ -226,45 +174,8 @@ impl Market {
         Effect::ConfirmCall { tool, arguments, text }
     }
 
-    fn open(&self, company: &Company) -> Vec<Effect> {
-        let effect = match self.focus {
-            NEWS => {
-                let item = self.headlines.selected().and_then(|row| self.news.get(row));
-                item.map(|Item { post, .. }| {
-                    Effect::ShowText(format!("day {} · press", post.day), post.text.clone())
-                })
-            }
-            ATTEMPTS => None,
-            ECONOMY => self.published().map(|point| {
-                Effect::ShowText(format!("PMI of day {} · {}", point.day, point.words), point.text.clone())
-            }),
-            _ => self.group().map(|group| match level_of(company, group) {
-                0 => Effect::Complain(format!("{group} is not found yet; nothing is known of it")),
-                _ => Effect::ShowGroup(ScreenId::Customers, group),
-            }),
-        };
-        effect.into_iter().collect()
-    }
-
-    /// The measurement of the economy that is selected.
-    fn published(&self) -> Option<&model::Published> {
-        self.economy().selected()
-    }
-
     fn economy(&self) -> economy::View<'_> {
         economy::View { economy: &self.facts.economy, point: self.point, news: &self.news }
-    }
-
-    fn choose_point(&mut self, action: Action) {
-        let last = self.facts.economy.len().saturating_sub(1);
-        let now = self.point.unwrap_or(last).min(last);
-        self.point = match action {
-            Action::Left | Action::Down | Action::PageDown => Some(now.saturating_sub(1)),
-            Action::Right | Action::Up | Action::PageUp => Some((now + 1).min(last)),
-            Action::First => Some(0),
-            Action::Last | Action::Close => None,
-            _ => self.point,
-        };
     }
 
     fn choose_level(&mut self, company: &Company, up: bool) {
@@ -272,25 +183,6 @@ impl Market {
         let now = target_of(company, group, self.target);
         let chosen = if up { now.saturating_add(1) } else { now.saturating_sub(1) };
         self.target = Some(target_of(company, group, Some(chosen)));
-    }
-
-    fn scroll(&mut self, action: Action, look: &Look<'_>) {
-        let page = usize::from(look.page.max(1));
-        let lines = self.group().map_or(0, |group| report::lines(look.company, group).len());
-        let last = lines.saturating_sub(page);
-        self.from = match action {
-            Action::Up => self.from.min(last).saturating_sub(1),
-            Action::Down => (self.from + 1).min(last),
-            Action::PageUp => self.from.saturating_sub(page),
-            Action::PageDown => (self.from + page).min(last),
-            Action::First => 0,
-            Action::Last => last,
-            Action::Close => {
-                self.focus = GROUPS;
-                0
-            }
-            _ => self.from,
-        };
     }
 }
 
@@ -339,106 +231,105 @@ impl ScreenState for Market {
     }
 }
 
-impl Screen for Market {
-    fn scopes(&self) -> Vec<Scope> {
-        let typing = match self.focus {
-            GROUPS => self.table.is_typing(),
-            ATTEMPTS => self.attempts.is_typing(),
-            NEWS => self.headlines.is_typing(),
-            _ => false,
-        };
-        if typing { vec![Scope::Field] } else { vec![Scope::Market, Scope::List] }
+impl Paned for Market {
+    type Name = MarketPane;
+
+    fn panes(&self) -> &'static [MarketPane] {
+        MarketPane::VARIANTS
     }
 
-    fn hints(&self) -> Vec<Action> {
-        match self.focus {
-            NEWS => vec![Action::Open, Action::Filter, Action::FindGroup],
-            ECONOMY => vec![Action::Left, Action::Right, Action::Open, Action::FindGroup],
-            ATTEMPTS => vec![Action::FindGroup, Action::Sort, Action::Filter],
-            _ => vec![Action::Open, Action::StudyGroup, Action::LevelUp, Action::FindGroup, Action::Filter],
+    fn pane(name: MarketPane) -> &'static dyn Pane<Market> {
+        match name {
+            MarketPane::Groups => &groups::GroupsPane,
+            MarketPane::Report => &report::ReportPane,
+            MarketPane::Attempts => &attempts::AttemptsPane,
+            MarketPane::News => &news::NewsPane,
+            MarketPane::Economy => &economy::EconomyPane,
         }
     }
 
-    fn panes(&self) -> usize {
-        5
-    }
-
-    fn focus(&self) -> usize {
+    fn focused(&self) -> MarketPane {
         self.focus
     }
 
-    fn set_focus(&mut self, pane: usize) {
-        self.focus = pane.min(ECONOMY);
+    fn focus_on(&mut self, name: MarketPane) {
+        self.focus = name;
     }
 
-    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
-        figure::of(self, look.company)
-    }
-
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        let before = self.group();
+    fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
         match action {
-            Action::FindGroup => return self.check(FIND, json!({})),
-            Action::StudyGroup => return self.study(look.company),
+            Action::FindGroup => Some(self.check(FIND, json!({}))),
+            Action::StudyGroup => Some(self.study(look.company)),
             Action::LevelUp | Action::LevelDown => {
                 self.choose_level(look.company, action == Action::LevelUp);
+                Some(Vec::new())
             }
-            Action::Open => return self.open(look.company),
-            action if self.focus == REPORT => self.scroll(action, look),
-            action if self.focus == ECONOMY => self.choose_point(action),
-            action => {
-                let action = match action {
-                    Action::CommitNext | Action::CommitPrevious => Action::Commit,
-                    other => other,
-                };
-                if let Some(list) = self.list() {
-                    list.act(action, look.page);
-                }
-            }
+            _ => None,
         }
-        if before != self.group() {
-            self.turn();
+    }
+
+    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        use MarketPane::{Attempts, Economy, Groups, Report};
+        if area.width >= 104 && area.height >= 24 {
+            return self.arrange_all(canvas, area, look);
         }
-        Vec::new()
-    }
-
-    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
-        self.typed(|field| {
-            field.key(key);
-        });
-        Vec::new()
-    }
-
-    fn paste(&mut self, text: &str, _: &Look<'_>) -> Vec<Effect> {
-        self.typed(|field| field.insert(text));
-        Vec::new()
-    }
-
-    fn click(&mut self, _: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
-        let group = self.group();
-        let Some(list) = self.list() else { return Vec::new() };
-        let before = list.selected();
-        list.select_place(row);
-        let again = before == list.selected();
-        if group != self.group() {
-            self.turn();
-        }
-        if again { self.open(look.company) } else { Vec::new() }
-    }
-
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        draw::draw(self, canvas, area, look);
+        // What has the focus takes the window; groups and report share it, attempts and economy, too.
+        let halves = [Constraint::Percentage(50), Constraint::Min(0)];
+        let [upper, lower] = Layout::vertical(halves).areas(area);
+        let (above, below) = match self.focus {
+            Groups if area.height >= 14 => (Groups, Report),
+            Attempts => (Attempts, Economy),
+            alone => return draw_pane(self, alone, canvas, area, look),
+        };
+        draw_pane(self, above, canvas, upper, look);
+        draw_pane(self, below, canvas, lower, look);
     }
 }
 
 impl Market {
-    fn typed(&mut self, work: impl FnOnce(&mut Field)) {
-        let before = self.group();
-        if let Some(list) = self.list() {
-            list.edit_filter(work);
-        }
-        if before != self.group() {
-            self.turn();
+    fn arrange_all(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let [left, right] = Layout::horizontal([Constraint::Percentage(52), Constraint::Min(0)]).areas(area);
+        let rows = (self.groups.len() as u16 + 3).min(area.height / 20 * 11);
+        let [groups, economy] = Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(left);
+        let attempts = (self.facts.attempts.len() as u16 + 4).min(area.height / 5).max(6);
+        let [report, found, news] = Layout::vertical([
+            Constraint::Length(area.height / 20 * 11),
+            Constraint::Length(attempts),
+            Constraint::Min(0),
+        ])
+        .areas(right);
+        for (pane, place) in [
+            (MarketPane::Groups, groups),
+            (MarketPane::Economy, economy),
+            (MarketPane::Report, report),
+            (MarketPane::Attempts, found),
+            (MarketPane::News, news),
+        ] {
+            draw_pane(self, pane, canvas, place, look);
         }
     }
+}
+
+/// Scopes of a pane that is a table.
+fn scopes(table: &Table) -> Vec<Scope> {
+    if table.is_typing() { vec![Scope::Field] } else { vec![Scope::Market, Scope::List] }
+}
+
+/// Moves in a table; tab ends typing there.
+fn walk(table: &mut Table, action: Action, look: &Look<'_>) {
+    let action = match action {
+        Action::CommitNext | Action::CommitPrevious => Action::Commit,
+        other => other,
+    };
+    table.act(action, look.page);
+}
+
+/// What is known of a group, as a figure.
+fn knowledge_of(group: Group, company: &Company, term: &'static str, what: &str) -> Option<Figure> {
+    let what = if level_of(company, group) == 0 { "what is known of" } else { what };
+    Some(Figure {
+        title: format!("{what} {group}"),
+        term,
+        sql: Some(format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'")),
+    })
 }

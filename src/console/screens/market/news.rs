@@ -2,8 +2,18 @@
 
 use std::sync::Arc;
 
+use ratatui::layout::Rect;
+
+use super::Market;
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::Canvas;
 use crate::console::company::Company;
+use crate::console::effect::Effect;
 use crate::console::posts::{Kind, Post};
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::console::theme::Role;
+use crate::console::widgets::{Cell, Column, Table};
 
 /// A piece of news.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,4 +32,87 @@ pub fn of(company: &Company) -> Vec<Item> {
         Item { post: post.clone(), rival: rival.cloned() }
     };
     press.map(item).collect()
+}
+
+/// What the press writes.
+pub struct NewsPane;
+
+impl Pane<Market> for NewsPane {
+    fn table<'a>(&self, market: &'a Market) -> Option<&'a Table> {
+        Some(&market.headlines)
+    }
+
+    fn table_mut<'a>(&self, market: &'a mut Market) -> Option<&'a mut Table> {
+        Some(&mut market.headlines)
+    }
+
+    fn scopes(&self, market: &Market) -> Vec<Scope> {
+        super::scopes(&market.headlines)
+    }
+
+    fn hints(&self, _: &Market) -> Vec<Action> {
+        vec![Action::Open, Action::Filter, Action::FindGroup]
+    }
+
+    fn figure(&self, market: &Market, _: &Look<'_>) -> Option<Figure> {
+        let item = selected(market)?;
+        let number = item.post.number;
+        Some(Figure {
+            title: format!("news #{number}"),
+            term: if item.rival.is_some() { "competitor" } else { "press" },
+            sql: Some(format!("SELECT * FROM social_media_posts WHERE post_id = {number}")),
+        })
+    }
+
+    fn act(&self, market: &mut Market, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        if action == Action::Open {
+            let read = |item: &Item| {
+                Effect::ShowText(format!("day {} · press", item.post.day), item.post.text.clone())
+            };
+            return selected(market).map(read).into_iter().collect();
+        }
+        super::walk(&mut market.headlines, action, look);
+        Vec::new()
+    }
+
+    fn border(&self, market: &Market, _: Rect, look: &Look<'_>) -> Border {
+        let note = match market.headlines.note() {
+            note if note.is_empty() => format!("{} in the press", market.news.len()),
+            note => note,
+        };
+        let keys = match market.news.is_empty() {
+            true => String::new(),
+            false => look.hints(&[Action::Open, Action::Filter]),
+        };
+        Border { title: "Rivals and economy in the news".to_owned(), note, keys, ..Border::default() }
+    }
+
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+        if market.news.is_empty() {
+            canvas.text(seat.area, "no news yet", Role::Dim);
+            return;
+        }
+        market.headlines.draw(canvas, seat.area, seat.focused, seat.number);
+    }
+}
+
+fn selected(market: &Market) -> Option<&Item> {
+    market.headlines.selected().and_then(|row| market.news.get(row))
+}
+
+/// The columns of the table.
+pub fn columns() -> Vec<Column> {
+    vec![Column::numbers("day"), Column::words("about"), Column::words("news").at_most(u16::MAX)]
+}
+
+/// The row of a piece of news.
+pub fn row_of(item: &Item) -> Vec<Cell> {
+    vec![
+        Cell::number(f64::from(item.post.day), item.post.day.to_string()).role(Role::Dim),
+        Cell::words(item.rival.as_deref().unwrap_or("economy")).role(match item.rival {
+            Some(_) => Role::Strong,
+            None => Role::Dim,
+        }),
+        Cell::words(item.post.text.replace('\n', " ")),
+    ]
 }

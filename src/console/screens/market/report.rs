@@ -5,10 +5,13 @@ use serde_json::Value;
 use unicode_width::UnicodeWidthStr;
 
 use super::model::{bounds, level_of, name_of, study_of, target_of};
-use crate::console::action::Action;
+use super::{Market, MarketPane, knowledge_of};
+use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Align, Canvas, rows_of};
 use crate::console::company::Company;
-use crate::console::screens::Look;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, percent};
@@ -118,7 +121,7 @@ fn influence(lines: &mut Vec<Line>, told: &Value, field: &str, unit: &str, write
 }
 
 /// What a study would cost and bring, or which one runs.
-pub fn study_words(company: &Company, group: Group, chosen: Option<u8>) -> String {
+fn study_words(company: &Company, group: Group, chosen: Option<u8>) -> String {
     if let Some(study) = study_of(company, group) {
         return format!("a study to level {} is due on day {}", study.target, study.due_day);
     }
@@ -131,57 +134,90 @@ pub fn study_words(company: &Company, group: Group, chosen: Option<u8>) -> Strin
     format!("{what}: {}, {} days, then ±{}", dollars(terms.cost), terms.days, percent(terms.noise, 0))
 }
 
-/// Draws the report from one of its lines on.
-pub fn draw(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    look: &Look<'_>,
-    group: Option<Group>,
-    chosen: Option<u8>,
-    from: usize,
-    focused: bool,
-) {
-    let company = look.company;
-    let Some(group) = group else {
-        canvas.pane(area, "Insight report", "", focused);
-        return;
-    };
-    let level = level_of(company, group);
-    if level == 0 {
-        let inside = canvas.pane(area, &format!("{group} · not found yet"), "", focused);
-        let terms = &company.terms;
-        let words = format!(
-            "This group is still unknown: {} pays {} for a market research attempt; {} % of attempts find one of the unknown groups. A found group sends leads from the next day on.",
-            look.keys.label(Action::FindGroup).unwrap_or_default(),
-            dollars(terms.attempt_cost),
-            grouped(terms.attempt_chance * 100.0, 0)
-        );
-        for (row, line) in rows_of(inside).zip(wrapped(&words, inside.width as usize)) {
-            canvas.text(row, &line, Role::Dim);
+/// The report of the selected group.
+pub struct ReportPane;
+
+impl Pane<Market> for ReportPane {
+    fn scopes(&self, _: &Market) -> Vec<Scope> {
+        vec![Scope::Market, Scope::List]
+    }
+
+    fn hints(&self, _: &Market) -> Vec<Action> {
+        super::GROUP_HINTS.to_vec()
+    }
+
+    fn figure(&self, market: &Market, look: &Look<'_>) -> Option<Figure> {
+        knowledge_of(market.group()?, look.company, "get_group_insights", "estimates of")
+    }
+
+    fn act(&self, market: &mut Market, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let page = usize::from(look.page.max(1));
+        let count = market.group().map_or(0, |group| lines(look.company, group).len());
+        let (from, last) = (market.from, count.saturating_sub(page));
+        market.from = match action {
+            Action::Open => return market.show_customers(look.company),
+            Action::Up => from.min(last).saturating_sub(1),
+            Action::Down => (from + 1).min(last),
+            Action::PageUp => from.saturating_sub(page),
+            Action::PageDown => (from + page).min(last),
+            Action::First => 0,
+            Action::Last => last,
+            Action::Close => {
+                market.focus = MarketPane::Groups;
+                0
+            }
+            _ => from,
+        };
+        Vec::new()
+    }
+
+    fn border(&self, market: &Market, _: Rect, look: &Look<'_>) -> Border {
+        let company = look.company;
+        let Some(group) = market.group() else {
+            return Border { title: "Insight report".to_owned(), ..Border::default() };
+        };
+        let level = level_of(company, group);
+        if level == 0 {
+            return Border { title: format!("{group} · not found yet"), ..Border::default() };
         }
-        return;
+        let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
+        Border {
+            title: format!("{group} · {}", name_of(company, group)),
+            note: format!("level {level} · ±{}", percent(noise, 0)),
+            keys: look.hints(&[Action::StudyGroup, Action::LevelUp, Action::LevelDown]),
+            keys_always: true,
+        }
     }
-    let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
-    let title = format!("{group} · {}", name_of(company, group));
-    let note = format!("level {level} · ±{}", percent(noise, 0));
-    let inside = canvas.pane(area, &title, &note, focused);
-    if inside.is_empty() {
-        return;
+
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let (company, inside) = (look.company, seat.area);
+        let Some(group) = market.group().filter(|_| !inside.is_empty()) else { return };
+        if level_of(company, group) == 0 {
+            return draw_unknown(canvas, inside, look);
+        }
+        let running = study_of(company, group).is_some();
+        let role = if running { Role::Warning } else { Role::Strong };
+        canvas.text(Rect { height: 1, ..inside }, &study_words(company, group, market.target), role);
+        let rest = Rect { y: inside.y + 1, height: inside.height - 1, ..inside };
+        if seat.focused {
+            canvas.page = rest.height.max(1);
+        }
+        draw_estimates(canvas, rest, company, group, market.from);
     }
-    let first = Rect { height: 1, ..inside };
-    let running = study_of(company, group).is_some();
-    canvas.text(
-        first,
-        &study_words(company, group, chosen),
-        if running { Role::Warning } else { Role::Strong },
+}
+
+/// How a group that is not found yet can be found.
+fn draw_unknown(canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    let terms = &look.company.terms;
+    let words = format!(
+        "This group is still unknown: {} pays {} for a market research attempt; {} % of attempts find one of the unknown groups. A found group sends leads from the next day on.",
+        look.keys.label(Action::FindGroup).unwrap_or_default(),
+        dollars(terms.attempt_cost),
+        grouped(terms.attempt_chance * 100.0, 0)
     );
-    let rest = Rect { y: inside.y + 1, height: inside.height - 1, ..inside };
-    if focused {
-        canvas.page = rest.height.max(1);
+    for (row, line) in rows_of(area).zip(wrapped(&words, area.width as usize)) {
+        canvas.text(row, &line, Role::Dim);
     }
-    draw_estimates(canvas, rest, company, group, from);
-    let keys = [Action::StudyGroup, Action::LevelUp, Action::LevelDown];
-    canvas.pane_keys(area, &look.hints(&keys));
 }
 
 /// Draws the estimates of a known group from one of their lines on.

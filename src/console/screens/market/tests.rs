@@ -3,6 +3,7 @@ use std::sync::Arc;
 use super::*;
 use crate::console::keys::Keys;
 use crate::console::posts::Kind;
+use crate::console::screens::Screen;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
 use crate::session::{Session, Via};
 
@@ -86,7 +87,7 @@ fn attempts_find_groups_and_are_listed() {
     screen.show(group);
     let text = drawn(&screen, &company, 120, 37);
     assert!(text.contains("7 known · 19 to find") && text.contains(&format!("{group} · ")), "{text}");
-    screen.set_focus(ATTEMPTS);
+    screen.focus_on(MarketPane::Attempts);
     assert!(drawn(&screen, &company, 80, 21).contains("1 of "));
 }
 
@@ -110,7 +111,7 @@ fn a_group_leads_to_its_customers_and_unknown_ones_are_explained() {
     let company = Company::of(&session);
     let mut screen: Market = shown(&mut session, &company);
     let group = company.seen.known_groups[2];
-    screen.set_focus(NEWS);
+    screen.focus_on(MarketPane::News);
     screen.show(group);
     let effects = act(&mut screen, Action::Open, &company);
     assert!(
@@ -146,10 +147,10 @@ fn the_economy_is_shown_with_its_lag() {
             assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
         }
     }
-    screen.set_focus(ATTEMPTS);
+    screen.focus_on(MarketPane::Attempts);
     assert!(drawn(&screen, &company, 80, 21).contains("PMI "));
     assert!(!screen.news.is_empty() && screen.news.iter().all(|item| item.post.kind == Kind::Press));
-    screen.set_focus(NEWS);
+    screen.focus_on(MarketPane::News);
     let effects = act(&mut screen, Action::Open, &company);
     assert!(matches!(&effects[..], [Effect::ShowText(title, _)] if title.contains("press")), "{effects:?}");
 }
@@ -165,11 +166,11 @@ fn the_small_window_shows_groups_and_report() {
     {
         assert!(text.contains(words), "{words} in\n{text}");
     }
-    screen.set_focus(REPORT);
+    screen.focus_on(MarketPane::Report);
     act(&mut screen, Action::Last, &company);
     assert!(screen.from > 0);
     act(&mut screen, Action::Close, &company);
-    assert_eq!((screen.focus, screen.from), (GROUPS, 0));
+    assert_eq!((screen.focus, screen.from), (MarketPane::Groups, 0));
 }
 
 #[test]
@@ -180,7 +181,7 @@ fn it_is_drawn_in_every_window_with_and_without_data() {
         sweep(&mut Market::default(), &company);
         let mut screen = shown::<Market>(&mut session, &company);
         sweep(&mut screen, &company);
-        screen.set_focus(GROUPS);
+        screen.focus_on(MarketPane::Groups);
         act(&mut screen, Action::Last, &company);
         sweep(&mut screen, &company);
     }
@@ -193,7 +194,7 @@ fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
     let mut screen: Market = shown(&mut session, &company);
     let rivals = screen.news.iter().filter(|item| item.rival.is_some()).count();
     assert!(rivals > 0 && rivals < screen.news.len(), "{rivals} of {}", screen.news.len());
-    screen.set_focus(ECONOMY);
+    screen.focus_on(MarketPane::Economy);
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
         for words in [
@@ -218,7 +219,7 @@ fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
     assert_eq!(figure.title, "PMI of day 1");
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
     assert_eq!(crate::session::number_at(&rows[0], 1), screen.facts.economy[0].value);
-    for focus in 0..screen.panes() {
+    for focus in 0..Screen::panes(&screen) {
         screen.set_focus(focus);
         if let Some(figure) = screen.figure(&look) {
             session
@@ -233,10 +234,12 @@ fn a_zoomed_pane_has_the_window() {
     let mut session = played(3);
     let company = Company::of(&session);
     let mut screen: Market = shown(&mut session, &company);
-    for (pane, own, other) in
-        [(GROUPS, "Groups", "┌ Economy"), (ECONOMY, "Economy", "┌ Groups"), (NEWS, "Rivals", "┌ Attempts")]
-    {
-        screen.set_focus(pane);
+    for (pane, own, other) in [
+        (MarketPane::Groups, "Groups", "┌ Economy"),
+        (MarketPane::Economy, "Economy", "┌ Groups"),
+        (MarketPane::News, "Rivals", "┌ Attempts"),
+    ] {
+        screen.focus_on(pane);
         let text = crate::console::test_kit::zoomed(&screen, &company, 100, 30);
         let first = text.lines().next().expect("a line");
         assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");

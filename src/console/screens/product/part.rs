@@ -89,6 +89,7 @@ impl<P: Part> Pane<Product> for P {
             title: self.name().title().to_owned(),
             note: self.note(product, look.company),
             keys: format!("{open} {}", self.destination(product)),
+            ..Border::default()
         }
     }
 

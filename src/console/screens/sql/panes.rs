@@ -111,7 +111,7 @@ impl Pane<Sql> for ResultsPane {
             true => ("Result".to_owned(), String::new()),
             false => sql.results.head(),
         };
-        Border { title, note, keys: look.hints(sql.results.keys()) }
+        Border { title, note, keys: look.hints(sql.results.keys()), ..Border::default() }
     }
 
     fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
@@ -158,6 +158,7 @@ impl Pane<Sql> for TablesPane {
             title: "Tables".to_owned(),
             note: sql.browser.note(),
             keys: format!("{} insert · {} columns · {} fold", keys.0, keys.1, keys.2),
+            ..Border::default()
         }
     }
 

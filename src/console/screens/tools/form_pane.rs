@@ -12,7 +12,7 @@ use super::{Tools, ToolsPane, figure};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, rows_of};
 use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat, draw_framed};
+use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::{Figure, Look};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
@@ -85,12 +85,13 @@ impl Pane<Tools> for FormPane {
         Vec::new()
     }
 
-    fn border(&self, tools: &Tools, _: Rect, _: &Look<'_>) -> Border {
+    fn border(&self, tools: &Tools, _: Rect, look: &Look<'_>) -> Border {
         match (tools.here(), tools.seen_form()) {
-            (Some(spec), Some(_)) => Border {
+            (Some(spec), Some(form)) => Border {
                 title: format!("{} · {} · {}", spec.name(), spec.module.id(), spec.code),
                 note: when(spec).to_owned(),
-                ..Border::default()
+                keys: keys(form, look),
+                keys_always: true,
             },
             (spec, _) => {
                 let title = spec.map_or("Form", |spec| spec.name()).to_owned();
@@ -113,14 +114,6 @@ impl Pane<Tools> for FormPane {
         let below = under(rest, used + 1);
         let used = draw_earlier(&form.earlier, canvas, below);
         draw_manual(form.spec, canvas, under(below, used), look);
-    }
-
-    /// Its keys are always shown: they say what the form can do before one goes there.
-    fn show(&self, tools: &Tools, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
-        draw_framed(self, tools, canvas, seat, look);
-        if let Some(form) = tools.seen_form() {
-            canvas.pane_keys(seat.area, &keys(form, look));
-        }
     }
 }
 

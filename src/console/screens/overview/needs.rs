@@ -1,9 +1,75 @@
 //! What needs the person, as rows of this screen: where each leads, and the figure it speaks of.
 
+use ratatui::layout::Rect;
+
+use super::Overview;
+use super::rows::{self, Row, walk};
+use crate::console::action::Action;
+use crate::console::canvas::Canvas;
+use crate::console::company::Company;
 use crate::console::effect::Effect;
-use crate::console::screens::{Figure, ScreenId};
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look, ScreenId};
+use crate::console::theme::Role;
 use crate::report::needs::{Need, Place, Problem};
 use crate::session::entries_of_weeks;
+
+/// What needs the person, the most urgent first.
+pub struct NeedsPane;
+
+impl Pane<Overview> for NeedsPane {
+    fn hints(&self, _: &Overview) -> Vec<Action> {
+        vec![Action::Open]
+    }
+
+    fn figure(&self, overview: &Overview, look: &Look<'_>) -> Option<Figure> {
+        look.company.needs.get(overview.need).map(|need| figure_of(need, look.company.seen.day))
+    }
+
+    fn act(&self, overview: &mut Overview, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let needs = &look.company.needs;
+        if action == Action::Open {
+            return needs.get(overview.need).map(way_of).into_iter().collect();
+        }
+        walk(&mut overview.need, needs.len(), action);
+        Vec::new()
+    }
+
+    fn click(&self, overview: &mut Overview, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        let again = overview.need == row;
+        overview.need = row.min(look.company.needs.len().saturating_sub(1));
+        if again { self.act(overview, Action::Open, look) } else { Vec::new() }
+    }
+
+    fn border(&self, _: &Overview, _: Rect, look: &Look<'_>) -> Border {
+        let needs = &look.company.needs;
+        let urgent = needs.iter().filter(|need| need.urgent).count();
+        let note = if urgent > 0 { format!("{urgent} now · {} in all", needs.len()) } else { String::new() };
+        Border { title: "Needs you".to_owned(), note, ..Border::default() }
+    }
+
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        if look.company.needs.is_empty() {
+            let text = match look.company.seen.ended {
+                Some(_) => "the run is over; you can still read and query",
+                None => "nothing: n starts the next week",
+            };
+            canvas.text(seat.area, text, Role::Dim);
+        }
+        rows::draw(canvas, seat, &rows_of(look.company), overview.need);
+    }
+}
+
+fn rows_of(company: &Company) -> Vec<Row> {
+    company.needs.iter().map(|need| Row::to(screen_of(need), need.in_words(), need.urgent)).collect()
+}
+
+/// Height of the needs with their border, at most so much.
+pub fn height(company: &Company, width: u16, most: u16) -> u16 {
+    let room = width.saturating_sub(2);
+    let lines: usize = rows_of(company).iter().map(|row| row.lines(room).len()).sum();
+    (lines.max(1) as u16 + 2).min(most.max(4))
+}
 
 /// The screen on which a need is looked after.
 pub fn screen_of(need: &Need) -> ScreenId {

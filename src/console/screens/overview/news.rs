@@ -1,13 +1,61 @@
 //! What is new since the last week: what was finished, found and published, and what people wrote.
 
+use ratatui::layout::Rect;
+
+use super::Overview;
+use super::rows::{self, Row, walk};
+use crate::console::action::Action;
+use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::posts::Kind as Author;
+use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::product::model::Project;
-use crate::console::screens::{Figure, ScreenId};
+use crate::console::screens::{Figure, Look, ScreenId};
+use crate::console::theme::Role;
 use crate::notation::grouped;
 use crate::session::Rows;
 use crate::session::text_at;
+
+/// What is new.
+pub struct NewsPane;
+
+impl Pane<Overview> for NewsPane {
+    fn hints(&self, _: &Overview) -> Vec<Action> {
+        vec![Action::Open]
+    }
+
+    fn figure(&self, overview: &Overview, look: &Look<'_>) -> Option<Figure> {
+        overview.news.get(overview.item).map(|item| item.figure(look.company.seen.day))
+    }
+
+    fn act(&self, overview: &mut Overview, action: Action, _: &Look<'_>) -> Vec<Effect> {
+        if action == Action::Open {
+            return overview.news.get(overview.item).map(Item::way).into_iter().collect();
+        }
+        walk(&mut overview.item, overview.news.len(), action);
+        Vec::new()
+    }
+
+    fn click(&self, overview: &mut Overview, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        let again = overview.item == row;
+        overview.item = row.min(overview.news.len().saturating_sub(1));
+        if again { self.act(overview, Action::Open, look) } else { Vec::new() }
+    }
+
+    fn border(&self, _: &Overview, _: Rect, _: &Look<'_>) -> Border {
+        Border { title: "New this week".to_owned(), ..Border::default() }
+    }
+
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+        if overview.news.is_empty() {
+            canvas.text(seat.area, "nothing", Role::Dim);
+        }
+        let row = |item: &Item| Row::to(item.screen(), item.text.clone(), false);
+        let rows: Vec<Row> = overview.news.iter().map(row).collect();
+        rows::draw(canvas, seat, &rows, overview.item);
+    }
+}
 
 /// What an item is about; items stand in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

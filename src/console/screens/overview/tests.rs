@@ -1,4 +1,6 @@
 use super::*;
+use crate::console::effect::Effect;
+use crate::console::screens::{Screen, ScreenId};
 use crate::console::test_kit::{act, courted, drawn, played, shown, sweep};
 use crate::report::needs::{Place, Problem};
 use crate::session::{Cell as Value, Session};
@@ -59,7 +61,7 @@ fn the_selected_figure_names_figure_and_weeks() {
     let mut screen: Overview = shown(&mut session, &company);
     let keys = crate::console::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
-    screen.set_focus(WEEK);
+    screen.focus_on(OverviewPane::Week);
     let title = |screen: &Overview| screen.figure(&look).expect("a figure").title;
     assert_eq!(title(&screen), "cash at week's end, week 6");
     for _ in 0..4 {
@@ -67,11 +69,11 @@ fn the_selected_figure_names_figure_and_weeks() {
     }
     act(&mut screen, Action::Down, &company);
     assert_eq!(title(&screen), "recurring revenue, weeks 3 to 6");
-    screen.set_focus(QUALITY);
+    screen.focus_on(OverviewPane::Quality);
     assert_eq!(title(&screen), "delivered quality of E1 on plan A");
-    screen.set_focus(CASH);
+    screen.focus_on(OverviewPane::Cash);
     assert_eq!(title(&screen), "cash at week's end, week 6");
-    for pane in 0..screen.panes() {
+    for pane in 0..Screen::panes(&screen) {
         screen.set_focus(pane);
         for _ in 0..METRICS.len() {
             if let Some(sql) = screen.figure(&look).and_then(|figure| figure.sql) {

@@ -1,0 +1,87 @@
+//! Rows of words that lead to a screen, the way needs and news are listed.
+
+use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
+
+use crate::console::action::Action;
+use crate::console::canvas::{Align, Canvas, Click, fit};
+use crate::console::screens::ScreenId;
+use crate::console::screens::panes::Seat;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+
+/// Moves a selection among rows.
+pub fn walk(selected: &mut usize, rows: usize, action: Action) {
+    let last = rows.saturating_sub(1);
+    *selected = match action {
+        Action::Up => selected.saturating_sub(1),
+        Action::Down => (*selected + 1).min(last),
+        Action::First => 0,
+        Action::Last => last,
+        _ => *selected,
+    };
+}
+
+/// A row of words that leads to a screen.
+pub struct Row {
+    text: String,
+    urgent: bool,
+    way: String,
+}
+
+impl Row {
+    /// A row with where it leads.
+    pub fn to(screen: ScreenId, text: String, urgent: bool) -> Row {
+        Row { text, urgent, way: format!("→ {}", screen.action().entry().title) }
+    }
+
+    /// The words in lines: whole, beside the name of the screen in the first one.
+    pub fn lines(&self, width: u16) -> Vec<String> {
+        let room = (width as usize).saturating_sub(self.way.width() + 4);
+        wrapped(&self.text, room.max(12))
+    }
+}
+
+/// Draws rows from the first on with which the selected one is seen whole.
+pub fn draw(canvas: &mut Canvas<'_>, seat: Seat, rows: &[Row], selected: usize) {
+    let area = seat.area;
+    let all: Vec<Vec<String>> = rows.iter().map(|row| row.lines(area.width)).collect();
+    let mut from = 0;
+    let height = |from: usize| all[from..].iter().take(selected + 1 - from).map(Vec::len).sum::<usize>();
+    while from < selected && height(from) > area.height as usize {
+        from += 1;
+    }
+    let mut y = area.y;
+    for (at, lines) in all.iter().enumerate().skip(from) {
+        if y >= area.bottom() {
+            break;
+        }
+        let place = Rect { y, height: lines.len() as u16, ..area }.intersection(area);
+        draw_row(canvas, place, &rows[at], lines, seat.focused && at == selected);
+        canvas.click(place, Click::Row(seat.number, at));
+        y += lines.len() as u16;
+    }
+}
+
+fn draw_row(canvas: &mut Canvas<'_>, area: Rect, row: &Row, lines: &[String], selected: bool) {
+    let role = match (selected, row.urgent) {
+        (true, _) => Role::Selection,
+        (false, true) => Role::Warning,
+        (false, false) => Role::Text,
+    };
+    canvas.clear(area, if selected { role } else { Role::Text });
+    for (at, (line, y)) in lines.iter().zip(area.top()..area.bottom()).enumerate() {
+        let mark = match (at, row.urgent) {
+            (0, true) => "!",
+            (0, false) => "·",
+            _ => " ",
+        };
+        let more = lines.get(at + 1).filter(|_| y + 1 == area.bottom());
+        let way = if at == 0 { row.way.width() + 1 } else { 0 };
+        let room = (area.width as usize).saturating_sub(2 + way);
+        let shown = more.map_or_else(|| line.clone(), |more| fit(&format!("{line} {more}"), room));
+        canvas.text(Rect { y, height: 1, ..area }, &format!("{mark} {shown}"), role);
+    }
+    let way = if selected { role } else { Role::Dim };
+    canvas.aligned(Rect { height: area.height.min(1), ..area }, &row.way, way, Align::Right);
+}

@@ -1,0 +1,68 @@
+//! The figures of the week.
+
+use ratatui::layout::Rect;
+
+use super::Overview;
+use super::figures::{self, METRICS};
+use crate::console::action::Action;
+use crate::console::canvas::Canvas;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look, ScreenId};
+use crate::console::widgets::Table;
+
+/// The figures with their changes.
+pub struct WeekPane;
+
+impl Pane<Overview> for WeekPane {
+    fn table<'a>(&self, overview: &'a Overview) -> Option<&'a Table> {
+        Some(&overview.week)
+    }
+
+    fn table_mut<'a>(&self, overview: &'a mut Overview) -> Option<&'a mut Table> {
+        Some(&mut overview.week)
+    }
+
+    fn hints(&self, _: &Overview) -> Vec<Action> {
+        vec![Action::Rows, Action::Sort, Action::Open]
+    }
+
+    fn figure(&self, overview: &Overview, look: &Look<'_>) -> Option<Figure> {
+        let metric = METRICS.get(overview.week.selected()?)?;
+        Some(figures::figure(metric, overview.week.selected_column(), look.company))
+    }
+
+    fn act(&self, overview: &mut Overview, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        if action == Action::Open {
+            let metric = overview.week.selected().and_then(|row| METRICS.get(row));
+            return metric.map(|metric| Effect::Show(screen_of(metric.term))).into_iter().collect();
+        }
+        overview.week.act(action, look.page);
+        Vec::new()
+    }
+
+    fn border(&self, overview: &Overview, _: Rect, look: &Look<'_>) -> Border {
+        let note = match overview.week.note() {
+            note if note.is_empty() => match &look.company.seen.last_week {
+                Some(week) => format!("week {} · to day {}", look.company.seen.week, week.day),
+                None => "no week yet".to_owned(),
+            },
+            note => note,
+        };
+        Border { title: "This week".to_owned(), note, ..Border::default() }
+    }
+
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+        overview.week.draw(canvas, seat.area, seat.focused, seat.number);
+    }
+}
+
+/// The screen that shows more of a figure, by its term.
+fn screen_of(term: &str) -> ScreenId {
+    match term {
+        "cash" | "payments" | "running-costs" => ScreenId::Cash,
+        "thread" | "seats" => ScreenId::Inbox,
+        "usage" | "overload" | "outage" | "latency" | "error-rate" | "issue" => ScreenId::Product,
+        _ => ScreenId::Customers,
+    }
+}

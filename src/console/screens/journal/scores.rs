@@ -2,9 +2,13 @@
 
 use ratatui::layout::Rect;
 
+use super::{Journal, JournalPane};
+use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::company::Company;
-use crate::console::screens::Figure;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::percent;
@@ -37,49 +41,77 @@ fn weeks(days: u32) -> String {
     format!("{} {}", days / 7, if days == 7 { "week" } else { "weeks" })
 }
 
-/// Draws a line for every horizon, and below them the forecasts of the selected one.
-pub fn draw(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    company: &Company,
-    selected: usize,
-    focused: bool,
-    pane: usize,
-) {
-    canvas.click(area, Click::Pane(pane));
-    let inside = canvas.pane(area, "Forecasts", "95 % coverage", focused);
-    let head = format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "miss", "width");
-    let mut rows = rows_of(inside);
-    if let Some(row) = rows.next() {
-        canvas.text(row, &head, Role::Header);
+/// A line for every horizon, and below them the forecasts of the selected one.
+pub struct ScoresPane;
+
+impl Pane<Journal> for ScoresPane {
+    fn scopes(&self, _: &Journal) -> Vec<Scope> {
+        vec![Scope::List, Scope::Memo]
     }
-    for ((at, score), row) in company.scores.iter().enumerate().zip(rows.by_ref()) {
-        let role = if focused && at == selected { Role::Selection } else { role_of(score) };
-        canvas.clear(row, role);
-        canvas.text(row, &line_of(score), role);
-        canvas.click(row, Click::Row(pane, at));
+
+    fn hints(&self, _: &Journal) -> Vec<Action> {
+        vec![Action::Up, Action::Down, Action::Close]
     }
-    if let Some(row) = rows.next() {
-        let none = company.scores.iter().all(|score| score.scored == 0);
-        canvas.text(
-            row,
-            if none { "no forecast has come due yet" } else { "miss, width: share of cash" },
-            Role::Dim,
-        );
+
+    fn figure(&self, journal: &Journal, look: &Look<'_>) -> Option<Figure> {
+        figure(look.company, journal.horizon)
     }
-    let Some(score) = company.scores.get(selected) else { return };
-    let single = outcomes(company, score.horizon_days);
-    if single.is_empty() {
-        return;
+
+    fn act(&self, journal: &mut Journal, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let last = look.company.scores.len().saturating_sub(1);
+        match action {
+            Action::Close => journal.focus = JournalPane::List,
+            Action::Up | Action::First => journal.horizon = journal.horizon.saturating_sub(1),
+            Action::Down | Action::Last => journal.horizon = (journal.horizon + 1).min(last),
+            _ => {}
+        }
+        Vec::new()
     }
-    if let Some(row) = rows.next() {
-        let head =
-            format!("{:<9}{:>9}{:>9}{:>9}  {}", "due", "said", "was", "miss", weeks(score.horizon_days));
-        canvas.text(row, &head, Role::Header);
+
+    fn click(&self, journal: &mut Journal, row: usize, look: &Look<'_>) -> Vec<Effect> {
+        journal.horizon = row.min(look.company.scores.len().saturating_sub(1));
+        Vec::new()
     }
-    for (row, outcome) in rows.zip(single) {
-        let role = if outcome.is_inside() { Role::Text } else { Role::Warning };
-        canvas.text(row, &line_of_outcome(&outcome), role);
+
+    fn border(&self, _: &Journal, _: Rect, _: &Look<'_>) -> Border {
+        Border { title: "Forecasts".to_owned(), note: "95 % coverage".to_owned(), ..Border::default() }
+    }
+
+    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let company = look.company;
+        let head = format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "miss", "width");
+        let mut rows = rows_of(seat.area);
+        if let Some(row) = rows.next() {
+            canvas.text(row, &head, Role::Header);
+        }
+        for ((at, score), row) in company.scores.iter().enumerate().zip(rows.by_ref()) {
+            let role = if seat.focused && at == journal.horizon { Role::Selection } else { role_of(score) };
+            canvas.clear(row, role);
+            canvas.text(row, &line_of(score), role);
+            canvas.click(row, Click::Row(seat.number, at));
+        }
+        if let Some(row) = rows.next() {
+            let none = company.scores.iter().all(|score| score.scored == 0);
+            canvas.text(
+                row,
+                if none { "no forecast has come due yet" } else { "miss, width: share of cash" },
+                Role::Dim,
+            );
+        }
+        let Some(score) = company.scores.get(journal.horizon) else { return };
+        let single = outcomes(company, score.horizon_days);
+        if single.is_empty() {
+            return;
+        }
+        if let Some(row) = rows.next() {
+            let head =
+                format!("{:<9}{:>9}{:>9}{:>9}  {}", "due", "said", "was", "miss", weeks(score.horizon_days));
+            canvas.text(row, &head, Role::Header);
+        }
+        for (row, outcome) in rows.zip(single) {
+            let role = if outcome.is_inside() { Role::Text } else { Role::Warning };
+            canvas.text(row, &line_of_outcome(&outcome), role);
+        }
     }
 }
 

@@ -1,41 +1,52 @@
-//! What people write, our posts, and the desk where the next one is written.
+//! What people write, our posts, and where the next one is written.
 
-mod draw;
+mod draft;
 pub mod feed;
+mod feed_pane;
+mod own;
 #[cfg(test)]
 mod tests;
 mod wall;
 
 use std::sync::Arc;
 
-use crossterm::event::{KeyCode, KeyEvent};
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::{Value, json};
+use strum::VariantArray;
 
 use self::feed::{Filter, Kind, Post};
-use super::{Figure, Look, Screen, ScreenState};
-use crate::console::action::{Action, Scope};
+use super::panes::{Pane, Paned, draw_pane};
+use super::{Figure, Look, ScreenState};
+use crate::console::action::Action;
 use crate::console::canvas::{Canvas, fit};
 use crate::console::effect::Effect;
 use crate::console::message::News;
 use crate::console::posts::Posts;
 use crate::console::readings::Reading;
 use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Editor, Field, Table};
+use crate::console::widgets::{Axis, Cell, Column, Editor, Field, Line, Side, Table, Unit, chart};
 use crate::notation::grouped;
 use crate::session::Rows;
 use crate::tools::ToolId;
 
-/// Panes.
-const FEED: usize = 0;
-const DESK: usize = 1;
-const OWN: usize = 2;
+/// Its panes, in the order of the tab key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
+pub enum SocialPane {
+    /// Everything that is written.
+    #[default]
+    Feed,
+    /// Where the next post is written.
+    Draft,
+    /// Our own posts.
+    Own,
+}
+
 const POST: ToolId = ToolId::PostSocialMedia;
 
 /// The screen.
 #[derive(Default)]
 pub struct Social {
-    focus: usize,
+    focus: SocialPane,
     others: Posts,
     own: Vec<Arc<Post>>,
     /// Everything in the order of the feed.
@@ -126,30 +137,22 @@ impl Social {
     }
 
     /// Shows the thread of a post; within it, the whole post.
-    fn open(&mut self) -> Vec<Effect> {
-        let post = match self.focus {
-            FEED => self.post(),
-            OWN => self.own_post(),
-            _ => {
-                self.editing = true;
-                None
-            }
-        };
+    fn open(&mut self, post: Option<Post>) -> Vec<Effect> {
         let Some(post) = post else { return Vec::new() };
-        match self.thread_of(post).filter(|_| self.filter.thread.is_none()) {
+        match self.thread_of(&post).filter(|_| self.filter.thread.is_none()) {
             Some(own) => {
                 let answered = self.own.iter().find(|post| post.number == own).and_then(|post| post.answers);
                 self.filter = Filter { thread: Some((own, answered)), ..Filter::default() };
-                self.focus = FEED;
+                self.focus = SocialPane::Feed;
                 self.refilter();
                 Vec::new()
             }
-            None => vec![self.read(post)],
+            None => vec![self.read(&post)],
         }
     }
 
     fn write(&mut self, answers: Option<u32>) {
-        (self.focus, self.editing) = (DESK, true);
+        (self.focus, self.editing) = (SocialPane::Draft, true);
         if answers.is_some() {
             self.answers = answers;
         }
@@ -157,7 +160,7 @@ impl Social {
 
     fn reply(&mut self) -> Vec<Effect> {
         let answerable = self.post().filter(|post| post.kind != Kind::Own).map(|post| post.number);
-        match answerable.filter(|_| self.focus == FEED) {
+        match answerable.filter(|_| self.focus == SocialPane::Feed) {
             Some(number) => {
                 self.write(Some(number));
                 Vec::new()
@@ -202,36 +205,9 @@ impl Social {
         Effect::ConfirmCall { tool: POST, arguments, text }
     }
 
-    fn act_in_feed(&mut self, action: Action, page: u16) {
-        let last = self.shown.len().saturating_sub(1);
-        let page = usize::from(page.max(1));
-        match action {
-            Action::Up => self.selected = self.selected.saturating_sub(1),
-            Action::Down => self.selected = (self.selected + 1).min(last),
-            Action::PageUp => self.selected = self.selected.saturating_sub(page),
-            Action::PageDown => self.selected = (self.selected + page).min(last),
-            Action::First => self.selected = 0,
-            Action::Last => self.selected = last,
-            Action::Filter => self.typing = Some(Field::of(self.filter.text.clone())),
-            Action::Discard => {
-                self.typing = None;
-                self.filter.text.clear();
-                self.refilter();
-            }
-            Action::Commit | Action::CommitDown | Action::CommitNext | Action::CommitPrevious => {
-                self.typing = None;
-            }
-            Action::Close => {
-                self.filter = Filter::default();
-                self.refilter();
-            }
-            _ => {}
-        }
-    }
-
     fn change_filter(&mut self, action: Action) {
         let last = self.last_week();
-        self.focus = FEED;
+        self.focus = SocialPane::Feed;
         match action {
             Action::NextKind => self.filter.next_kind(),
             Action::EarlierWeek => self.filter.earlier_week(last),
@@ -240,15 +216,8 @@ impl Social {
         self.refilter();
     }
 
-    /// The field that is typed into, if any.
-    fn typed_into(&mut self, work: impl FnOnce(&mut Field)) {
-        if let Some(field) = &mut self.typing {
-            work(field);
-            self.filter.text = field.text().to_owned();
-            self.refilter();
-        } else {
-            self.table.edit_filter(work);
-        }
+    fn posted_this_week(&self) -> bool {
+        self.own.iter().any(|post| post.day == self.day)
     }
 }
 
@@ -292,7 +261,7 @@ impl ScreenState for Social {
             },
             News::Called(POST, Ok(_), _) => {
                 (self.draft, self.answers, self.editing) = (Editor::default(), None, false);
-                self.focus = FEED;
+                self.focus = SocialPane::Feed;
                 Vec::new()
             }
             _ => Vec::new(),
@@ -304,134 +273,111 @@ impl ScreenState for Social {
     }
 }
 
-impl Screen for Social {
-    fn scopes(&self) -> Vec<Scope> {
-        match self.focus {
-            DESK if self.editing => vec![Scope::Editor, Scope::Social],
-            FEED if self.typing.is_some() => vec![Scope::Field],
-            OWN if self.table.is_typing() => vec![Scope::Field],
-            _ => vec![Scope::Social, Scope::List],
+impl Paned for Social {
+    type Name = SocialPane;
+
+    fn panes(&self) -> &'static [SocialPane] {
+        SocialPane::VARIANTS
+    }
+
+    fn pane(name: SocialPane) -> &'static dyn Pane<Social> {
+        match name {
+            SocialPane::Feed => &feed_pane::FeedPane,
+            SocialPane::Draft => &draft::DraftPane,
+            SocialPane::Own => &own::OwnPane,
         }
     }
 
-    fn hints(&self) -> Vec<Action> {
-        match self.focus {
-            DESK if self.editing => vec![Action::SendPost, Action::LeaveEditor],
-            DESK => vec![Action::Compose, Action::SendPost, Action::Unreply],
-            FEED => vec![
-                Action::Open,
-                Action::Reply,
-                Action::Compose,
-                Action::Filter,
-                Action::NextKind,
-                Action::EarlierWeek,
-            ],
-            _ => vec![Action::Open, Action::Compose, Action::Sort, Action::Filter],
-        }
-    }
-
-    fn panes(&self) -> usize {
-        3
-    }
-
-    fn focus(&self) -> usize {
+    fn focused(&self) -> SocialPane {
         self.focus
     }
 
-    fn set_focus(&mut self, pane: usize) {
-        self.focus = pane.min(OWN);
+    fn focus_on(&mut self, name: SocialPane) {
+        self.focus = name;
         self.editing = false;
         self.typing = None;
     }
 
-    fn figure(&self, _: &Look<'_>) -> Option<Figure> {
-        let post = match self.focus {
-            FEED => self.post()?,
-            OWN => self.own_post()?,
-            _ => return Some(Figure { title: "a post of ours".to_owned(), term: POST.name(), sql: None }),
-        };
-        let number = post.number;
-        let own = "SELECT agent_post_id, day, views, comment_post_ids, content FROM agent_social_media_posts";
-        let (title, term, sql) = match (post.kind, self.focus, self.table.selected_column()) {
-            (Kind::Own, OWN, 2) => (
-                format!("comments on our post {number}"),
-                "comment",
-                format!(
-                    "SELECT post_id, day, content FROM social_media_posts WHERE reply_to_agent_post_id = {number}"
-                ),
-            ),
-            (Kind::Own, ..) => (
-                format!("views of our post {number}"),
-                "views",
-                format!("{own} WHERE agent_post_id = {number}"),
-            ),
-            _ => (
-                format!("post #{number}"),
-                if post.kind == Kind::Press { "press" } else { "post" },
-                format!("SELECT * FROM social_media_posts WHERE post_id = {number}"),
-            ),
-        };
-        Some(Figure { title, term, sql: Some(sql) })
-    }
-
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
         match action {
             Action::Compose => self.write(None),
-            Action::Reply => return self.reply(),
-            Action::SendPost => return self.send(look),
+            Action::Reply => return Some(self.reply()),
+            Action::SendPost => return Some(self.send(look)),
             Action::Unreply => self.answers = None,
             Action::LeaveEditor => self.editing = false,
             Action::NextKind | Action::EarlierWeek | Action::LaterWeek => self.change_filter(action),
-            Action::Open => return self.open(),
-            Action::Close if self.focus == DESK => self.focus = FEED,
-            Action::CommitNext | Action::CommitPrevious if self.focus == OWN => {
-                self.table.act(Action::Commit, look.page);
-            }
-            action if self.focus == FEED => self.act_in_feed(action, look.page),
-            action if self.focus == OWN => {
-                self.table.act(action, look.page);
-            }
-            _ => {}
+            _ => return None,
         }
-        Vec::new()
+        Some(Vec::new())
     }
 
-    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
-        match key.code {
-            // A post has no columns: tab leads on.
-            KeyCode::Tab if self.editing => return vec![Effect::Do(Action::FocusNext)],
-            KeyCode::BackTab if self.editing => return vec![Effect::Do(Action::FocusPrevious)],
-            _ if self.editing => self.draft.key(key),
-            _ => self.typed_into(|field| {
-                field.key(key);
-            }),
+    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        use SocialPane::{Draft, Feed, Own};
+        if area.width >= 104 && area.height >= 20 {
+            let right = (area.width / 3).clamp(40, 72);
+            let [left, side] =
+                Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
+            let [feed, draft] = Layout::vertical([Constraint::Min(0), Constraint::Length(8)]).areas(left);
+            let [own, weeks] = Layout::vertical([Constraint::Percentage(60), Constraint::Min(0)]).areas(side);
+            draw_pane(self, Feed, canvas, feed, look);
+            draw_pane(self, Draft, canvas, draft, look);
+            draw_pane(self, Own, canvas, own, look);
+            return self.draw_weeks(canvas, weeks);
         }
-        Vec::new()
-    }
-
-    fn paste(&mut self, text: &str, _: &Look<'_>) -> Vec<Effect> {
-        if self.editing {
-            self.draft.insert(text);
-        } else {
-            self.typed_into(|field| field.insert(text));
-        }
-        Vec::new()
-    }
-
-    fn click(&mut self, pane: usize, row: usize, _: &Look<'_>) -> Vec<Effect> {
-        let again = match pane {
-            FEED => std::mem::replace(&mut self.selected, row.min(self.shown.len().saturating_sub(1))) == row,
-            OWN => {
-                let before = self.table.selected();
-                self.table.select_place(row);
-                before == self.table.selected()
-            }
-            _ => true,
+        // One above the other; where even that is too much, the pane with the focus alone.
+        let low = match self.focus {
+            _ if area.height >= 14 => 7,
+            Draft => area.height,
+            _ => 0,
         };
-        if again { self.open() } else { Vec::new() }
+        let [upper, draft] = Layout::vertical([Constraint::Min(0), Constraint::Length(low)]).areas(area);
+        if self.focus == Own {
+            let halves = [Constraint::Percentage(50), Constraint::Min(0)];
+            let [own, weeks] = Layout::vertical(halves).areas(upper);
+            draw_pane(self, Own, canvas, own, look);
+            self.draw_weeks(canvas, weeks);
+        } else {
+            draw_pane(self, Feed, canvas, upper, look);
+        }
+        draw_pane(self, Draft, canvas, draft, look);
     }
+}
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        draw::draw(self, canvas, area, look);
+impl Social {
+    /// How much is written by week.
+    fn draw_weeks(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let last = self.last_week();
+        let people = feed::by_week(&self.others, last, |kind| kind == Kind::Customers);
+        let press = feed::by_week(&self.others, last, |kind| kind == Kind::Press);
+        let now = |points: &[(f64, f64)]| points.last().map_or(0.0, |point| point.1);
+        let note = format!("customers {} · press {}", now(&people), now(&press));
+        let inside = canvas.pane(area, "Posts by week", &note, false);
+        let lines = [
+            Line::through(people, Role::Series(0)),
+            Line { scattered: true, ..Line::through(press, Role::Series(1)) },
+        ];
+        let x = Axis { write: &|week| format!("week {week:.0}"), holds: &[] };
+        chart(canvas, inside, &lines, &x, &Side { unit: Unit::Number, holds: &[0.0] });
     }
+}
+
+/// A post as a figure.
+fn figure_of(post: &Post) -> Figure {
+    let number = post.number;
+    let (title, term, sql) = match post.kind {
+        Kind::Own => (
+            format!("views of our post {number}"),
+            "views",
+            format!(
+                "SELECT agent_post_id, day, views, comment_post_ids, content FROM agent_social_media_posts \
+                 WHERE agent_post_id = {number}"
+            ),
+        ),
+        kind => (
+            format!("post #{number}"),
+            if kind == Kind::Press { "press" } else { "post" },
+            format!("SELECT * FROM social_media_posts WHERE post_id = {number}"),
+        ),
+    };
+    Figure { title, term, sql: Some(sql) }
 }

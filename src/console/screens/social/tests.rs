@@ -1,10 +1,12 @@
 use std::sync::Arc;
 
-use crossterm::event::KeyModifiers;
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
+use crate::console::action::Scope;
 use crate::console::company::Company;
 use crate::console::keys::Keys;
+use crate::console::screens::Screen;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
 use crate::session::{Refusal, Session, Via};
 
@@ -63,7 +65,7 @@ fn every_window_shows_feed_and_desk_and_large_ones_our_posts() {
             }
         }
     }
-    screen.set_focus(OWN);
+    screen.focus_on(SocialPane::Own);
     let text = drawn(&screen, &company, 80, 21);
     assert!(text.contains("Our posts") && text.contains("Freelancers: 20% more"), "{text}");
 }
@@ -87,7 +89,7 @@ fn filters_narrow_the_feed_and_esc_ends_them() {
     assert!(screen.shown.is_empty());
     assert!(drawn(&screen, &company, 80, 21).contains("no matching posts: esc"));
     sweep(&mut screen, &company);
-    screen.set_focus(FEED);
+    screen.focus_on(SocialPane::Feed);
     act(&mut screen, Action::Close, &company);
     assert_eq!(screen.shown.len(), all);
 }
@@ -98,9 +100,9 @@ fn a_post_opens_with_its_comments() {
     let company = Company::of(&session);
     let mut screen: Social = shown(&mut session, &company);
     let all = screen.shown.len();
-    screen.set_focus(OWN);
+    screen.focus_on(SocialPane::Own);
     assert!(act(&mut screen, Action::Open, &company).is_empty());
-    assert_eq!((screen.focus, screen.shown.len() as u32), (FEED, screen.own[0].comments + 1));
+    assert_eq!((screen.focus, screen.shown.len() as u32), (SocialPane::Feed, screen.own[0].comments + 1));
     let seen = drawn(&screen, &company, 120, 37);
     assert!(seen.contains("thread of our post 1: ") && seen.contains("our post 1 · "), "{seen}");
     let effects = act(&mut screen, Action::Open, &company);
@@ -128,7 +130,7 @@ fn figures_are_made_of_their_rows() {
     };
     let number = screen.post().expect("a post").number;
     assert_eq!(rows(&screen)[0][0], crate::session::Cell::Integer(i64::from(number)));
-    screen.set_focus(OWN);
+    screen.focus_on(SocialPane::Own);
     assert_eq!(rows(&screen)[0][2], crate::session::Cell::Integer(i64::from(screen.own[0].views)));
     act(&mut screen, Action::Right, &company);
     act(&mut screen, Action::Right, &company);
@@ -227,10 +229,12 @@ fn a_zoomed_pane_has_the_window() {
     let mut session = played(3);
     let company = Company::of(&session);
     let mut screen: Social = shown(&mut session, &company);
-    for (pane, own, other) in
-        [(FEED, "Feed", "┌ New post"), (DESK, "New post", "┌ Feed"), (OWN, "Our posts", "┌ Feed")]
-    {
-        screen.set_focus(pane);
+    for (pane, own, other) in [
+        (SocialPane::Feed, "Feed", "┌ New post"),
+        (SocialPane::Draft, "New post", "┌ Feed"),
+        (SocialPane::Own, "Our posts", "┌ Feed"),
+    ] {
+        screen.focus_on(pane);
         let text = crate::console::test_kit::zoomed(&screen, &company, 100, 30);
         let first = text.lines().next().expect("a line");
         assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");

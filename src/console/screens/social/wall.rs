@@ -1,10 +1,10 @@
 //! The feed on the screen: days, heads and wrapped texts, with the selected post in view.
 
-use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::feed::{Kind, Post};
 use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::screens::panes::Seat;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 
@@ -16,14 +16,8 @@ struct Row {
 }
 
 /// Draws posts; the selected one is a place among them.
-pub fn draw(
-    canvas: &mut Canvas<'_>,
-    area: Rect,
-    posts: &[&Post],
-    selected: usize,
-    focused: bool,
-    pane: usize,
-) {
+pub fn draw(canvas: &mut Canvas<'_>, seat: Seat, posts: &[&Post], selected: usize) {
+    let (area, focused) = (seat.area, seat.focused);
     if area.is_empty() {
         return;
     }
@@ -46,7 +40,7 @@ pub fn draw(
         }
         canvas.text(row, &line.text, role);
         if let Some(place) = line.place {
-            canvas.click(row, Click::Row(pane, place));
+            canvas.click(row, Click::Row(seat.number, place));
         }
     }
 }

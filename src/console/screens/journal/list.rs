@@ -1,0 +1,64 @@
+//! What was done, the newest week first.
+
+use ratatui::layout::Rect;
+
+use super::Journal;
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::Canvas;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::console::widgets::Table;
+
+/// The entries.
+pub struct ListPane;
+
+impl Pane<Journal> for ListPane {
+    fn table<'a>(&self, journal: &'a Journal) -> Option<&'a Table> {
+        Some(&journal.table)
+    }
+
+    fn table_mut<'a>(&self, journal: &'a mut Journal) -> Option<&'a mut Table> {
+        Some(&mut journal.table)
+    }
+
+    fn scopes(&self, journal: &Journal) -> Vec<Scope> {
+        if journal.table.is_typing() { vec![Scope::Field] } else { vec![Scope::List, Scope::Memo] }
+    }
+
+    fn hints(&self, _: &Journal) -> Vec<Action> {
+        vec![Action::Open, Action::Filter, Action::EditMemo]
+    }
+
+    fn figure(&self, journal: &Journal, _: &Look<'_>) -> Option<Figure> {
+        journal.table.selected().and_then(|row| journal.figures.get(row)).cloned()
+    }
+
+    fn act(&self, journal: &mut Journal, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let action = match action {
+            Action::Open => {
+                let whole = journal.table.selected().and_then(|row| journal.wholes.get(row));
+                let read = |(title, text): &(String, String)| Effect::ShowText(title.clone(), text.clone());
+                return whole.map(read).into_iter().collect();
+            }
+            // Tab ends typing here.
+            Action::CommitNext | Action::CommitPrevious => Action::Commit,
+            other => other,
+        };
+        journal.table.act(action, look.page);
+        Vec::new()
+    }
+
+    fn border(&self, journal: &Journal, _: Rect, look: &Look<'_>) -> Border {
+        Border {
+            title: "Journal".to_owned(),
+            note: journal.table.note(),
+            keys: look.hints(&[Action::Open, Action::Filter]),
+            ..Border::default()
+        }
+    }
+
+    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+        journal.table.draw(canvas, seat.area, seat.focused, seat.number);
+    }
+}

@@ -1,0 +1,80 @@
+//! Our own posts, and what came of them.
+
+use ratatui::layout::Rect;
+
+use super::Social;
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::Canvas;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::console::theme::Role;
+use crate::console::widgets::Table;
+use crate::notation::grouped;
+
+/// The table of our posts.
+pub struct OwnPane;
+
+impl Pane<Social> for OwnPane {
+    fn table<'a>(&self, social: &'a Social) -> Option<&'a Table> {
+        Some(&social.table)
+    }
+
+    fn table_mut<'a>(&self, social: &'a mut Social) -> Option<&'a mut Table> {
+        Some(&mut social.table)
+    }
+
+    fn scopes(&self, social: &Social) -> Vec<Scope> {
+        if social.table.is_typing() { vec![Scope::Field] } else { vec![Scope::Social, Scope::List] }
+    }
+
+    fn hints(&self, _: &Social) -> Vec<Action> {
+        vec![Action::Open, Action::Compose, Action::Sort, Action::Filter]
+    }
+
+    fn figure(&self, social: &Social, _: &Look<'_>) -> Option<Figure> {
+        let post = social.own_post()?;
+        if social.table.selected_column() != 2 {
+            return Some(super::figure_of(post));
+        }
+        let number = post.number;
+        let sql = format!(
+            "SELECT post_id, day, content FROM social_media_posts WHERE reply_to_agent_post_id = {number}"
+        );
+        Some(Figure { title: format!("comments on our post {number}"), term: "comment", sql: Some(sql) })
+    }
+
+    fn act(&self, social: &mut Social, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let action = match action {
+            Action::Open => return social.open(social.own_post().cloned()),
+            // Tab ends typing here.
+            Action::CommitNext | Action::CommitPrevious => Action::Commit,
+            other => other,
+        };
+        social.table.act(action, look.page);
+        Vec::new()
+    }
+
+    fn border(&self, social: &Social, _: Rect, look: &Look<'_>) -> Border {
+        let views: u32 = social.own.iter().map(|post| post.views).sum();
+        let note = match social.table.note() {
+            note if !note.is_empty() => note,
+            _ if social.own.is_empty() => String::new(),
+            _ => format!("{} · {} views", social.own.len(), grouped(f64::from(views), 0)),
+        };
+        let keys = match social.own.is_empty() {
+            true => String::new(),
+            false => look.hints(&[Action::Open, Action::Sort, Action::Filter]),
+        };
+        Border { title: "Our posts".to_owned(), note, keys, ..Border::default() }
+    }
+
+    fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        if social.own.is_empty() {
+            let key = look.keys.label(Action::Compose).unwrap_or_default();
+            canvas.text(seat.area, &format!("none yet: {key} writes one"), Role::Dim);
+            return;
+        }
+        social.table.draw(canvas, seat.area, seat.focused, seat.number);
+    }
+}

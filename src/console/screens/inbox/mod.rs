@@ -1,26 +1,29 @@
 //! Negotiations with companies: who waits, what was said, and offers to one or to many by a rule.
 
-mod draw;
 mod estimate;
+mod list;
 mod model;
 mod offer;
+mod offer_pane;
 mod post;
-mod rows;
+mod preview;
 #[cfg(test)]
 mod tests;
+mod thread;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crossterm::event::KeyEvent;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
+use strum::VariantArray;
 
 use self::estimate::Usage;
+use self::list::{columns, row_of};
 use self::model::{Letters, State, Thread};
 use self::offer::{Choice, Offer, TERMS};
-use self::rows::{columns, row_of};
-use super::{Figure, Look, Screen, ScreenId, ScreenState};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
+use super::panes::{Pane, Paned, draw_pane};
+use super::{Look, ScreenId, ScreenState};
+use crate::console::action::Action;
+use crate::console::canvas::{Canvas, Click};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::message::News;
@@ -31,10 +34,30 @@ use crate::session::Rows;
 use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
-/// Panes.
-const LIST: usize = 0;
-const THREAD: usize = 1;
-const OFFER: usize = 2;
+/// Its panes, in the order of the tab key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
+pub enum InboxPane {
+    /// The threads of a view.
+    #[default]
+    List,
+    /// What was said, or what every marked thread would get.
+    Thread,
+    /// The offer that is made.
+    Offer,
+}
+
+/// Actions worth showing where one thread is looked at.
+const OFFER_HINTS: [Action; 6] = [
+    Action::SendOffer,
+    Action::OfferPlan,
+    Action::OfferBasis,
+    Action::OfferPrice,
+    Action::TakeAsk,
+    Action::Close,
+];
+
+/// Height of the offer, with its border.
+const OFFER_HEIGHT: u16 = 10;
 
 /// Which threads are listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -69,7 +92,7 @@ impl View {
 /// The screen.
 #[derive(Default)]
 pub struct Inbox {
-    focus: usize,
+    focus: InboxPane,
     view: View,
     letters: Letters,
     /// What seats of companies use.
@@ -117,7 +140,7 @@ impl Inbox {
     /// Shows a thread among those that wait.
     pub fn show(&mut self, number: u32, company: &Company) {
         self.view = View::Waiting;
-        self.focus = LIST;
+        self.focus = InboxPane::List;
         self.typing = None;
         self.table.act(Action::Close, 0);
         self.refresh(company);
@@ -195,7 +218,7 @@ impl Inbox {
         if self.here().is_some() {
             let value = self.offer().0[self.term.min(TERMS - 1)].value_in_words();
             self.typing = Some(Field::to_replace(value));
-            self.focus = OFFER;
+            self.focus = InboxPane::Offer;
         }
     }
 
@@ -218,23 +241,6 @@ impl Inbox {
         self.scroll = 0;
     }
 
-    fn act_on_offer(&mut self, action: Action, lists: [f64; 3]) -> Vec<Effect> {
-        match action {
-            Action::Up | Action::CommitPrevious => self.term = self.term.saturating_sub(1),
-            Action::Down | Action::CommitDown | Action::CommitNext => {
-                self.term = (self.term + 1).min(TERMS - 1)
-            }
-            Action::First => self.term = 0,
-            Action::Last => self.term = TERMS - 1,
-            Action::Open => self.type_value(),
-            Action::Right => self.turn_plan(),
-            Action::Left => self.turn_basis(lists),
-            Action::Close => self.focus = LIST,
-            _ => {}
-        }
-        Vec::new()
-    }
-
     fn turn_plan(&mut self) {
         self.edit(offer::Term::turn_plan);
     }
@@ -243,24 +249,6 @@ impl Inbox {
         let term = self.offer().0[self.term.min(TERMS - 1)];
         let price = self.here().and_then(|thread| term.price(thread, lists)).map(|(_, price)| price);
         self.edit(|term| term.turn_basis(price));
-    }
-
-    fn act_on_thread(&mut self, action: Action, page: u16) {
-        // A thread is read from its end, a preview from its start.
-        let back = if self.marked.is_empty() { Action::Up } else { Action::Down };
-        self.scroll = match action {
-            Action::Up | Action::Down if action == back => self.scroll.saturating_add(1).min(500),
-            Action::Up | Action::Down => self.scroll.saturating_sub(1),
-            Action::PageUp | Action::PageDown if (action == Action::PageUp) == (back == Action::Up) => {
-                self.scroll.saturating_add(page).min(500)
-            }
-            Action::PageUp | Action::PageDown => self.scroll.saturating_sub(page),
-            Action::First | Action::Last => 0,
-            _ => self.scroll,
-        };
-        if matches!(action, Action::Close) {
-            self.focus = LIST;
-        }
     }
 }
 
@@ -303,77 +291,40 @@ impl ScreenState for Inbox {
     }
 }
 
-impl Screen for Inbox {
-    fn scopes(&self) -> Vec<Scope> {
-        match (self.typing.is_some(), self.focus == LIST && self.table.is_typing()) {
-            (true, _) => vec![Scope::Field, Scope::Inbox],
-            (_, true) => vec![Scope::Field, Scope::List],
-            _ => vec![Scope::Inbox, Scope::List],
+impl Paned for Inbox {
+    type Name = InboxPane;
+
+    fn panes(&self) -> &'static [InboxPane] {
+        InboxPane::VARIANTS
+    }
+
+    fn pane(name: InboxPane) -> &'static dyn Pane<Inbox> {
+        match name {
+            InboxPane::List => &list::ListPane,
+            InboxPane::Thread => &thread::ThreadPane,
+            InboxPane::Offer => &offer_pane::OfferPane,
         }
     }
 
-    fn hints(&self) -> Vec<Action> {
-        match self.focus {
-            _ if self.typing.is_some() => vec![Action::Commit, Action::SendOffer, Action::Discard],
-            LIST if self.table.is_typing() => vec![Action::Commit, Action::Discard],
-            LIST => vec![
-                Action::Open,
-                Action::SendOffer,
-                Action::TakeAsk,
-                Action::Mark,
-                Action::MarkAll,
-                Action::RejectOffer,
-                Action::OtherThreads,
-                Action::Filter,
-                Action::Sort,
-                Action::InboxGroup,
-                Action::InboxSql,
-            ],
-            _ => vec![
-                Action::SendOffer,
-                Action::OfferPlan,
-                Action::OfferBasis,
-                Action::OfferPrice,
-                Action::TakeAsk,
-                Action::Close,
-            ],
-        }
-    }
-
-    fn panes(&self) -> usize {
-        3
-    }
-
-    fn focus(&self) -> usize {
+    fn focused(&self) -> InboxPane {
         self.focus
     }
 
-    fn set_focus(&mut self, pane: usize) {
-        self.focus = pane.min(OFFER);
+    fn focus_on(&mut self, name: InboxPane) {
+        self.focus = name;
         self.typing = None;
     }
 
-    fn figure(&self, _: &Look<'_>) -> Option<Figure> {
-        let thread = self.here()?;
-        let figure = match (self.focus, self.table.selected_column()) {
-            (OFFER, _) => post::usage_figure(thread),
-            (LIST, 5) => post::figure(thread, "seats of", "seats"),
-            (LIST, 6) => post::figure(thread, "price asked by", "offer"),
-            _ => post::figure(thread, "thread with", "thread"),
-        };
-        Some(figure)
-    }
-
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
         let lists = list_prices(look.company);
         if self.typing.is_some() {
             if action == Action::Discard {
                 self.typing = None;
-                return Vec::new();
+                return Some(Vec::new());
             }
             let problem = self.commit();
             if !problem.is_empty() || action == Action::Commit {
-                return problem;
+                return Some(problem);
             }
         }
         match action {
@@ -393,71 +344,55 @@ impl Screen for Inbox {
             Action::TakeAsk => {
                 let targets = self.targets();
                 if !targets.is_empty() && targets.iter().all(|thread| thread.asked().is_none()) {
-                    return vec![Effect::Complain("no price has been asked yet: name one".to_owned())];
+                    return Some(vec![Effect::Complain("no price has been asked yet: name one".to_owned())]);
                 }
                 self.set_offer(Offer::as_asked());
             }
             Action::OfferPlan => self.turn_plan(),
             Action::OfferBasis => self.turn_basis(lists),
             Action::OfferPrice => self.type_value(),
-            Action::SendOffer => return self.send(look.company),
-            Action::RejectOffer => return self.reject(look.company),
+            Action::SendOffer => return Some(self.send(look.company)),
+            Action::RejectOffer => return Some(self.reject(look.company)),
             Action::InboxGroup => {
                 let group = self.here().and_then(|thread| Group::parse(&thread.group));
                 let shown = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
-                return shown.into_iter().collect();
+                return Some(shown.into_iter().collect());
             }
-            Action::InboxSql => return self.here().map(post::statement).into_iter().collect(),
-            action if self.focus == OFFER => return self.act_on_offer(action, lists),
-            action if self.focus == THREAD => self.act_on_thread(action, look.page),
-            Action::Open => self.focus = OFFER,
-            action => {
-                self.scroll = 0;
-                self.table.act(action, look.page);
-            }
+            Action::InboxSql => return Some(self.here().map(post::statement).into_iter().collect()),
+            _ => return None,
         }
-        Vec::new()
+        Some(Vec::new())
     }
 
-    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
-        if let Some(field) = &mut self.typing {
-            let taken = field.number_key(key);
-            return if taken { Vec::new() } else { vec![Effect::Complain(ONLY_NUMBERS.to_owned())] };
-        }
-        self.table.edit_filter(|field| {
-            field.key(key);
-        });
-        Vec::new()
-    }
-
-    fn paste(&mut self, text: &str, _: &Look<'_>) -> Vec<Effect> {
-        if let Some(field) = &mut self.typing {
-            field.insert(text);
-        } else {
-            self.table.edit_filter(|field| field.insert(text));
-        }
-        Vec::new()
-    }
-
-    fn click(&mut self, pane: usize, row: usize, _: &Look<'_>) -> Vec<Effect> {
-        match pane {
-            OFFER => {
-                let again = self.term == row;
-                self.term = row.min(TERMS - 1);
-                if again {
-                    self.type_value();
-                }
+    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        use InboxPane::{List, Offer, Thread};
+        if area.width < 104 {
+            let below = (OFFER_HEIGHT + 1).min(area.height.div_ceil(2));
+            let [list, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(below)]).areas(area);
+            let [thread, offer] =
+                Layout::horizontal([Constraint::Min(0), Constraint::Length(44)]).areas(below);
+            for (pane, place) in [(List, list), (Thread, thread), (Offer, offer)] {
+                draw_pane(self, pane, canvas, place, look);
             }
-            LIST => {
-                self.table.select_place(row);
-                self.scroll = 0;
-            }
-            _ => {}
+            return;
         }
-        Vec::new()
-    }
-
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        draw::draw(self, canvas, area, look);
+        // The offer needs its columns; a list that loses its last column shows more with the right key.
+        let right = (area.width * 43 / 100).max(offer_pane::WORTH + 2);
+        let [list, right] = Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
+        let [above, offer] =
+            Layout::vertical([Constraint::Min(0), Constraint::Length(OFFER_HEIGHT)]).areas(right);
+        draw_pane(self, List, canvas, list, look);
+        // What was said stands above what every marked thread would get, where there is room.
+        let beside = match !self.marked.is_empty() && above.height >= 20 {
+            true => Constraint::Percentage(45),
+            false => Constraint::Length(0),
+        };
+        let [said, own] = Layout::vertical([beside, Constraint::Min(0)]).areas(above);
+        if !said.is_empty() {
+            canvas.click(said, Click::Pane(Thread as usize));
+            thread::draw_beside(self, canvas, said, look);
+        }
+        draw_pane(self, Thread, canvas, own, look);
+        draw_pane(self, Offer, canvas, offer, look);
     }
 }

@@ -3,6 +3,7 @@ use serde_json::{Value, json};
 use super::model::Turn;
 use super::*;
 use crate::console::keys::{Chord, Keys};
+use crate::console::screens::Screen;
 use crate::console::test_kit::{act, company, courted, drawn, shown, sweep};
 use crate::session::{Cell as Datum, Via, WaitingThread};
 use crate::tools::ToolId;
@@ -213,7 +214,7 @@ fn pictures_hold_list_thread_offer_and_preview() {
         }
     }
     sweep(&mut screen, &company);
-    screen.set_focus(LIST);
+    screen.focus_on(InboxPane::List);
     press(&mut screen, &company, "a / '1003' enter");
     let text = drawn(&screen, &company, 120, 37);
     for words in ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "they ask $20.00", "theirs"]
@@ -288,14 +289,14 @@ fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() 
     assert!(small.contains(&format!("B est. compute {compute}/mo, margin {margin}")), "{small}");
     let keys = Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 20 };
-    for focus in 0..screen.panes() {
+    for focus in 0..Screen::panes(&screen) {
         screen.set_focus(focus);
         let figure = screen.figure(&look).expect("a figure");
         session
             .query(&figure.sql.expect("rows"))
             .unwrap_or_else(|refusal| panic!("{}: {refusal}", figure.title));
     }
-    screen.set_focus(LIST);
+    screen.focus_on(InboxPane::List);
     let turns = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
     assert_eq!(session.query(&turns).expect("rows").rows.len(), thread.turns.len());
 }

@@ -1,0 +1,193 @@
+//! The list of threads.
+
+use ratatui::layout::Rect;
+
+use super::model::{State, Thread};
+use super::offer::in_words;
+use super::{Inbox, InboxPane, View, post};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, rows_of};
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::console::text::{count, wrapped};
+use crate::console::theme::Role;
+use crate::console::widgets::{Cell, Column, Table};
+use crate::notation::grouped;
+
+/// The threads of a view.
+pub struct ListPane;
+
+impl Pane<Inbox> for ListPane {
+    fn table<'a>(&self, inbox: &'a Inbox) -> Option<&'a Table> {
+        Some(&inbox.table)
+    }
+
+    fn table_mut<'a>(&self, inbox: &'a mut Inbox) -> Option<&'a mut Table> {
+        Some(&mut inbox.table)
+    }
+
+    fn scopes(&self, inbox: &Inbox) -> Vec<Scope> {
+        match inbox.table.is_typing() {
+            true => vec![Scope::Field, Scope::List],
+            false => vec![Scope::Inbox, Scope::List],
+        }
+    }
+
+    fn hints(&self, inbox: &Inbox) -> Vec<Action> {
+        if inbox.table.is_typing() {
+            return vec![Action::Commit, Action::Discard];
+        }
+        vec![
+            Action::Open,
+            Action::SendOffer,
+            Action::TakeAsk,
+            Action::Mark,
+            Action::MarkAll,
+            Action::RejectOffer,
+            Action::OtherThreads,
+            Action::Filter,
+            Action::Sort,
+            Action::InboxGroup,
+            Action::InboxSql,
+        ]
+    }
+
+    fn figure(&self, inbox: &Inbox, _: &Look<'_>) -> Option<Figure> {
+        let thread = inbox.here()?;
+        Some(match inbox.table.selected_column() {
+            5 => post::figure(thread, "seats of", "seats"),
+            6 => post::figure(thread, "price asked by", "offer"),
+            _ => post::figure(thread, "thread with", "thread"),
+        })
+    }
+
+    fn act(&self, inbox: &mut Inbox, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        if action == Action::Open {
+            inbox.focus = InboxPane::Offer;
+        } else {
+            inbox.scroll = 0;
+            inbox.table.act(action, look.page);
+        }
+        Vec::new()
+    }
+
+    fn click(&self, inbox: &mut Inbox, row: usize, _: &Look<'_>) -> Vec<Effect> {
+        inbox.table.select_place(row);
+        inbox.scroll = 0;
+        Vec::new()
+    }
+
+    fn border(&self, inbox: &Inbox, _: Rect, look: &Look<'_>) -> Border {
+        let threads = inbox.rows.len();
+        let (title, worth) = match inbox.view {
+            View::Waiting => (format!("{threads} waiting for you"), true),
+            View::Theirs => (format!("{threads} waiting for them"), true),
+            View::Over => (format!("{threads} ended"), false),
+        };
+        let all = inbox.rows.iter().filter_map(|at| inbox.letters.threads.get(*at));
+        let seats: f64 = all.map(|thread| thread.seats).sum();
+        let mut note = inbox.table.note();
+        if note.is_empty() && worth && threads > 0 {
+            note = count(seats, "seat");
+        }
+        if !inbox.marked.is_empty() {
+            note = format!("{} marked · {note}", inbox.marked.len());
+        }
+        let keys = look.hints(&[Action::Mark, Action::MarkAll, Action::Filter, Action::OtherThreads]);
+        Border { title, note, keys, ..Border::default() }
+    }
+
+    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        if inbox.rows.is_empty() {
+            draw_nobody(inbox, canvas, seat.area, look);
+        } else {
+            inbox.table.draw(canvas, seat.area, seat.focused, seat.number);
+        }
+    }
+}
+
+fn draw_nobody(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    let inside = Rect { x: area.x + 1, width: area.width.saturating_sub(2), ..area };
+    let mut lines = wrapped(&nobody(inbox, look), inside.width as usize);
+    if lines.len() > inside.height as usize {
+        let zoom = look.keys.label(Action::Zoom).unwrap_or_default();
+        lines.truncate((inside.height as usize).saturating_sub(1));
+        lines.push(format!("… {zoom} shows the rest"));
+    }
+    for (row, line) in rows_of(inside).zip(lines) {
+        canvas.text(row, &line, Role::Dim);
+    }
+}
+
+/// What an empty list says.
+fn nobody(inbox: &Inbox, look: &Look<'_>) -> String {
+    let key = |action: Action| look.keys.label(action).unwrap_or_default();
+    if !inbox.letters.threads.is_empty() {
+        return format!("No threads here. {} shows others.", key(Action::OtherThreads));
+    }
+    let funnels: Vec<String> =
+        look.company.funnels.iter().map(|own| format!("· {}", own.in_words())).collect();
+    format!(
+        "No company has asked for an offer yet. Ads bring companies ({} set_targeted_ad_spend). A better model tier, \
+         development for their group and a quota for a whole office make a plan better for them.\n\n{}",
+        key(Action::Tools),
+        funnels.join("\n")
+    )
+}
+
+/// Columns of the list.
+pub(super) fn columns(view: View) -> Vec<Column> {
+    let day = if view == View::Waiting { "left" } else { "since" };
+    vec![
+        Column::words("✓"),
+        Column::numbers(day),
+        Column::numbers("company"),
+        Column::words("group"),
+        Column::words("kind"),
+        Column::numbers("seats"),
+        Column::numbers("they ask"),
+        Column::words(if view == View::Over { "end" } else { "you offered" }).at_most(34),
+    ]
+}
+
+/// A thread in the list.
+pub(super) fn row_of(thread: &Thread, marked: bool) -> Vec<Cell> {
+    let day = match (thread.state, thread.turns.last()) {
+        (State::Waiting(left), _) => {
+            let (mark, role) = match left {
+                0..=2 => ("! ", Role::Bad),
+                3..=5 => ("", Role::Warning),
+                _ => ("", Role::Text),
+            };
+            Cell::number(f64::from(left), format!("{mark}{left} d")).role(role)
+        }
+        (_, Some(turn)) => Cell::number(f64::from(turn.day), format!("day {}", turn.day)).role(Role::Dim),
+        (_, None) => Cell::words("–").role(Role::Dim),
+    };
+    let asked = match thread.asked() {
+        Some((plan, price)) => {
+            let plan = plan.map_or(String::new(), |plan| format!("{plan} "));
+            Cell::number(price, format!("{plan}${}", grouped(price, 2)))
+        }
+        None => Cell::words("–").role(Role::Dim),
+    };
+    let end = match thread.state {
+        state if !state.is_open() => {
+            let role = if state == State::Accepted { Role::Good } else { Role::Dim };
+            Cell::words(state.words()).role(role)
+        }
+        _ if thread.offered().is_empty() => Cell::words("–").role(Role::Dim),
+        _ => Cell::words(in_words(thread.offered())),
+    };
+    vec![
+        Cell::words(if marked { "●" } else { "" }).role(Role::Changed),
+        day,
+        Cell::number(f64::from(thread.customer), format!("#{}", thread.customer)),
+        Cell::words(&thread.group).role(Role::Strong),
+        Cell::words(thread.kind_in_words()),
+        Cell::number(thread.seats, grouped(thread.seats, 0)),
+        asked,
+        end,
+    ]
+}

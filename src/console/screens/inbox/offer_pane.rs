@@ -1,0 +1,231 @@
+//! The offer that is made: its terms, what they are worth, and what is noteworthy about them.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use super::estimate::Money;
+use super::model::Thread;
+use super::offer::{Choice, Offer, TERMS};
+use super::post::{self, summary};
+use super::{Inbox, InboxPane, list_prices};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::Field;
+use crate::console::widgets::field::ONLY_NUMBERS;
+use crate::notation::{cents, dollars, grouped, percent};
+use crate::world::identifiers::Plan;
+
+/// Width in which a line of the offer has all its columns.
+pub const WORTH: u16 = 59;
+
+/// More width for the column that compares with what the company asks.
+const VERSUS: u16 = 10;
+
+/// The terms of the offer.
+pub struct OfferPane;
+
+impl Pane<Inbox> for OfferPane {
+    fn scopes(&self, inbox: &Inbox) -> Vec<Scope> {
+        match inbox.typing {
+            Some(_) => vec![Scope::Field, Scope::Inbox],
+            None => vec![Scope::Inbox, Scope::List],
+        }
+    }
+
+    fn hints(&self, inbox: &Inbox) -> Vec<Action> {
+        match inbox.typing {
+            Some(_) => vec![Action::Commit, Action::SendOffer, Action::Discard],
+            None => super::OFFER_HINTS.to_vec(),
+        }
+    }
+
+    fn figure(&self, inbox: &Inbox, _: &Look<'_>) -> Option<Figure> {
+        inbox.here().map(post::usage_figure)
+    }
+
+    fn act(&self, inbox: &mut Inbox, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        match action {
+            Action::Up | Action::CommitPrevious => inbox.term = inbox.term.saturating_sub(1),
+            Action::Down | Action::CommitDown | Action::CommitNext => {
+                inbox.term = (inbox.term + 1).min(TERMS - 1);
+            }
+            Action::First => inbox.term = 0,
+            Action::Last => inbox.term = TERMS - 1,
+            Action::Open => inbox.type_value(),
+            Action::Right => inbox.turn_plan(),
+            Action::Left => inbox.turn_basis(list_prices(look.company)),
+            Action::Close => inbox.focus = InboxPane::List,
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    fn key(&self, inbox: &mut Inbox, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
+        let taken = inbox.typing.as_mut().is_none_or(|field| field.number_key(key));
+        if taken { Vec::new() } else { vec![Effect::Complain(ONLY_NUMBERS.to_owned())] }
+    }
+
+    fn filter(&self, inbox: &mut Inbox, edit: &mut dyn FnMut(&mut Field)) {
+        if let Some(field) = &mut inbox.typing {
+            edit(field);
+        }
+    }
+
+    fn click(&self, inbox: &mut Inbox, row: usize, _: &Look<'_>) -> Vec<Effect> {
+        let again = inbox.term == row;
+        inbox.term = row.min(TERMS - 1);
+        if again {
+            inbox.type_value();
+        }
+        Vec::new()
+    }
+
+    fn border(&self, inbox: &Inbox, _: Rect, look: &Look<'_>) -> Border {
+        let title = match inbox.marked.len() {
+            0 => "Your offer".to_owned(),
+            marked => format!("Bulk offer for {marked}"),
+        };
+        let shown = inbox.here().is_some() || !inbox.marked.is_empty();
+        let keys = [Action::OfferPlan, Action::OfferBasis, Action::SendOffer];
+        let keys = if shown { look.hints(&keys) } else { String::new() };
+        Border { title, keys, ..Border::default() }
+    }
+
+    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let (inside, batch) = (seat.area, !inbox.marked.is_empty());
+        if inbox.here().is_none() && !batch {
+            return;
+        }
+        let offer = inbox.offer();
+        let mut rows = rows_of(inside);
+        if let Some(row) = rows.next() {
+            canvas.text(row, &head(inside.width, batch), Role::Header);
+        }
+        for at in 0..offer.0.len() {
+            let Some(row) = rows.next() else { return };
+            draw_term(inbox, canvas, Seat { area: row, ..seat }, &offer, at, look);
+        }
+        rows.next();
+        for (row, (text, role)) in rows.zip(notes(inbox, inside.width, look)) {
+            canvas.text(row, &text, role);
+        }
+    }
+}
+
+/// Heads of the columns that have room.
+fn head(width: u16, batch: bool) -> String {
+    let mut worth = if batch { String::new() } else { format!(" {:>8} {:>9}", "a seat", "a month") };
+    if !batch && width >= WORTH {
+        worth += &format!(" {:>9} {:>7}", "compute", "margin");
+    }
+    if !batch && width >= WORTH + VERSUS {
+        worth += &format!(" {:>9}", "vs. ask");
+    }
+    format!("plan   of     {:>8}{worth}", "value")
+}
+
+/// What is noteworthy about the offer, and the list prices.
+fn notes(inbox: &Inbox, width: u16, look: &Look<'_>) -> Vec<(String, Role)> {
+    let planned = inbox.planned(look.company);
+    let mut notes = match planned.first() {
+        _ if !inbox.marked.is_empty() => {
+            let lines = wrapped(&summary(&planned), width as usize).into_iter();
+            lines.map(|line| (line, Role::Strong)).collect()
+        }
+        Some((_, Err(why))) => vec![(format!("can't send: {why}"), Role::Warning)],
+        Some((thread, Ok(offers))) => offer_notes(inbox, thread, offers, width, look),
+        None => Vec::new(),
+    };
+    let lists = list_prices(look.company);
+    let list = ["A", "B", "C"].iter().zip(lists).map(|(plan, price)| format!("{plan} {}", cents(price)));
+    notes.push((format!("list {}", list.collect::<Vec<_>>().join(" · ")), Role::Dim));
+    notes
+}
+
+/// What there is to know of an offer, the most important first: what a quota does not cover, what they ask, and what the
+/// estimate of compute rests on; where its columns do not fit, the estimate itself.
+fn offer_notes(
+    inbox: &Inbox,
+    thread: &Thread,
+    offers: &[(Plan, f64)],
+    width: u16,
+    look: &Look<'_>,
+) -> Vec<(String, Role)> {
+    let priced = || {
+        let money = |sold: &(Plan, f64)| (sold.0, Money::of(&inbox.usage, look.company, thread, *sold));
+        offers.iter().map(money)
+    };
+    let mut notes = Vec::new();
+    for (plan, (quota, wanted)) in priced().filter_map(|(plan, money)| Some((plan, money.covered?))) {
+        let (quota, share) = (grouped(quota, 0), percent(quota / wanted, 0));
+        let text = format!("! {plan}: quota {quota} covers {share} of {} units a day", grouped(wanted, 0));
+        notes.push((text, Role::Warning));
+    }
+    if let Some((_, price)) = thread.asked() {
+        let best = offers.iter().map(|(_, own)| own - price).fold(f64::INFINITY, f64::min);
+        let sign = if best < 0.0 { "-" } else { "+" };
+        notes.push((format!("they ask {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
+    }
+    let Some((units, source)) = inbox.usage.per_seat(look.company, &thread.group) else {
+        notes.push(("compute unknown: nobody in the group uses it yet".to_owned(), Role::Dim));
+        return notes;
+    };
+    if width >= WORTH {
+        let text = format!("compute est.: {} units/seat/day, {source}", grouped(units, 0));
+        notes.push((text, Role::Dim));
+        return notes;
+    }
+    for (plan, money) in priced() {
+        if let (Some(compute), Some(margin)) = (money.compute, money.margin()) {
+            let role = if margin < 0.0 { Role::Bad } else { Role::Text };
+            let text = format!("{plan} est. compute {}/mo, margin {}", dollars(compute), percent(margin, 0));
+            notes.push((text, role));
+        }
+    }
+    notes
+}
+
+fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, offer: &Offer, at: usize, look: &Look<'_>) {
+    let row = seat.area;
+    let lists = list_prices(look.company);
+    let term = &offer.0[at];
+    let here = seat.focused && inbox.term == at;
+    let role = match (here, term.plan) {
+        (true, _) => Role::Selection,
+        (false, Choice::Nothing) => Role::Dim,
+        (false, _) => Role::Text,
+    };
+    canvas.clear(row, role);
+    canvas.click(row, Click::Row(seat.number, at));
+    let value = if term.plan == Choice::Nothing && !here { String::new() } else { term.value_in_words() };
+    let basis = if term.plan == Choice::Nothing && !here { "" } else { term.basis.words() };
+    let mut text = format!("{:<6} {basis:<6} {value:>8}", term.plan_in_words());
+    let single = inbox.here().filter(|_| inbox.marked.is_empty());
+    if let Some((thread, sold)) = single.and_then(|thread| Some((thread, term.price(thread, lists)?))) {
+        text += &format!(" {:>8} {:>9}", cents(sold.1), dollars(sold.1 * thread.seats));
+        if row.width >= WORTH {
+            let money = Money::of(&inbox.usage, look.company, thread, sold);
+            let compute = money.compute.map_or("–".to_owned(), dollars);
+            let margin = money.margin().map_or("–".to_owned(), |margin| percent(margin, 0));
+            let loses = if money.margin().is_some_and(|margin| margin < 0.0) { "!" } else { "" };
+            text += &format!(" {compute:>9} {:>7}", format!("{loses}{margin}"));
+        }
+        if row.width >= WORTH + VERSUS {
+            let versus = thread.asked().map_or("–".to_owned(), |(_, asked)| {
+                let sign = if sold.1 < asked { '-' } else { '+' };
+                format!("{sign}{}", cents((sold.1 - asked).abs()))
+            });
+            text += &format!(" {versus:>9}");
+        }
+    }
+    canvas.text(row, &text, role);
+    if let Some(field) = inbox.typing.as_ref().filter(|_| here) {
+        let place = Rect { x: row.x + 14.min(row.width), width: row.width.saturating_sub(14).min(9), ..row };
+        field.draw(canvas, place);
+    }
+}

@@ -1,0 +1,58 @@
+//! What every marked thread would get by the rule.
+
+use ratatui::layout::Rect;
+
+use super::Inbox;
+use super::offer::in_words;
+use super::post::{Planned, monthly};
+use crate::console::canvas::{Align, Canvas, rows_of};
+use crate::console::screens::Look;
+use crate::console::screens::panes::{Border, Seat};
+use crate::console::theme::Role;
+use crate::notation::{cents, dollars};
+
+/// What stands in its border.
+pub fn border(inbox: &Inbox, look: &Look<'_>) -> Border {
+    let title = format!("What {} would get", inbox.planned(look.company).len());
+    Border { title, note: "before → offer".to_owned(), ..Border::default() }
+}
+
+/// Draws a line for every thread.
+pub fn draw(inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    let (inside, planned) = (seat.area, inbox.planned(look.company));
+    if seat.focused {
+        canvas.page = inside.height.max(1);
+    }
+    let from = (inbox.scroll as usize).min(planned.len().saturating_sub(inside.height as usize));
+    for (row, one) in rows_of(inside).zip(planned.iter().skip(from)) {
+        draw_planned(canvas, row, one);
+    }
+}
+
+fn draw_planned(canvas: &mut Canvas<'_>, row: Rect, (thread, offers): &Planned<'_>) {
+    let head = format!("#{} {}", thread.customer, thread.group);
+    canvas.text(Rect { width: row.width.min(13), ..row }, &head, Role::Text);
+    let rest = Rect { x: row.x + 14.min(row.width), width: row.width.saturating_sub(14), ..row };
+    let offers = match offers {
+        Ok(offers) => offers,
+        Err(why) => return canvas.text(rest, &format!("skipped: {why}"), Role::Warning),
+    };
+    let before = match (thread.offered(), thread.asked()) {
+        ([], None) => "–".to_owned(),
+        ([], Some((_, price))) => format!("asks {}", cents(price)),
+        ([(_, price)], _) => cents(*price),
+        (own, _) => format!("{} offers", own.len()),
+    };
+    let value = format!("{}/mo", dollars(monthly(thread, offers)));
+    let room = rest.width.saturating_sub(value.len() as u16 + 1);
+    let text = format!("{before} → {}", in_words(offers));
+    // Without the money a month rather than with half an offer.
+    if text.chars().count() as u16 <= room {
+        canvas.aligned(rest, &value, Role::Strong, Align::Right);
+    }
+    canvas.text(rest_of(rest, &text, room), &text, Role::Text);
+}
+
+fn rest_of(rest: Rect, text: &str, room: u16) -> Rect {
+    if text.chars().count() as u16 <= room { Rect { width: room, ..rest } } else { rest }
+}

@@ -13,7 +13,7 @@
 //! | 2 | [`tools`], [`database`], [`voice`] | the catalogue of tools; the observable company in SQLite and its guarded queries; words for facts, and the judge of the player's posts |
 //! | 1 | [`world`] | the simulator: pure, deterministic, no files, no clock, no SQL, no prose |
 //!
-//! [`notation`] writes and reads numbers for all of them, [`shipped`] holds scenarios, themes and policies. Arrows point down only; houses on one floor never import each
+//! `notation` writes and reads numbers for all of them, `shipped` holds scenarios, themes and policies. Arrows point down only; houses on one floor never import each
 //! other; the upper floors use nothing of `world` but plain identifiers, except `lab`, which works on debug runs and
 //! reads the x-ray. `tests/tidy` holds this true.
 //!
@@ -49,11 +49,11 @@ pub mod console;
 pub mod database;
 pub mod glossary;
 pub mod lab;
-pub mod notation;
+pub(crate) mod notation;
 pub mod plain;
 pub mod report;
 pub mod session;
-pub mod shipped;
+pub(crate) mod shipped;
 pub mod tools;
 pub mod voice;
 pub mod world;

@@ -4,35 +4,35 @@
 //! threads of their own and report through the channel that also carries the input; the screen never waits.
 //! Everything shown comes from tool results, the weekly dashboard or guarded queries.
 
-pub mod action;
+mod action;
 pub mod app;
 mod ascii;
-pub mod canvas;
-pub mod company;
-pub mod dialogs;
-pub mod effect;
+mod canvas;
+mod company;
+mod dialogs;
+pub(crate) mod effect;
 mod files;
-pub mod frame;
-pub mod fuzzy;
+mod frame;
+mod fuzzy;
 pub mod glyphs;
 pub mod headless;
 pub mod keys;
-pub mod manual;
+pub(crate) mod manual;
 pub mod message;
-pub mod photograph;
-pub mod posts;
-pub mod preferences;
-pub mod readings;
-pub mod screens;
-pub mod speed;
+pub(crate) mod photograph;
+mod posts;
+pub(crate) mod preferences;
+mod readings;
+pub(crate) mod screens;
+pub(crate) mod speed;
 mod terminal;
 #[cfg(test)]
 mod test_kit;
 mod text;
 pub mod theme;
-pub mod tour;
-pub mod viewer;
-pub mod widgets;
+mod tour;
+mod viewer;
+mod widgets;
 pub mod worker;
 
 use std::io;

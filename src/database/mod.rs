@@ -5,9 +5,9 @@
 //! time. Queries go through a guarded read-only connection ([`QueryConnection`]). What is hidden is never written here, so
 //! no query, tool or editor can find it (docs/formats/database.md).
 
-pub mod catalogue;
+pub(crate) mod catalogue;
 pub mod query;
-pub mod text;
+pub(crate) mod text;
 
 mod block_table;
 mod blocks;

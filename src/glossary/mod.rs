@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-pub use explanation::{Explanation, Section};
+pub use explanation::Explanation;
 pub use subject::{Subject, find, subject};
 
 /// A term.

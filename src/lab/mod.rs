@@ -5,7 +5,7 @@
 
 mod answers;
 pub mod bench;
-pub mod comparison;
+pub(crate) mod comparison;
 mod golden;
 mod metrics;
 mod policy;

@@ -1,29 +1,29 @@
-//! A run reported: what a week changed, and the whole run as a [`Story`] that can be written as Markdown or as a page for
+//! A run reported: what a week changed, and the whole run as a `Story` that can be written as Markdown or as a page for
 //! a browser. A report says what the records show; it names no causes.
 //!
 //! Everything here is computed from what a player may see: observations, the journal, and guarded queries. Each measure
-//! is one pure function. [`outline`] turns a story into a [`page::Page`]; the writers know nothing of companies.
+//! is one pure function. `outline` turns a story into a `page::Page`; the writers know nothing of companies.
 
-pub mod books;
-pub mod chapters;
-pub mod funnel;
-pub mod highlights;
-pub mod html;
-pub mod logbook;
-pub mod markdown;
-pub mod measures;
-pub mod movement;
-pub mod needs;
-pub mod outline;
-pub mod page;
-pub mod ranking;
-pub mod review;
-pub mod story;
-pub mod svg;
+pub(crate) mod books;
+pub(crate) mod chapters;
+pub(crate) mod funnel;
+pub(crate) mod highlights;
+pub(crate) mod html;
+pub(crate) mod logbook;
+mod markdown;
+pub(crate) mod measures;
+mod movement;
+pub(crate) mod needs;
+mod outline;
+mod page;
+pub(crate) mod ranking;
+pub(crate) mod review;
+mod story;
+mod svg;
 #[cfg(test)]
-pub mod test_kit;
-pub mod turn;
-pub mod week;
+pub(crate) mod test_kit;
+mod turn;
+pub(crate) mod week;
 mod words;
 
 pub use logbook::Logbook;

@@ -4,7 +4,7 @@
 //! changes; applying cannot fail. So memory is never ahead of the trajectory, the trajectory never ahead of
 //! what was confirmed, and a run can always be rebuilt from `run.toml` and `trajectory.jsonl`.
 
-pub mod archive;
+pub(crate) mod archive;
 mod ask;
 mod error;
 mod figures;

@@ -2,18 +2,18 @@
 //!
 //! A tool is data ([`Spec`]) and three small functions: what its arguments are now ([`Tool::current`]), what a
 //! call would do ([`Tool::plan`], pure, so it also previews), and what it answers ([`Tool::answer`]). Adding a
-//! tool touches one file and the list in [`catalogue`].
+//! tool touches one file and the list in `catalogue`.
 
-pub mod arguments;
-pub mod bounds;
-pub mod catalogue;
-pub mod describe;
-pub mod notebook;
-pub mod numbers;
-pub mod refusal;
-pub mod spec;
-pub mod surroundings;
-pub mod view;
+mod arguments;
+pub(crate) mod bounds;
+pub(crate) mod catalogue;
+pub(crate) mod describe;
+mod notebook;
+mod numbers;
+mod refusal;
+mod spec;
+mod surroundings;
+mod view;
 
 mod analytics;
 mod calculations;

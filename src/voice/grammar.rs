@@ -15,6 +15,7 @@
 //! An alternative that names a missing value is passed over. Reading a grammar checks that every symbol is known,
 //! that no rule contains itself, and that every rule can be filled whatever is missing.
 
+#[cfg(test)]
 mod count;
 mod parse;
 mod polish;
@@ -60,6 +61,7 @@ impl Context {
     }
 
     /// Names of its values and conditions.
+    #[cfg(test)]
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         self.values.keys().chain(&self.tags).copied()
     }
@@ -75,6 +77,7 @@ impl Context {
 pub struct Grammar {
     rules: BTreeMap<String, Vec<Alternative>>,
     /// Names a context may use, for a check of the caller.
+    #[cfg(test)]
     known: BTreeSet<String>,
 }
 
@@ -137,17 +140,14 @@ impl Grammar {
         self.rules.contains_key(rule)
     }
 
-    /// Names of all rules.
-    pub fn rules(&self) -> impl Iterator<Item = &str> {
-        self.rules.keys().map(String::as_str)
-    }
-
     /// Whether a value or tag of this name is declared.
+    #[cfg(test)]
     pub fn knows(&self, name: &str) -> bool {
         self.known.contains(name)
     }
 
     /// Number of different ways to fill a rule in a context.
+    #[cfg(test)]
     pub fn phrasings(&self, rule: &str, context: &Context) -> u64 {
         count::phrasings(self, rule, context)
     }

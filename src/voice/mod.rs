@@ -1,15 +1,16 @@
 //! Words for facts: posts, notices, readings of the economy, letters of companies, addresses; and the judge of the
 //! player's posts. Facts go in, text comes out (or text in, scores out); nothing here touches a number of the world.
 
-pub mod address;
-pub mod grammar;
-pub mod judge;
-pub mod negotiation;
-pub mod notices;
-pub mod posts;
-pub mod readings;
+pub(crate) mod address;
+mod grammar;
+pub(crate) mod judge;
+mod negotiation;
+pub(crate) mod notices;
+pub(crate) mod posts;
+mod readings;
 
 pub use address::address;
 pub use negotiation::message;
+#[cfg(test)]
 pub use notices::notice;
 pub use readings::reading;

@@ -9,7 +9,9 @@ mod stretches;
 
 use indexmap::IndexMap;
 
-pub use restore::{CanonicalReader, Restore, restored};
+#[cfg(test)]
+pub use restore::restored;
+pub use restore::{CanonicalReader, Restore};
 pub use stretches::{Stretch, hash_of_stretches};
 
 use super::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};

@@ -3,23 +3,23 @@
 //! Read [`day::step_day`] first: it is the story of a day. Every mechanism it calls is a function over the parts
 //! it touches, and every formula a small pure function with check values as its test (`docs/mechanics/README.md`).
 
-pub mod canonical;
-pub mod command;
+pub(crate) mod canonical;
+pub(crate) mod command;
 pub mod customers;
 pub mod day;
-pub mod enterprise;
+pub(crate) mod enterprise;
 pub mod events;
-pub mod finance;
+mod finance;
 pub mod identifiers;
-pub mod market;
+pub(crate) mod market;
 pub mod morning;
 pub mod params;
 pub mod product;
-pub mod quota;
+pub(crate) mod quota;
 pub mod random;
 pub mod retention;
-pub mod series;
-pub mod settings;
+mod series;
+pub(crate) mod settings;
 pub mod state;
 
 /// Number of the mechanics. It rises with every change after which the same decisions can lead to another state, so

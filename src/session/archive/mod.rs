@@ -24,7 +24,7 @@ use std::path::Path;
 
 pub use export::Export;
 pub use import::{Imported, import_run};
-pub use seal::{Seal, SealedFile};
+pub use seal::Seal;
 pub use workshop::close_workshops;
 
 use crate::session::error::RunError;

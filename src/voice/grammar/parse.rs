@@ -36,8 +36,11 @@ pub(super) fn read(sources: &[&str]) -> Result<Grammar, GrammarError> {
         rules.insert(name.clone(), alternatives?);
     }
     check_total(&rules, &names)?;
-    let known = names.given.union(&names.maybe).chain(&names.tags).cloned().collect();
-    Ok(Grammar { rules, known })
+    Ok(Grammar {
+        rules,
+        #[cfg(test)]
+        known: names.given.union(&names.maybe).chain(&names.tags).cloned().collect(),
+    })
 }
 
 fn list(table: &Table, key: &str) -> Result<BTreeSet<String>, GrammarError> {

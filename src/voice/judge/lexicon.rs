@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
 
 use super::text::Entry;
-use crate::world::identifiers::{ByGroup, Group};
+use crate::world::identifiers::Group;
 
 /// A list of entries.
 pub type List = Vec<Entry>;
@@ -56,11 +56,6 @@ impl Lexicon {
         &self.profiles[group.id()]
     }
 
-    /// Profiles of all groups.
-    pub fn profiles(&self) -> ByGroup<&Profile> {
-        ByGroup::from_fn(|group| self.profile(group))
-    }
-
     /// Position of a topic in the fixed order.
     pub fn topic(&self, name: &str) -> usize {
         self.topics.get_index_of(name).expect("the shipped word lists are tested")
@@ -103,6 +98,7 @@ macro_rules! words {
 
         impl Words {
             /// All lists, for tests that draw from them.
+            #[cfg(test)]
             pub fn all(&self) -> Vec<&List> {
                 vec![$(&self.$field),*]
             }
@@ -185,6 +181,7 @@ impl Profile {
     }
 
     /// Topics with a weight.
+    #[cfg(test)]
     pub fn topics(&self) -> impl Iterator<Item = (&str, f64)> {
         self.w.iter().map(|(topic, weight)| (topic.as_str(), *weight))
     }

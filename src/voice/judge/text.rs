@@ -62,6 +62,7 @@ impl Entry {
     }
 
     /// The entry as a list writes it, without its star.
+    #[cfg(test)]
     pub fn text(&self) -> &str {
         match self {
             Entry::Prefix(text) | Entry::Word(text) | Entry::Phrase(text, _) => text,

@@ -40,6 +40,7 @@ pub trait Restore: Sized {
 }
 
 /// The value whose canonical bytes these are, all of them.
+#[cfg(test)]
 pub fn restored<T: Restore>(bytes: &[u8]) -> Option<T> {
     let mut reader = CanonicalReader::new(bytes);
     let value = reader.read()?;

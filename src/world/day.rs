@@ -1,15 +1,16 @@
 //! A day, as a list: read [`step_day`] from top to bottom (`docs/mechanics/day.md`).
 
 use super::canonical::canonical;
+use super::context::DayContext;
 use super::customers::Customers;
 use super::customers::columns::sums;
 use super::enterprise::Negotiation;
 use super::events::{Category, DayFigures, Facts, LedgerEntry, LedgerNote};
 use super::finance::{Finance, pay_running_costs};
-use super::identifiers::{ByGroup, ByPlan};
+use super::identifiers::{ByGroup, ByPlan, Group};
 use super::market::economy::Dimension;
 use super::market::leads::LeadFactors;
-use super::market::social::crowd;
+use super::market::social::crowd::{self, Voices};
 use super::market::social::opinions::Scene;
 use super::market::social::press;
 use super::market::{arrivals, competitors, drift, economy, reputation, studies, surges, yields};
@@ -19,7 +20,11 @@ use super::product::ads::AdLoad;
 use super::product::quality::{TenureTable, service_penalty};
 use super::product::{ads, development, research, service, usage};
 use super::random::Streams;
-use super::retention::{billing, issues, refresh_block, renewal, satisfaction};
+use super::retention::billing::{self, Bills};
+use super::retention::issues::{self, IssueBatch, Settled};
+use super::retention::refresh_block;
+use super::retention::renewal::{self, Decisions, RenewalContext};
+use super::retention::satisfaction::{self, Mood};
 use super::state::World;
 
 /// What the player never sees of a day; read by the x-ray and by the comparison with reference figures.
@@ -67,71 +72,36 @@ pub fn step_day(
     press::write_about_rivals(day, &market.competitors, &mut market.social, params, streams, facts);
     development::improve(day, product, settings, params, streams);
 
-    // Subscribers call for help, feel, decide; companies wait for answers.
-    let ads = AdLoad::of(&settings.ads_strength, params);
-    let tenure = TenureTable::up_to(day, &params.quality);
-    let penalty = service_penalty(service.overload, service.outage, &params.quality);
-    let hotline = issues::IssueContext { day, outage: service.outage, params, streams };
-    let felt =
-        satisfaction::Conditions { morning: &morning, service: &service, ads: &ads, tenure: &tenure, params };
-    let scene = Scene {
-        morning: &morning,
-        service: &service,
-        ads: &ads,
-        tenure: &tenure,
-        chronicle: &market.social.chronicle,
-        params,
-    };
-    let listening = crowd::is_posting_day(day, params);
-    let first_round = customers.sweep(|group, number, block| {
-        let calls = issues::read_calls(group, number, block, &hotline);
-        let before = listening.then(|| block.satisfaction.clone());
-        let mood = satisfaction::update(group, block, &felt);
-        let voices = before.map(|before| crowd::hear(group, block, before, &scene));
-        (calls, (group, mood), voices)
-    });
-    let (mut calls, moods, voices): (Vec<_>, Vec<_>, Vec<_>) = first_round.into_iter().collect();
-    let crowd =
-        listening.then(|| crowd::listen(voices.into_iter().flatten().collect(), customers, &scene, streams));
-    issues::allot(&mut calls, settings, customers, issue_desk, &hotline);
-
-    // Issues are settled; those whose day it is decide, and pay if they stay.
-    let judgement = renewal::RenewalContext {
+    let today = DayContext {
         morning: &morning,
         settings,
-        service_penalty: penalty,
+        service: &service,
+        service_penalty: service_penalty(service.overload, service.outage, &params.quality),
+        ads: &AdLoad::of(&settings.ads_strength, params),
+        tenure: &TenureTable::up_to(day, &params.quality),
+        params,
+        streams,
+    };
+
+    // Subscribers call for help, feel, decide, and pay if they stay; companies wait for answers.
+    let scene = Scene { day: &today, chronicle: &market.social.chronicle };
+    let mut felt = feel(customers, &today, &scene);
+    let crowd = felt.voices.map(|voices| crowd::listen(voices, customers, &scene, streams));
+    issues::allot(&mut felt.calls, settings, customers, issue_desk, &today);
+    let judgement = RenewalContext {
+        day: &today,
         involuntary: renewal::involuntary_rates(day, params, streams),
         willingness_to_pay: ByGroup::from_fn(|group| {
             market.economy.multiplier(group, Dimension::WillingnessToPay, params)
         }),
-        ads: &ads,
-        tenure: &tenure,
-        params,
-        streams,
     };
-    let bill = billing::Terms { morning: &morning, settings, params, streams };
-    let second_round = customers.sweep_with(calls, |group, number, block, calls| {
-        let settled = issues::settle(block, &calls, &hotline);
-        let decisions = renewal::decide(group, number, block, &judgement);
-        (settled, decisions, billing::bill_regulars(group, number, block, &bill))
-    });
-    let (settled, decisions, billed): (Vec<_>, Vec<_>, Vec<_>) = second_round.into_iter().collect();
-    issues::record(settled, facts);
-    let renewals = renewal::conclude(decisions, &mut market.reputation, params, facts);
-    let talks = Negotiation {
-        morning: &morning,
-        settings,
-        product,
-        drift: &market.drift,
-        service_penalty: penalty,
-        ads: &ads,
-        tenure: &tenure,
-        params,
-        streams,
-    };
+    let decided = decide(customers, felt.calls, &judgement);
+    issues::record(decided.settled, facts);
+    let renewals = renewal::conclude(decided.decisions, &mut market.reputation, params, facts);
+    let talks = Negotiation { day: &today, product, drift: &market.drift };
     let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts);
     let knowledge = market.knowledge;
-    let moods = satisfaction::by_group(moods);
+    let moods = satisfaction::by_group(felt.moods);
     reputation::contribute(&mut market.reputation, &moods, |group| knowledge[group].level >= 1, params);
 
     // People and the press write.
@@ -142,17 +112,16 @@ pub fn step_day(
     press::write_about_the_economy(day, &market.economy, &mut market.social, params, streams, facts);
 
     // New customers come.
-    let coming =
-        arrivals::Arrivals { morning: &morning, settings, market, service_penalty: penalty, params, streams };
+    let coming = arrivals::Arrivals { day: &today, market };
     let factors = arrivals::expect(&coming, &customers.active());
     let leads = arrivals::arrive(&coming, &factors, customers, enterprise, facts);
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;
 
     // Money changes hands.
-    let received = billing::collect(customers, billed, &bill, &negotiated.suspended, facts);
+    let received = billing::collect(customers, decided.billed, &today, &negotiated.suspended, facts);
     finance.cash += received;
     let costs = pay_running_costs(finance, &metered, &morning, settings, params, facts);
-    earn_from_ads(customers, &ads, finance, facts);
+    earn_from_ads(customers, today.ads, finance, facts);
     market.social.chronicle.write(day, &service, settings, product);
 
     let figures = DayFigures {
@@ -177,6 +146,47 @@ pub fn step_day(
         ..closing_figures(world)
     };
     (figures, DayTrace { leads: factors })
+}
+
+/// What the first round among subscribers brings, block by block.
+struct Felt {
+    calls: Vec<IssueBatch>,
+    moods: Vec<(Group, Mood)>,
+    /// On a day on which people post.
+    voices: Option<Vec<Voices>>,
+}
+
+/// Subscribers call for help, and their satisfaction moves; those who may post are heard.
+fn feel(customers: &mut Customers, day: &DayContext<'_>, scene: &Scene<'_>) -> Felt {
+    let listening = crowd::is_posting_day(day.day(), day.params);
+    let felt = customers.sweep(|group, number, block| {
+        let calls = issues::read_calls(group, number, block, day);
+        let before = listening.then(|| block.satisfaction.clone());
+        let mood = satisfaction::update(group, block, day);
+        let voices = before.map(|before| crowd::hear(group, block, before, scene));
+        (calls, (group, mood), voices)
+    });
+    let (calls, moods, voices): (Vec<_>, Vec<_>, Vec<_>) = felt.into_iter().collect();
+    Felt { calls, moods, voices: listening.then(|| voices.into_iter().flatten().collect()) }
+}
+
+/// What the second round brings, block by block.
+struct Decided {
+    settled: Vec<Settled>,
+    decisions: Vec<Decisions>,
+    billed: Vec<Bills>,
+}
+
+/// Issues are settled; those whose day it is decide, and get their bill if they stay.
+fn decide(customers: &mut Customers, calls: Vec<IssueBatch>, judgement: &RenewalContext<'_>) -> Decided {
+    let day = judgement.day;
+    let decided = customers.sweep_with(calls, |group, number, block, calls| {
+        let settled = issues::settle(block, &calls, day);
+        let decisions = renewal::decide(group, number, block, judgement);
+        (settled, decisions, billing::bill_regulars(group, number, block, day))
+    });
+    let (settled, decisions, billed) = decided.into_iter().collect();
+    Decided { settled, decisions, billed }
 }
 
 /// The morning of the world's present day.

@@ -5,6 +5,7 @@
 
 pub(crate) mod canonical;
 pub(crate) mod command;
+pub mod context;
 pub mod customers;
 pub mod day;
 pub(crate) mod enterprise;

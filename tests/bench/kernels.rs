@@ -9,6 +9,7 @@ use std::sync::{Arc, LazyLock};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use novamind::database::{Entry, Location, Position, Projector};
+use novamind::world::context::DayContext;
 use novamind::world::customers::Customers;
 use novamind::world::customers::traits::draw_traits;
 use novamind::world::day::{morning_of, step_day};
@@ -20,8 +21,8 @@ use novamind::world::product::ads::AdLoad;
 use novamind::world::product::quality::TenureTable;
 use novamind::world::product::usage;
 use novamind::world::random::Streams;
-use novamind::world::retention::billing::{self, Terms};
-use novamind::world::retention::issues::{self, IssueContext};
+use novamind::world::retention::billing;
+use novamind::world::retention::issues;
 use novamind::world::retention::satisfaction;
 use novamind::world::state::World;
 
@@ -65,6 +66,21 @@ impl Company {
         morning_of(&self.world, &self.params)
     }
 
+    /// Runs a kernel on a day on which the service holds.
+    fn on_day(&self, kernel: impl FnOnce(&DayContext<'_>)) {
+        let settings = &self.world.settings;
+        kernel(&DayContext {
+            morning: &self.morning(),
+            settings,
+            service: &ServiceDay::quiet(),
+            service_penalty: 0.0,
+            ads: &AdLoad::of(&settings.ads_strength, &self.params),
+            tenure: &TenureTable::up_to(DAYS, &self.params.quality),
+            params: &self.params,
+            streams: &self.streams,
+        });
+    }
+
     fn subscribers(&self) -> ItemsCount {
         ItemsCount::new(self.world.customers.active().iter().sum::<u32>())
     }
@@ -78,13 +94,10 @@ fn on_customers<R>(bencher: Bencher<'_, '_>, items: ItemsCount, kernel: impl Fn(
 #[divan::bench]
 fn quality_and_satisfaction_sweep(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
-    let (morning, service) = (company.morning(), ServiceDay::quiet());
-    let ads = AdLoad::of(&company.world.settings.ads_strength, &company.params);
-    let tenure = TenureTable::up_to(DAYS, &company.params.quality);
-    let (morning, service, ads, tenure, params) = (&morning, &service, &ads, &tenure, &*company.params);
-    let conditions = satisfaction::Conditions { morning, service, ads, tenure, params };
-    on_customers(bencher, company.subscribers(), |customers| {
-        customers.sweep(|group, _, block| satisfaction::update(group, block, &conditions)).len()
+    company.on_day(|day| {
+        on_customers(bencher, company.subscribers(), |customers| {
+            customers.sweep(|group, _, block| satisfaction::update(group, block, day)).len()
+        });
     });
 }
 
@@ -100,16 +113,16 @@ fn usage_metering(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn issue_pass(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
-    let (params, streams, settings) = (&*company.params, &company.streams, &company.world.settings);
-    let hotline = IssueContext { day: DAYS + 1, outage: false, params, streams };
-    on_customers(bencher, company.subscribers(), |customers| {
-        let (mut desk, mut facts) = (company.world.issue_desk.clone(), Facts::default());
-        let mut calls =
-            customers.sweep(|group, number, block| issues::read_calls(group, number, block, &hotline));
-        issues::allot(&mut calls, settings, customers, &mut desk, &hotline);
-        let settled = customers.sweep_with(calls, |_, _, block, own| issues::settle(block, &own, &hotline));
-        issues::record(settled, &mut facts);
-        facts.issues_opened.len()
+    company.on_day(|day| {
+        on_customers(bencher, company.subscribers(), |customers| {
+            let (mut desk, mut facts) = (company.world.issue_desk.clone(), Facts::default());
+            let mut calls =
+                customers.sweep(|group, number, block| issues::read_calls(group, number, block, day));
+            issues::allot(&mut calls, day.settings, customers, &mut desk, day);
+            let settled = customers.sweep_with(calls, |_, _, block, own| issues::settle(block, &own, day));
+            issues::record(settled, &mut facts);
+            facts.issues_opened.len()
+        });
     });
 }
 
@@ -126,18 +139,14 @@ fn customer_generation(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn billing_of_a_day(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
-    let (morning, suspended) = (company.morning(), BTreeSet::new());
-    let bill = Terms {
-        morning: &morning,
-        settings: &company.world.settings,
-        params: &company.params,
-        streams: &company.streams,
-    };
+    let suspended = BTreeSet::new();
     let bills = ItemsCount::new(company.facts.payments.len());
-    on_customers(bencher, bills, |customers| {
-        let regulars =
-            customers.sweep(|group, number, block| billing::bill_regulars(group, number, block, &bill));
-        billing::collect(customers, regulars, &bill, &suspended, &mut Facts::default())
+    company.on_day(|day| {
+        on_customers(bencher, bills, |customers| {
+            let regulars =
+                customers.sweep(|group, number, block| billing::bill_regulars(group, number, block, day));
+            billing::collect(customers, regulars, day, &suspended, &mut Facts::default())
+        });
     });
 }
 

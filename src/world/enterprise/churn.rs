@@ -131,7 +131,7 @@ impl Step<'_> {
         let (morning, params) = (self.day.morning, self.day.params);
         let quality = &params.quality;
         let shared = match blame {
-            Blame::Silence => quality.base_product_quality + self.day.product.shared_bonus,
+            Blame::Silence => quality.base_product_quality + self.talks.product.shared_bonus,
             Blame::Timeout => morning.shared_quality,
         };
         let relationship = relationship_as_read(row.relationship, quality);

@@ -26,17 +26,12 @@ pub use company::{Company, Standing};
 pub use thread::{Thread, Turn};
 
 use super::canonical::canonical;
+use super::context::DayContext;
 use super::customers::Customers;
 use super::events::{Facts, Notice, Sender, ThreadKind, ThreadTurn, TurnContent};
 use super::market::drift::DriftTotals;
 use super::market::reputation::ReputationBook;
-use super::morning::Morning;
-use super::params::Params;
 use super::product::Product;
-use super::product::ads::AdLoad;
-use super::product::quality::TenureTable;
-use super::random::Streams;
-use super::settings::Settings;
 
 /// Negotiations with companies.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,24 +56,12 @@ impl Default for Enterprise {
 
 /// What the negotiations of a day share.
 pub struct Negotiation<'a> {
-    /// Values frozen this morning.
-    pub morning: &'a Morning,
-    /// Settings of today.
-    pub settings: &'a Settings,
+    /// The day.
+    pub day: &'a DayContext<'a>,
     /// The product, with today's improvements.
     pub product: &'a Product,
     /// What the market has added to curves, with today's changes.
     pub drift: &'a DriftTotals,
-    /// Quality lost to today's service, where fidelity makes it count here.
-    pub service_penalty: f64,
-    /// In-app ads.
-    pub ads: &'a AdLoad<'a>,
-    /// Tenure bonuses by days.
-    pub tenure: &'a TenureTable,
-    /// Parameters.
-    pub params: &'a Params,
-    /// Random streams.
-    pub streams: &'a Streams,
 }
 
 /// What the rest of the day has to know.
@@ -111,20 +94,28 @@ impl Enterprise {
         &mut self,
         customers: &mut Customers,
         reputation: &mut ReputationBook,
-        day: &Negotiation<'_>,
+        talks: &Negotiation<'_>,
         facts: &mut Facts,
     ) -> EnterpriseDay {
+        let day = talks.day;
         let view = self.live_view(day.params.fidelity.reappearing_threads);
         let busy: BTreeSet<u32> = view.iter().map(|live| self.threads[live.thread].customer).collect();
-        let mut step =
-            Step { enterprise: self, customers, reputation, day, facts, result: EnterpriseDay::default() };
+        let mut step = Step {
+            enterprise: self,
+            customers,
+            reputation,
+            day,
+            talks,
+            facts,
+            result: EnterpriseDay::default(),
+        };
         step.result.suspended = step.threatening(&view);
         step.time_out(&view);
         step.receive_replies(&view);
         step.trigger(&busy);
         let result = step.result;
         let reappearing = day.params.fidelity.reappearing_threads;
-        self.forget(|thread| thread.is_over(day.morning.day, reappearing));
+        self.forget(|thread| thread.is_over(day.day(), reappearing));
         result
     }
 
@@ -234,14 +225,15 @@ struct Step<'a> {
     enterprise: &'a mut Enterprise,
     customers: &'a mut Customers,
     reputation: &'a mut ReputationBook,
-    day: &'a Negotiation<'a>,
+    day: &'a DayContext<'a>,
+    talks: &'a Negotiation<'a>,
     facts: &'a mut Facts,
     result: EnterpriseDay,
 }
 
 impl Step<'_> {
     fn today(&self) -> u32 {
-        self.day.morning.day
+        self.day.day()
     }
 
     /// Customers whose threat to leave was open this morning.

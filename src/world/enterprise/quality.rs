@@ -14,12 +14,13 @@ impl Negotiation<'_> {
     /// Quality of each plan in a negotiation, before the first impression of a lead: today's product, no tenure,
     /// no weekday; quotas count only where there is an active subscription.
     pub(super) fn offered_quality(&self, group: Group, row: &Subscriber, active: bool) -> ByPlan<f64> {
-        let product = self.product.quality(group, self.params);
-        let quality = &self.params.quality;
+        let product = self.product.quality(group, self.day.params);
+        let quality = &self.day.params.quality;
         ByPlan::from_fn(|plan| {
-            let demand = quota_demand(row.usage_rate, row.usage_rate, self.params);
-            let quota = if active { quota_factor(self.morning.quotas[plan], demand, quality) } else { 1.0 };
-            let delivered = delivered_quality(product, 0.0, 0.0, self.morning.multipliers[plan]);
+            let demand = quota_demand(row.usage_rate, row.usage_rate, self.day.params);
+            let quota =
+                if active { quota_factor(self.day.morning.quotas[plan], demand, quality) } else { 1.0 };
+            let delivered = delivered_quality(product, 0.0, 0.0, self.day.morning.multipliers[plan]);
             self.perceived(group, row, delivered, 0.0, quota)
                 .clamp(quality.negotiation_quality_min, quality.negotiation_quality_max)
         })
@@ -27,19 +28,19 @@ impl Negotiation<'_> {
 
     /// Quality of each plan as a subscriber lives with it: this morning's product, tenure, weekday; no bounds.
     pub(super) fn lived_quality(&self, group: Group, row: &Subscriber) -> ByPlan<f64> {
-        let demand = quota_demand(row.usage_rate * self.morning.weekday, row.usage_rate, self.params);
-        let tenure = self.tenure.bonus(self.morning.day.saturating_sub(row.start_day));
+        let demand = quota_demand(row.usage_rate * self.day.morning.weekday, row.usage_rate, self.day.params);
+        let tenure = self.day.tenure.bonus(self.day.day().saturating_sub(row.start_day));
         ByPlan::from_fn(|plan| {
-            let quota = quota_factor(self.morning.quotas[plan], demand, &self.params.quality);
-            self.perceived(group, row, self.morning.delivered(group, plan), tenure, quota)
+            let quota = quota_factor(self.day.morning.quotas[plan], demand, &self.day.params.quality);
+            self.perceived(group, row, self.day.morning.delivered(group, plan), tenure, quota)
         })
     }
 
     fn perceived(&self, group: Group, row: &Subscriber, delivered: f64, tenure: f64, quota: f64) -> f64 {
-        let quality = &self.params.quality;
-        let penalty = match self.params.fidelity.service_penalty {
+        let quality = &self.day.params.quality;
+        let penalty = match self.day.params.fidelity.service_penalty {
             ServicePenalty::Satisfaction => 0.0,
-            ServicePenalty::Everywhere => self.service_penalty,
+            ServicePenalty::Everywhere => self.day.service_penalty,
         };
         let experience = Experience {
             delivered: delivered - penalty,
@@ -47,22 +48,22 @@ impl Negotiation<'_> {
             tenure,
             quota,
             issues: quality.issue_penalty_per_open_day * f64::from(row.open_issue_days),
-            ads: row.ads_quality_sensitivity * self.ads.for_group(group),
+            ads: row.ads_quality_sensitivity * self.day.ads.for_group(group),
         };
-        perceived_quality(experience, self.params.fidelity.perceived_quality)
+        perceived_quality(experience, self.day.params.fidelity.perceived_quality)
     }
 
     /// Curve in a negotiation, with everything the market has added to it by now.
     pub(super) fn offered_curve(&self, group: Group, row: &Subscriber) -> Curve {
         let expectation = self.drift.expectation(group);
-        let floor = self.params.quality.read_time_c_max_min;
+        let floor = self.day.params.quality.read_time_c_max_min;
         curve_of(row).drifted(expectation.quality, expectation.c_max, floor)
     }
 
     /// Curve of every day, with what the market had added this morning.
     pub(super) fn lived_curve(&self, group: Group, row: &Subscriber) -> Curve {
-        let expectation = self.morning.expectations[group];
-        let floor = self.params.quality.read_time_c_max_min;
+        let expectation = self.day.morning.expectations[group];
+        let floor = self.day.params.quality.read_time_c_max_min;
         curve_of(row).drifted(expectation.quality, expectation.c_max, floor)
     }
 }

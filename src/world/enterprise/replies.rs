@@ -30,13 +30,13 @@ impl Step<'_> {
         let own = &self.enterprise.threads[thread];
         let company = self.enterprise.company(own.customer)?;
         let row = company.row(self.customers)?;
-        let mut quality = self.day.offered_quality(own.group, &row, company.is_subscriber());
+        let mut quality = self.talks.offered_quality(own.group, &row, company.is_subscriber());
         if own.kind == ThreadKind::NewLead {
             let impression = company.first_impression(self.day.params, self.day.streams);
             quality.0.iter_mut().for_each(|quality| *quality *= impression);
         }
         let judge = Judge {
-            curve: self.day.offered_curve(own.group, &row),
+            curve: self.talks.offered_curve(own.group, &row),
             quality,
             initial_offer_factor: company.negotiator.initial_offer_factor,
             max_turns: company.negotiator.max_negotiation_turns,

@@ -2,12 +2,14 @@
 
 use super::evaluation::tests::K;
 use super::{Company, Enterprise, EnterpriseDay, Negotiation, Standing};
+use crate::world::context::tests::on_day;
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Subscriber;
 use crate::world::customers::columns::tests::subscriber;
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::customers::traits::Negotiator;
 use crate::world::events::Facts;
+use crate::world::events::ServiceDay;
 use crate::world::identifiers::{ByPlan, Group};
 use crate::world::market::drift::DriftTotals;
 use crate::world::market::reputation::ReputationBook;
@@ -15,8 +17,6 @@ use crate::world::morning::Morning;
 use crate::world::morning::tests::morning;
 use crate::world::params::Params;
 use crate::world::product::Product;
-use crate::world::product::ads::AdLoad;
-use crate::world::product::quality::TenureTable;
 use crate::world::random::Streams;
 use crate::world::settings::Settings;
 
@@ -141,18 +141,9 @@ impl Kit {
 
     /// Runs `check` with the negotiations of the day.
     pub fn with<R>(&self, check: impl FnOnce(&Negotiation<'_>) -> R) -> R {
-        let ads = AdLoad::of(&self.settings.ads_strength, &self.params);
-        let tenure = TenureTable::up_to(600, &self.params.quality);
-        check(&Negotiation {
-            morning: &self.morning,
-            settings: &self.settings,
-            product: &self.product,
-            drift: &self.drift,
-            service_penalty: 0.0,
-            ads: &ads,
-            tenure: &tenure,
-            params: &self.params,
-            streams: &self.streams,
+        let law = (&self.params, &self.streams);
+        on_day(&self.morning, &self.settings, &ServiceDay::quiet(), law, |day| {
+            check(&Negotiation { day, product: &self.product, drift: &self.drift })
         })
     }
 

@@ -31,7 +31,7 @@ impl Step<'_> {
         for (group, block) in self.customers.blocks().filter(|(group, _)| group.is_enterprise()) {
             for at in (0..block.len()).filter(|at| !busy.contains(&block.customer[*at])) {
                 let row = block.row(at);
-                if let Some(wish) = self.day.wish(group, &row) {
+                if let Some(wish) = self.talks.wish(group, &row) {
                     wishes.push((row.customer, row.seats as u32, wish));
                 }
             }
@@ -65,19 +65,19 @@ impl Step<'_> {
 impl Negotiation<'_> {
     /// What a subscriber wants today, if anything.
     fn wish(&self, group: Group, row: &Subscriber) -> Option<Wish> {
-        let sales = &self.params.enterprise;
+        let sales = &self.day.params.enterprise;
         let (quality, curve) = (self.lived_quality(group, row), self.lived_curve(group, row));
-        let present = surplus(quality[row.plan], row.listed_price, &curve, self.params);
+        let present = surplus(quality[row.plan], row.listed_price, &curve, self.day.params);
         if present < sales.churn_trigger_satisfaction_below {
             return Some(Wish::Leave);
         }
         let mut best: Option<(f64, Plan)> = None;
         for plan in Plan::ALL.into_iter().filter(|plan| *plan != row.plan) {
-            let price = self.morning.core.prices[plan];
+            let price = self.day.morning.core.prices[plan];
             if price > curve.c_max {
                 continue;
             }
-            let own = surplus(quality[plan], price, &curve, self.params);
+            let own = surplus(quality[plan], price, &curve, self.day.params);
             if own > 0.0 && own > best.map_or(present, |(most, _)| most) {
                 best = Some((own, plan));
             }
@@ -86,8 +86,8 @@ impl Negotiation<'_> {
         if improvement(most, present, sales) <= sales.plan_change_min_relative_improvement {
             return None;
         }
-        let keys = [u64::from(self.morning.day), group.index() as u64, u64::from(row.n)];
-        let asks = self.streams.open(Part::PlanChange, keys).bernoulli(sales.plan_change_probability);
+        let keys = [u64::from(self.day.day()), group.index() as u64, u64::from(row.n)];
+        let asks = self.day.streams.open(Part::PlanChange, keys).bernoulli(sales.plan_change_probability);
         asks.then_some(Wish::Switch { from: row.plan, to })
     }
 }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::leads::{LeadContext, LeadFactors, lead_factors};
+use crate::world::context::DayContext;
 use crate::world::customers::choice::{Choice, Offer, accepts, choose_plan, passes_gate};
 use crate::world::customers::columns::Subscriber;
 use crate::world::customers::curve::Curve;
@@ -13,13 +14,11 @@ use crate::world::events::{Arrival, ChannelLeads, Facts, Source, SubscriptionOpe
 use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
 use crate::world::market::Market;
 use crate::world::market::economy::Dimension;
-use crate::world::morning::Morning;
 use crate::world::params::{DriftCounted, Params, ServicePenalty};
 use crate::world::product::quality::quota_demand;
-use crate::world::random::{Part, Stream, Streams, Word};
+use crate::world::random::{Part, Stream, Word};
 use crate::world::retention::renewal::ongoing_discount;
 use crate::world::retention::required_of;
-use crate::world::settings::Settings;
 
 /// What came of the leads of a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -36,18 +35,10 @@ pub struct LeadCounts {
 
 /// What the arrivals of a day share.
 pub struct Arrivals<'a> {
-    /// Values frozen this morning.
-    pub morning: &'a Morning,
-    /// Settings of today.
-    pub settings: &'a Settings,
+    /// The day.
+    pub day: &'a DayContext<'a>,
     /// The market, after today's changes.
     pub market: &'a Market,
-    /// Quality lost to today's service, where fidelity makes it count here.
-    pub service_penalty: f64,
-    /// Parameters.
-    pub params: &'a Params,
-    /// Random streams.
-    pub streams: &'a Streams,
 }
 
 struct Lead {
@@ -75,7 +66,7 @@ enum Outcome {
 
 /// Number and factors of today's leads, group by group; undiscovered groups bring none.
 pub fn expect(arrivals: &Arrivals<'_>, subscribers: &ByGroup<u32>) -> ByGroup<LeadFactors> {
-    let &Arrivals { morning, settings, market, params, .. } = arrivals;
+    let &Arrivals { day: &DayContext { morning, settings, params, .. }, market } = arrivals;
     let context = LeadContext {
         day: morning.day,
         calendar: morning.weekday * morning.month_day,
@@ -100,10 +91,10 @@ pub fn arrive(
 ) -> LeadCounts {
     let mut party: Vec<ArrivalRun> = Vec::new();
     for group in Group::all() {
-        let keys = [u64::from(arrivals.morning.day), group.index() as u64];
+        let keys = [u64::from(arrivals.day.day()), group.index() as u64];
         let expected = factors[group].expected();
-        let number = arrivals.streams.open(Part::LeadCount, keys).poisson(expected) as u32;
-        party.extend(customers.arrive(arrivals.morning.day, group, number).pieces(LEADS_TOGETHER));
+        let number = arrivals.day.streams.open(Part::LeadCount, keys).poisson(expected) as u32;
+        party.extend(customers.arrive(arrivals.day.day(), group, number).pieces(LEADS_TOGETHER));
     }
     let came: Vec<(ArrivalRun, Vec<Lead>)> = party
         .into_par_iter()
@@ -130,7 +121,7 @@ const LEADS_TOGETHER: u32 = 64;
 
 /// Draws and evaluates some leads of one group.
 fn evaluate(arrivals: &Arrivals<'_>, factors: &ByGroup<LeadFactors>, some: &ArrivalRun) -> Vec<Lead> {
-    let &Arrivals { market, params, streams, .. } = arrivals;
+    let &Arrivals { day: &DayContext { params, streams, .. }, market } = arrivals;
     let group = some.group;
     let offers = offers(arrivals, group);
     let velocity = market.economy.multiplier(group, Dimension::DealVelocity, params);
@@ -149,10 +140,10 @@ fn evaluate(arrivals: &Arrivals<'_>, factors: &ByGroup<LeadFactors>, some: &Arri
 }
 
 fn offers(arrivals: &Arrivals<'_>, group: Group) -> ByPlan<Offer> {
-    let &Arrivals { morning, params, .. } = arrivals;
+    let &DayContext { morning, params, .. } = arrivals.day;
     let penalty = match params.fidelity.service_penalty {
         ServicePenalty::Satisfaction => 0.0,
-        ServicePenalty::Everywhere => arrivals.service_penalty,
+        ServicePenalty::Everywhere => arrivals.day.service_penalty,
     };
     ByPlan::from_fn(|plan| Offer {
         price: morning.core.prices[plan],
@@ -169,7 +160,7 @@ fn evaluate_lead(
     source: Source,
     noise: Word,
 ) -> Lead {
-    let &Arrivals { morning, settings, params, .. } = arrivals;
+    let &DayContext { morning, settings, params, .. } = arrivals.day;
     let expectation = morning.expectations[group];
     let floor = params.customer_generation.c_max_min;
     let curve = traits.curve.drifted(expectation.quality, expectation.c_max, floor);
@@ -216,7 +207,7 @@ fn record_arrivals(came: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCounts, fa
 /// One row per funded pair whose group is known and whose channel has a yield; channels in their order, groups
 /// in the order in which the player listed them.
 fn record_channels(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], facts: &mut Facts) {
-    let &Arrivals { settings, market, .. } = arrivals;
+    let &Arrivals { day: &DayContext { settings, .. }, market } = arrivals;
     for channel in crate::world::identifiers::Channel::ALL {
         let Some(groups) = settings.targeted_ads.targeted_spend.get(&channel) else { continue };
         for (&group, &spend) in groups {
@@ -288,7 +279,7 @@ fn record_openings(
     }
     for (customer, lead) in individuals(came) {
         if let Outcome::Lost { choice, discount } = lead.outcome {
-            let listed_price = arrivals.morning.core.prices[choice.plan];
+            let listed_price = arrivals.day.morning.core.prices[choice.plan];
             let terms = FirstTerms { listed_price, promotion: discount, effective_price: choice.price };
             open(customer, choice.plan, SubscriptionStatus::Lost, terms);
         }
@@ -302,7 +293,7 @@ fn first_terms(
     choice: Choice,
     discount: f64,
 ) -> FirstTerms {
-    let &Arrivals { morning, settings, params, .. } = arrivals;
+    let &DayContext { morning, settings, params, .. } = arrivals.day;
     let listed_price = morning.core.prices[choice.plan];
     let promotion = discount + ongoing_discount(customer, group, choice.plan, settings, params);
     let effective_price = (listed_price - promotion).max(params.billing.effective_price_min);
@@ -319,7 +310,7 @@ fn stored_curve(traits: &Traits, drifted: &Curve, params: &Params) -> Curve {
 
 /// The row of a lead before it has agreed on anything.
 fn newcomer(arrivals: &Arrivals<'_>, n: u32, customer: u32, subscription: u32, lead: &Lead) -> Subscriber {
-    let &Arrivals { morning, params, .. } = arrivals;
+    let &DayContext { morning, params, .. } = arrivals.day;
     let stored = stored_curve(&lead.traits, &lead.curve, params);
     Subscriber {
         n,
@@ -391,7 +382,7 @@ fn open_prospects(
                     contract_end_day: 0,
                     standing: Standing::Lead(row),
                 };
-                enterprise.open_lead(arrivals.morning.day, company, facts);
+                enterprise.open_lead(arrivals.day.day(), company, facts);
             }
         }
     }

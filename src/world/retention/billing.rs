@@ -7,27 +7,14 @@ use std::collections::BTreeSet;
 
 use super::renewal::{ongoing_discount, terms};
 use super::{due_today, refresh_required, remembered_budget};
+use crate::world::context::DayContext;
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::events::{Facts, Payment, TermsChanged};
 use crate::world::identifiers::Group;
-use crate::world::morning::Morning;
 use crate::world::params::Params;
 use crate::world::product::usage::usage_rate;
-use crate::world::random::{Part, Streams, Word};
-use crate::world::settings::Settings;
-
-/// What bills of a day share.
-pub struct Terms<'a> {
-    /// Values frozen this morning.
-    pub morning: &'a Morning,
-    /// Settings of today.
-    pub settings: &'a Settings,
-    /// Parameters.
-    pub params: &'a Params,
-    /// Random streams.
-    pub streams: &'a Streams,
-}
+use crate::world::random::{Part, Word};
 
 /// The price a bill is based on: a cut reaches everybody and is stored, a rise never reaches a stored price;
 /// negotiated prices stay.
@@ -44,10 +31,9 @@ pub struct Bills {
 }
 
 /// Bills the individuals of a block whose day it is and who were there this morning.
-pub fn bill_regulars(group: Group, number: u32, block: &mut Block, bill: &Terms<'_>) -> Bills {
-    let due =
-        if group.is_enterprise() { Vec::new() } else { due_today(block, bill.morning.day, bill.params) };
-    bill_rows(group, number, block, due, bill, &BTreeSet::new())
+pub fn bill_regulars(group: Group, number: u32, block: &mut Block, day: &DayContext<'_>) -> Bills {
+    let due = if group.is_enterprise() { Vec::new() } else { due_today(block, day.day(), day.params) };
+    bill_rows(group, number, block, due, day, &BTreeSet::new())
 }
 
 /// Bills newcomers and companies and puts the bills of the day on record. Companies that are `suspended` pay nothing
@@ -55,15 +41,15 @@ pub fn bill_regulars(group: Group, number: u32, block: &mut Block, bill: &Terms<
 pub fn collect(
     customers: &mut Customers,
     billed: Vec<Bills>,
-    bill: &Terms<'_>,
+    day: &DayContext<'_>,
     suspended: &BTreeSet<u32>,
     facts: &mut Facts,
 ) -> f64 {
-    let today = bill.morning.day;
+    let today = day.day();
     let late = customers.sweep(|group, number, block| {
-        let mut due = due_today(block, today, bill.params);
+        let mut due = due_today(block, today, day.params);
         due.retain(|at| group.is_enterprise() || block.start_day[*at] == today);
-        bill_rows(group, number, block, due, bill, suspended)
+        bill_rows(group, number, block, due, day, suspended)
     });
     let mut received = 0.0;
     let mut billed = billed.into_iter().filter(|early| !early.payments.is_empty()).peekable();
@@ -85,33 +71,31 @@ fn bill_rows(
     number: u32,
     block: &mut Block,
     due: Vec<usize>,
-    bill: &Terms<'_>,
+    day: &DayContext<'_>,
     suspended: &BTreeSet<u32>,
 ) -> Bills {
     let (mut payments, mut changes) = (Vec::with_capacity(due.len()), Vec::new());
-    let keys: Vec<[u64; 3]> = due
-        .iter()
-        .map(|at| [group.index() as u64, u64::from(block.n[*at]), u64::from(bill.morning.day)])
-        .collect();
-    let rates = bill.streams.first_words(Part::UsageRate, &keys);
+    let keys: Vec<[u64; 3]> =
+        due.iter().map(|at| [group.index() as u64, u64::from(block.n[*at]), u64::from(day.day())]).collect();
+    let rates = day.streams.first_words(Part::UsageRate, &keys);
     for (at, rate) in due.into_iter().zip(rates) {
         if !suspended.contains(&block.customer[at]) {
             let before = terms(block, at);
-            payments.push(pay(group, block, at, bill));
+            payments.push(pay(group, block, at, day));
             let after = terms(block, at);
             // Seats of companies drift between two bills; the record follows with the bill.
             if after != before || group.is_enterprise() {
                 changes.push(after);
             }
         }
-        start_period(block, at, rate, bill.params);
+        start_period(block, at, rate, day.params);
     }
     Bills { group, number, payments, changes }
 }
 
 /// Takes the payment and sets the terms of the next period.
-fn pay(group: Group, block: &mut Block, at: usize, bill: &Terms<'_>) -> Payment {
-    let &Terms { morning, settings, params, .. } = bill;
+fn pay(group: Group, block: &mut Block, at: usize, day: &DayContext<'_>) -> Payment {
+    let &DayContext { morning, settings, params, .. } = day;
     let floor = params.billing.effective_price_min;
     let (customer, plan) = (block.customer[at], block.plan[at]);
     let negotiated = group.is_enterprise();
@@ -141,10 +125,14 @@ fn start_period(block: &mut Block, at: usize, rate: Word, params: &Params) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::context::tests::on_day;
     use crate::world::customers::columns::Subscriber;
     use crate::world::customers::columns::tests::subscriber;
+    use crate::world::events::ServiceDay;
     use crate::world::identifiers::{ByPlan, Plan};
     use crate::world::morning::tests::morning;
+    use crate::world::random::Streams;
+    use crate::world::settings::Settings;
 
     fn billed(id: &str, row: Subscriber, list: f64, ongoing: f64) -> (f64, Subscriber) {
         let (params, streams) = (Params::shipped(), Streams::new(1));
@@ -153,10 +141,11 @@ mod tests {
         day.core.prices = ByPlan([list; 3]);
         let mut settings = Settings::opening(&params);
         settings.promotion.global = ongoing;
-        let bill = Terms { morning: &day, settings: &settings, params: &params, streams: &streams };
         let mut block = Block::default();
         block.push(row);
-        let payment = pay(group, &mut block, 0, &bill);
+        let quiet = ServiceDay::quiet();
+        let payment =
+            on_day(&day, &settings, &quiet, (&params, &streams), |day| pay(group, &mut block, 0, day));
         (payment.amount, block.row(0))
     }
 
@@ -210,10 +199,12 @@ mod tests {
         let row = Subscriber { period_usage: 77, seats: 10.0, ..subscriber(1) };
         customers.groups[group].activate(row);
         let suspended = BTreeSet::from([row.customer]);
-        let bill = Terms { morning: &day, settings: &settings, params: &params, streams: &streams };
         let mut facts = Facts::default();
-        let billed = customers.sweep(|group, number, block| bill_regulars(group, number, block, &bill));
-        assert_eq!(collect(&mut customers, billed, &bill, &suspended, &mut facts), 0.0);
+        let received = on_day(&day, &settings, &ServiceDay::quiet(), (&params, &streams), |day| {
+            let billed = customers.sweep(|group, number, block| bill_regulars(group, number, block, day));
+            collect(&mut customers, billed, day, &suspended, &mut facts)
+        });
+        assert_eq!(received, 0.0);
         let after = customers.groups[group].blocks[0].row(0);
         assert!(facts.payments.is_empty() && facts.changes.is_empty());
         assert_eq!((after.period_usage, after.listed_price), (0, row.listed_price));

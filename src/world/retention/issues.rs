@@ -7,13 +7,14 @@
 
 use super::support_budget::Resolution;
 use crate::world::canonical::canonical;
+use crate::world::context::DayContext;
 use crate::world::customers::Customers;
 use crate::world::customers::columns::{BLOCK, Block, place_in_block};
 use crate::world::events::{Facts, IssueOpened};
 use crate::world::identifiers::Group;
 use crate::world::params::{Issues, Params, Quality};
 use crate::world::product::quality::relationship_as_read;
-use crate::world::random::{Part, Streams, word_below};
+use crate::world::random::{Part, word_below};
 use crate::world::settings::Settings;
 
 /// Chance of a new issue today, from the satisfaction of the start of the day and whole seats.
@@ -88,27 +89,15 @@ pub struct IssueBatch {
     pub(super) first_issue: u32,
 }
 
-/// What issues depend on, the same for everybody.
-#[derive(Clone, Copy)]
-pub struct IssueContext<'a> {
-    /// Day.
-    pub day: u32,
-    /// Whether the service failed today.
-    pub outage: bool,
-    /// Parameters.
-    pub params: &'a Params,
-    /// Random streams.
-    pub streams: &'a Streams,
-}
-
 /// Rows whose answers are one word of bits.
 const ROWS: usize = u64::BITS as usize;
 
 /// Reads who of a block has an issue and who opens one today.
 ///
 /// Hardly anybody's answer can be foreseen, so nothing branches on it: answers are bits first and lists afterwards.
-pub fn read_calls(group: Group, number: u32, block: &Block, hotline: &IssueContext<'_>) -> IssueBatch {
-    let &IssueContext { day, outage, params, streams } = hotline;
+pub fn read_calls(group: Group, number: u32, block: &Block, day: &DayContext<'_>) -> IssueBatch {
+    let &DayContext { service, params, streams, .. } = day;
+    let (day, outage) = (day.day(), service.outage);
     let keys = [u64::from(day), group.index() as u64, u64::from(number)];
     let mut words = [0u32; BLOCK as usize];
     streams.open(Part::IssueOpening, keys).fill(&mut words);
@@ -159,9 +148,10 @@ pub fn allot(
     settings: &Settings,
     customers: &Customers,
     desk: &mut IssueDesk,
-    hotline: &IssueContext<'_>,
+    day: &DayContext<'_>,
 ) {
-    let &IssueContext { day, params, streams, .. } = hotline;
+    let &DayContext { params, streams, .. } = day;
+    let day = day.day();
     Resolution { day, calls, customers, params, streams }.run(settings);
     for own in calls {
         own.first_issue = desk.next_issue;
@@ -181,8 +171,9 @@ pub struct Settled {
 }
 
 /// Solves, ages and opens issues of a block; nobody may have left since the calls were read.
-pub fn settle(block: &mut Block, own: &IssueBatch, hotline: &IssueContext<'_>) -> Settled {
-    let &IssueContext { outage, params, .. } = hotline;
+pub fn settle(block: &mut Block, own: &IssueBatch, day: &DayContext<'_>) -> Settled {
+    let &DayContext { service, params, .. } = day;
+    let outage = service.outage;
     Settled {
         any_open: !own.open.is_empty(),
         resolved: settle_open(block, own, outage, params),
@@ -231,7 +222,12 @@ fn open_new(block: &mut Block, own: &IssueBatch, params: &Params) -> Vec<IssueOp
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::context::tests::on_day;
     use crate::world::customers::columns::tests::subscriber;
+    use crate::world::events::ServiceDay;
+    use crate::world::morning::tests::morning;
+    use crate::world::params::Params;
+    use crate::world::random::Streams;
 
     fn near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-12, "{actual} instead of {expected}");
@@ -311,10 +307,12 @@ mod tests {
         let mut settings = Settings::opening(&params);
         settings.core.operations = operations;
         let (mut facts, mut desk) = (Facts::default(), IssueDesk { next_issue: 10_000 });
-        let hotline = IssueContext { day: 3, outage: false, params: &params, streams: &streams };
-        let mut calls = customers.sweep(|group, number, block| read_calls(group, number, block, &hotline));
-        allot(&mut calls, &settings, customers, &mut desk, &hotline);
-        let settled = customers.sweep_with(calls, |_, _, block, own| settle(block, &own, &hotline));
+        let quiet = ServiceDay::quiet();
+        let settled = on_day(&morning(3), &settings, &quiet, (&params, &streams), |day| {
+            let mut calls = customers.sweep(|group, number, block| read_calls(group, number, block, day));
+            allot(&mut calls, &settings, customers, &mut desk, day);
+            customers.sweep_with(calls, |_, _, block, own| settle(block, &own, day))
+        });
         record(settled, &mut facts);
         (facts, desk)
     }

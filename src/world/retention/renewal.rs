@@ -1,5 +1,6 @@
 //! What individuals decide on their billing day: stay, switch, or leave (`docs/mechanics/retention/renewal.md`).
 
+use crate::world::context::DayContext;
 use crate::world::customers::columns::{BLOCK, Block};
 use crate::world::customers::curve::{Curve, required_quality};
 use crate::world::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
@@ -8,9 +9,8 @@ use crate::world::market::reputation::{ReputationBook, cancel_damage};
 use crate::world::market::social::crowd::GaveUp;
 use crate::world::morning::Morning;
 use crate::world::params::{DriftCounted, InvoluntaryChurn, Params, ServicePenalty};
-use crate::world::product::ads::AdLoad;
 use crate::world::product::quality::{
-    Experience, TenureTable, perceived_quality, quota_demand, quota_factor, relationship_bonus,
+    Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus,
 };
 use crate::world::random::{Part, Streams, Word, word_below};
 use crate::world::retention::due_today;
@@ -83,24 +83,12 @@ pub struct Renewals {
 
 /// What the decisions of a day share.
 pub struct RenewalContext<'a> {
-    /// Values frozen this morning.
-    pub morning: &'a Morning,
-    /// Settings of today.
-    pub settings: &'a Settings,
-    /// Quality lost to today's service, where fidelity makes it count here.
-    pub service_penalty: f64,
+    /// The day.
+    pub day: &'a DayContext<'a>,
     /// Monthly rate of involuntary churn by group.
     pub involuntary: ByGroup<f64>,
     /// Macro multiplier of the budget by group.
     pub willingness_to_pay: ByGroup<f64>,
-    /// In-app ads.
-    pub ads: &'a AdLoad<'a>,
-    /// Tenure bonuses by days.
-    pub tenure: &'a TenureTable,
-    /// Parameters.
-    pub params: &'a Params,
-    /// Random streams.
-    pub streams: &'a Streams,
 }
 
 /// What the individuals of a block decided.
@@ -142,7 +130,7 @@ pub fn conclude(
 
 /// What each of them does to the reputation of their group.
 fn damages(gave_up: &[GaveUp], judgement: &RenewalContext<'_>) -> Vec<f64> {
-    let &RenewalContext { morning, params, streams, .. } = judgement;
+    let &DayContext { morning, params, streams, .. } = judgement.day;
     let keys_of = |person: &GaveUp| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
     let keys: Vec<[u64; 4]> = gave_up.iter().map(keys_of).collect();
     let rolls = streams.first_words(Part::ReputationEvent, &keys);
@@ -159,15 +147,15 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalC
     if group.is_enterprise() {
         return outcome;
     }
-    let (morning, rate) = (judgement.morning, judgement.involuntary[group]);
-    let due = due_today(block, morning.day, judgement.params);
+    let (morning, rate) = (judgement.day.morning, judgement.involuntary[group]);
+    let due = due_today(block, morning.day, judgement.day.params);
     if due.is_empty() {
         return outcome;
     }
     let mut words = [0u32; BLOCK as usize];
     if rate > 0.0 {
         let keys = [u64::from(morning.day), group.index() as u64, u64::from(number)];
-        judgement.streams.open(Part::InvoluntaryRoll, keys).fill(&mut words);
+        judgement.day.streams.open(Part::InvoluntaryRoll, keys).fill(&mut words);
     }
     let (mut gone, mut gave_up) = (Vec::new(), Vec::new());
     for at in due {
@@ -223,7 +211,7 @@ fn person(group: Group, block: &Block, at: usize, day: u32) -> GaveUp {
 }
 
 fn chosen_plan(group: Group, block: &Block, at: usize, judgement: &RenewalContext<'_>) -> Option<Plan> {
-    let &RenewalContext { morning, settings, params, .. } = judgement;
+    let &DayContext { morning, settings, params, .. } = judgement.day;
     let prices = ByPlan::from_fn(|plan| {
         let discount = ongoing_discount(block.customer[at], group, plan, settings, params);
         (morning.core.prices[plan] - discount).max(params.billing.effective_price_min)
@@ -236,23 +224,23 @@ fn chosen_plan(group: Group, block: &Block, at: usize, judgement: &RenewalContex
 
 /// Perceived quality of each plan at a billing decision (`docs/mechanics/product/quality.md#who-feels-what`).
 fn renewal_quality(group: Group, block: &Block, at: usize, judgement: &RenewalContext<'_>) -> ByPlan<f64> {
-    let &RenewalContext { morning, params, .. } = judgement;
+    let &DayContext { morning, params, .. } = judgement.day;
     let quality = &params.quality;
     let rate = block.usage_rate[at];
     let demand = quota_demand(rate * morning.weekday, rate, params);
     let penalty = match params.fidelity.service_penalty {
         ServicePenalty::Satisfaction => 0.0,
-        ServicePenalty::Everywhere => judgement.service_penalty,
+        ServicePenalty::Everywhere => judgement.day.service_penalty,
     };
     ByPlan::from_fn(|plan| {
         perceived_quality(
             Experience {
                 delivered: morning.delivered(group, plan) - penalty,
                 relationship: relationship_bonus(block.relationship[at], quality),
-                tenure: judgement.tenure.bonus(morning.day - block.start_day[at]),
+                tenure: judgement.day.tenure.bonus(morning.day - block.start_day[at]),
                 quota: quota_factor(morning.quotas[plan], demand, quality),
                 issues: quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]),
-                ads: block.ads_quality_sensitivity[at] * judgement.ads.for_group(group),
+                ads: block.ads_quality_sensitivity[at] * judgement.day.ads.for_group(group),
             },
             params.fidelity.perceived_quality,
         )
@@ -283,7 +271,7 @@ fn switch(
     plan: Plan,
     judgement: &RenewalContext<'_>,
 ) -> (bool, TermsChanged) {
-    let &RenewalContext { morning, settings, params, .. } = judgement;
+    let &DayContext { morning, settings, params, .. } = judgement.day;
     let listed_price = morning.core.prices[plan];
     let upgrade = listed_price > block.listed_price[at];
     let promotion = ongoing_discount(block.customer[at], group, plan, settings, params);
@@ -315,11 +303,17 @@ pub fn terms(block: &Block, at: usize) -> TermsChanged {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::context::tests::on_day;
     use crate::world::customers::Customers;
     use crate::world::customers::columns::Subscriber;
     use crate::world::customers::columns::tests::subscriber;
+    use crate::world::events::ServiceDay;
+    use crate::world::morning::Morning;
     use crate::world::morning::tests::morning;
+    use crate::world::params::Params;
+    use crate::world::random::Streams;
     use crate::world::settings::AdsStrength;
+    use crate::world::settings::Settings;
 
     fn group() -> Group {
         Group::at(0).expect("S1")
@@ -333,18 +327,12 @@ mod tests {
         check: impl FnOnce(&RenewalContext<'_>) -> R,
     ) -> R {
         let (params, streams) = (Params::shipped(), Streams::new(1));
-        let ads = AdLoad::of(&settings.ads_strength, &params);
-        let tenure = TenureTable::up_to(600, &params.quality);
-        check(&RenewalContext {
-            morning: day,
-            settings,
-            service_penalty: 0.0,
-            involuntary: ByGroup::default(),
-            willingness_to_pay: ByGroup::from_fn(|_| willingness),
-            ads: &ads,
-            tenure: &tenure,
-            params: &params,
-            streams: &streams,
+        on_day(day, settings, &ServiceDay::quiet(), (&params, &streams), |day| {
+            check(&RenewalContext {
+                day,
+                involuntary: ByGroup::default(),
+                willingness_to_pay: ByGroup::from_fn(|_| willingness),
+            })
         })
     }
 
@@ -427,7 +415,7 @@ mod tests {
         let (mut reputation, mut facts) = (ReputationBook::opening(&Params::shipped()), Facts::default());
         let renewals = with_judgement(&day, &settings, 1.0, |judgement| {
             let decided = customers.sweep(|group, number, block| decide(group, number, block, judgement));
-            conclude(decided, &mut reputation, judgement.params, &mut facts)
+            conclude(decided, &mut reputation, judgement.day.params, &mut facts)
         });
         assert_eq!((renewals.cancellations, renewals.upgrades, renewals.downgrades), (1, 1, 0));
         assert_eq!((renewals.gave_up.len(), renewals.gave_up[0].n), (1, 1));

@@ -2,16 +2,13 @@
 
 use std::ops::{AddAssign, Range};
 
+use crate::world::context::DayContext;
 use crate::world::customers::columns::Block;
-use crate::world::events::ServiceDay;
 use crate::world::identifiers::{ByGroup, ByPlan, Group};
 use crate::world::market::reputation::contribution;
-use crate::world::morning::Morning;
-use crate::world::params::Params;
-use crate::world::product::ads::AdLoad;
 use crate::world::product::quality::{
-    Experience, TenureTable, perceived_quality, quota_demand, quota_factor, relationship_as_read,
-    relationship_bonus, service_penalty,
+    Experience, perceived_quality, quota_demand, quota_factor, relationship_as_read, relationship_bonus,
+    service_penalty,
 };
 
 /// Moving average: (1 - alpha) old + alpha instant.
@@ -45,20 +42,6 @@ pub fn by_group(by_block: Vec<(Group, Mood)>) -> ByGroup<Mood> {
     moods
 }
 
-/// What the whole sweep shares.
-pub struct Conditions<'a> {
-    /// Values frozen this morning.
-    pub morning: &'a Morning,
-    /// Service of today.
-    pub service: &'a ServiceDay,
-    /// In-app ads.
-    pub ads: &'a AdLoad<'a>,
-    /// Tenure bonuses by days.
-    pub tenure: &'a TenureTable,
-    /// Parameters.
-    pub params: &'a Params,
-}
-
 /// Rows that are worked on together: few enough for what is looked up for them to stay close at hand.
 const ROWS: usize = 64;
 
@@ -82,9 +65,9 @@ impl Found {
         block: &Block,
         rows: Range<usize>,
         delivered: &ByPlan<f64>,
-        conditions: &Conditions<'_>,
+        day: &DayContext<'_>,
     ) {
-        let &Conditions { morning, ads, tenure, .. } = conditions;
+        let &DayContext { morning, ads, tenure, .. } = day;
         let (plan, start_day) = (&block.plan[rows.clone()], &block.start_day[rows.clone()]);
         let customer = &block.customer[rows];
         for at in 0..plan.len().min(ROWS) {
@@ -101,8 +84,8 @@ impl Found {
 /// One pass over the columns it needs, some rows at a time. Looking up, calculating and adding up are loops of their
 /// own; what all rows share is copied out first, and what is calculated goes to the column afterwards. So the compiler
 /// sees that rows do not depend on each other, and calculates several at once.
-pub fn update(group: Group, block: &mut Block, conditions: &Conditions<'_>) -> Mood {
-    let &Conditions { morning, service, params, .. } = conditions;
+pub fn update(group: Group, block: &mut Block, day: &DayContext<'_>) -> Mood {
+    let &DayContext { morning, service, params, .. } = day;
     let (quality, reputation) = (&params.quality.clone(), &params.reputation.clone());
     let penalty = service_penalty(service.overload, service.outage, quality);
     let delivered = ByPlan::from_fn(|plan| morning.delivered(group, plan) - penalty);
@@ -114,7 +97,7 @@ pub fn update(group: Group, block: &mut Block, conditions: &Conditions<'_>) -> M
     for first in (0..count).step_by(ROWS) {
         let rows = (count - first).min(ROWS);
         let range = first..first + rows;
-        found.look_up(group, block, range.clone(), &delivered, conditions);
+        found.look_up(group, block, range.clone(), &delivered, day);
         let rate = &block.usage_rate[range.clone()];
         let (relationship, required) = (&block.relationship[range.clone()], &block.required[range.clone()]);
         let open_days = &block.open_issue_days[range.clone()];
@@ -150,11 +133,17 @@ pub fn update(group: Group, block: &mut Block, conditions: &Conditions<'_>) -> M
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::context::tests::on_day;
     use crate::world::customers::columns::Subscriber;
     use crate::world::customers::columns::tests::subscriber;
+    use crate::world::events::ServiceDay;
     use crate::world::identifiers::Plan;
+    use crate::world::morning::Morning;
     use crate::world::morning::tests::morning;
+    use crate::world::params::Params;
+    use crate::world::random::Streams;
     use crate::world::retention::{refresh_required, remembered_budget};
+    use crate::world::settings::Settings;
     use crate::world::settings::{AdsStrength, PerCustomer, PerGroup};
 
     fn group() -> Group {
@@ -166,11 +155,8 @@ mod tests {
         let mut block = Block::default();
         block.push(row);
         refresh_required(&mut block, 0, day.expectations[group()].c_max, &params);
-        let ads = AdLoad::of(setting, &params);
-        let tenure = TenureTable::up_to(200, &params.quality);
-        let conditions =
-            Conditions { morning: day, service: &service, ads: &ads, tenure: &tenure, params: &params };
-        update(group(), &mut block, &conditions);
+        let settings = Settings { ads_strength: setting.clone(), ..Settings::opening(&params) };
+        on_day(day, &settings, &service, (&params, &Streams::new(1)), |day| update(group(), &mut block, day));
         block.satisfaction[0]
     }
 
@@ -204,10 +190,11 @@ mod tests {
     fn nobody_feels_what_others_feel() {
         let (params, day, service) = (Params::shipped(), morning(190), ServiceDay::quiet());
         let setting = AdsStrength { by_customer: PerCustomer::from([(70, 0.4)]), ..AdsStrength::default() };
-        let ads = AdLoad::of(&setting, &params);
-        let tenure = TenureTable::up_to(200, &params.quality);
-        let conditions =
-            Conditions { morning: &day, service: &service, ads: &ads, tenure: &tenure, params: &params };
+        let settings = Settings { ads_strength: setting, ..Settings::opening(&params) };
+        let streams = Streams::new(1);
+        let update = |block: &mut Block| {
+            on_day(&day, &settings, &service, (&params, &streams), |day| update(group(), block, day))
+        };
         let row = |n: u32| Subscriber {
             plan: Plan::ALL[n as usize % 3],
             usage_rate: f64::from(n % 5) * 30.0,
@@ -221,12 +208,12 @@ mod tests {
         for count in [1, 63, 64, 65, 150] {
             let mut together = Block::default();
             (1..=count).for_each(|n| together.push(row(n)));
-            let mood = update(group(), &mut together, &conditions);
+            let mood = update(&mut together);
             let mut moods = Mood::default();
             for n in 1..=count {
                 let mut alone = Block::default();
                 alone.push(row(n));
-                moods += update(group(), &mut alone, &conditions);
+                moods += update(&mut alone);
                 assert_eq!(together.row(n as usize - 1), alone.row(0), "row {n} of {count}");
             }
             assert_eq!(mood, moods, "{count} rows");

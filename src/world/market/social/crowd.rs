@@ -82,8 +82,8 @@ pub struct Crowd {
 /// Starts the race among all subscribers, right after their moods have moved; `voices` are those of the blocks that
 /// hold anybody, in their order.
 pub fn listen(mut voices: Vec<Voices>, customers: &Customers, scene: &Scene<'_>, streams: &Streams) -> Crowd {
-    let mut stream = streams.open(Part::CustomerPosts, [u64::from(scene.morning.day)]);
-    let places = scene.params.social.max_posts_per_day as usize;
+    let mut stream = streams.open(Part::CustomerPosts, [u64::from(scene.day.day())]);
+    let places = scene.day.params.social.max_posts_per_day as usize;
     let blocks: Vec<(Group, &Block)> = customers.blocks().collect();
     let mut picked: Vec<(usize, usize)> = Vec::new();
     let (mut candidates, mut time) = (Vec::new(), 0.0);
@@ -115,7 +115,7 @@ pub fn listen(mut voices: Vec<Voices>, customers: &Customers, scene: &Scene<'_>,
 
 #[inline]
 fn weight(scene: &Scene<'_>, group: Group, block: &Block, at: usize, before: f64) -> f64 {
-    post_weight(&scene.loudness(group, block, at, before), &scene.params.social)
+    post_weight(&scene.loudness(group, block, at, before), &scene.day.params.social)
 }
 
 /// The row at which the running sum of the weights of those not yet taken passes the target; the last one where
@@ -224,12 +224,11 @@ pub fn author_of(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::context::tests::on_day;
     use crate::world::customers::columns::Subscriber;
     use crate::world::customers::columns::tests::subscriber;
     use crate::world::events::{Post, ServiceDay, ThreadKind};
     use crate::world::morning::tests::morning;
-    use crate::world::product::ads::AdLoad;
-    use crate::world::product::quality::TenureTable;
     use crate::world::settings::Settings;
 
     fn group() -> Group {
@@ -244,19 +243,14 @@ mod tests {
         let mut customers = Customers::default();
         rows.iter().for_each(|row| customers.groups[group()].activate(*row));
         let day = morning(70);
-        let ads = AdLoad::of(&settings.ads_strength, &params);
         let chronicle = social.chronicle.clone();
-        let scene = Scene {
-            morning: &day,
-            service: &ServiceDay::quiet(),
-            ads: &ads,
-            tenure: &TenureTable::up_to(100, &params.quality),
-            chronicle: &chronicle,
-            params: &params,
-        };
-        let moods = |block: &Block| block.satisfaction.clone();
-        let voices = customers.survey(|group, block| hear(group, block, moods(block), &scene));
-        let mut crowd = listen(voices, &customers, &scene, &streams);
+        let quiet = ServiceDay::quiet();
+        let mut crowd = on_day(&day, &settings, &quiet, (&params, &streams), |day| {
+            let scene = Scene { day, chronicle: &chronicle };
+            let moods = |block: &Block| block.satisfaction.clone();
+            let voices = customers.survey(|group, block| hear(group, block, moods(block), &scene));
+            listen(voices, &customers, &scene, &streams)
+        });
         crowd.join(gave_up, lost, &params);
         let mut facts = Facts::default();
         facts.begin(70);

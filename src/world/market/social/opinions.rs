@@ -3,31 +3,22 @@
 
 use super::chronicle::Chronicle;
 use super::weights::Loudness;
+use crate::world::context::DayContext;
 use crate::world::customers::columns::Block;
-use crate::world::events::{Cause, Opinion, ServiceDay, Theme, Troubles};
+use crate::world::events::{Cause, Opinion, Theme, Troubles};
 use crate::world::identifiers::Group;
-use crate::world::morning::Morning;
-use crate::world::params::{Params, Social};
-use crate::world::product::ads::AdLoad;
+use crate::world::params::Social;
 use crate::world::product::quality::{
-    TenureTable, quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty,
+    quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty,
 };
 
 /// What everybody who may post has in common today.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
-    /// Values frozen this morning.
-    pub morning: &'a Morning,
-    /// Service of today.
-    pub service: &'a ServiceDay,
-    /// In-app ads.
-    pub ads: &'a AdLoad<'a>,
-    /// Tenure bonuses by days.
-    pub tenure: &'a TenureTable,
+    /// The day.
+    pub day: &'a DayContext<'a>,
     /// The last four weeks.
     pub chronicle: &'a Chronicle,
-    /// Parameters.
-    pub params: &'a Params,
 }
 
 impl Scene<'_> {
@@ -35,16 +26,16 @@ impl Scene<'_> {
     #[inline]
     fn quota_factor(&self, block: &Block, at: usize) -> f64 {
         let rate = block.usage_rate[at];
-        let demand = quota_demand(rate * self.morning.weekday, rate, self.params);
-        quota_factor(self.morning.quotas[block.plan[at]], demand, &self.params.quality)
+        let demand = quota_demand(rate * self.day.morning.weekday, rate, self.day.params);
+        quota_factor(self.day.morning.quotas[block.plan[at]], demand, &self.day.params.quality)
     }
 
     /// What went wrong for a row today.
     #[inline]
     pub fn troubles(&self, block: &Block, at: usize) -> Troubles {
         Troubles {
-            overload: self.service.overload > 0.0,
-            outage: self.service.outage,
+            overload: self.day.service.overload > 0.0,
+            outage: self.day.service.outage,
             issue: block.open_issue_days[at] > 0,
             quota: self.quota_factor(block, at) < 1.0,
         }
@@ -57,8 +48,8 @@ impl Scene<'_> {
         Loudness {
             satisfaction,
             change: satisfaction - before,
-            influencer: self.params.group(group).influencer,
-            days_subscribed: self.morning.day - block.start_day[at],
+            influencer: self.day.params.group(group).influencer,
+            days_subscribed: self.day.day() - block.start_day[at],
             events: self.troubles(block, at).count(),
             // Contracts last a month, so nobody is bound for long.
             contract_locked: false,
@@ -76,31 +67,31 @@ impl Scene<'_> {
             self.praises(group, block, at)
         };
         Opinion {
-            cause: cause(troubles, change, &self.params.social),
+            cause: cause(troubles, change, &self.day.params.social),
             troubles,
             theme: theme(&worths, u),
-            days_subscribed: self.morning.day - block.start_day[at],
+            days_subscribed: self.day.day() - block.start_day[at],
             plan: Some(block.plan[at]),
             price: block.effective_price[at],
             seats: block.seats[at] as u32,
             waiting_days: block.open_issue_days[at],
-            downtime_minutes: self.service.downtime_minutes,
+            downtime_minutes: self.day.service.downtime_minutes,
         }
     }
 
     /// What a row lacks, each in quality it costs.
     fn complaints(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
-        let quality = &self.params.quality;
-        let delivered = self.morning.delivered(group, block.plan[at]);
+        let quality = &self.day.params.quality;
+        let delivered = self.day.morning.delivered(group, block.plan[at]);
         let (needed, share) = self.price_of_quality(block, at);
         let shortage = (block.q_min[at] - delivered).max(0.0);
         let relationship = self.relationship(block, at);
         let issues = quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]);
-        let effect = self.ads.for_customer(group, block.customer[at]);
+        let effect = self.day.ads.for_customer(group, block.customer[at]);
         vec![
             (Theme::Price, needed * share),
             (Theme::Quality, needed * (1.0 - share) + shortage),
-            (Theme::Rivals, self.morning.expectations[group].quality),
+            (Theme::Rivals, self.day.morning.expectations[group].quality),
             (Theme::Service, self.mean_penalty()),
             (Theme::Support, (-relationship).max(0.0) + issues),
             (Theme::Limits, (1.0 - self.quota_factor(block, at)) * delivered),
@@ -110,8 +101,8 @@ impl Scene<'_> {
 
     /// What a row values, each in quality it brings.
     fn praises(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
-        let quality = &self.params.quality;
-        let delivered = self.morning.delivered(group, block.plan[at]);
+        let quality = &self.day.params.quality;
+        let delivered = self.day.morning.delivered(group, block.plan[at]);
         let surplus = (delivered - block.q_min[at]).max(0.0);
         let (_, share) = self.price_of_quality(block, at);
         // What a bad day would have cost and these weeks did not.
@@ -122,7 +113,7 @@ impl Scene<'_> {
             (Theme::Service, calm),
             (Theme::Support, self.relationship(block, at).max(0.0)),
             (Theme::Progress, self.chronicle.progress(group).max(0.0)),
-            (Theme::Habit, self.tenure.bonus(self.morning.day - block.start_day[at])),
+            (Theme::Habit, self.day.tenure.bonus(self.day.day() - block.start_day[at])),
         ]
     }
 
@@ -135,14 +126,14 @@ impl Scene<'_> {
     }
 
     fn relationship(&self, block: &Block, at: usize) -> f64 {
-        let quality = &self.params.quality;
+        let quality = &self.day.params.quality;
         relationship_bonus(relationship_as_read(block.relationship[at], quality), quality)
     }
 
     /// Mean quality lost to bad service over the last two weeks.
     fn mean_penalty(&self) -> f64 {
         const DAYS: usize = 14;
-        let penalty = |overload, outage| service_penalty(overload, outage, &self.params.quality);
+        let penalty = |overload, outage| service_penalty(overload, outage, &self.day.params.quality);
         let pages = self.chronicle.last(DAYS);
         let (sum, count) = pages
             .fold((0.0, 0.0), |(sum, count), page| (sum + penalty(page.overload, page.outage), count + 1.0));
@@ -179,6 +170,7 @@ pub fn theme(worths: &[(Theme, f64)], u: f64) -> Theme {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::params::Params;
 
     #[test]
     fn troubles_come_before_moods_and_overload_before_all() {

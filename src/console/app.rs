@@ -6,7 +6,6 @@ mod guide;
 mod input;
 mod news;
 mod orders;
-mod shelf;
 mod viewer;
 
 use std::collections::BTreeMap;
@@ -15,8 +14,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use ratatui::layout::Rect;
-
-pub use shelf::Screens;
 
 use super::action::{Action, Scope};
 use super::canvas::Click;
@@ -29,7 +26,7 @@ use super::keys::{Chord, Keys};
 use super::message::Message;
 use super::readings::Reading;
 use super::screens::menu::Menu;
-use super::screens::{Look, Screen, ScreenId};
+use super::screens::{Look, Screen, ScreenId, Screens};
 use super::theme::Theme;
 use super::tour::Tour;
 use super::viewer::Viewer;

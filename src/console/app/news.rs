@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::{App, Layer, Order, Run, Screens, Stage};
+use super::{App, Layer, Order, Run, Stage};
 use crate::console::action::Action;
 use crate::console::company::Company;
 use crate::console::dialogs::filing::Filing;
@@ -12,7 +12,7 @@ use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::report::Report;
 use crate::console::effect::Effect;
 use crate::console::message::{Instead, News};
-use crate::console::screens::{Look, ScreenId};
+use crate::console::screens::{Look, ScreenId, Screens};
 use crate::console::text::number;
 use crate::console::tour::Tour;
 use crate::console::viewer::Viewer;

@@ -1,18 +1,8 @@
 //! The screens. Each keeps where the person is in it, turns actions into effects, and draws itself from what
 //! holds; drawing changes and computes nothing that matters.
 
-pub mod cash;
-pub mod customers;
-pub mod inbox;
-pub mod journal;
-pub mod market;
 pub mod menu;
-pub mod overview;
 pub mod panes;
-pub mod product;
-pub mod social;
-pub mod sql;
-pub mod tools;
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -26,62 +16,67 @@ use super::message::News;
 use super::readings::Reading;
 use crate::session::Rows;
 
-/// Which screen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum ScreenId {
+/// The list of screens, in the order of their keys: a screen, and the room it lives in.
+macro_rules! screens {
+    ($($(#[$doc:meta])* $Screen:ident in $room:ident,)*) => {
+        $(pub mod $room;)*
+
+        /// Which screen.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum ScreenId { $($(#[$doc])* $Screen,)* }
+
+        impl ScreenId {
+            /// All screens in the order of their keys.
+            pub const ALL: [ScreenId; [$(ScreenId::$Screen),*].len()] = [$(ScreenId::$Screen),*];
+
+            /// The action that shows it.
+            pub fn action(self) -> Action {
+                match self { $(ScreenId::$Screen => Action::$Screen,)* }
+            }
+        }
+
+        /// Every screen of a run.
+        #[derive(Default)]
+        pub struct Screens { $($(#[$doc])* pub $room: $room::$Screen,)* }
+
+        impl Screens {
+            /// A screen.
+            pub fn get(&self, id: ScreenId) -> &dyn Screen {
+                match id { $(ScreenId::$Screen => &self.$room,)* }
+            }
+
+            /// A screen, to change it.
+            pub fn get_mut(&mut self, id: ScreenId) -> &mut dyn Screen {
+                match id { $(ScreenId::$Screen => &mut self.$room,)* }
+            }
+        }
+    };
+}
+
+screens! {
     /// The company at a glance.
-    Overview,
+    Overview in overview,
     /// Where money comes from and goes to.
-    Cash,
+    Cash in cash,
     /// The customer groups.
-    Customers,
+    Customers in customers,
     /// Quality, capacity, issues, R&D.
-    Product,
+    Product in product,
     /// What people write, and our posts.
-    Social,
+    Social in social,
     /// Negotiations with companies.
-    Inbox,
+    Inbox in inbox,
     /// Groups, studies, the economy.
-    Market,
+    Market in market,
     /// Forms of all tools.
-    Tools,
+    Tools in tools,
     /// The database.
-    Sql,
+    Sql in sql,
     /// What was done.
-    Journal,
+    Journal in journal,
 }
 
 impl ScreenId {
-    /// All screens in the order of their keys.
-    pub const ALL: [ScreenId; 10] = [
-        ScreenId::Overview,
-        ScreenId::Cash,
-        ScreenId::Customers,
-        ScreenId::Product,
-        ScreenId::Social,
-        ScreenId::Inbox,
-        ScreenId::Market,
-        ScreenId::Tools,
-        ScreenId::Sql,
-        ScreenId::Journal,
-    ];
-
-    /// The action that shows it.
-    pub fn action(self) -> Action {
-        match self {
-            ScreenId::Overview => Action::Overview,
-            ScreenId::Cash => Action::Cash,
-            ScreenId::Customers => Action::Customers,
-            ScreenId::Product => Action::Product,
-            ScreenId::Social => Action::Social,
-            ScreenId::Inbox => Action::Inbox,
-            ScreenId::Market => Action::Market,
-            ScreenId::Tools => Action::Tools,
-            ScreenId::Sql => Action::Sql,
-            ScreenId::Journal => Action::Journal,
-        }
-    }
-
     /// Name for the trajectory.
     pub fn id(self) -> &'static str {
         self.action().entry().name

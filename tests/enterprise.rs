@@ -30,7 +30,8 @@ fn create(storage: Storage) -> Session {
 }
 
 fn call(session: &mut Session, tool: &str, arguments: Value) -> Value {
-    session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"))
+    let answer = session.call(tool, &arguments, Via::Script);
+    answer.unwrap_or_else(|refusal| panic!("{tool}: {refusal}")).to_json()
 }
 
 /// Answers some threads, ends some, leaves some alone, and asks a subscriber for another price.

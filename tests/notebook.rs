@@ -9,7 +9,7 @@ fn create(storage: Storage) -> Session {
 }
 
 fn try_call(session: &mut Session, tool: &str, arguments: Value) -> Result<Value, Refusal> {
-    session.call(tool, &arguments, Via::Script)
+    session.call(tool, &arguments, Via::Script).map(|answer| answer.to_json())
 }
 
 fn call(session: &mut Session, tool: &str, arguments: Value) -> Value {

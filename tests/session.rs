@@ -18,7 +18,8 @@ fn create(new: NewRun) -> Session {
 }
 
 fn call(session: &mut Session, tool: &str, arguments: Value) -> Value {
-    session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"))
+    let answer = session.call(tool, &arguments, Via::Script);
+    answer.unwrap_or_else(|refusal| panic!("{tool}: {refusal}")).to_json()
 }
 
 /// Opens shop as a sensible beginner would.

@@ -12,7 +12,8 @@ fn create(overrides: &[(&str, &str)]) -> Session {
 }
 
 fn call(session: &mut Session, tool: &str, arguments: Value) -> Value {
-    session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"))
+    let answer = session.call(tool, &arguments, Via::Script);
+    answer.unwrap_or_else(|refusal| panic!("{tool}: {refusal}")).to_json()
 }
 
 fn open_shop(session: &mut Session) {

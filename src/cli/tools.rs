@@ -1,9 +1,10 @@
 //! `novamind tools`: the catalogue.
 
 use clap::Args;
-use serde_json::Value;
+use serde_json::json;
 
 use super::{Failure, print};
+use crate::tools::describe::{ToolDocument, document};
 use crate::tools::{CATALOGUE, Numbers, catalogue, describe, find};
 
 /// Options of `tools`.
@@ -22,8 +23,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let text = match (&options.name, options.json) {
         (None, false) => describe::overview(),
         (None, true) => {
-            let all: Value = CATALOGUE.iter().map(|tool| describe::as_json(*tool, &numbers)).collect();
-            format!("{all:#}\n")
+            let all: Vec<ToolDocument> =
+                CATALOGUE.iter().map(|tool| document(tool.spec(), &numbers)).collect();
+            format!("{:#}\n", json!(all))
         }
         (Some(name), json) => {
             let tool = find(name).or_else(|| catalogue::find_code(name)).ok_or_else(|| {
@@ -35,7 +37,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 })
             })?;
             if json {
-                format!("{:#}\n", describe::as_json(tool, &numbers))
+                format!("{:#}\n", json!(document(tool.spec(), &numbers)))
             } else {
                 describe::manual(tool.spec(), &numbers)
             }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 use super::posts::{self, Posts};
 use crate::report::WeekReport;
@@ -14,7 +14,10 @@ use crate::session::{
     DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Numbers, Observation, RunningStudy,
     Session, ToolLimits, WeekFigures,
 };
-use crate::tools::ToolId;
+use crate::tools::{
+    GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,
+    PriceList, ResearchProjects, ToolId,
+};
 use crate::world::identifiers::Group;
 
 /// The company as a player may know it.
@@ -54,16 +57,16 @@ pub struct Company {
     pub memo: String,
     /// Present arguments of every tool.
     pub settings: BTreeMap<ToolId, Map<String, Value>>,
-    /// Answer of get_cost_info.
-    pub costs: Value,
-    /// Answer of list_research_projects.
-    pub projects: Value,
+    /// What models and capacity cost.
+    pub costs: PriceList,
+    /// What can be researched.
+    pub projects: ResearchProjects,
     /// Everything that people have written, as get_social_posts tells it.
     pub posts: Posts,
-    /// Answer of get_market_overview.
-    pub market: Value,
-    /// Answers of get_group_insights for every known group.
-    pub insights: BTreeMap<Group, Value>,
+    /// The known groups and the economy.
+    pub market: MarketOverview,
+    /// What is known of every known group.
+    pub insights: BTreeMap<Group, GroupInsights>,
     /// ToolLimits of the tools.
     pub terms: ToolLimits,
     /// The numbers that documentation names.
@@ -85,7 +88,6 @@ impl Company {
     /// The same, with what an earlier look at this run has read already.
     pub fn after(session: &Session, before: Option<&Company>) -> Company {
         let settings = ToolId::all().map(|tool| (tool, tool.tool().current(session.settings())));
-        let read = |tool: ToolId| session.look_up(tool, &Value::Object(Map::new())).unwrap_or(Value::Null);
         Company {
             seen: session.observe(),
             folder: session.folder().map(PathBuf::from),
@@ -104,10 +106,10 @@ impl Company {
             asked: session.asked().to_vec(),
             memo: session.memo().unwrap_or_default(),
             settings: settings.collect(),
-            costs: read(ToolId::GetCostInfo),
-            projects: read(ToolId::ListResearchProjects),
+            costs: session.look_up(&GetCostInfo, ()).unwrap_or_default(),
+            projects: session.look_up(&ListResearchProjects, ()).unwrap_or_default(),
             posts: posts::read(session, before.map(|company| &company.posts)),
-            market: read(ToolId::GetMarketOverview),
+            market: session.look_up(&GetMarketOverview, ()).unwrap_or_default(),
             insights: insights(session),
             terms: session.terms(),
             numbers: session.numbers(),
@@ -154,12 +156,9 @@ impl Company {
 }
 
 /// What is known of every known group; free, and not recorded.
-fn insights(session: &Session) -> BTreeMap<Group, Value> {
+fn insights(session: &Session) -> BTreeMap<Group, GroupInsights> {
     let known = session.observe().known_groups;
-    let told = |group: Group| {
-        let answer = session.look_up(ToolId::GetGroupInsights, &json!({ "group_id": group.id() }));
-        answer.ok().map(|answer| (group, answer))
-    };
+    let told = |group: Group| Some((group, session.look_up(&GetGroupInsights, group)?));
     known.into_iter().filter_map(told).collect()
 }
 

@@ -4,13 +4,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crossterm::event::Event;
-use serde_json::Value;
 
 use super::company::Company;
 use super::readings::Reading;
 use crate::report::Story;
 use crate::session::{Change, Interrupt, Library, PlaybackPosition, Preview, Refusal, Rows, Week};
-use crate::tools::ToolId;
+use crate::tools::{Answer, ToolId};
 
 /// Something that arrives.
 pub enum Message {
@@ -66,7 +65,7 @@ pub enum News {
     /// What a call would do; the number says which question this answers.
     Checked(u64, Result<Preview, Refusal>),
     /// A tool was called.
-    Called(ToolId, Result<Value, Refusal>, Arc<Company>),
+    Called(ToolId, Result<Answer, Refusal>, Arc<Company>),
     /// A setting was taken back.
     Undone(Result<Vec<Change>, Refusal>, Arc<Company>),
     /// A setting that was taken back was set again.

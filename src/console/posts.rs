@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 
-use serde_json::{Value, json};
-
 use crate::session::Session;
-use crate::tools::ToolId;
+use crate::tools::{GetSocialPosts, PostLimit, SocialPost};
 use crate::world::identifiers::Group;
 
 /// Who writes.
@@ -88,21 +86,22 @@ impl Post {
 pub type Posts = Arc<Vec<Arc<Post>>>;
 
 /// Posts asked for at first when earlier ones are known: more than a week brings as a rule.
-const NEWEST: i64 = 64;
+const NEWEST: usize = 64;
 
 /// Posts of others; of those that are known only the newer ones are asked for.
 pub fn read(session: &Session, known: Option<&Posts>) -> Posts {
     let last = known.and_then(|posts| posts.first()).map(|post| post.number);
-    let mut limit = if last.is_some() { NEWEST } else { -1 };
+    let mut limit = if last.is_some() { PostLimit::Newest(NEWEST) } else { PostLimit::All };
     loop {
-        let answer =
-            session.look_up(ToolId::GetSocialPosts, &json!({ "limit": limit })).unwrap_or(Value::Null);
-        let told = answer.get("posts").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+        let told = session.look_up(&GetSocialPosts, limit).map_or(Vec::new(), |answer| answer.posts);
         let is_new = |post: &Post| last.is_none_or(|last| post.number > last);
         let fresh: Vec<Arc<Post>> = told.iter().map(post_of).take_while(is_new).map(Arc::new).collect();
         // Nothing known among them: more of what is new may stand before them.
-        if limit > 0 && !told.is_empty() && fresh.len() == told.len() {
-            limit = if limit > 10_000 { -1 } else { limit * 8 };
+        if let PostLimit::Newest(most) = limit
+            && !told.is_empty()
+            && fresh.len() == told.len()
+        {
+            limit = if most > 10_000 { PostLimit::All } else { PostLimit::Newest(most * 8) };
             continue;
         }
         return match known {
@@ -113,14 +112,11 @@ pub fn read(session: &Session, known: Option<&Posts>) -> Posts {
     }
 }
 
-fn post_of(told: &Value) -> Post {
-    let number = |name: &str| told.get(name).and_then(Value::as_u64).and_then(|own| u32::try_from(own).ok());
-    let text = |name: &str| told.get(name).and_then(Value::as_str);
-    let answers = number("reply_to_agent_post_id");
-    let group = text("group_id").unwrap_or("–");
+fn post_of(told: &SocialPost) -> Post {
+    let group = told.group_id.map_or("–", Group::id);
     // The press writes as the first group and has no profile; customers of groups that were found have none either.
-    let is_press = Group::at(0).is_some_and(|first| first.id() == group);
-    let (kind, author) = match (answers, text("persona_name")) {
+    let is_press = told.group_id.is_some() && told.group_id == Group::at(0);
+    let (kind, author) = match (told.reply_to_agent_post_id, told.persona_name.as_deref()) {
         (Some(_), name) => (Kind::Comments, format!("{} · {group}", name.unwrap_or("somebody"))),
         (None, Some(name)) => (Kind::Customers, format!("{name} · {group}")),
         (None, None) if is_press => (Kind::Press, "press".to_owned()),
@@ -128,11 +124,11 @@ fn post_of(told: &Value) -> Post {
     };
     Post {
         kind,
-        number: number("post_id").unwrap_or(0),
-        day: number("day").unwrap_or(0),
+        number: told.post_id,
+        day: told.day,
         author,
-        text: text("content").unwrap_or_default().to_owned(),
-        answers,
+        text: told.content.clone(),
+        answers: told.reply_to_agent_post_id,
         views: 0,
         comments: 0,
     }
@@ -144,15 +140,24 @@ mod tests {
 
     #[test]
     fn customers_of_groups_that_were_found_are_no_press() {
-        let told = |group: &str, name: Value| {
-            post_of(
-                &json!({ "post_id": 4, "day": 9, "content": "x", "group_id": group, "persona_name": name }),
-            )
+        let told = |group: &str, name: Option<&'static str>| {
+            post_of(&SocialPost {
+                post_id: 4,
+                day: 9,
+                content: "x".to_owned(),
+                reply_to_agent_post_id: None,
+                source_group_id: None,
+                group_id: Group::parse(group),
+                customer_type: "small",
+                custom_name: None,
+                persona_name: name.map(Into::into),
+                replying_to_your_post: None,
+            })
         };
         let who = |post: Post| (post.kind, post.author);
-        assert_eq!(who(told("D_S06", Value::Null)), (Kind::Customers, "D_S06".to_owned()));
-        assert_eq!(who(told("S1", Value::Null)), (Kind::Press, "press".to_owned()));
-        assert_eq!(who(told("S1", "Ada".into())), (Kind::Customers, "Ada · S1".to_owned()));
+        assert_eq!(who(told("D_S06", None)), (Kind::Customers, "D_S06".to_owned()));
+        assert_eq!(who(told("S1", None)), (Kind::Press, "press".to_owned()));
+        assert_eq!(who(told("S1", Some("Ada"))), (Kind::Customers, "Ada · S1".to_owned()));
     }
     use crate::console::test_kit::played;
     use crate::session::Via;

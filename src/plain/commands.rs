@@ -20,7 +20,7 @@ use crate::database::text::table;
 use crate::notation::nearest;
 use crate::session::library::NamedQuery;
 use crate::session::{Change, Library, Mode, Refusal, Session, Via, rows_as_json};
-use crate::tools::{self, Kind, Module, Tool, ToolId};
+use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 
 /// Commands that are no tools.
 const COMMANDS: [(&str, &str); 25] = [
@@ -214,7 +214,7 @@ impl Desk {
 
     fn call_named(&mut self, tool: ToolId, arguments: &Value) -> Answer {
         match self.session.call(tool, arguments, Via::Plain) {
-            Ok(data) => Answer::call(tool.name(), data),
+            Ok(data) => Answer::call(tool.name(), data.to_json()),
             Err(refusal) => Answer::refused(tool.name(), refusal),
         }
     }
@@ -259,7 +259,7 @@ impl Desk {
 }
 
 /// The tool that a word names, with or without its module; next_week has a command of its own.
-fn tool_called(word: &str) -> Option<&'static dyn Tool> {
+fn tool_called(word: &str) -> Option<&'static dyn AnyTool> {
     let (module, name) = match word.split_once('.') {
         Some((module, name)) => (Some(module), name),
         None => (None, word),
@@ -278,7 +278,7 @@ fn in_words(what: &str, changes: &[Change]) -> String {
 
 /// The argument of a tool that may be given without its name: the only required one, the one that is the whole, or the
 /// only one at all.
-fn only_required(tool: &'static dyn Tool) -> Option<&'static str> {
+fn only_required(tool: &'static dyn AnyTool) -> Option<&'static str> {
     let mut required = tool.spec().arguments.iter().filter(|argument| argument.required);
     let only = required.next().filter(|_| required.next().is_none()).map(|argument| argument.name);
     let sole = match tool.spec().arguments {

@@ -2,12 +2,12 @@
 //! (docs/interfaces/tools.md#arguments).
 
 use indexmap::IndexMap;
-use serde_json::{Map, Value};
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Number, Value};
 
 use super::refusal::Refusal;
 use super::spec::{Range, Spec};
 use super::view::View;
-use crate::notation::json_number;
 use crate::world::identifiers::{Channel, Group, Plan};
 use crate::world::settings::{PerCustomer, PerGroup, PerPlan};
 
@@ -65,6 +65,18 @@ impl Arguments {
         self.0.get(name)
     }
 
+    /// Reads an argument, if it was given.
+    ///
+    /// # Errors
+    /// What the reader finds wrong with it.
+    pub fn read<T>(
+        &self,
+        name: &'static str,
+        reader: impl FnOnce(&Value, &'static str) -> Result<T, Refusal>,
+    ) -> Result<Option<T>, Refusal> {
+        self.get(name).map(|value| reader(value, name)).transpose()
+    }
+
     /// Whether nothing was given.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -91,6 +103,21 @@ pub fn integer(value: &Value) -> Option<i64> {
     value.as_i64().or_else(|| value.as_f64().filter(exact).map(|number| number as i64))
 }
 
+impl Range {
+    /// A whole number of this range; integral floats count, booleans and texts do not.
+    pub fn whole<T: TryFrom<i64>>(&self, value: &Value) -> Option<T> {
+        let number = integer(value).filter(|number| self.holds(*number as f64))?;
+        T::try_from(number).ok()
+    }
+}
+
+/// Replaces what a call names, and leaves the rest.
+pub fn replace<T>(now: &mut T, given: Option<T>) {
+    if let Some(given) = given {
+        *now = given;
+    }
+}
+
 /// A text argument, empty if it was not given.
 pub fn text<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str, Refusal> {
     match arguments.get(name) {
@@ -99,11 +126,25 @@ pub fn text<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str, Refusal
     }
 }
 
-/// An amount as it was sent: a whole number stays one, and 80.0 has its decimal point.
-pub fn amount_as_sent(amount: f64, sent: Option<&Value>) -> Value {
-    match sent.is_some_and(Value::is_f64) {
-        true => Value::from(amount),
-        false => json_number(amount),
+/// A number as it was sent: 80 and 80.0 are the same amount, and are written differently.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sent {
+    /// The number.
+    pub value: f64,
+    written: Number,
+}
+
+impl Sent {
+    /// Takes a JSON number; booleans and texts are none.
+    pub fn of(value: &Value) -> Option<Sent> {
+        let written = value.as_number()?.clone();
+        Some(Sent { value: written.as_f64()?, written })
+    }
+}
+
+impl Serialize for Sent {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.written.serialize(serializer)
     }
 }
 
@@ -125,9 +166,9 @@ pub struct Amount {
 
 impl Amount {
     /// Reads one value.
-    pub fn read(&self, value: &Value, field: &str) -> Result<f64, Refusal> {
-        match number(value) {
-            Some(number) if self.range.holds(number) => Ok(number),
+    fn read(&self, value: &Value, field: &str) -> Result<Sent, Refusal> {
+        match Sent::of(value) {
+            Some(sent) if self.range.holds(sent.value) => Ok(sent),
             _ => Err(Refusal::at(field, self.code, format!("the value for {} {}", last(field), self.words))),
         }
     }
@@ -135,10 +176,6 @@ impl Amount {
 
 fn last(field: &str) -> &str {
     field.rsplit('.').next().unwrap_or(field)
-}
-
-fn map<'a>(value: &'a Value, field: &str) -> Result<&'a Map<String, Value>, Refusal> {
-    value.as_object().ok_or_else(|| Refusal::at(field, "not_a_map", format!("{field} must be a map")))
 }
 
 /// A known group.
@@ -185,32 +222,66 @@ fn amounts<K: std::hash::Hash + Eq>(
     field: &str,
     amount: Amount,
     key: impl Fn(&str, &str) -> Result<K, Refusal>,
-) -> Result<IndexMap<K, f64>, Refusal> {
-    let entry = |(name, value): (&String, &Value)| {
-        let field = format!("{field}.{name}");
-        Ok((key(name, &field)?, amount.read(value, &field)?))
-    };
-    map(value, field)?.iter().map(entry).collect()
+) -> Result<IndexMap<K, Sent>, Refusal> {
+    entries(value, field, |name, value, field| Ok((key(name, field)?, amount.read(value, field)?)))
+}
+
+/// A map whose entries are read one by one: name, value and path of each.
+fn entries<K: std::hash::Hash + Eq, V>(
+    value: &Value,
+    field: &str,
+    entry: impl Fn(&str, &Value, &str) -> Result<(K, V), Refusal>,
+) -> Result<IndexMap<K, V>, Refusal> {
+    let object =
+        value.as_object().ok_or_else(|| Refusal::at(field, "not_a_map", format!("{field} must be a map")))?;
+    object.iter().map(|(name, value)| entry(name, value, &format!("{field}.{name}"))).collect()
+}
+
+/// The numbers of a map, without the way they were written.
+fn values<K: std::hash::Hash + Eq>(map: IndexMap<K, Sent>) -> IndexMap<K, f64> {
+    map.into_iter().map(|(key, sent)| (key, sent.value)).collect()
+}
+
+/// A map of groups, with its numbers as they were sent.
+pub fn sent_per_group(
+    value: &Value,
+    field: &str,
+    amount: Amount,
+    view: &View<'_>,
+) -> Result<IndexMap<Group, Sent>, Refusal> {
+    amounts(value, field, amount, |key, field| known_group(key, field, view))
+}
+
+/// A map of channels to maps of groups, with its numbers as they were sent.
+pub fn sent_per_channel_group(
+    value: &Value,
+    field: &str,
+    amount: Amount,
+    view: &View<'_>,
+) -> Result<IndexMap<Channel, IndexMap<Group, Sent>>, Refusal> {
+    entries(value, field, |name, value, field| {
+        Ok((channel(name, field)?, sent_per_group(value, field, amount, view)?))
+    })
 }
 
 /// A map of groups.
 pub fn per_group(value: &Value, field: &str, amount: Amount, view: &View<'_>) -> Result<PerGroup, Refusal> {
-    amounts(value, field, amount, |key, field| known_group(key, field, view))
+    sent_per_group(value, field, amount, view).map(values)
 }
 
 /// A map of plans.
 pub fn per_plan(value: &Value, field: &str, amount: Amount) -> Result<PerPlan, Refusal> {
-    amounts(value, field, amount, plan)
+    amounts(value, field, amount, plan).map(values)
 }
 
 /// A map of channels.
 pub fn per_channel(value: &Value, field: &str, amount: Amount) -> Result<IndexMap<Channel, f64>, Refusal> {
-    amounts(value, field, amount, channel)
+    amounts(value, field, amount, channel).map(values)
 }
 
 /// A map of customers.
 pub fn per_customer(value: &Value, field: &str, amount: Amount) -> Result<PerCustomer, Refusal> {
-    amounts(value, field, amount, customer)
+    amounts(value, field, amount, customer).map(values)
 }
 
 /// A map of groups to maps of plans.
@@ -220,11 +291,9 @@ pub fn per_group_plan(
     amount: Amount,
     view: &View<'_>,
 ) -> Result<IndexMap<Group, PerPlan>, Refusal> {
-    let entry = |(name, value): (&String, &Value)| {
-        let field = format!("{field}.{name}");
-        Ok((known_group(name, &field, view)?, per_plan(value, &field, amount)?))
-    };
-    map(value, field)?.iter().map(entry).collect()
+    entries(value, field, |name, value, field| {
+        Ok((known_group(name, field, view)?, per_plan(value, field, amount)?))
+    })
 }
 
 /// A map of channels to maps of groups.
@@ -234,9 +303,6 @@ pub fn per_channel_group(
     amount: Amount,
     view: &View<'_>,
 ) -> Result<IndexMap<Channel, PerGroup>, Refusal> {
-    let entry = |(name, value): (&String, &Value)| {
-        let field = format!("{field}.{name}");
-        Ok((channel(name, &field)?, per_group(value, &field, amount, view)?))
-    };
-    map(value, field)?.iter().map(entry).collect()
+    let matrix = sent_per_channel_group(value, field, amount, view)?;
+    Ok(matrix.into_iter().map(|(channel, groups)| (channel, values(groups))).collect())
 }

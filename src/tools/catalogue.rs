@@ -1,6 +1,7 @@
-//! The list of all tools.
+//! The list of all tools, and what is made of it: identifiers, and the one answer that any of them gives.
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 use strum::{AsRefStr, Display, EnumString, IntoStaticStr};
 
 use super::analytics::{GetSocialPosts, SetTargetedDevSpend, SetTargetedOpsSpend};
@@ -16,9 +17,10 @@ use super::pricing::{SetModelTiers, SetPrices, SetPromotion, SetUsageQuotas};
 use super::research::{ListResearchProjects, StartResearchProject};
 use super::scripts::{DeleteScript, ListScripts, PythonExec, RegisterScript, RunScript};
 use super::time::{GetVars, NextWeek, Query};
-use super::{Spec, Tool};
+use super::{AnyTool, Arguments, Planned, Refusal, Spec, Tool, View};
+use crate::world::settings::Settings;
 
-/// One list makes the identifiers and the tools, in the order in which they are shown.
+/// One list makes the identifiers, the tools and their answers, in the order in which they are shown.
 macro_rules! tools {
     ($($tool:ident),* $(,)?) => {
         /// A tool. Calls and records write it as its name: `set_prices`.
@@ -34,7 +36,30 @@ macro_rules! tools {
         }
 
         /// All tools, in the order in which they are shown.
-        pub static CATALOGUE: [&dyn Tool; [$(ToolId::$tool),*].len()] = [$(&$tool),*];
+        pub static CATALOGUE: [&dyn AnyTool; [$(ToolId::$tool),*].len()] = [$(&$tool),*];
+
+        /// What a tool answers. Its JSON is that of the tool's own type.
+        #[derive(Debug, Clone, PartialEq, Serialize)]
+        #[serde(untagged)]
+        #[allow(missing_docs)] // Each is described by its `Spec`.
+        pub enum Answer {
+            $($tool(<$tool as Tool>::Answer)),*
+        }
+
+        $(impl AnyTool for $tool {
+            fn spec(&self) -> &'static Spec {
+                Tool::spec(self)
+            }
+
+            fn current(&self, settings: &Settings) -> Map<String, Value> {
+                Tool::current(self, settings)
+            }
+
+            fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Planned<Answer>, Refusal> {
+                let args = self.read(view, arguments)?;
+                Ok(Tool::plan(self, view, args)?.map(Answer::$tool))
+            }
+        })*
     };
 }
 
@@ -84,7 +109,7 @@ impl ToolId {
     }
 
     /// The tool itself.
-    pub fn tool(self) -> &'static dyn Tool {
+    pub fn tool(self) -> &'static dyn AnyTool {
         CATALOGUE[self as usize]
     }
 
@@ -99,8 +124,15 @@ impl ToolId {
     }
 }
 
+impl Answer {
+    /// The answer as the trajectory and programs have it.
+    pub fn to_json(&self) -> Value {
+        serde_json::to_value(self).unwrap_or(Value::Null)
+    }
+}
+
 /// The tool with this name; case counts. The module may stand before it: `pricing.set_prices`.
-pub fn find(name: &str) -> Option<&'static dyn Tool> {
+pub fn find(name: &str) -> Option<&'static dyn AnyTool> {
     CATALOGUE.into_iter().find(|tool| {
         let spec = tool.spec();
         spec.name() == name
@@ -111,7 +143,7 @@ pub fn find(name: &str) -> Option<&'static dyn Tool> {
 }
 
 /// The tool with this code; case does not count.
-pub fn find_code(code: &str) -> Option<&'static dyn Tool> {
+pub fn find_code(code: &str) -> Option<&'static dyn AnyTool> {
     CATALOGUE.into_iter().find(|tool| tool.spec().code.eq_ignore_ascii_case(code.trim()))
 }
 

@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::Value;
 
+use super::Numbers;
 use super::bounds::MOST_DOLLARS;
-use super::spec::{Argument, ArgumentKind, Module, Spec};
-use super::{Numbers, Tool};
+use super::spec::{Argument, ArgumentKind, Module, Output, Spec};
 use crate::notation::grouped;
 
 impl ArgumentKind {
@@ -67,40 +68,75 @@ fn argument_line(argument: &Argument) -> String {
     format!("{} ({}{unit}, {need}): {}", argument.name, argument.kind.words(), argument.doc)
 }
 
-/// One tool as JSON, with the numbers in force.
-pub fn as_json(tool: &dyn Tool, numbers: &Numbers) -> Value {
-    let spec = tool.spec();
-    let arguments: Vec<Value> = spec
-        .arguments
-        .iter()
-        .map(|argument| {
-            json!({
-                "name": argument.name,
-                "alias": argument.alias,
-                "type": argument.kind.words(),
-                "required": argument.required,
-                "unit": argument.unit,
-                "description": argument.doc,
-            })
-        })
-        .collect();
-    let returns: Vec<Value> = spec
-        .returns
-        .iter()
-        .map(|output| json!({ "name": output.name, "type": output.kind, "description": output.doc }))
-        .collect();
-    json!({
-        "name": spec.name(),
-        "code": spec.code,
-        "module": spec.module.id(),
-        "kind": spec.kind.id(),
-        "summary": spec.summary,
-        "arguments": arguments,
-        "effect": { "when": spec.when.id(), "description": numbers.fill(spec.effect) },
-        "cost": numbers.fill(spec.cost),
-        "writes": spec.writes,
-        "refusals": spec.refusals,
-        "returns": returns,
-        "example": serde_json::from_str::<Value>(spec.example).unwrap_or(Value::Null),
-    })
+/// A tool as programs read it, with the numbers in force.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ToolDocument {
+    name: &'static str,
+    code: &'static str,
+    module: &'static str,
+    kind: &'static str,
+    summary: String,
+    arguments: Vec<ArgumentDocument>,
+    effect: EffectDocument,
+    cost: String,
+    writes: &'static [&'static str],
+    refusals: &'static [&'static str],
+    returns: Vec<OutputDocument>,
+    example: Value,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct ArgumentDocument {
+    name: &'static str,
+    alias: Option<&'static str>,
+    #[serde(rename = "type")]
+    kind: String,
+    required: bool,
+    unit: &'static str,
+    description: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct EffectDocument {
+    when: &'static str,
+    description: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct OutputDocument {
+    name: &'static str,
+    #[serde(rename = "type")]
+    kind: &'static str,
+    description: String,
+}
+
+/// A tool as programs read it, with the numbers in force.
+pub fn document(spec: &'static Spec, numbers: &Numbers) -> ToolDocument {
+    let argument = |argument: &Argument| ArgumentDocument {
+        name: argument.name,
+        alias: argument.alias,
+        kind: argument.kind.words(),
+        required: argument.required,
+        unit: argument.unit,
+        description: numbers.fill(argument.doc),
+    };
+    let output = |output: &Output| OutputDocument {
+        name: output.name,
+        kind: output.kind,
+        description: numbers.fill(output.doc),
+    };
+    ToolDocument {
+        name: spec.name(),
+        code: spec.code,
+        module: spec.module.id(),
+        kind: spec.kind.id(),
+        summary: numbers.fill(spec.summary),
+        arguments: spec.arguments.iter().map(argument).collect(),
+        effect: EffectDocument { when: spec.when.id(), description: numbers.fill(spec.effect) },
+        cost: numbers.fill(spec.cost),
+        writes: spec.writes,
+        refusals: spec.refusals,
+        returns: spec.returns.iter().map(output).collect(),
+        example: serde_json::from_str(spec.example).unwrap_or(Value::Null),
+    }
 }

@@ -13,9 +13,9 @@ pub enum Kept {
     Script,
 }
 
-/// What a tool asks of the session besides its effect on the world.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Task {
+/// What a call changes in the notebook.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NotebookChange {
     /// Keep statements under a name.
     Keep {
         /// As what.
@@ -32,20 +32,6 @@ pub enum Task {
         /// Name.
         name: String,
     },
-    /// Run statements now; the answer is their output.
-    Run {
-        /// Statements.
-        code: String,
-        /// Time for all of them, seconds.
-        seconds: f64,
-    },
-}
-
-impl Task {
-    /// Whether something stays behind that was not there before.
-    pub fn leaves_something(&self) -> bool {
-        !matches!(self, Task::Run { .. })
-    }
 }
 
 /// Named statements in the order in which their names were first kept.
@@ -113,12 +99,11 @@ impl Notebook {
         }
     }
 
-    /// Keeps or forgets what a task says; running changes nothing.
-    pub fn apply(&mut self, task: &Task) {
-        match task {
-            Task::Keep { what, name, code } => self.shelf_mut(*what).keep(name, code),
-            Task::Forget { what, name } => self.shelf_mut(*what).forget(name),
-            Task::Run { .. } => {}
+    /// Keeps or forgets what a change says.
+    pub fn apply(&mut self, change: &NotebookChange) {
+        match change {
+            NotebookChange::Keep { what, name, code } => self.shelf_mut(*what).keep(name, code),
+            NotebookChange::Forget { what, name } => self.shelf_mut(*what).forget(name),
         }
     }
 }
@@ -131,14 +116,18 @@ mod tests {
     fn names_keep_their_place_when_their_statements_change() {
         let mut notebook = Notebook::new();
         let what = Kept::Calculation;
-        let keep = |name: &str, code: &str| Task::Keep { what, name: name.to_owned(), code: code.to_owned() };
-        for task in [keep("a", "SELECT 1"), keep("b", "SELECT 2"), keep("a", "SELECT 3")] {
-            notebook.apply(&task);
+        let keep = |name: &str, code: &str| NotebookChange::Keep {
+            what,
+            name: name.to_owned(),
+            code: code.to_owned(),
+        };
+        for change in [keep("a", "SELECT 1"), keep("b", "SELECT 2"), keep("a", "SELECT 3")] {
+            notebook.apply(&change);
         }
         assert_eq!(notebook.shelf(what).names(), ["a", "b"]);
         assert_eq!(notebook.shelf(what).get("a"), Some("SELECT 3"));
         assert!(notebook.shelf(Kept::Script).names().is_empty());
-        notebook.apply(&Task::Forget { what, name: "a".to_owned() });
+        notebook.apply(&NotebookChange::Forget { what, name: "a".to_owned() });
         assert_eq!(notebook.shelf(what).entries(), [("b".to_owned(), "SELECT 2".to_owned())]);
     }
 }

@@ -32,10 +32,10 @@ impl Company {
         let tool = find(name).expect("the tool exists");
         let view = View::new(&self.world, &self.params);
         let arguments = Arguments::of(tool.spec(), &arguments)?;
-        let effect = tool.plan(&view, &arguments)?;
+        let planned = tool.plan(&view, &arguments)?;
         super::bounds::hold(tool.spec(), &arguments)?;
-        let resolved = self.world.resolve(effect, &self.params, &self.streams);
-        let data = tool.answer(&view, &arguments, &resolved);
+        let resolved = self.world.resolve(planned.command, &self.params, &self.streams);
+        let data = planned.reply.without_running(&resolved).expect("no statements").to_json();
         if !resolved.only_reads() {
             self.world.apply(resolved, &self.params, &mut Facts::default());
         }
@@ -670,7 +670,8 @@ fn get_social_posts() {
     let tool = find("get_social_posts").expect("the tool exists");
     let read = |arguments: Value| {
         let arguments = Arguments::of(tool.spec(), &arguments).expect("right arguments");
-        tool.answer(&view, &arguments, &ResolvedCommand::None)
+        let planned = tool.plan(&view, &arguments).expect("it only reads");
+        planned.reply.without_running(&ResolvedCommand::None).expect("an answer").to_json()
     };
     let all = read(json!({"days": 1}));
     assert_eq!(all["total"], json!(3));

@@ -15,7 +15,8 @@ use crate::report::funnel::{Funnel, funnels};
 use crate::report::needs::{Need, Place, needs};
 use crate::report::review::money_lines;
 use crate::session::{Change, JournalEntry, Numbers, Reversal, undone_calls};
-use crate::tools::{self, Kind, describe};
+use crate::tools::describe::{self, ToolDocument, document};
+use crate::tools::{self, Kind};
 
 impl Desk {
     pub(super) fn dashboard(&self) -> Answer {
@@ -227,14 +228,15 @@ pub(super) fn tools(
     numbers: &Numbers,
 ) -> Result<Answer, Problem> {
     let Some(name) = name else {
-        let all: Value = tools::CATALOGUE.iter().map(|tool| describe::as_json(*tool, numbers)).collect();
+        let all = tools::CATALOGUE.iter().map(|tool| document(tool.spec(), numbers));
+        let all: Vec<ToolDocument> = all.collect();
         return Ok(Answer::done("tools", describe::overview(), json!({ "tools": all })));
     };
     let tool = tools::find(name)
         .or_else(|| tool_called(name))
         .or_else(|| tools::catalogue::find_code(name))
         .ok_or_else(|| problem(arguments, &not_there("no tool", name, tools::catalogue::nearest(name))))?;
-    Ok(Answer::done("tools", describe::manual(tool.spec(), numbers), describe::as_json(tool, numbers)))
+    Ok(Answer::done("tools", describe::manual(tool.spec(), numbers), json!(document(tool.spec(), numbers))))
 }
 
 /// `tables [NAME]`.

@@ -1,9 +1,7 @@
-//! What studies say of a group, as numbers: the answer of get_group_insights, without its words.
-
-use serde_json::{Value, json};
+//! What studies say of a group, as numbers: what get_group_insights answers, without its words.
 
 use crate::session::state::Session;
-use crate::tools::ToolId;
+use crate::tools::GetGroupInsights;
 use crate::world::identifiers::Group;
 
 /// Estimates of a group. The truth at the time of the study lies within a relative error of each.
@@ -37,29 +35,22 @@ impl Estimates {
     }
 }
 
-/// The range of seats that a study states, one seat where it states none.
-fn seats(answer: &Value) -> (f64, f64) {
-    let range = answer.get("estimates").and_then(|estimates| estimates.get("seat_range"));
-    let end = |at: usize| range.and_then(|range| range.get(at)).and_then(Value::as_f64).unwrap_or(1.0);
-    (end(0), end(1))
-}
-
 impl Session {
     /// Estimates of every known group, in their fixed order; not recorded.
     pub fn estimates(&self) -> Vec<Estimates> {
         let terms = self.terms();
         let of = |group: Group| {
-            let answer = self.look_up(ToolId::GetGroupInsights, &json!({ "group_id": group.id() })).ok()?;
-            let level = answer.get("info_level").and_then(Value::as_u64)? as u8;
-            let estimate = |name: &str| answer.get("estimates")?.get(name)?.as_f64();
+            let insights = self.look_up(&GetGroupInsights, group)?;
+            let (level, estimates) = (insights.info_level, insights.estimates);
+            let [least, most] = estimates.seat_range.unwrap_or([1, 1]);
             Some(Estimates {
                 group,
                 level,
                 noise: terms.level(level)?.noise,
-                budget: estimate("willingness_to_pay")?,
-                usage: estimate("usage_volume")?,
-                floor: estimate("quality_floor_q_min")?,
-                seats: seats(&answer),
+                budget: estimates.willingness_to_pay,
+                usage: estimates.usage_volume,
+                floor: estimates.quality_floor_q_min,
+                seats: (least as f64, most as f64),
             })
         };
         Group::all().filter(|group| self.world.market.is_known(*group)).filter_map(of).collect()
@@ -79,9 +70,9 @@ mod tests {
         let all = session.estimates();
         assert_eq!(all.len(), 6);
         let s1 = all[0];
-        let answer = session.look_up("get_group_insights", &json!({ "group_id": "S1" })).expect("an answer");
+        let answer = session.look_up(&GetGroupInsights, all[0].group).expect("an answer");
         assert_eq!((s1.group.id(), s1.level, s1.noise), ("S1", 1, 0.65));
-        assert_eq!(Some(s1.budget), answer["estimates"]["willingness_to_pay"].as_f64());
+        assert_eq!(s1.budget, answer.estimates.willingness_to_pay);
         let mean = session.params().group(s1.group).c_max_mean;
         let (least, most) = s1.range(s1.budget);
         assert!(least <= mean + 0.01 && mean <= most + 0.01, "{least} {mean} {most}");

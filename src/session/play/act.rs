@@ -13,7 +13,10 @@ use crate::session::figures::journal::JournalEntry;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Call, Outcome, RefusalRecord, Reversal, Via};
 use crate::session::trajectory::{Durability, Record};
-use crate::tools::{Arguments, Kind, Refusal, Task, Tool, ToolId, View, bounds, find};
+use crate::tools::{
+    Answer, AnyTool, Arguments, Kind, NotebookChange, Planned, Refusal, Spec, Tool, ToolId, View, bounds,
+    find,
+};
 use crate::world::command::{Command, ResolvedCommand};
 use crate::world::enterprise::letters::Letter;
 use crate::world::events::Offering;
@@ -35,6 +38,13 @@ pub struct Preview {
     pub changes: Vec<Change>,
 }
 
+/// An accepted call whose draws are known.
+struct Accepted {
+    resolved: ResolvedCommand,
+    change: Option<NotebookChange>,
+    row: Option<Value>,
+}
+
 impl Session {
     /// What a call would do; nothing happens, nothing is recorded, nothing is drawn.
     ///
@@ -43,7 +53,7 @@ impl Session {
     pub fn check(&self, tool: impl AsRef<str>, arguments: &Value) -> Result<Preview, Refusal> {
         let tool = self.tool(tool.as_ref())?;
         self.refuse_if_over(tool.spec().kind)?;
-        let (_, effect) = self.plan(tool, arguments)?;
+        let (_, planned) = self.plan(tool, arguments)?;
         let mut preview = Preview {
             tool: tool.spec().id,
             cost_now: 0.0,
@@ -51,7 +61,7 @@ impl Session {
             effect_day: None,
             changes: Vec::new(),
         };
-        match effect {
+        match planned.command {
             Command::None | Command::ReadInsights(_) => {}
             Command::Set(change) => {
                 let now = &self.world.settings;
@@ -83,18 +93,15 @@ impl Session {
         Ok(preview)
     }
 
-    /// Answers a reading tool without recording that it was asked, for screens that always show what it says.
-    ///
-    /// # Errors
-    /// `unknown_tool`, `not_a_reading`, the refusals of the tool.
-    pub fn look_up(&self, tool: impl AsRef<str>, arguments: &Value) -> Result<Value, Refusal> {
-        let tool = self.tool(tool.as_ref())?;
+    /// Answers a reading tool without recording that it was asked, for screens that always show what it says; none
+    /// where the tool refuses, or does more than read.
+    pub fn look_up<T: Tool>(&self, tool: &T, args: T::Args) -> Option<T::Answer> {
         if tool.spec().kind != Kind::Read {
-            return Err(Refusal::new("not_a_reading", format!("{} does more than read", tool.spec().name())));
+            return None;
         }
-        let (arguments, effect) = self.plan(tool, arguments)?;
-        let resolved = self.world.resolve(effect, &self.params, &self.streams);
-        Ok(tool.answer(&self.view(), &arguments, &resolved))
+        let planned = tool.plan(&self.view(), args).ok()?;
+        let resolved = self.world.resolve(planned.command, &self.params, &self.streams);
+        planned.reply.without_running(&resolved)
     }
 
     /// Calls a tool; `next_week` and `query` have functions of their own.
@@ -102,7 +109,7 @@ impl Session {
     /// # Errors
     /// The refusals of the tool; `unknown_tool`; `run_over`; `not_saved` when the disk refuses. Nothing has
     /// changed then.
-    pub fn call(&mut self, tool: impl AsRef<str>, arguments: &Value, via: Via) -> Result<Value, Refusal> {
+    pub fn call(&mut self, tool: impl AsRef<str>, arguments: &Value, via: Via) -> Result<Answer, Refusal> {
         self.call_recorded(tool.as_ref(), arguments, via, None)
     }
 
@@ -112,21 +119,18 @@ impl Session {
         arguments: &Value,
         via: Via,
         reversal: Option<Reversal>,
-    ) -> Result<Value, Refusal> {
+    ) -> Result<Answer, Refusal> {
         let started = Instant::now();
         let tool = self.tool(name)?;
         let allowed = self.refuse_if_over(tool.spec().kind);
-        let planned = allowed.and_then(|()| self.plan(tool, arguments)).and_then(|(arguments, effect)| {
-            let resolved = self.world.resolve(effect, &self.params, &self.streams);
-            let task = tool.task(&self.view(), &arguments);
-            if task.as_ref().is_some_and(Task::leaves_something) {
+        let planned = allowed.and_then(|()| self.plan(tool, arguments)).and_then(|(given, planned)| {
+            let Planned { command, change, row, reply } = planned;
+            let resolved = self.world.resolve(command, &self.params, &self.streams);
+            if change.is_some() {
                 self.refuse_if_only_read()?;
             }
-            let answer = match &task {
-                Some(Task::Run { code, seconds }) => self.run_statements(code, *seconds)?,
-                _ => tool.answer(&self.view(), &arguments, &resolved),
-            };
-            Ok((arguments, resolved, task, answer))
+            let answer = reply.tell(&resolved, |script| self.run_statements(script))?;
+            Ok((given, Accepted { resolved, change, row }, answer))
         });
         let took_ms = started.elapsed().as_secs_f64() * 1e3;
         let called = |args: Value, outcome| {
@@ -146,30 +150,25 @@ impl Session {
                 let _ = self.record_call(&record, Durability::Written);
                 Err(refusal)
             }
-            Ok((given, resolved, task, answer)) => {
+            Ok((given, accepted, answer)) => {
                 let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
-                let record = called(Value::Object(given.as_map().clone()), Outcome::Accepted(answer.clone()));
+                let record =
+                    called(Value::Object(given.as_map().clone()), Outcome::Accepted(answer.to_json()));
                 // Statements can be kept even when the run is over, and then their line comes after its end.
-                let recorded = match &task {
-                    Some(task) if task.leaves_something() => self.append(&record, durability).map(|_| ()),
-                    _ => self.record_call(&record, durability),
+                let recorded = match accepted.change {
+                    Some(_) => self.append(&record, durability).map(|_| ()),
+                    None => self.record_call(&record, durability),
                 };
                 recorded.map_err(not_saved)?;
-                task.iter().for_each(|task| self.apply_task(task));
-                self.apply(tool, &given, reversal, resolved);
+                self.apply(tool.spec(), &given, reversal, accepted);
                 Ok(answer)
             }
         }
     }
 
-    fn apply(
-        &mut self,
-        tool: &'static dyn Tool,
-        given: &Arguments,
-        reversal: Option<Reversal>,
-        resolved: ResolvedCommand,
-    ) {
-        let (spec, seq) = (tool.spec(), self.position.seq);
+    fn apply(&mut self, spec: &Spec, given: &Arguments, reversal: Option<Reversal>, accepted: Accepted) {
+        let (Accepted { resolved, change, row }, seq) = (accepted, self.position.seq);
+        change.iter().for_each(|change| self.keep(change));
         if !resolved.only_reads() {
             let args = Value::Object(given.as_map().clone());
             let (day, tool) = (self.world.day, spec.id);
@@ -179,7 +178,10 @@ impl Session {
         if matches!(resolved, ResolvedCommand::None | ResolvedCommand::ReadInsights(_)) {
             return;
         }
-        let settings = tool.row(given, &resolved);
+        let settings = match &resolved {
+            ResolvedCommand::Set(change) => row.or_else(|| change.family()),
+            _ => None,
+        };
         let before = matches!(resolved, ResolvedCommand::Set(_)).then(|| self.world.settings.clone());
         self.world.apply(resolved, &self.params, to_fill(&mut self.facts, self.projector.as_ref()));
         if let Some(restores) = before {
@@ -242,7 +244,7 @@ impl Session {
         daily_cost(settings, f64::from(self.params.capacity(settings.core.capacity_tier).cost_per_day))
     }
 
-    pub(in crate::session) fn tool(&self, name: &str) -> Result<&'static dyn Tool, Refusal> {
+    pub(in crate::session) fn tool(&self, name: &str) -> Result<&'static dyn AnyTool, Refusal> {
         find(name).ok_or_else(|| {
             let near = crate::tools::catalogue::nearest(name);
             let help = if near.is_empty() {
@@ -259,21 +261,25 @@ impl Session {
         View::new(&self.world, &self.params).within(&self.office).with_posts(&self.feed.posts)
     }
 
-    fn plan(&self, tool: &'static dyn Tool, arguments: &Value) -> Result<(Arguments, Command), Refusal> {
-        let (arguments, effect) = self.plan_again(tool, arguments)?;
-        bounds::hold(tool.spec(), &arguments)?;
-        Ok((arguments, effect))
+    fn plan(
+        &self,
+        tool: &'static dyn AnyTool,
+        arguments: &Value,
+    ) -> Result<(Arguments, Planned<Answer>), Refusal> {
+        let (given, planned) = self.plan_again(tool, arguments)?;
+        bounds::hold(tool.spec(), &given)?;
+        Ok((given, planned))
     }
 
     /// Plans a call that was accepted once, by a version that may have taken larger numbers.
     fn plan_again(
         &self,
-        tool: &'static dyn Tool,
+        tool: &'static dyn AnyTool,
         arguments: &Value,
-    ) -> Result<(Arguments, Command), Refusal> {
-        let arguments = Arguments::of(tool.spec(), arguments)?;
-        let effect = tool.plan(&self.view(), &arguments)?;
-        Ok((arguments, effect))
+    ) -> Result<(Arguments, Planned<Answer>), Refusal> {
+        let given = Arguments::of(tool.spec(), arguments)?;
+        let planned = tool.plan(&self.view(), &given)?;
+        Ok((given, planned))
     }
 
     /// Refuses what acts once the run is over, and in a run that is only read.
@@ -365,18 +371,16 @@ impl Session {
     /// What speaks against it now: the line was changed, or the program is another.
     pub(in crate::session) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
         let tool = call.tool.tool();
-        let (given, effect) = self.plan_again(tool, &call.args).map_err(|refusal| refusal.to_string())?;
-        let resolved = self.world.resolve(effect, &self.params, &self.streams);
-        let task = tool.task(&self.view(), &given);
+        let (given, planned) = self.plan_again(tool, &call.args).map_err(|refusal| refusal.to_string())?;
+        let Planned { command, change, row, reply } = planned;
+        let resolved = self.world.resolve(command, &self.params, &self.streams);
         // What statements said is not asked again: the database may be ahead of this line. And documents may be worded
         // differently by now.
-        let runs = matches!(task, Some(Task::Run { .. }));
-        let documents = tool.spec().kind == Kind::Engine && task.is_none();
-        if !runs && !documents && *answer != tool.answer(&self.view(), &given, &resolved) {
+        let is_told_again = tool.spec().kind != Kind::Engine || change.is_some();
+        if is_told_again && reply.without_running(&resolved).is_some_and(|now| *answer != now.to_json()) {
             return Err("the call answers differently now".to_owned());
         }
-        task.iter().for_each(|task| self.apply_task(task));
-        self.apply(tool, &given, call.reversal, resolved);
+        self.apply(tool.spec(), &given, call.reversal, Accepted { resolved, change, row });
         Ok(())
     }
 

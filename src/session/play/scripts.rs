@@ -6,12 +6,10 @@
 
 use std::time::Duration;
 
-use serde_json::{Value, json};
-
 use super::office::Calculated;
 use crate::database::{self, text};
 use crate::session::state::Session;
-use crate::tools::{Kept, Notebook, Refusal, Task};
+use crate::tools::{Kept, Notebook, NotebookChange, Refusal, Script, ScriptOutput};
 
 /// Characters of output that a script may give.
 const MOST_OUTPUT: usize = 5000;
@@ -58,13 +56,13 @@ impl Session {
     ///
     /// # Errors
     /// `script_failed`, `script_timeout`, naming the statement.
-    pub(in crate::session) fn run_statements(&mut self, code: &str, seconds: f64) -> Result<Value, Refusal> {
-        let output = self.output_of(code, Duration::from_secs_f64(seconds))?;
-        Ok(json!({
-            "returncode": 0,
-            "stdout": first(&output.results, MOST_OUTPUT),
-            "stderr": first(&output.remarks, MOST_REMARKS),
-        }))
+    pub(in crate::session) fn run_statements(&mut self, script: &Script) -> Result<ScriptOutput, Refusal> {
+        let output = self.output_of(&script.code, Duration::from_secs_f64(script.seconds))?;
+        Ok(ScriptOutput {
+            returncode: 0,
+            stdout: first(&output.results, MOST_OUTPUT),
+            stderr: first(&output.remarks, MOST_REMARKS),
+        })
     }
 
     fn output_of(&mut self, code: &str, time: Duration) -> Result<Output, Refusal> {
@@ -99,7 +97,7 @@ impl Session {
     }
 
     /// Keeps or forgets what an accepted call asks for.
-    pub(in crate::session) fn apply_task(&mut self, task: &Task) {
-        self.office.notebook.apply(task);
+    pub(in crate::session) fn keep(&mut self, change: &NotebookChange) {
+        self.office.notebook.apply(change);
     }
 }

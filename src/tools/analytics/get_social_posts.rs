@@ -1,10 +1,12 @@
-use serde_json::{Map, Value, json};
+use std::borrow::Cow;
+
+use serde::Serialize;
 
 use super::super::arguments::{Arguments, integer, wrong_type};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, PublicPost, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, PublicPost, Range, Refusal, Spec, Tool, ToolId,
+    View, When,
 };
-use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
 
 /// Reads the newest posts of others.
@@ -55,57 +57,104 @@ static SPEC: Spec = Spec {
     example: r#"{"limit": 1}"#,
 };
 
-/// A number that may be missing.
-fn number(arguments: &Arguments, name: &'static str) -> Result<Option<i64>, Refusal> {
-    let given = arguments.get(name);
-    given.map(|value| integer(value).ok_or_else(|| wrong_type(name, "a whole number"))).transpose()
+/// How many posts are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PostLimit {
+    /// As many as without a limit.
+    Usual,
+    /// At most this many.
+    Newest(usize),
+    /// All of them.
+    All,
 }
 
-fn as_json(post: &PublicPost, view: &View<'_>) -> Value {
+/// Posts of others, the newest first.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SocialPosts {
+    /// The posts.
+    pub posts: Vec<SocialPost>,
+    /// Posts returned; absent when there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub total: Option<usize>,
+}
+
+/// A post of somebody else.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SocialPost {
+    /// Running number.
+    pub post_id: u32,
+    /// Day on which it was written.
+    pub day: u32,
+    /// What it says.
+    pub content: String,
+    /// Our post that it comments on.
+    pub reply_to_agent_post_id: Option<u32>,
+    /// Group whose mood a comment speaks for.
+    pub source_group_id: Option<Group>,
+    /// Group of the author; the press writes as the first.
+    pub group_id: Option<Group>,
+    /// `large` for companies, `small` for individuals.
+    pub customer_type: &'static str,
+    /// Always empty, as in the released simulator.
+    pub custom_name: Option<String>,
+    /// Name of the author's profile.
+    pub persona_name: Option<Cow<'static, str>>,
+    /// Text of our post that it comments on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub replying_to_your_post: Option<String>,
+}
+
+impl Tool for GetSocialPosts {
+    type Args = PostLimit;
+    type Answer = SocialPosts;
+
+    fn spec(&self) -> &'static Spec {
+        &SPEC
+    }
+
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<PostLimit, Refusal> {
+        let number = |name| {
+            arguments
+                .read(name, |value, name| integer(value).ok_or_else(|| wrong_type(name, "a whole number")))
+        };
+        number("days")?;
+        Ok(match number("limit")? {
+            None => PostLimit::Usual,
+            Some(limit) => usize::try_from(limit).map_or(PostLimit::All, PostLimit::Newest),
+        })
+    }
+
+    fn plan(&self, view: &View<'_>, limit: PostLimit) -> Result<Planned<SocialPosts>, Refusal> {
+        let limit = match limit {
+            PostLimit::Usual => {
+                usize::try_from(view.params().limits.get_social_posts_default_limit).unwrap_or(usize::MAX)
+            }
+            PostLimit::Newest(limit) => limit,
+            PostLimit::All => usize::MAX,
+        };
+        let newest = view.posts().iter().rev().take(limit);
+        let posts: Vec<SocialPost> = newest.map(|post| told(post, view)).collect();
+        let total = (!posts.is_empty()).then_some(posts.len());
+        Ok(Planned::reading(SocialPosts { posts, total }))
+    }
+}
+
+fn told(post: &PublicPost, view: &View<'_>) -> SocialPost {
     // The market observer is an individual of the first group.
     let group = post.written_by.or_else(|| Group::at(0));
     let company = group.is_some_and(Group::is_enterprise);
     let own = &view.world().market.social.own;
     let answered = post.own_post.and_then(|number| own.get(number as usize - 1));
-    let mut fields = json!({
-        "post_id": post.post,
-        "day": post.day,
-        "content": post.content,
-        "reply_to_agent_post_id": post.own_post,
-        "source_group_id": post.source_group.map(Group::id),
-        "group_id": group.map(Group::id),
-        "customer_type": if company { "large" } else { "small" },
-        "custom_name": null,
-        "persona_name": post.profile,
-    });
-    if let Some(answered) = answered {
-        fields["replying_to_your_post"] = answered.content.clone().into();
-    }
-    fields
-}
-
-impl Tool for GetSocialPosts {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        number(arguments, "days")?;
-        number(arguments, "limit")?;
-        Ok(Command::None)
-    }
-
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
-        let limit = number(arguments, "limit").ok().flatten();
-        let limit = limit.unwrap_or_else(|| i64::from(view.params().limits.get_social_posts_default_limit));
-        let limit = usize::try_from(limit).unwrap_or(usize::MAX);
-        let newest = view.posts().iter().rev().take(limit);
-        let posts: Vec<Value> = newest.map(|post| as_json(post, view)).collect();
-        let total = posts.len();
-        let mut data = Map::from_iter([("posts".to_owned(), Value::Array(posts))]);
-        if total > 0 {
-            data.insert("total".to_owned(), total.into());
-        }
-        Value::Object(data)
+    SocialPost {
+        post_id: post.post,
+        day: post.day,
+        content: post.content.clone(),
+        reply_to_agent_post_id: post.own_post,
+        source_group_id: post.source_group,
+        group_id: group,
+        customer_type: if company { "large" } else { "small" },
+        custom_name: None,
+        persona_name: post.profile.clone(),
+        replying_to_your_post: answered.map(|own| own.content.clone()),
     }
 }

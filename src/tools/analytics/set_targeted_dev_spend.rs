@@ -1,16 +1,16 @@
+use indexmap::IndexMap;
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::super::arguments::{Arguments, amount_as_sent, per_group};
-use super::super::as_data;
+use super::super::arguments::{Arguments, Sent, sent_per_group};
 use super::super::marketing::BUDGET;
+use super::super::plain::{as_data, plain};
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
+    When,
 };
-use crate::notation::json_number;
-use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
-use crate::world::settings::SettingsChange;
-use crate::world::settings::{Settings, TargetedDevelopment};
+use crate::world::settings::{PerGroup, Settings, SettingsChange, TargetedDevelopment};
 
 /// Aims development.
 pub struct SetTargetedDevSpend;
@@ -44,7 +44,21 @@ static SPEC: Spec = Spec {
     example: r#"{"targeted_spend": {"S1": 2500, "E3": 400}}"#,
 };
 
+/// The budgets in force.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DevelopmentBudgets {
+    /// Dollars a day by group.
+    #[serde(serialize_with = "plain")]
+    pub targeted_spend: PerGroup,
+    /// Their sum, dollars a day.
+    #[serde(serialize_with = "plain")]
+    pub total_extra_per_day: f64,
+}
+
 impl Tool for SetTargetedDevSpend {
+    type Args = IndexMap<Group, Sent>;
+    type Answer = DevelopmentBudgets;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
@@ -56,30 +70,23 @@ impl Tool for SetTargetedDevSpend {
         )])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<IndexMap<Group, Sent>, Refusal> {
         let given = arguments.get("targeted_spend").unwrap_or(&Value::Null);
-        let targeted_spend = per_group(given, "targeted_spend", BUDGET, view)?;
-        Ok(Command::Set(SettingsChange::TargetedDevelopment(TargetedDevelopment { targeted_spend })))
+        sent_per_group(given, "targeted_spend", BUDGET, view)
     }
 
-    fn row(&self, arguments: &Arguments, resolved: &ResolvedCommand) -> Option<Value> {
-        let ResolvedCommand::Set(SettingsChange::TargetedDevelopment(development)) = resolved else {
-            return None;
+    fn plan(
+        &self,
+        _: &View<'_>,
+        sent: IndexMap<Group, Sent>,
+    ) -> Result<Planned<DevelopmentBudgets>, Refusal> {
+        let row = json!({ "targeted_spend": sent });
+        let targeted_spend: PerGroup = sent.into_iter().map(|(group, sent)| (group, sent.value)).collect();
+        let development = TargetedDevelopment { targeted_spend };
+        let answer = DevelopmentBudgets {
+            targeted_spend: development.targeted_spend.clone(),
+            total_extra_per_day: development.total(),
         };
-        let sent = |group: &Group| arguments.get("targeted_spend").and_then(|map| map.get(group.id()));
-        let amount =
-            |(group, amount): (&Group, &f64)| (group.id().to_owned(), amount_as_sent(*amount, sent(group)));
-        let amounts: Map<String, Value> = development.targeted_spend.iter().map(amount).collect();
-        Some(json!({ "targeted_spend": amounts }))
-    }
-
-    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        match resolved {
-            ResolvedCommand::Set(SettingsChange::TargetedDevelopment(development)) => json!({
-                "targeted_spend": as_data(&development.targeted_spend),
-                "total_extra_per_day": json_number(development.total()),
-            }),
-            _ => Value::Null,
-        }
+        Ok(Planned::setting(SettingsChange::TargetedDevelopment(development), answer).with_row(row))
     }
 }

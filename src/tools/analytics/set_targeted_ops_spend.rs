@@ -1,15 +1,16 @@
+use indexmap::IndexMap;
+use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, per_customer, per_group, per_group_plan, per_plan};
-use super::super::as_data;
+use super::super::arguments::{Arguments, per_customer, per_group, per_group_plan, per_plan, replace};
 use super::super::marketing::BUDGET;
+use super::super::plain::{as_data, plain};
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
+    When,
 };
-use crate::notation::json_number;
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::settings::Settings;
-use crate::world::settings::SettingsChange;
+use crate::world::identifiers::Group;
+use crate::world::settings::{PerCustomer, PerGroup, PerPlan, Settings, SettingsChange};
 
 /// Aims support budgets.
 pub struct SetTargetedOpsSpend;
@@ -79,7 +80,41 @@ static SPEC: Spec = Spec {
     example: r#"{"by_group": {"E2": 90}}"#,
 };
 
+/// The scopes that a call names; the others stay as they are.
+pub struct SupportScopes {
+    by_group: Option<PerGroup>,
+    by_plan: Option<PerPlan>,
+    by_group_plan: Option<IndexMap<Group, PerPlan>>,
+    by_customer: Option<PerCustomer>,
+}
+
+/// The budgets in force, dollars a day.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SupportBudgets {
+    /// By group.
+    #[serde(serialize_with = "plain")]
+    pub by_group: PerGroup,
+    /// By plan.
+    #[serde(serialize_with = "plain")]
+    pub by_plan: PerPlan,
+    /// By group and plan.
+    #[serde(serialize_with = "plain")]
+    pub by_group_plan: IndexMap<Group, PerPlan>,
+    /// By customer.
+    #[serde(serialize_with = "plain")]
+    pub by_customer: PerCustomer,
+    /// Sum of all scopes.
+    #[serde(serialize_with = "plain")]
+    pub total_extra_per_day: f64,
+    /// By group again, under the name of the argument.
+    #[serde(serialize_with = "plain")]
+    pub targeted_spend: PerGroup,
+}
+
 impl Tool for SetTargetedOpsSpend {
+    type Args = SupportScopes;
+    type Answer = SupportBudgets;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
@@ -91,40 +126,39 @@ impl Tool for SetTargetedOpsSpend {
         }
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let mut operations = view.settings().targeted_operations.clone();
-        let by_group = match (arguments.get("by_group"), arguments.get("targeted_spend")) {
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<SupportScopes, Refusal> {
+        let field = match (arguments.get("by_group"), arguments.get("targeted_spend")) {
             (Some(_), Some(_)) => {
                 let message = "give targeted_spend or by_group, not both";
                 return Err(Refusal::at("targeted_spend", "both_aliases", message));
             }
-            (Some(value), None) => Some(("by_group", value)),
-            (None, value) => value.map(|value| ("targeted_spend", value)),
+            (Some(_), None) => "by_group",
+            (None, _) => "targeted_spend",
         };
-        if let Some((field, value)) = by_group {
-            operations.by_group = per_group(value, field, BUDGET, view)?;
-        }
-        if let Some(value) = arguments.get("by_plan") {
-            operations.by_plan = per_plan(value, "by_plan", BUDGET)?;
-        }
-        if let Some(value) = arguments.get("by_group_plan") {
-            operations.by_group_plan = per_group_plan(value, "by_group_plan", BUDGET, view)?;
-        }
-        if let Some(value) = arguments.get("by_customer") {
-            operations.by_customer = per_customer(value, "by_customer", BUDGET)?;
-        }
-        Ok(Command::Set(SettingsChange::TargetedOperations(operations)))
+        Ok(SupportScopes {
+            by_group: arguments.read(field, |value, name| per_group(value, name, BUDGET, view))?,
+            by_plan: arguments.read("by_plan", |value, name| per_plan(value, name, BUDGET))?,
+            by_group_plan: arguments
+                .read("by_group_plan", |value, name| per_group_plan(value, name, BUDGET, view))?,
+            by_customer: arguments.read("by_customer", |value, name| per_customer(value, name, BUDGET))?,
+        })
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let ResolvedCommand::Set(SettingsChange::TargetedOperations(operations)) = resolved else {
-            return Value::Null;
+    fn plan(&self, view: &View<'_>, given: SupportScopes) -> Result<Planned<SupportBudgets>, Refusal> {
+        let mut operations = view.settings().targeted_operations.clone();
+        replace(&mut operations.by_group, given.by_group);
+        replace(&mut operations.by_plan, given.by_plan);
+        replace(&mut operations.by_group_plan, given.by_group_plan);
+        replace(&mut operations.by_customer, given.by_customer);
+        let own = operations.clone();
+        let answer = SupportBudgets {
+            targeted_spend: own.by_group.clone(),
+            by_group: own.by_group,
+            by_plan: own.by_plan,
+            by_group_plan: own.by_group_plan,
+            by_customer: own.by_customer,
+            total_extra_per_day: operations.total(),
         };
-        let mut data = as_data(operations);
-        if let Value::Object(map) = &mut data {
-            map.insert("total_extra_per_day".to_owned(), json_number(operations.total()));
-            map.insert("targeted_spend".to_owned(), as_data(&operations.by_group));
-        }
-        data
+        Ok(Planned::setting(SettingsChange::TargetedOperations(operations), answer))
     }
 }

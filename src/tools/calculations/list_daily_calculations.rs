@@ -1,9 +1,9 @@
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
+use super::super::keeping::owned;
+use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::kept;
-use crate::world::command::{Command, ResolvedCommand};
 
 /// Lists the calculations.
 pub struct ListDailyCalculations;
@@ -30,16 +30,26 @@ static SPEC: Spec = Spec {
     example: r#"{}"#,
 };
 
+/// The registered calculations.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Calculations {
+    /// Names in the order in which they were registered.
+    pub calculations: Vec<String>,
+}
+
 impl Tool for ListDailyCalculations {
+    type Args = ();
+    type Answer = Calculations;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+        Ok(())
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
-        json!({ "calculations": kept(view).names() })
+    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<Calculations>, Refusal> {
+        Ok(Planned::reading(Calculations { calculations: owned(kept(view).names()) }))
     }
 }

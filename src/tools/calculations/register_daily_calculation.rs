@@ -1,10 +1,8 @@
-use serde_json::{Value, json};
-
 use super::super::arguments::{Arguments, text};
+use super::super::keeping::{KeptCode, NamedCode};
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
-use crate::world::command::{Command, ResolvedCommand};
 
 /// Keeps a calculation for the dashboard.
 pub struct RegisterDailyCalculation;
@@ -50,23 +48,18 @@ static SPEC: Spec = Spec {
 };
 
 impl Tool for RegisterDailyCalculation {
+    type Args = NamedCode;
+    type Answer = KeptCode;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        text(arguments, "name")?;
-        text(arguments, "code")?;
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<NamedCode, Refusal> {
+        Ok(NamedCode { name: text(arguments, "name")?.to_owned(), code: text(arguments, "code")?.to_owned() })
     }
 
-    fn task(&self, _: &View<'_>, arguments: &Arguments) -> Option<Task> {
-        let (name, code) = (text(arguments, "name").ok()?, text(arguments, "code").ok()?);
-        Some(Task::Keep { what: Kept::Calculation, name: name.to_owned(), code: code.to_owned() })
-    }
-
-    fn answer(&self, _: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
-        let code = text(arguments, "code").unwrap_or_default();
-        json!({ "name": arguments.get("name"), "code_length": code.chars().count() })
+    fn plan(&self, _: &View<'_>, given: NamedCode) -> Result<Planned<KeptCode>, Refusal> {
+        Ok(given.keep(Kept::Calculation))
     }
 }

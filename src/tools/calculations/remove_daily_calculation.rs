@@ -1,11 +1,9 @@
-use serde_json::{Value, json};
-
 use super::super::arguments::{Arguments, text};
+use super::super::keeping::Remaining;
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::{kept, not_found};
-use crate::world::command::{Command, ResolvedCommand};
 
 /// Drops a calculation.
 pub struct RemoveDailyCalculation;
@@ -39,25 +37,21 @@ static SPEC: Spec = Spec {
 };
 
 impl Tool for RemoveDailyCalculation {
+    type Args = String;
+    type Answer = Remaining;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let name = text(arguments, "name")?;
-        match kept(view).get(name) {
-            Some(_) => Ok(Command::None),
-            None => Err(not_found(name, view)),
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<String, Refusal> {
+        text(arguments, "name").map(str::to_owned)
+    }
+
+    fn plan(&self, view: &View<'_>, name: String) -> Result<Planned<Remaining>, Refusal> {
+        match kept(view).get(&name) {
+            Some(_) => Ok(Remaining::without(kept(view), Kept::Calculation, name)),
+            None => Err(not_found(&name, view)),
         }
-    }
-
-    fn task(&self, _: &View<'_>, arguments: &Arguments) -> Option<Task> {
-        let name = text(arguments, "name").ok()?.to_owned();
-        Some(Task::Forget { what: Kept::Calculation, name })
-    }
-
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
-        let name = text(arguments, "name").unwrap_or_default();
-        json!({ "name": name, "remaining": kept(view).names_without(name) })
     }
 }

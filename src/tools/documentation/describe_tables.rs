@@ -1,11 +1,12 @@
-use serde_json::{Map, Value, json};
+use indexmap::IndexMap;
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, TableDocument, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, TableDocument, Tool, ToolId, View,
+    When,
 };
-use super::chosen;
-use crate::world::command::{Command, ResolvedCommand};
+use super::Choice;
 
 /// Describes tables.
 pub struct DescribeTables;
@@ -39,26 +40,43 @@ static SPEC: Spec = Spec {
     example: r#"{"table_names": "predictions"}"#,
 };
 
+/// Tables by their names.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct TableDescriptions {
+    /// The tables asked for.
+    pub tables: IndexMap<&'static str, TableDescription>,
+}
+
+/// A table in words.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct TableDescription {
+    /// What its rows are.
+    pub description: &'static str,
+    /// Type, values and meaning of each column.
+    pub columns: IndexMap<&'static str, String>,
+}
+
 impl Tool for DescribeTables {
+    type Args = Choice;
+    type Answer = TableDescriptions;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let known: Vec<&str> = view.surroundings().tables().iter().map(|table| table.name).collect();
-        chosen(arguments, "table_names", &known, "table_not_found").map(|_| Command::None)
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Choice, Refusal> {
+        Choice::read(arguments, "table_names")
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
+    fn plan(&self, view: &View<'_>, asked: Choice) -> Result<Planned<TableDescriptions>, Refusal> {
         let tables = view.surroundings().tables();
         let known: Vec<&str> = tables.iter().map(|table| table.name).collect();
-        let names = chosen(arguments, "table_names", &known, "table_not_found").unwrap_or_default();
+        let names = asked.among(&known, "table_names", "table_not_found")?;
         let entry = |table: &TableDocument| {
-            let columns: Map<String, Value> =
-                table.columns.iter().map(|own| (own.name.to_owned(), own.line().into())).collect();
-            (table.name.to_owned(), json!({ "description": table.description, "columns": columns }))
+            let columns = table.columns.iter().map(|own| (own.name, own.line())).collect();
+            (table.name, TableDescription { description: table.description, columns })
         };
-        let described = tables.iter().filter(|table| names.contains(&table.name)).map(entry);
-        json!({ "tables": described.collect::<Map<String, Value>>() })
+        let tables = tables.iter().filter(|table| names.contains(&table.name)).map(entry).collect();
+        Ok(Planned::reading(TableDescriptions { tables }))
     }
 }

@@ -1,12 +1,12 @@
-use serde_json::Value;
+use indexmap::IndexMap;
 
 use super::super::arguments::Arguments;
-use super::super::describe::as_json;
+use super::super::describe::{ToolDocument, document};
 use super::super::{
-    Argument, ArgumentKind, CATALOGUE, Kind, Module, Numbers, Output, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, CATALOGUE, Kind, Module, Numbers, Output, Planned, Refusal, Spec, Tool, ToolId,
+    View, When,
 };
-use super::chosen;
-use crate::world::command::{Command, ResolvedCommand};
+use super::Choice;
 
 /// Documents tools.
 pub struct GetToolDocumentation;
@@ -36,23 +36,27 @@ static SPEC: Spec = Spec {
     example: r#"{"tool_names": "set_prices"}"#,
 };
 
-fn all_names() -> Vec<&'static str> {
-    CATALOGUE.iter().map(|tool| tool.spec().name()).collect()
-}
-
 impl Tool for GetToolDocumentation {
+    type Args = Choice;
+    type Answer = IndexMap<&'static str, ToolDocument>;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        chosen(arguments, "tool_names", &all_names(), "tool_not_found").map(|_| Command::None)
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Choice, Refusal> {
+        Choice::read(arguments, "tool_names")
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
-        let names = chosen(arguments, "tool_names", &all_names(), "tool_not_found").unwrap_or_default();
-        let tools = CATALOGUE.iter().filter(|tool| names.contains(&tool.spec().name()));
+    fn plan(
+        &self,
+        view: &View<'_>,
+        asked: Choice,
+    ) -> Result<Planned<IndexMap<&'static str, ToolDocument>>, Refusal> {
+        let known: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name()).collect();
+        let names = asked.among(&known, "tool_names", "tool_not_found")?;
+        let specs = CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| names.contains(&spec.name()));
         let numbers = Numbers::of(view.params());
-        tools.map(|tool| (tool.spec().name().to_owned(), as_json(*tool, &numbers))).collect()
+        Ok(Planned::reading(specs.map(|spec| (spec.name(), document(spec, &numbers))).collect()))
     }
 }

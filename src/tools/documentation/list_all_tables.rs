@@ -1,8 +1,8 @@
-use serde_json::{Map, Value, json};
+use indexmap::IndexMap;
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::command::{Command, ResolvedCommand};
+use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 
 /// Lists the tables.
 pub struct ListAllTables;
@@ -28,19 +28,30 @@ static SPEC: Spec = Spec {
     example: r#"{}"#,
 };
 
+/// The tables that can be asked.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct TableList {
+    /// How many there are.
+    pub count: usize,
+    /// What the rows of each are, by its name.
+    pub tables: IndexMap<&'static str, &'static str>,
+}
+
 impl Tool for ListAllTables {
+    type Args = ();
+    type Answer = TableList;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+        Ok(())
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
+    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<TableList>, Refusal> {
         let tables = view.surroundings().tables();
-        let lines: Map<String, Value> =
-            tables.iter().map(|table| (table.name.to_owned(), table.description.into())).collect();
-        json!({ "count": lines.len(), "tables": lines })
+        let tables: IndexMap<_, _> = tables.iter().map(|table| (table.name, table.description)).collect();
+        Ok(Planned::reading(TableList { count: tables.len(), tables }))
     }
 }

@@ -13,31 +13,47 @@ use super::arguments::{Arguments, wrong_type};
 use super::refusal::Refusal;
 use crate::notation::nearest;
 
-/// Those of the known names that an argument asks for: a name, a list of names, `all`, or nothing for all. Names
-/// that are not known are passed over, unless none is.
-fn chosen<'a>(
-    arguments: &Arguments,
-    field: &'static str,
-    known: &[&'a str],
-    code: &'static str,
-) -> Result<Vec<&'a str>, Refusal> {
-    let wrong = || wrong_type(field, "a name, a list of names, or all");
-    let asked: Vec<&str> = match arguments.get(field) {
-        None => return Ok(known.to_vec()),
-        Some(Value::String(name)) if name == "all" => return Ok(known.to_vec()),
-        Some(Value::String(name)) => vec![name],
-        Some(Value::Array(names)) => {
-            names.iter().map(Value::as_str).collect::<Option<_>>().ok_or_else(wrong)?
+/// What a call asks for: some names, or all.
+pub enum Choice {
+    /// Everything.
+    All,
+    /// What these name.
+    Named(Vec<String>),
+}
+
+impl Choice {
+    /// Reads a name, a list of names, `all`, or nothing for all.
+    fn read(arguments: &Arguments, field: &'static str) -> Result<Choice, Refusal> {
+        let wrong = || wrong_type(field, "a name, a list of names, or all");
+        match arguments.get(field) {
+            None => Ok(Choice::All),
+            Some(Value::String(name)) if name == "all" => Ok(Choice::All),
+            Some(Value::String(name)) => Ok(Choice::Named(vec![name.clone()])),
+            Some(Value::Array(names)) => {
+                let names = names.iter().map(|name| name.as_str().map(str::to_owned));
+                names.collect::<Option<_>>().map(Choice::Named).ok_or_else(wrong)
+            }
+            Some(_) => Err(wrong()),
         }
-        Some(_) => return Err(wrong()),
-    };
-    let found: Vec<&str> = known.iter().copied().filter(|name| asked.contains(name)).collect();
-    if !found.is_empty() {
-        return Ok(found);
     }
-    let near = nearest(asked.first().copied().unwrap_or_default(), known.iter().copied());
-    let near =
-        if near.is_empty() { known.join(", ") } else { format!("did you mean {}?", near.join(" or ")) };
-    let asked = if asked.is_empty() { "an empty list".to_owned() } else { asked.join(", ") };
-    Err(Refusal::at(field, code, format!("{asked} names nothing that exists; {near}")))
+
+    /// Those of the known names that are asked for. Names that are not known are passed over, unless none is.
+    fn among<'a>(
+        &self,
+        known: &[&'a str],
+        field: &'static str,
+        code: &'static str,
+    ) -> Result<Vec<&'a str>, Refusal> {
+        let Choice::Named(asked) = self else { return Ok(known.to_vec()) };
+        let found: Vec<&str> =
+            known.iter().copied().filter(|name| asked.iter().any(|own| own == name)).collect();
+        if !found.is_empty() {
+            return Ok(found);
+        }
+        let near = nearest(asked.first().map_or("", String::as_str), known.iter().copied());
+        let near =
+            if near.is_empty() { known.join(", ") } else { format!("did you mean {}?", near.join(" or ")) };
+        let asked = if asked.is_empty() { "an empty list".to_owned() } else { asked.join(", ") };
+        Err(Refusal::at(field, code, format!("{asked} names nothing that exists; {near}")))
+    }
 }

@@ -4,15 +4,53 @@ mod reading;
 mod reject_enterprise_deal;
 mod send_enterprise_deal;
 
+use serde::Serialize;
+
 pub use reject_enterprise_deal::RejectEnterpriseDeal;
 pub use send_enterprise_deal::SendEnterpriseDeal;
-
-use serde_json::{Map, Value, json};
 
 use super::refusal::Refusal;
 use super::spec::Output;
 
-/// What became of one element of a list of deals.
+/// What became of each deal of a call: what could not be read first, then the rest in the order of the call.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct DealResults {
+    /// One entry per deal.
+    pub results: Vec<DealResult>,
+}
+
+/// What became of a deal.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(untagged)]
+pub enum DealResult {
+    /// It was sent, or the thread ended.
+    Done {
+        /// The company.
+        customer_id: u32,
+        /// Always true.
+        success: bool,
+    },
+    /// It was not.
+    Failed {
+        /// The customer, where the deal names one.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        customer_id: Option<i64>,
+        /// Why.
+        error: String,
+    },
+}
+
+impl DealResult {
+    /// The company of a deal that was sent.
+    pub fn done(&self) -> Option<u32> {
+        match self {
+            DealResult::Done { customer_id, .. } => Some(*customer_id),
+            DealResult::Failed { .. } => None,
+        }
+    }
+}
+
+/// What becomes of one element of a list of deals.
 #[derive(Debug, Clone, PartialEq)]
 enum Fate {
     /// It was sent.
@@ -21,9 +59,15 @@ enum Fate {
     Failed(Failure),
 }
 
+impl Fate {
+    fn of(outcome: Result<u32, Failure>) -> Fate {
+        outcome.map_or_else(Fate::Failed, Fate::Done)
+    }
+}
+
 /// Why an element of a list of deals was not sent; the others are.
 #[derive(Debug, Clone, PartialEq)]
-struct Failure {
+pub struct Failure {
     /// The customer, where the element names one.
     customer: Option<i64>,
     /// Words of the result.
@@ -44,38 +88,26 @@ impl Failure {
     }
 }
 
-/// The results of a call: what could not be read first, then the rest in the order of the call.
-fn results(fates: &[Fate]) -> Value {
-    let unreadable = |fate: &&Fate| matches!(fate, Fate::Failed(Failure { unreadable: true, .. }));
-    let first = fates.iter().filter(unreadable);
-    let rest = fates.iter().filter(|fate| !unreadable(fate));
-    let list: Vec<Value> = first.chain(rest).map(result).collect();
-    json!({ "results": list })
+/// The results of a call.
+fn results(fates: Vec<Fate>) -> DealResults {
+    let unreadable = |fate: &Fate| matches!(fate, Fate::Failed(Failure { unreadable: true, .. }));
+    let (first, rest): (Vec<Fate>, Vec<Fate>) = fates.into_iter().partition(unreadable);
+    DealResults { results: first.into_iter().chain(rest).map(result).collect() }
 }
 
-fn result(fate: &Fate) -> Value {
+fn result(fate: Fate) -> DealResult {
     match fate {
-        Fate::Done(customer) => json!({ "customer_id": customer, "success": true }),
-        Fate::Failed(failure) => {
-            let mut map = Map::new();
-            if let Some(customer) = failure.customer {
-                map.insert("customer_id".to_owned(), customer.into());
-            }
-            map.insert("error".to_owned(), failure.error.as_str().into());
-            Value::Object(map)
-        }
+        Fate::Done(customer_id) => DealResult::Done { customer_id, success: true },
+        Fate::Failed(failure) => DealResult::Failed { customer_id: failure.customer, error: failure.error },
     }
 }
 
 /// Refuses a call of which nothing is sent, with the reason of its first element.
 fn unless_all_failed(fates: &[Fate]) -> Result<(), Refusal> {
-    let failed = |fate: &Fate| match fate {
-        Fate::Failed(failure) => Some(failure.refusal.clone()),
-        Fate::Done(_) => None,
-    };
-    let refusals: Vec<Refusal> = fates.iter().filter_map(failed).collect();
-    match refusals.into_iter().next() {
-        Some(first) if fates.iter().all(|fate| matches!(fate, Fate::Failed(_))) => Err(first),
+    match fates.first() {
+        Some(Fate::Failed(first)) if fates.iter().all(|fate| matches!(fate, Fate::Failed(_))) => {
+            Err(first.refusal.clone())
+        }
         _ => Ok(()),
     }
 }

@@ -1,13 +1,20 @@
 use serde_json::Value;
 
 use super::super::arguments::Arguments;
-use super::super::{Argument, ArgumentKind, Kind, Module, Refusal, Spec, Tool, ToolId, View, When};
+use super::super::{Argument, ArgumentKind, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::reading::{Unreadable, customer, elements, malformed};
-use super::{Failure, Fate, RESULTS, results, unless_all_failed};
-use crate::world::command::{Command, ResolvedCommand};
+use super::{DealResults, Failure, Fate, RESULTS, results, unless_all_failed};
+use crate::world::command::Command;
 
 /// Ends talks with companies.
 pub struct RejectEnterpriseDeal;
+
+/// A thread to end.
+pub struct Rejection {
+    customer: i64,
+    /// Path of its number.
+    field: String,
+}
 
 static SPEC: Spec = Spec {
     id: ToolId::RejectEnterpriseDeal,
@@ -36,48 +43,48 @@ static SPEC: Spec = Spec {
 };
 
 impl Tool for RejectEnterpriseDeal {
+    type Args = Vec<Result<Rejection, Failure>>;
+    type Answer = DealResults;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let (fates, threads) = read(view, arguments)?;
-        unless_all_failed(&fates)?;
-        Ok(Command::RejectDeals(threads))
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Self::Args, Refusal> {
+        let elements = elements(arguments.get("deals"), "[{\"customer_id\": 207}]")?;
+        let read = |(at, element): (usize, &Value)| {
+            let path = format!("deals.{at}");
+            let customer = named(element, &path).map_err(Unreadable::of_element)?;
+            Ok(Rejection { customer, field: format!("{path}.customer_id") })
+        };
+        Ok(elements.iter().enumerate().map(read).collect())
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
-        read(view, arguments).map_or(Value::Null, |(fates, _)| results(&fates))
+    fn plan(&self, view: &View<'_>, given: Self::Args) -> Result<Planned<DealResults>, Refusal> {
+        let mut threads = Vec::new();
+        let mut end = |rejection: Rejection| {
+            let number = u32::try_from(rejection.customer).ok();
+            let open = number.and_then(|customer| view.world().enterprise.rejectable(customer, &threads));
+            match (number, open) {
+                (Some(customer), Some(thread)) => {
+                    threads.push(thread.number);
+                    Ok(customer)
+                }
+                _ => Err(rejection.without_thread()),
+            }
+        };
+        let fates: Vec<Fate> = given.into_iter().map(|given| Fate::of(given.and_then(&mut end))).collect();
+        unless_all_failed(&fates)?;
+        Ok(Planned::doing(Command::RejectDeals(threads), results(fates)))
     }
 }
 
-/// What becomes of each element, and the threads that are ended.
-fn read(view: &View<'_>, arguments: &Arguments) -> Result<(Vec<Fate>, Vec<u32>), Refusal> {
-    let (mut fates, mut threads) = (Vec::new(), Vec::new());
-    for (at, element) in elements(arguments.get("deals"), "[{\"customer_id\": 207}]")?.iter().enumerate() {
-        let path = format!("deals.{at}");
-        let given = match named(element, &path) {
-            Err(unreadable) => {
-                fates.push(Fate::Failed(unreadable.of_element()));
-                continue;
-            }
-            Ok(given) => given,
-        };
-        let number = u32::try_from(given).ok();
-        let thread = number.and_then(|customer| view.world().enterprise.rejectable(customer, &threads));
-        fates.push(match (number, thread) {
-            (Some(customer), Some(thread)) => {
-                threads.push(thread.number);
-                Fate::Done(customer)
-            }
-            _ => {
-                let message = format!("customer {given} has no open thread to end");
-                let refusal = Refusal::at(format!("{path}.customer_id"), "no_active_thread", message);
-                Fate::Failed(Failure::of(given, "no active thread", refusal))
-            }
-        });
+impl Rejection {
+    fn without_thread(self) -> Failure {
+        let message = format!("customer {} has no open thread to end", self.customer);
+        let refusal = Refusal::at(self.field, "no_active_thread", message);
+        Failure::of(self.customer, "no active thread", refusal)
     }
-    Ok((fates, threads))
 }
 
 /// The customer that an element names.

@@ -1,17 +1,26 @@
 use serde_json::Value;
 
 use super::super::arguments::Arguments;
-use super::super::{Argument, ArgumentKind, Kind, Module, Refusal, Spec, Tool, ToolId, View, When};
+use super::super::{Argument, ArgumentKind, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::reading::{Unreadable, customer, elements, malformed, offerings};
-use super::{Failure, Fate, RESULTS, results, unless_all_failed};
-use crate::world::command::{Command, ResolvedCommand};
+use super::{DealResults, Failure, Fate, RESULTS, results, unless_all_failed};
+use crate::world::command::Command;
 use crate::world::customers::FIRST_CUSTOMER;
 use crate::world::enterprise::letters::Proposal;
+use crate::world::events::Offering;
 
 /// Offers companies plans at prices.
 pub struct SendEnterpriseDeal;
 
 const EXAMPLE: &str = r#"[[207, [["B", 31.5], ["C", 54]]]]"#;
+
+/// What a company is to be offered.
+pub struct Deal {
+    customer: i64,
+    offerings: Vec<Offering>,
+    /// Path of its number.
+    field: String,
+}
 
 static SPEC: Spec = Spec {
     id: ToolId::SendEnterpriseDeal,
@@ -59,46 +68,39 @@ static SPEC: Spec = Spec {
 };
 
 impl Tool for SendEnterpriseDeal {
+    type Args = Vec<Result<Deal, Failure>>;
+    type Answer = DealResults;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let (fates, proposals) = read(view, arguments)?;
-        unless_all_failed(&fates)?;
-        Ok(Command::SendDeals(proposals))
-    }
-
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
-        read(view, arguments).map_or(Value::Null, |(fates, _)| results(&fates))
-    }
-}
-
-/// What becomes of each deal, and those that are sent.
-fn read(view: &View<'_>, arguments: &Arguments) -> Result<(Vec<Fate>, Vec<Proposal>), Refusal> {
-    let (mut fates, mut proposals) = (Vec::new(), Vec::new());
-    for (at, element) in elements(arguments.get("deals"), EXAMPLE)?.iter().enumerate() {
-        let path = format!("deals.{at}");
-        let fate = match deal(element, &path, view).map(|proposal| reachable(proposal, &path, view)) {
-            Err(Unreadable::Call(refusal)) => return Err(refusal),
-            Err(Unreadable::Element(failure)) | Ok(Err(failure)) => Fate::Failed(failure),
-            Ok(Ok(proposal)) => {
-                let customer = proposal.customer;
-                proposals.push(proposal);
-                Fate::Done(customer)
-            }
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Self::Args, Refusal> {
+        let elements = elements(arguments.get("deals"), EXAMPLE)?;
+        let read = |(at, element): (usize, &Value)| match deal(element, &format!("deals.{at}"), view) {
+            Err(Unreadable::Call(refusal)) => Err(refusal),
+            Err(Unreadable::Element(failure)) => Ok(Err(failure)),
+            Ok(deal) => Ok(Ok(deal)),
         };
-        fates.push(fate);
+        elements.iter().enumerate().map(read).collect()
     }
-    Ok((fates, proposals))
+
+    fn plan(&self, view: &View<'_>, given: Self::Args) -> Result<Planned<DealResults>, Refusal> {
+        let mut proposals = Vec::new();
+        let mut send = |deal: Deal| {
+            let proposal = reachable(deal, view)?;
+            let customer = proposal.customer;
+            proposals.push(proposal);
+            Ok(customer)
+        };
+        let fates: Vec<Fate> = given.into_iter().map(|given| Fate::of(given.and_then(&mut send))).collect();
+        unless_all_failed(&fates)?;
+        Ok(Planned::doing(Command::SendDeals(proposals), results(fates)))
+    }
 }
 
 /// Customer and offerings of an element.
-fn deal(
-    element: &Value,
-    path: &str,
-    view: &View<'_>,
-) -> Result<(i64, Vec<crate::world::events::Offering>), Unreadable> {
+fn deal(element: &Value, path: &str, view: &View<'_>) -> Result<Deal, Unreadable> {
     let (who, what) = match element {
         Value::Array(pair) if pair.len() >= 2 => (pair.first(), pair.get(1)),
         Value::Object(map) => (map.get("customer_id"), map.get("offerings")),
@@ -106,18 +108,19 @@ fn deal(
     };
     let most = view.params().enterprise.enterprise_max_offerings_per_turn as usize;
     let customer = customer(who, path)?;
-    Ok((customer, offerings(what, customer, most, path)?))
+    Ok(Deal {
+        customer,
+        offerings: offerings(what, customer, most, path)?,
+        field: format!("{path}.customer_id"),
+    })
 }
 
 /// The proposal, if the customer is a company in an open thread or with a subscription.
-fn reachable(
-    (given, offerings): (i64, Vec<crate::world::events::Offering>),
-    path: &str,
-    view: &View<'_>,
-) -> Result<Proposal, Failure> {
+fn reachable(deal: Deal, view: &View<'_>) -> Result<Proposal, Failure> {
+    let Deal { customer: given, offerings, field } = deal;
     let world = view.world();
     let failed = |code: &'static str, error: &str, message: String| {
-        Failure::of(given, error, Refusal::at(format!("{path}.customer_id"), code, message))
+        Failure::of(given, error, Refusal::at(field.clone(), code, message))
     };
     let number = u32::try_from(given).ok();
     if let Some(customer) = number.filter(|customer| world.enterprise.open_thread_of(*customer).is_some()) {

@@ -1,8 +1,8 @@
-use serde_json::{Map, Value, json};
+use indexmap::IndexMap;
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::command::{Command, ResolvedCommand};
+use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 
 /// Shows the price list.
 pub struct GetCostInfo;
@@ -37,43 +37,67 @@ static SPEC: Spec = Spec {
     example: "{}",
 };
 
+/// What models and capacity cost.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct PriceList {
+    /// Models by the number of their tier.
+    pub model_tiers: IndexMap<u8, ModelTierFacts>,
+    /// Capacity by the number of its tier.
+    pub capacity_tiers: IndexMap<u8, CapacityTierFacts>,
+    /// How the figures are charged.
+    pub note: &'static str,
+}
+
+/// A tier of models.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelTierFacts {
+    /// Dollars a unit.
+    pub cost_per_usage_unit: f64,
+    /// Factor on product quality.
+    pub quality_multiplier: f64,
+    /// Kind of model.
+    pub class: String,
+}
+
+/// A tier of capacity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct CapacityTierFacts {
+    /// Units a day that it serves.
+    pub capacity_units: u32,
+    /// Dollars a day.
+    pub cost_per_day: u32,
+}
+
 impl Tool for GetCostInfo {
+    type Args = ();
+    type Answer = PriceList;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+        Ok(())
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
-        let models: Map<String, Value> = view
-            .params()
-            .model_tier
-            .iter()
-            .map(|tier| {
-                let facts = json!({
-                    "cost_per_usage_unit": tier.unit_cost,
-                    "quality_multiplier": tier.quality_multiplier,
-                    "class": tier.class,
-                });
-                (tier.tier.to_string(), facts)
-            })
-            .collect();
-        let capacities: Map<String, Value> = view
-            .params()
-            .capacity_tier
-            .iter()
-            .map(|tier| {
-                let facts =
-                    json!({ "capacity_units": tier.capacity_units, "cost_per_day": tier.cost_per_day });
-                (tier.tier.to_string(), facts)
-            })
-            .collect();
-        json!({
-            "model_tiers": models,
-            "capacity_tiers": capacities,
-            "note": "Compute costs units used times the unit cost of the plan's model; capacity is paid every day.",
-        })
+    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<PriceList>, Refusal> {
+        let models = view.params().model_tier.iter().map(|tier| {
+            let facts = ModelTierFacts {
+                cost_per_usage_unit: tier.unit_cost,
+                quality_multiplier: tier.quality_multiplier,
+                class: tier.class.clone(),
+            };
+            (tier.tier, facts)
+        });
+        let capacities = view.params().capacity_tier.iter().map(|tier| {
+            let facts =
+                CapacityTierFacts { capacity_units: tier.capacity_units, cost_per_day: tier.cost_per_day };
+            (tier.tier, facts)
+        });
+        Ok(Planned::reading(PriceList {
+            model_tiers: models.collect(),
+            capacity_tiers: capacities.collect(),
+            note: "Compute costs units used times the unit cost of the plan's model; capacity is paid every day.",
+        }))
     }
 }

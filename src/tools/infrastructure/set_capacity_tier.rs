@@ -1,16 +1,16 @@
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, integer};
-use super::super::pricing::core_of;
+use super::super::arguments::Arguments;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::settings::Settings;
-use crate::world::settings::SettingsChange;
+use crate::world::settings::{CoreSettings, Settings, SettingsChange};
 
 /// Rents capacity.
 pub struct SetCapacityTier;
+
+const TIERS: Range = Range::between(0.0, 7.0);
 
 static SPEC: Spec = Spec {
     id: ToolId::SetCapacityTier,
@@ -21,7 +21,7 @@ static SPEC: Spec = Spec {
     arguments: &[Argument {
         name: "tier",
         alias: Some("capacity_tier"),
-        kind: ArgumentKind::Integer(Range::between(0.0, 7.0)),
+        kind: ArgumentKind::Integer(TIERS),
         required: true,
         unit: "tier",
         doc: "capacity tier 0 to 7; any jump is allowed and free",
@@ -42,7 +42,21 @@ static SPEC: Spec = Spec {
     example: r#"{"tier": 2}"#,
 };
 
+/// The capacity that is rented.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct RentedCapacity {
+    /// Its tier.
+    pub tier: u8,
+    /// Units a day that it serves.
+    pub capacity_units: u32,
+    /// Dollars a day.
+    pub cost_per_day: u32,
+}
+
 impl Tool for SetCapacityTier {
+    type Args = u8;
+    type Answer = RentedCapacity;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
@@ -51,18 +65,25 @@ impl Tool for SetCapacityTier {
         Map::from_iter([("tier".to_owned(), Value::from(settings.core.capacity_tier))])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<u8, Refusal> {
         let given = arguments.get("tier").or_else(|| arguments.get("capacity_tier")).unwrap_or(&Value::Null);
-        let mut core = view.settings().core;
-        core.capacity_tier = integer(given)
-            .filter(|tier| (0..=7).contains(tier))
-            .ok_or_else(|| Refusal::at("tier", "capacity_out_of_range", "the capacity tier must be 0 to 7"))?
-            as u8;
-        Ok(Command::Set(SettingsChange::Core(core)))
+        TIERS.whole(given).ok_or_else(|| {
+            Refusal::at(
+                "tier",
+                "capacity_out_of_range",
+                format!("the capacity tier must be {}", TIERS.words()),
+            )
+        })
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let tier = view.params().capacity(core_of(resolved, &view.settings().core).capacity_tier);
-        json!({ "tier": tier.tier, "capacity_units": tier.capacity_units, "cost_per_day": tier.cost_per_day })
+    fn plan(&self, view: &View<'_>, capacity_tier: u8) -> Result<Planned<RentedCapacity>, Refusal> {
+        let core = CoreSettings { capacity_tier, ..view.settings().core };
+        let tier = view.params().capacity(capacity_tier);
+        let answer = RentedCapacity {
+            tier: tier.tier,
+            capacity_units: tier.capacity_units,
+            cost_per_day: tier.cost_per_day,
+        };
+        Ok(Planned::setting(SettingsChange::Core(core), answer))
     }
 }

@@ -1,9 +1,12 @@
-use serde_json::{Map, Value, json};
+use indexmap::IndexMap;
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use super::{known_group, noise_label, segment};
-use crate::notation::json_number;
+use super::super::plain::plain;
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+};
+use super::{group_argument, noise_label, not_discovered, segment};
 use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
 use crate::world::market::insights::Insights;
@@ -60,53 +63,125 @@ static SPEC: Spec = Spec {
     example: r#"{"group_id": "S1"}"#,
 };
 
+/// What is known of a group, as of its last study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GroupInsights {
+    /// The group.
+    pub group_id: Group,
+    /// What people call it.
+    pub group_name: String,
+    /// Individual or Enterprise.
+    pub segment: &'static str,
+    /// Level of knowledge, 1 to 5.
+    pub info_level: u8,
+    /// Largest error of the estimates, in words.
+    pub noise: String,
+    /// Means of the group.
+    pub estimates: Estimates,
+    /// Leads per subscriber and day that it brings to known groups, and they to it.
+    pub network_influence: Influence,
+    /// Weight of its reputation for known groups, and of theirs for it.
+    pub reputation_influence: Influence,
+}
+
+/// Means of a group.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Estimates {
+    /// Budget, dollars a month, of companies per seat.
+    #[serde(serialize_with = "plain")]
+    pub willingness_to_pay: f64,
+    /// Units a day, of companies per seat.
+    #[serde(serialize_with = "plain")]
+    pub usage_volume: f64,
+    /// Least quality that a customer accepts.
+    #[serde(serialize_with = "plain")]
+    pub quality_floor_q_min: f64,
+    /// Aversion to long contracts.
+    #[serde(serialize_with = "plain")]
+    pub contract_lockin_aversion: f64,
+    /// Customers, or companies, that the market holds.
+    pub market_cap: u64,
+    /// Growth of the market, a share a year.
+    #[serde(serialize_with = "plain")]
+    pub annual_market_cap_growth_rate: f64,
+    /// Seats of the smallest and of the largest company.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seat_range: Option<[u64; 2]>,
+    /// Turns that a company takes part in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub decision_rounds: Option<u64>,
+    /// Days that a company takes to answer.
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "plain")]
+    pub avg_response_days: Option<f64>,
+}
+
+/// What a group is to others, and they to it; the largest first.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Influence {
+    /// Of the group on others.
+    #[serde(serialize_with = "plain")]
+    pub outgoing: IndexMap<Group, f64>,
+    /// Of others on the group.
+    #[serde(serialize_with = "plain")]
+    pub incoming: IndexMap<Group, f64>,
+}
+
 impl Tool for GetGroupInsights {
+    type Args = Group;
+    type Answer = GroupInsights;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        known_group(arguments, view).map(Command::ReadInsights)
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Group, Refusal> {
+        group_argument(arguments, view)
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let ResolvedCommand::ReadInsights(Some(insights)) = resolved else { return Value::Null };
-        json!({
-            "group_id": insights.group,
-            "group_name": view.params().group(insights.group).name,
-            "segment": segment(insights.group),
-            "info_level": insights.level,
-            "noise": noise_label(insights.noise),
-            "estimates": estimates(insights),
-            "network_influence": {
-                "outgoing": links(&insights.referrals_to),
-                "incoming": links(&insights.referrals_from),
-            },
-            "reputation_influence": {
-                "outgoing": links(&insights.reputation_to),
-                "incoming": links(&insights.reputation_from),
-            },
-        })
+    fn plan(&self, view: &View<'_>, group: Group) -> Result<Planned<GroupInsights>, Refusal> {
+        if !view.knows(group) {
+            return Err(not_discovered(group.id(), view));
+        }
+        let group_name = view.params().group(group).name.clone();
+        Ok(Planned::drawing(Command::ReadInsights(group), move |resolved| match resolved {
+            ResolvedCommand::ReadInsights(insights) => {
+                insights.as_ref().map(|insights| told(insights, group_name))
+            }
+            _ => None,
+        }))
     }
 }
 
-fn estimates(insights: &Insights) -> Value {
-    let mut estimates = json!({
-        "willingness_to_pay": json_number(insights.willingness_to_pay),
-        "usage_volume": json_number(insights.usage_volume),
-        "quality_floor_q_min": json_number(insights.quality_floor),
-        "contract_lockin_aversion": json_number(insights.lockin_aversion),
-        "market_cap": insights.market_cap,
-        "annual_market_cap_growth_rate": json_number(insights.growth_rate),
-    });
-    if let Some(company) = &insights.company {
-        estimates["seat_range"] = json!([company.seats_least, company.seats_most]);
-        estimates["decision_rounds"] = json!(company.decision_rounds);
-        estimates["avg_response_days"] = json_number(company.response_days);
+fn told(insights: &Insights, group_name: String) -> GroupInsights {
+    GroupInsights {
+        group_id: insights.group,
+        group_name,
+        segment: segment(insights.group),
+        info_level: insights.level,
+        noise: noise_label(insights.noise),
+        estimates: estimates(insights),
+        network_influence: Influence {
+            outgoing: insights.referrals_to.iter().copied().collect(),
+            incoming: insights.referrals_from.iter().copied().collect(),
+        },
+        reputation_influence: Influence {
+            outgoing: insights.reputation_to.iter().copied().collect(),
+            incoming: insights.reputation_from.iter().copied().collect(),
+        },
     }
-    estimates
 }
 
-fn links(list: &[(Group, f64)]) -> Map<String, Value> {
-    list.iter().map(|(group, value)| (group.id().to_owned(), json_number(*value))).collect()
+fn estimates(insights: &Insights) -> Estimates {
+    let company = insights.company.as_ref();
+    Estimates {
+        willingness_to_pay: insights.willingness_to_pay,
+        usage_volume: insights.usage_volume,
+        quality_floor_q_min: insights.quality_floor,
+        contract_lockin_aversion: insights.lockin_aversion,
+        market_cap: insights.market_cap,
+        annual_market_cap_growth_rate: insights.growth_rate,
+        seat_range: company.map(|company| [company.seats_least, company.seats_most]),
+        decision_rounds: company.map(|company| company.decision_rounds),
+        avg_response_days: company.map(|company| company.response_days),
+    }
 }

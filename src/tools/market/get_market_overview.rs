@@ -1,10 +1,10 @@
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
+use super::super::plain::plain;
+use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::{noise_label, segment};
-use crate::notation::json_number;
-use crate::world::command::{Command, ResolvedCommand};
+use crate::world::events::{Phase, Reading, Trend};
 use crate::world::identifiers::Group;
 
 /// Shows the known groups and the economy.
@@ -40,41 +40,90 @@ static SPEC: Spec = Spec {
     example: "{}",
 };
 
+/// The known groups and the economy.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct MarketOverview {
+    /// By identifier.
+    pub known_groups: Vec<KnownGroup>,
+    /// Groups that are still to be found.
+    pub undiscovered_count: usize,
+    /// The latest published index; none before the first.
+    pub macroeconomic: Option<Macroeconomy>,
+}
+
+/// A group that has been found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct KnownGroup {
+    /// The group.
+    pub group_id: Group,
+    /// What people call it.
+    pub group_name: String,
+    /// Individual or Enterprise.
+    pub segment: &'static str,
+    /// Level of knowledge, 1 to 5.
+    pub info_level: u8,
+    /// Largest error of estimates at that level, in words.
+    pub noise: String,
+}
+
+/// A published index of the economy.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Macroeconomy {
+    /// The index.
+    #[serde(serialize_with = "plain")]
+    pub pmi_value: f64,
+    /// Where it stands.
+    pub pmi_trend: Trend,
+    /// Change since the one before.
+    #[serde(serialize_with = "plain")]
+    pub pmi_change: f64,
+    /// Part of the cycle.
+    pub cycle_phase: Phase,
+    /// All of it in words.
+    pub description: String,
+}
+
 impl Tool for GetMarketOverview {
+    type Args = ();
+    type Answer = MarketOverview;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+        Ok(())
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
+    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<MarketOverview>, Refusal> {
         let mut known: Vec<Group> = view.known_groups().collect();
         known.sort_by_key(|group| group.id());
-        let entry = |group: Group| {
-            let level = view.world().market.knowledge[group].level;
-            json!({
-                "group_id": group,
-                "group_name": view.params().group(group).name,
-                "segment": segment(group),
-                "info_level": level,
-                "noise": noise_label(view.params().level(level).noise),
-            })
-        };
-        let economy = view.world().market.economy.published.map(|reading| {
-            json!({
-                "pmi_value": json_number(reading.value),
-                "pmi_trend": reading.trend,
-                "pmi_change": json_number(reading.change),
-                "cycle_phase": reading.phase,
-                "description": view.surroundings().describe(&reading),
-            })
-        });
-        json!({
-            "known_groups": known.into_iter().map(entry).collect::<Vec<_>>(),
-            "undiscovered_count": view.world().market.undiscovered().count(),
-            "macroeconomic": economy,
-        })
+        let market = &view.world().market;
+        Ok(Planned::reading(MarketOverview {
+            known_groups: known.into_iter().map(|group| entry(group, view)).collect(),
+            undiscovered_count: market.undiscovered().count(),
+            macroeconomic: market.economy.published.map(|reading| economy(&reading, view)),
+        }))
+    }
+}
+
+fn entry(group: Group, view: &View<'_>) -> KnownGroup {
+    let level = view.world().market.knowledge[group].level;
+    KnownGroup {
+        group_id: group,
+        group_name: view.params().group(group).name.clone(),
+        segment: segment(group),
+        info_level: level,
+        noise: noise_label(view.params().level(level).noise),
+    }
+}
+
+fn economy(reading: &Reading, view: &View<'_>) -> Macroeconomy {
+    Macroeconomy {
+        pmi_value: reading.value,
+        pmi_trend: reading.trend,
+        pmi_change: reading.change,
+        cycle_phase: reading.phase,
+        description: view.surroundings().describe(reading),
     }
 }

@@ -7,10 +7,10 @@ mod research_market;
 
 use serde_json::Value;
 
-pub use get_group_insights::GetGroupInsights;
-pub use get_market_overview::GetMarketOverview;
-pub use research_group::ResearchGroup;
-pub use research_market::ResearchMarket;
+pub use get_group_insights::{Estimates, GetGroupInsights, GroupInsights, Influence};
+pub use get_market_overview::{GetMarketOverview, MarketOverview};
+pub use research_group::{OrderedStudy, ResearchGroup};
+pub use research_market::{DiscoveryAttempt, ResearchMarket};
 
 use super::arguments::{Arguments, wrong_type};
 use super::refusal::Refusal;
@@ -18,17 +18,20 @@ use super::view::View;
 use crate::world::identifiers::Group;
 
 /// The known group that the argument `group_id` names.
-fn known_group(arguments: &Arguments, view: &View<'_>) -> Result<Group, Refusal> {
+fn group_argument(arguments: &Arguments, view: &View<'_>) -> Result<Group, Refusal> {
     let given = arguments.get("group_id").unwrap_or(&Value::Null);
     let id = given.as_str().ok_or_else(|| wrong_type("group_id", "text, for instance S1"))?;
-    Group::parse(id).filter(|group| view.knows(*group)).ok_or_else(|| {
-        let known: Vec<&str> = view.known_groups().map(Group::id).collect();
-        let message = format!(
-            "group {id} is not known yet; the known groups are {}; research_market finds others",
-            known.join(", ")
-        );
-        Refusal::at("group_id", "group_not_discovered", message)
-    })
+    Group::parse(id).filter(|group| view.knows(*group)).ok_or_else(|| not_discovered(id, view))
+}
+
+/// The refusal of a group that the player does not know.
+fn not_discovered(id: &str, view: &View<'_>) -> Refusal {
+    let known: Vec<&str> = view.known_groups().map(Group::id).collect();
+    let message = format!(
+        "group {id} is not known yet; the known groups are {}; research_market finds others",
+        known.join(", ")
+    );
+    Refusal::at("group_id", "group_not_discovered", message)
 }
 
 /// Segment as answers write it.

@@ -1,11 +1,11 @@
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
 use super::super::research::affordable;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use super::known_group;
+use super::group_argument;
 use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
 use crate::world::market::studies::default_target;
@@ -61,6 +61,26 @@ static SPEC: Spec = Spec {
     example: r#"{"group_id": "E2", "target_level": 3}"#,
 };
 
+/// A study to order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StudyOrder {
+    group: Group,
+    target: u8,
+}
+
+/// A study that is under way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct OrderedStudy {
+    /// The group.
+    pub group_id: Group,
+    /// Level it will have.
+    pub new_level: u8,
+    /// Day on which the study is done.
+    pub expected_completion_day: u32,
+    /// Whether the level stays the same.
+    pub is_refresh: bool,
+}
+
 /// The level that is aimed at. Unlike elsewhere 3.0 is no level here, as in the released simulator.
 fn target_of(arguments: &Arguments, group: Group, view: &View<'_>) -> Result<u8, Refusal> {
     let law = &view.params().group_research;
@@ -82,29 +102,34 @@ fn target_of(arguments: &Arguments, group: Group, view: &View<'_>) -> Result<u8,
 }
 
 impl Tool for ResearchGroup {
+    type Args = StudyOrder;
+    type Answer = OrderedStudy;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let group = known_group(arguments, view)?;
-        let target = target_of(arguments, group, view)?;
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<StudyOrder, Refusal> {
+        let group = group_argument(arguments, view)?;
+        Ok(StudyOrder { group, target: target_of(arguments, group, view)? })
+    }
+
+    fn plan(&self, view: &View<'_>, order: StudyOrder) -> Result<Planned<OrderedStudy>, Refusal> {
+        let StudyOrder { group, target } = order;
         if let Some(study) = view.world().market.running_study(group) {
             let message =
                 format!("a study of {group} runs until day {}; order the next one after that", study.due_day);
             return Err(Refusal::at("group_id", "study_in_progress", message));
         }
         affordable(view.params().level(target).cost, view)?;
-        Ok(Command::ResearchGroup(group, target))
-    }
-
-    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let ResolvedCommand::ResearchGroup(study, _) = resolved else { return Value::Null };
-        json!({
-            "group_id": study.group,
-            "new_level": study.target,
-            "expected_completion_day": study.due_day,
-            "is_refresh": study.is_refresh(),
-        })
+        Ok(Planned::drawing(Command::ResearchGroup(group, target), |resolved| match resolved {
+            ResolvedCommand::ResearchGroup(study, _) => Some(OrderedStudy {
+                group_id: study.group,
+                new_level: study.target,
+                expected_completion_day: study.due_day,
+                is_refresh: study.is_refresh(),
+            }),
+            _ => None,
+        }))
     }
 }

@@ -1,10 +1,11 @@
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
+use super::super::plain::plain;
 use super::super::research::affordable;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::notation::json_number;
+use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use crate::world::command::{Command, ResolvedCommand};
+use crate::world::identifiers::Group;
 
 /// Pays for an attempt to find a group.
 pub struct ResearchMarket;
@@ -33,21 +34,43 @@ static SPEC: Spec = Spec {
     example: "{}",
 };
 
+/// What an attempt to find a group brought.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum DiscoveryAttempt {
+    /// A group.
+    Found {
+        /// Which one.
+        discovered_group_id: Group,
+    },
+    /// No group.
+    Nothing {
+        /// What it cost, dollars.
+        #[serde(serialize_with = "plain")]
+        cost: f64,
+    },
+}
+
 impl Tool for ResearchMarket {
+    type Args = ();
+    type Answer = DiscoveryAttempt;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
-        affordable(view.params().market_research.discovery_cost_level_1, view)?;
-        Ok(Command::ResearchMarket)
+    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+        Ok(())
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let ResolvedCommand::ResearchMarket(attempt) = resolved else { return Value::Null };
-        match attempt.found {
-            Some(group) => json!({ "discovered_group_id": group }),
-            None => json!({ "cost": json_number(attempt.cost) }),
-        }
+    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<DiscoveryAttempt>, Refusal> {
+        affordable(view.params().market_research.discovery_cost_level_1, view)?;
+        Ok(Planned::drawing(Command::ResearchMarket, |resolved| match resolved {
+            ResolvedCommand::ResearchMarket(attempt) => Some(match attempt.found {
+                Some(group) => DiscoveryAttempt::Found { discovered_group_id: group },
+                None => DiscoveryAttempt::Nothing { cost: attempt.cost },
+            }),
+            _ => None,
+        }))
     }
 }

@@ -1,8 +1,9 @@
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::Value;
 
 use super::super::arguments::{Arguments, integer, wrong_type};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use crate::world::command::{Command, Draft, ResolvedCommand};
 
@@ -51,8 +52,21 @@ static SPEC: Spec = Spec {
     example: r#"{"content": "Exports are twice as fast from today."}"#,
 };
 
+/// A post of the company.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct PublishedPost {
+    /// Its number among the company's own.
+    pub agent_post_id: u32,
+    /// Day on which it was written.
+    pub day: u32,
+    /// What it says.
+    pub content: String,
+    /// The post it answers.
+    pub reply_to_post_id: Option<u32>,
+}
+
 /// The text, if it can be published today.
-fn content<'a>(view: &View<'_>, arguments: &'a Arguments) -> Result<&'a str, Refusal> {
+fn content(view: &View<'_>, arguments: &Arguments) -> Result<String, Refusal> {
     let content = arguments.get("content").unwrap_or(&Value::Null);
     let content = content.as_str().ok_or_else(|| wrong_type("content", "a text"))?;
     let (length, most) = (content.chars().count(), view.params().limits.post_max_chars as usize);
@@ -63,48 +77,51 @@ fn content<'a>(view: &View<'_>, arguments: &'a Arguments) -> Result<&'a str, Ref
     if content.trim().is_empty() {
         return Err(Refusal::at("content", "blank", "the post is empty; write something"));
     }
-    Ok(content)
+    if view.world().market.social.own.iter().any(|post| post.day == view.day()) {
+        let message = format!(
+            "you have already posted on day {}; you can post again on the next decision day",
+            view.day()
+        );
+        return Err(Refusal::new("already_posted", message));
+    }
+    Ok(content.to_owned())
+}
+
+/// The post that is answered.
+fn answered(view: &View<'_>, given: &Value, field: &str) -> Result<u32, Refusal> {
+    let number = integer(given).ok_or_else(|| wrong_type(field, "a whole number"))?;
+    let post = u32::try_from(number).ok().filter(|post| view.world().market.social.has_post(*post));
+    post.ok_or_else(|| {
+        let message =
+            format!("there is no post {number}; get_social_posts lists the posts with their numbers");
+        Refusal::at(field, "post_not_found", message)
+    })
 }
 
 impl Tool for PostSocialMedia {
+    type Args = Draft;
+    type Answer = PublishedPost;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let content = content(view, arguments)?.to_owned();
-        let social = &view.world().market.social;
-        if social.own.iter().any(|post| post.day == view.day()) {
-            let message = format!(
-                "you have already posted on day {}; you can post again on the next decision day",
-                view.day()
-            );
-            return Err(Refusal::new("already_posted", message));
-        }
-        let reply_to = match arguments.get("reply_to_post_id") {
-            None => None,
-            Some(given) => {
-                let number =
-                    integer(given).ok_or_else(|| wrong_type("reply_to_post_id", "a whole number"))?;
-                let post = u32::try_from(number).ok().filter(|post| social.has_post(*post));
-                Some(post.ok_or_else(|| {
-                    let message = format!(
-                        "there is no post {number}; get_social_posts lists the posts with their numbers"
-                    );
-                    Refusal::at("reply_to_post_id", "post_not_found", message)
-                })?)
-            }
-        };
-        Ok(Command::Post(Draft { content, reply_to }))
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Draft, Refusal> {
+        let content = content(view, arguments)?;
+        let reply_to = arguments.read("reply_to_post_id", |value, name| answered(view, value, name))?;
+        Ok(Draft { content, reply_to })
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let ResolvedCommand::Post(made) = resolved else { return Value::Null };
-        json!({
-            "agent_post_id": made.post,
-            "day": view.day(),
-            "content": made.content,
-            "reply_to_post_id": made.reply_to,
-        })
+    fn plan(&self, view: &View<'_>, draft: Draft) -> Result<Planned<PublishedPost>, Refusal> {
+        let day = view.day();
+        Ok(Planned::drawing(Command::Post(draft), move |resolved| match resolved {
+            ResolvedCommand::Post(made) => Some(PublishedPost {
+                agent_post_id: made.post,
+                day,
+                content: made.content.clone(),
+                reply_to_post_id: made.reply_to,
+            }),
+            _ => None,
+        }))
     }
 }

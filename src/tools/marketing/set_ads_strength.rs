@@ -1,14 +1,13 @@
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Amount, Arguments, number, per_customer, per_group};
+use super::super::arguments::{Amount, Arguments, number, per_customer, per_group, replace};
+use super::super::plain::as_data;
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Plain, Planned, Range, Refusal, Spec, Tool, ToolId,
+    View, When,
 };
-use super::super::{as_data, family_of};
 use crate::notation::json_number;
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::settings::Settings;
-use crate::world::settings::SettingsChange;
+use crate::world::settings::{AdsStrength, PerCustomer, PerGroup, Settings, SettingsChange};
 
 /// Sets the load of in-app advertising.
 pub struct SetAdsStrength;
@@ -57,7 +56,17 @@ static SPEC: Spec = Spec {
     example: r#"{"global_strength": 0.05}"#,
 };
 
+/// The scopes that a call names; the others stay as they are.
+pub struct AdLoads {
+    global: Option<f64>,
+    by_group: Option<PerGroup>,
+    by_customer: Option<PerCustomer>,
+}
+
 impl Tool for SetAdsStrength {
+    type Args = AdLoads;
+    type Answer = Plain<AdsStrength>;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
@@ -71,24 +80,24 @@ impl Tool for SetAdsStrength {
         ])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let mut ads = view.settings().ads_strength.clone();
-        if let Some(value) = arguments.get("global_strength") {
-            ads.global = number(value).filter(|strength| Range::SHARE.holds(*strength)).ok_or_else(|| {
-                let message = "the global ad load must be between 0 and 1";
-                Refusal::at("global_strength", "global_strength_out_of_range", message)
-            })?;
-        }
-        if let Some(value) = arguments.get("by_group") {
-            ads.by_group = per_group(value, "by_group", STRENGTH, view)?;
-        }
-        if let Some(value) = arguments.get("by_customer") {
-            ads.by_customer = per_customer(value, "by_customer", STRENGTH)?;
-        }
-        Ok(Command::Set(SettingsChange::AdsStrength(ads)))
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<AdLoads, Refusal> {
+        Ok(AdLoads {
+            global: arguments.read("global_strength", |value, name| {
+                number(value).filter(|strength| Range::SHARE.holds(*strength)).ok_or_else(|| {
+                    let message = "the global ad load must be between 0 and 1";
+                    Refusal::at(name, "global_strength_out_of_range", message)
+                })
+            })?,
+            by_group: arguments.read("by_group", |value, name| per_group(value, name, STRENGTH, view))?,
+            by_customer: arguments.read("by_customer", |value, name| per_customer(value, name, STRENGTH))?,
+        })
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        family_of(resolved)
+    fn plan(&self, view: &View<'_>, given: AdLoads) -> Result<Planned<Plain<AdsStrength>>, Refusal> {
+        let mut ads = view.settings().ads_strength.clone();
+        replace(&mut ads.global, given.global);
+        replace(&mut ads.by_group, given.by_group);
+        replace(&mut ads.by_customer, given.by_customer);
+        Ok(Planned::setting(SettingsChange::AdsStrength(ads.clone()), Plain(ads)))
     }
 }

@@ -1,14 +1,15 @@
-use serde_json::{Map, Value, json};
+use indexmap::IndexMap;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use strum::{EnumString, IntoStaticStr};
 
-use super::super::arguments::{Arguments, number, wrong_type};
-use super::super::pricing::core_of;
+use super::super::arguments::{Arguments, Sent, wrong_type};
+use super::super::plain::plain;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use crate::notation::{json_number, plain_numbers};
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::settings::SettingsChange;
-use crate::world::settings::{CoreSettings, Settings};
+use crate::notation::json_number;
+use crate::world::settings::{Settings, SettingsChange};
 
 /// Sets the general daily budgets.
 pub struct SetDailySpend;
@@ -53,62 +54,96 @@ static SPEC: Spec = Spec {
     example: r#"{"operations": 350}"#,
 };
 
-fn budgets(core: &CoreSettings) -> Map<String, Value> {
-    Map::from_iter([
-        ("operations".to_owned(), json_number(core.operations)),
-        ("development".to_owned(), json_number(core.development)),
-    ])
+/// A general budget.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, EnumString, IntoStaticStr, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum DailyBudget {
+    /// Fewer outages, and issues solved.
+    Operations,
+    /// Quality for everybody.
+    Development,
+}
+
+/// What a call set, and what holds then.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DailySpend {
+    /// What was sent, dollars a day.
+    #[serde(serialize_with = "plain")]
+    pub updated: IndexMap<DailyBudget, Sent>,
+    /// Both budgets.
+    pub current: DailyBudgets,
+}
+
+/// The budgets in force, dollars a day.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DailyBudgets {
+    /// Operations.
+    #[serde(serialize_with = "plain")]
+    pub operations: f64,
+    /// Development.
+    #[serde(serialize_with = "plain")]
+    pub development: f64,
 }
 
 impl Tool for SetDailySpend {
+    type Args = IndexMap<DailyBudget, Sent>;
+    type Answer = DailySpend;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
     fn current(&self, settings: &Settings) -> Map<String, Value> {
-        budgets(&settings.core)
+        Map::from_iter([
+            ("operations".to_owned(), json_number(settings.core.operations)),
+            ("development".to_owned(), json_number(settings.core.development)),
+        ])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<IndexMap<DailyBudget, Sent>, Refusal> {
         if arguments.is_empty() {
             return Err(Refusal::new(
                 "nothing_given",
                 "no value was given; give operations, development or both",
             ));
         }
-        let unknown: Vec<&String> = arguments
-            .as_map()
-            .keys()
-            .filter(|key| !["operations", "development"].contains(&key.as_str()))
-            .collect();
-        if unknown.iter().any(|key| *key == "advertising") {
+        let unknown = |key: &&String| key.parse::<DailyBudget>().is_err();
+        if arguments.get("advertising").is_some() {
             let message = "set advertising per channel and group with set_targeted_ad_spend";
             return Err(Refusal::at("advertising", "advertising_not_here", message));
         }
-        if let Some(key) = unknown.first() {
+        if let Some(key) = arguments.as_map().keys().find(unknown) {
             let message = format!("category {key} does not exist; use operations or development");
-            return Err(Refusal::at((*key).clone(), "unknown_category", message));
+            return Err(Refusal::at(key.clone(), "unknown_category", message));
         }
-        let mut core = view.settings().core;
-        for (key, value) in arguments.as_map() {
-            let amount = number(value).ok_or_else(|| wrong_type(key, "a number"))?;
-            if amount < 0.0 {
+        let entry = |(key, value): (&String, &Value)| {
+            let amount = Sent::of(value).ok_or_else(|| wrong_type(key, "a number"))?;
+            if amount.value < 0.0 {
                 return Err(Refusal::at(
                     key.clone(),
                     "spend_negative",
                     format!("{key} must not be negative"),
                 ));
             }
-            if key == "operations" { core.operations = amount } else { core.development = amount }
-        }
-        Ok(Command::Set(SettingsChange::Core(core)))
+            Ok(key.parse().ok().map(|budget| (budget, amount)))
+        };
+        arguments.as_map().iter().filter_map(|given| entry(given).transpose()).collect()
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let core = core_of(resolved, &view.settings().core);
-        json!({
-            "updated": plain_numbers(Value::Object(arguments.as_map().clone())),
-            "current": budgets(core),
-        })
+    fn plan(
+        &self,
+        view: &View<'_>,
+        updated: IndexMap<DailyBudget, Sent>,
+    ) -> Result<Planned<DailySpend>, Refusal> {
+        let mut core = view.settings().core;
+        for (budget, sent) in &updated {
+            match budget {
+                DailyBudget::Operations => core.operations = sent.value,
+                DailyBudget::Development => core.development = sent.value,
+            }
+        }
+        let current = DailyBudgets { operations: core.operations, development: core.development };
+        Ok(Planned::setting(SettingsChange::Core(core), DailySpend { updated, current }))
     }
 }

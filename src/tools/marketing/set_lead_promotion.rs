@@ -1,15 +1,16 @@
+use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, per_channel, per_channel_group, per_group};
+use super::super::arguments::{Arguments, per_channel, per_channel_group, per_group, replace};
+use super::super::plain::as_data;
 use super::super::pricing::{DISCOUNT, global_discount};
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Plain, Planned, Range, Refusal, Spec, Tool, ToolId,
+    View, When,
 };
-use super::super::{as_data, family_of};
 use crate::notation::json_number;
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::settings::Settings;
-use crate::world::settings::SettingsChange;
+use crate::world::identifiers::Channel;
+use crate::world::settings::{LeadPromotion, PerGroup, Settings, SettingsChange};
 
 /// Grants discounts to new leads.
 pub struct SetLeadPromotion;
@@ -63,7 +64,18 @@ static SPEC: Spec = Spec {
     example: r#"{"by_channel": {"social_media": 3}}"#,
 };
 
+/// The scopes that a call names; the others stay as they are.
+pub struct LeadDiscounts {
+    global: Option<f64>,
+    by_group: Option<PerGroup>,
+    by_channel: Option<IndexMap<Channel, f64>>,
+    by_channel_group: Option<IndexMap<Channel, PerGroup>>,
+}
+
 impl Tool for SetLeadPromotion {
+    type Args = LeadDiscounts;
+    type Answer = Plain<LeadPromotion>;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
@@ -78,22 +90,22 @@ impl Tool for SetLeadPromotion {
         ])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let mut promotion = view.settings().lead_promotion.clone();
-        promotion.global = global_discount(arguments, promotion.global)?;
-        if let Some(value) = arguments.get("by_group") {
-            promotion.by_group = per_group(value, "by_group", DISCOUNT, view)?;
-        }
-        if let Some(value) = arguments.get("by_channel") {
-            promotion.by_channel = per_channel(value, "by_channel", DISCOUNT)?;
-        }
-        if let Some(value) = arguments.get("by_channel_group") {
-            promotion.by_channel_group = per_channel_group(value, "by_channel_group", DISCOUNT, view)?;
-        }
-        Ok(Command::Set(SettingsChange::LeadPromotion(promotion)))
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<LeadDiscounts, Refusal> {
+        Ok(LeadDiscounts {
+            global: arguments.read("global_promotion", global_discount)?,
+            by_group: arguments.read("by_group", |value, name| per_group(value, name, DISCOUNT, view))?,
+            by_channel: arguments.read("by_channel", |value, name| per_channel(value, name, DISCOUNT))?,
+            by_channel_group: arguments
+                .read("by_channel_group", |value, name| per_channel_group(value, name, DISCOUNT, view))?,
+        })
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        family_of(resolved)
+    fn plan(&self, view: &View<'_>, given: LeadDiscounts) -> Result<Planned<Plain<LeadPromotion>>, Refusal> {
+        let mut promotion = view.settings().lead_promotion.clone();
+        replace(&mut promotion.global, given.global);
+        replace(&mut promotion.by_group, given.by_group);
+        replace(&mut promotion.by_channel, given.by_channel);
+        replace(&mut promotion.by_channel_group, given.by_channel_group);
+        Ok(Planned::setting(SettingsChange::LeadPromotion(promotion.clone()), Plain(promotion)))
     }
 }

@@ -1,16 +1,18 @@
+use std::borrow::Cow;
+
+use indexmap::IndexMap;
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::super::arguments::{Arguments, amount_as_sent, per_channel_group};
-use super::super::as_data;
+use super::super::arguments::{Arguments, Sent, channel, sent_per_channel_group};
+use super::super::plain::{as_data, plain};
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
+    When,
 };
 use super::BUDGET;
-use crate::notation::json_number;
-use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::{Channel, Group};
-use crate::world::settings::SettingsChange;
-use crate::world::settings::{PerGroup, Settings, TargetedAds};
+use crate::world::settings::{PerGroup, Settings, SettingsChange, TargetedAds};
 
 /// Sets the advertising budgets.
 pub struct SetTargetedAdSpend;
@@ -51,6 +53,17 @@ static SPEC: Spec = Spec {
     example: r#"{"targeted_spend": {"linkedin": {"E1": 120}, "search_ads": {"S1": 80, "S3": 40}}}"#,
 };
 
+/// The budgets in force.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AdBudgets {
+    /// Dollars a day by channel and group.
+    #[serde(serialize_with = "plain")]
+    pub targeted_spend: IndexMap<Channel, PerGroup>,
+    /// Their sum, dollars a day.
+    #[serde(serialize_with = "plain")]
+    pub total_per_day: f64,
+}
+
 /// Turns a map of groups to channels around; inner values that are no maps vanish.
 fn transposed(map: &Map<String, Value>) -> Map<String, Value> {
     let mut turned = Map::new();
@@ -66,14 +79,13 @@ fn transposed(map: &Map<String, Value>) -> Map<String, Value> {
 }
 
 /// The matrix with channels outside, whichever way it was given.
-fn upright(given: &Value, view: &View<'_>) -> Result<Value, Refusal> {
-    let Some(map) = given.as_object() else { return Ok(given.clone()) };
+fn upright<'a>(given: &'a Value, view: &View<'_>) -> Result<Cow<'a, Value>, Refusal> {
+    let Some(map) = given.as_object() else { return Ok(Cow::Borrowed(given)) };
     let stray = |map: &Map<String, Value>| map.keys().find(|key| Channel::parse(key).is_none()).cloned();
-    let Some(first) = stray(map) else { return Ok(given.clone()) };
+    let Some(first) = stray(map) else { return Ok(Cow::Borrowed(given)) };
     let is_group = |key: &String| Group::parse(key).is_some_and(|group| view.knows(group));
     if !map.keys().any(is_group) {
-        return Err(super::super::arguments::channel(&first, &format!("targeted_spend.{first}"))
-            .expect_err("no channel"));
+        channel(&first, &format!("targeted_spend.{first}"))?;
     }
     let turned = transposed(map);
     match stray(&turned) {
@@ -81,11 +93,14 @@ fn upright(given: &Value, view: &View<'_>) -> Result<Value, Refusal> {
             let message = "the order is channel, then group";
             Err(Refusal::at(format!("targeted_spend.{key}"), "nesting_inverted", message))
         }
-        None => Ok(Value::Object(turned)),
+        None => Ok(Cow::Owned(Value::Object(turned))),
     }
 }
 
 impl Tool for SetTargetedAdSpend {
+    type Args = IndexMap<Channel, IndexMap<Group, Sent>>;
+    type Answer = AdBudgets;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
@@ -94,40 +109,20 @@ impl Tool for SetTargetedAdSpend {
         Map::from_iter([("targeted_spend".to_owned(), as_data(&settings.targeted_ads.targeted_spend))])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Self::Args, Refusal> {
         let given = arguments.get("targeted_spend").unwrap_or(&Value::Null);
-        let matrix = upright(given, view)?;
-        let targeted_spend = per_channel_group(&matrix, "targeted_spend", BUDGET, view)?;
-        Ok(Command::Set(SettingsChange::TargetedAds(TargetedAds { targeted_spend })))
+        sent_per_channel_group(&*upright(given, view)?, "targeted_spend", BUDGET, view)
     }
 
-    fn row(&self, arguments: &Arguments, resolved: &ResolvedCommand) -> Option<Value> {
-        let ResolvedCommand::Set(SettingsChange::TargetedAds(ads)) = resolved else { return None };
-        let given = arguments.get("targeted_spend");
-        let sent = |channel: Channel, group: Group| {
-            let (channel, group) = (channel.id(), group.id());
-            let in_order = |outer: &str, inner: &str| given?.get(outer)?.get(inner);
-            in_order(channel, group).or_else(|| in_order(group, channel))
+    fn plan(&self, _: &View<'_>, sent: Self::Args) -> Result<Planned<AdBudgets>, Refusal> {
+        let row = json!({ "targeted_spend": sent });
+        let amounts = |groups: IndexMap<Group, Sent>| -> PerGroup {
+            groups.into_iter().map(|(group, sent)| (group, sent.value)).collect()
         };
-        let groups = |channel: Channel, groups: &PerGroup| -> Value {
-            let amount = |(group, amount): (&Group, &f64)| {
-                (group.id().to_owned(), amount_as_sent(*amount, sent(channel, *group)))
-            };
-            Value::Object(groups.iter().map(amount).collect())
+        let ads = TargetedAds {
+            targeted_spend: sent.into_iter().map(|(channel, groups)| (channel, amounts(groups))).collect(),
         };
-        let matrix = ads.targeted_spend.iter();
-        let matrix: Map<String, Value> =
-            matrix.map(|(channel, own)| (channel.id().to_owned(), groups(*channel, own))).collect();
-        Some(json!({ "targeted_spend": matrix }))
-    }
-
-    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        match resolved {
-            ResolvedCommand::Set(SettingsChange::TargetedAds(ads)) => json!({
-                "targeted_spend": as_data(&ads.targeted_spend),
-                "total_per_day": json_number(ads.total()),
-            }),
-            _ => Value::Null,
-        }
+        let answer = AdBudgets { targeted_spend: ads.targeted_spend.clone(), total_per_day: ads.total() };
+        Ok(Planned::setting(SettingsChange::TargetedAds(ads), answer).with_row(row))
     }
 }

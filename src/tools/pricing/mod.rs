@@ -10,15 +10,26 @@ pub use set_prices::SetPrices;
 pub use set_promotion::SetPromotion;
 pub use set_usage_quotas::SetUsageQuotas;
 
+use indexmap::IndexMap;
+use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::arguments::{Amount, Arguments};
+use super::arguments::{Amount, Arguments, number, plan};
+use super::plain::plain;
 use super::refusal::Refusal;
 use super::spec::Range;
-use crate::world::command::ResolvedCommand;
-use crate::world::identifiers::{ByPlan, Plan};
-use crate::world::settings::CoreSettings;
-use crate::world::settings::SettingsChange;
+use crate::world::identifiers::Plan;
+
+/// What a call set, and what holds then, for tools that set one number per plan.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlanUpdate<S: Serialize, T: Serialize> {
+    /// What was sent, in the order of the call.
+    #[serde(serialize_with = "plain")]
+    pub updated: IndexMap<Plan, S>,
+    /// What holds, by plan.
+    #[serde(serialize_with = "plain")]
+    pub current: IndexMap<Plan, T>,
+}
 
 /// A discount of a scope.
 pub(super) const DISCOUNT: Amount = Amount {
@@ -28,42 +39,32 @@ pub(super) const DISCOUNT: Amount = Amount {
 };
 
 /// The global discount of a promotion.
-pub(super) fn global_discount(arguments: &Arguments, now: f64) -> Result<f64, Refusal> {
-    let Some(value) = arguments.get("global_promotion") else { return Ok(now) };
-    super::arguments::number(value).filter(|number| Range::AT_LEAST_ZERO.holds(*number)).ok_or_else(|| {
+pub(super) fn global_discount(value: &Value, field: &str) -> Result<f64, Refusal> {
+    number(value).filter(|number| Range::AT_LEAST_ZERO.holds(*number)).ok_or_else(|| {
         let message = "the global discount must be a number of at least zero, in dollars a month";
-        Refusal::at("global_promotion", "global_promotion_negative", message)
+        Refusal::at(field, "global_promotion_negative", message)
     })
 }
 
-/// Refuses a call that gives nothing, or names a plan that does not exist.
-fn some_plans(arguments: &Arguments) -> Result<(), Refusal> {
+/// A value per plan that a call names; refuses one that gives nothing, or names a plan that does not exist.
+fn per_named_plan<T>(
+    arguments: &Arguments,
+    read: impl Fn(Plan, &Value) -> Result<T, Refusal>,
+) -> Result<IndexMap<Plan, T>, Refusal> {
     if arguments.is_empty() {
         return Err(Refusal::new("nothing_given", "no value was given; give at least one of A, B, C"));
     }
-    match arguments.as_map().keys().find(|key| Plan::parse(key).is_none()) {
-        Some(key) => Err(super::arguments::plan(key, key).expect_err("no such plan")),
-        None => Ok(()),
-    }
+    let named = arguments.as_map().iter().map(|(key, value)| Ok((plan(key, key)?, value)));
+    let named: Vec<(Plan, &Value)> = named.collect::<Result<_, Refusal>>()?;
+    named.into_iter().map(|(plan, value)| Ok((plan, read(plan, value)?))).collect()
 }
 
-/// One JSON value per plan.
-fn by_plan(value: impl Fn(Plan) -> Value) -> Map<String, Value> {
+/// A value for each plan.
+fn by_plan<T>(value: impl Fn(Plan) -> T) -> IndexMap<Plan, T> {
+    Plan::ALL.into_iter().map(|plan| (plan, value(plan))).collect()
+}
+
+/// A JSON value for each plan, by its name.
+fn plan_map(value: impl Fn(Plan) -> Value) -> Map<String, Value> {
     Plan::ALL.into_iter().map(|plan| (plan.id().to_owned(), value(plan))).collect()
-}
-
-/// What was sent and what holds now, for tools that set one number per plan.
-fn updated_and_current(arguments: &Arguments, current: &ByPlan<Value>) -> Value {
-    serde_json::json!({
-        "updated": crate::notation::plain_numbers(Value::Object(arguments.as_map().clone())),
-        "current": by_plan(|plan| current[plan].clone()),
-    })
-}
-
-/// The core settings a resolved leaves.
-pub(super) fn core_of<'a>(resolved: &'a ResolvedCommand, now: &'a CoreSettings) -> &'a CoreSettings {
-    match resolved {
-        ResolvedCommand::Set(SettingsChange::Core(core)) => core,
-        _ => now,
-    }
 }

@@ -1,20 +1,21 @@
+use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, integer};
+use super::super::arguments::Arguments;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use super::{by_plan, core_of, some_plans, updated_and_current};
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::identifiers::{ByPlan, Plan};
-use crate::world::settings::Settings;
-use crate::world::settings::SettingsChange;
+use super::{PlanUpdate, by_plan, per_named_plan, plan_map};
+use crate::world::identifiers::Plan;
+use crate::world::settings::{Settings, SettingsChange};
 
 /// Chooses the model behind each plan.
 pub struct SetModelTiers;
 
+const TIERS: Range = Range::between(1.0, 5.0);
+
 const fn tier(name: &'static str, doc: &'static str) -> Argument {
-    let kind = ArgumentKind::Integer(Range::between(1.0, 5.0));
+    let kind = ArgumentKind::Integer(TIERS);
     Argument { name, alias: None, kind, required: false, unit: "tier", doc }
 }
 
@@ -45,29 +46,32 @@ static SPEC: Spec = Spec {
 };
 
 impl Tool for SetModelTiers {
+    type Args = IndexMap<Plan, u8>;
+    type Answer = PlanUpdate<u8, u8>;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
     fn current(&self, settings: &Settings) -> Map<String, Value> {
-        by_plan(|plan| Value::from(settings.core.tiers[plan]))
+        plan_map(|plan| Value::from(settings.core.tiers[plan]))
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        some_plans(arguments)?;
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<IndexMap<Plan, u8>, Refusal> {
+        per_named_plan(arguments, |plan, value| {
+            TIERS.whole(value).ok_or_else(|| {
+                let message = format!("model tier of plan {plan} must be {}", TIERS.words());
+                Refusal::at(plan.id(), "tier_out_of_range", message)
+            })
+        })
+    }
+
+    fn plan(&self, view: &View<'_>, updated: IndexMap<Plan, u8>) -> Result<Planned<Self::Answer>, Refusal> {
         let mut core = view.settings().core;
-        for (key, value) in arguments.as_map() {
-            let plan = Plan::parse(key).expect("checked above");
-            core.tiers[plan] = integer(value).filter(|tier| (1..=5).contains(tier)).ok_or_else(|| {
-                let message = format!("model tier of plan {plan} must be 1 to 5");
-                Refusal::at(key.clone(), "tier_out_of_range", message)
-            })? as u8;
+        for (plan, tier) in &updated {
+            core.tiers[*plan] = *tier;
         }
-        Ok(Command::Set(SettingsChange::Core(core)))
-    }
-
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let core = core_of(resolved, &view.settings().core);
-        updated_and_current(arguments, &ByPlan::from_fn(|plan| Value::from(core.tiers[plan])))
+        let current = by_plan(|plan| core.tiers[plan]);
+        Ok(Planned::setting(SettingsChange::Core(core), PlanUpdate { updated, current }))
     }
 }

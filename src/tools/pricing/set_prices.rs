@@ -1,15 +1,14 @@
+use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, number};
+use super::super::arguments::{Arguments, Sent, wrong_type};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use super::{by_plan, core_of, some_plans, updated_and_current};
+use super::{PlanUpdate, by_plan, per_named_plan, plan_map};
 use crate::notation::json_number;
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::identifiers::{ByPlan, Plan};
-use crate::world::settings::Settings;
-use crate::world::settings::SettingsChange;
+use crate::world::identifiers::Plan;
+use crate::world::settings::{Settings, SettingsChange};
 
 /// Sets monthly list prices.
 pub struct SetPrices;
@@ -47,31 +46,34 @@ static SPEC: Spec = Spec {
 };
 
 impl Tool for SetPrices {
+    type Args = IndexMap<Plan, Sent>;
+    type Answer = PlanUpdate<Sent, f64>;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
     fn current(&self, settings: &Settings) -> Map<String, Value> {
-        by_plan(|plan| json_number(settings.core.prices[plan]))
+        plan_map(|plan| json_number(settings.core.prices[plan]))
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        some_plans(arguments)?;
-        let mut core = view.settings().core;
-        for (key, value) in arguments.as_map() {
-            let plan = Plan::parse(key).expect("checked above");
-            let price = number(value).ok_or_else(|| super::super::arguments::wrong_type(key, "a number"))?;
-            if !Range::ABOVE_ZERO.holds(price) {
-                let message = format!("price of plan {plan} must be above zero");
-                return Err(Refusal::at(key.clone(), "price_not_positive", message));
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<IndexMap<Plan, Sent>, Refusal> {
+        per_named_plan(arguments, |plan, value| {
+            let price = Sent::of(value).ok_or_else(|| wrong_type(plan.id(), "a number"))?;
+            if Range::ABOVE_ZERO.holds(price.value) {
+                return Ok(price);
             }
-            core.prices[plan] = price;
-        }
-        Ok(Command::Set(SettingsChange::Core(core)))
+            let message = format!("price of plan {plan} must be above zero");
+            Err(Refusal::at(plan.id(), "price_not_positive", message))
+        })
     }
 
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let core = core_of(resolved, &view.settings().core);
-        updated_and_current(arguments, &ByPlan::from_fn(|plan| json_number(core.prices[plan])))
+    fn plan(&self, view: &View<'_>, updated: IndexMap<Plan, Sent>) -> Result<Planned<Self::Answer>, Refusal> {
+        let mut core = view.settings().core;
+        for (plan, sent) in &updated {
+            core.prices[*plan] = sent.value;
+        }
+        let current = by_plan(|plan| core.prices[plan]);
+        Ok(Planned::setting(SettingsChange::Core(core), PlanUpdate { updated, current }))
     }
 }

@@ -1,15 +1,16 @@
+use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, per_customer, per_group, per_group_plan};
+use super::super::arguments::{Arguments, per_customer, per_group, per_group_plan, replace};
+use super::super::plain::as_data;
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Plain, Planned, Range, Refusal, Spec, Tool, ToolId,
+    View, When,
 };
-use super::super::{as_data, family_of};
 use super::{DISCOUNT, global_discount};
 use crate::notation::json_number;
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::settings::Settings;
-use crate::world::settings::SettingsChange;
+use crate::world::identifiers::Group;
+use crate::world::settings::{PerCustomer, PerGroup, PerPlan, Promotion, Settings, SettingsChange};
 
 /// Grants standing discounts.
 pub struct SetPromotion;
@@ -60,7 +61,18 @@ static SPEC: Spec = Spec {
     example: r#"{"by_group": {"S2": 4}}"#,
 };
 
+/// The scopes that a call names; the others stay as they are.
+pub struct Discounts {
+    global: Option<f64>,
+    by_group: Option<PerGroup>,
+    by_customer: Option<PerCustomer>,
+    by_group_plan: Option<IndexMap<Group, PerPlan>>,
+}
+
 impl Tool for SetPromotion {
+    type Args = Discounts;
+    type Answer = Plain<Promotion>;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
@@ -75,22 +87,22 @@ impl Tool for SetPromotion {
         ])
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let mut promotion = view.settings().promotion.clone();
-        promotion.global = global_discount(arguments, promotion.global)?;
-        if let Some(value) = arguments.get("by_group") {
-            promotion.by_group = per_group(value, "by_group", DISCOUNT, view)?;
-        }
-        if let Some(value) = arguments.get("by_customer") {
-            promotion.by_customer = per_customer(value, "by_customer", DISCOUNT)?;
-        }
-        if let Some(value) = arguments.get("by_group_plan") {
-            promotion.by_group_plan = per_group_plan(value, "by_group_plan", DISCOUNT, view)?;
-        }
-        Ok(Command::Set(SettingsChange::Promotion(promotion)))
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Discounts, Refusal> {
+        Ok(Discounts {
+            global: arguments.read("global_promotion", global_discount)?,
+            by_group: arguments.read("by_group", |value, name| per_group(value, name, DISCOUNT, view))?,
+            by_customer: arguments.read("by_customer", |value, name| per_customer(value, name, DISCOUNT))?,
+            by_group_plan: arguments
+                .read("by_group_plan", |value, name| per_group_plan(value, name, DISCOUNT, view))?,
+        })
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        family_of(resolved)
+    fn plan(&self, view: &View<'_>, given: Discounts) -> Result<Planned<Plain<Promotion>>, Refusal> {
+        let mut promotion = view.settings().promotion.clone();
+        replace(&mut promotion.global, given.global);
+        replace(&mut promotion.by_group, given.by_group);
+        replace(&mut promotion.by_customer, given.by_customer);
+        replace(&mut promotion.by_group_plan, given.by_group_plan);
+        Ok(Planned::setting(SettingsChange::Promotion(promotion.clone()), Plain(promotion)))
     }
 }

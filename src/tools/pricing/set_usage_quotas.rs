@@ -1,17 +1,17 @@
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use serde_json::{Map, Value};
 
 use super::super::arguments::{Arguments, number, wrong_type};
 use super::super::bounds::{MOST_UNITS, too_large};
+use super::super::plain::plain;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use super::{by_plan, core_of};
+use super::{by_plan, plan_map};
 use crate::notation::json_number;
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::identifiers::Plan;
+use crate::world::identifiers::{ByPlan, Plan};
 use crate::world::quota::Quota;
-use crate::world::settings::Settings;
-use crate::world::settings::SettingsChange;
+use crate::world::settings::{CoreSettings, PerPlan, Settings, SettingsChange};
 
 /// Caps usage.
 pub struct SetUsageQuotas;
@@ -44,37 +44,50 @@ static SPEC: Spec = Spec {
     example: r#"{"A": 50000, "B": 200000, "C": 900000}"#,
 };
 
+/// The quotas in force.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UsageQuotas {
+    /// Units a day and customer, by plan.
+    #[serde(serialize_with = "plain")]
+    pub quotas: PerPlan,
+}
+
+fn quota_of(plan: Plan, given: Option<&Value>) -> Result<Quota, Refusal> {
+    let Some(value) = given else {
+        let message = format!("quota of plan {plan} is missing; give all three");
+        return Err(Refusal::at(plan.id(), "quota_missing", message));
+    };
+    let units = number(value).ok_or_else(|| wrong_type(plan.id(), "a number"))?;
+    if units < 0.0 {
+        let message = format!("quota of plan {plan} must not be negative");
+        return Err(Refusal::at(plan.id(), "quota_negative", message));
+    }
+    Quota::of(units).ok_or_else(|| too_large(MOST_UNITS, plan.id(), "units/day"))
+}
+
 impl Tool for SetUsageQuotas {
+    type Args = ByPlan<Quota>;
+    type Answer = UsageQuotas;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
     fn current(&self, settings: &Settings) -> Map<String, Value> {
-        by_plan(|plan| json_number(settings.core.quotas[plan].units()))
+        plan_map(|plan| json_number(settings.core.quotas[plan].units()))
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let mut core = view.settings().core;
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<ByPlan<Quota>, Refusal> {
+        let mut quotas = ByPlan::default();
         for plan in Plan::ALL {
-            let Some(value) = arguments.get(plan.id()) else {
-                let message = format!("quota of plan {plan} is missing; give all three");
-                return Err(Refusal::at(plan.id(), "quota_missing", message));
-            };
-            if number(value).is_some_and(|quota| quota < 0.0) {
-                let message = format!("quota of plan {plan} must not be negative");
-                return Err(Refusal::at(plan.id(), "quota_negative", message));
-            }
-            let units = number(value).ok_or_else(|| wrong_type(plan.id(), "a number"))?;
-            core.quotas[plan] = match Quota::of(units) {
-                Some(quota) => quota,
-                None => return Err(too_large(MOST_UNITS, plan.id(), "units/day")),
-            };
+            quotas[plan] = quota_of(plan, arguments.get(plan.id()))?;
         }
-        Ok(Command::Set(SettingsChange::Core(core)))
+        Ok(quotas)
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let core = core_of(resolved, &view.settings().core);
-        json!({ "quotas": by_plan(|plan| json_number(core.quotas[plan].units())) })
+    fn plan(&self, view: &View<'_>, quotas: ByPlan<Quota>) -> Result<Planned<UsageQuotas>, Refusal> {
+        let core = CoreSettings { quotas, ..view.settings().core };
+        let answer = UsageQuotas { quotas: by_plan(|plan| quotas[plan].units()) };
+        Ok(Planned::setting(SettingsChange::Core(core), answer))
     }
 }

@@ -1,9 +1,8 @@
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::notation::json_number;
-use crate::world::command::{Command, ResolvedCommand};
+use super::super::plain::plain;
+use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use crate::world::market::economy::round_to;
 use crate::world::params::ResearchTier;
 
@@ -32,31 +31,66 @@ static SPEC: Spec = Spec {
     example: "{}",
 };
 
+/// What can be researched, and how far it is.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct ResearchProjects {
+    /// The tiers, the cheapest first.
+    pub tiers: Vec<ResearchTierFacts>,
+}
+
+/// A tier of R&D.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ResearchTierFacts {
+    /// Its number.
+    pub tier: u8,
+    /// What people call it.
+    pub name: String,
+    /// Dollars.
+    pub cost: u32,
+    /// Days that a project takes on average.
+    #[serde(serialize_with = "plain")]
+    pub mean_days: f64,
+    /// Quality that a project adds on average.
+    pub mean_quality_boost: f64,
+    /// Projects that run.
+    pub in_progress: usize,
+    /// Projects that are done.
+    pub completed: usize,
+    /// Quality that those have added.
+    #[serde(serialize_with = "plain")]
+    pub total_quality_boost: f64,
+}
+
 impl Tool for ListResearchProjects {
+    type Args = ();
+    type Answer = ResearchProjects;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+        Ok(())
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
-        let decimals = view.params().development.rd_report_decimals;
-        let entry = |tier: &ResearchTier| {
-            let own = || view.world().product.research.iter().filter(|project| project.tier == tier.tier);
-            let completed = || own().filter(|project| project.completed_day.is_some());
-            json!({
-                "tier": tier.tier,
-                "name": tier.name,
-                "cost": tier.cost,
-                "mean_days": json_number(tier.mean_days),
-                "mean_quality_boost": tier.mean_quality_boost,
-                "in_progress": own().count() - completed().count(),
-                "completed": completed().count(),
-                "total_quality_boost": json_number(round_to(completed().map(|project| project.boost).sum(), decimals)),
-            })
-        };
-        json!({ "tiers": view.params().research_tier.iter().map(entry).collect::<Vec<_>>() })
+    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<ResearchProjects>, Refusal> {
+        let tiers = view.params().research_tier.iter().map(|tier| facts(tier, view)).collect();
+        Ok(Planned::reading(ResearchProjects { tiers }))
+    }
+}
+
+fn facts(tier: &ResearchTier, view: &View<'_>) -> ResearchTierFacts {
+    let decimals = view.params().development.rd_report_decimals;
+    let own = || view.world().product.research.iter().filter(|project| project.tier == tier.tier);
+    let completed = || own().filter(|project| project.completed_day.is_some());
+    ResearchTierFacts {
+        tier: tier.tier,
+        name: tier.name.clone(),
+        cost: tier.cost,
+        mean_days: tier.mean_days,
+        mean_quality_boost: tier.mean_quality_boost,
+        in_progress: own().count() - completed().count(),
+        completed: completed().count(),
+        total_quality_boost: round_to(completed().map(|project| project.boost).sum(), decimals),
     }
 }

@@ -3,7 +3,7 @@
 mod list_research_projects;
 mod start_research_project;
 
-pub use list_research_projects::ListResearchProjects;
+pub use list_research_projects::{ListResearchProjects, ResearchProjects, ResearchTierFacts};
 pub use start_research_project::StartResearchProject;
 
 use super::refusal::Refusal;

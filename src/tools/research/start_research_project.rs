@@ -1,16 +1,20 @@
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::Value;
 
-use super::super::arguments::{Arguments, integer};
+use super::super::arguments::Arguments;
+use super::super::plain::plain;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::affordable;
-use crate::notation::json_number;
 use crate::world::command::{Command, ResolvedCommand};
+use crate::world::events::Project;
 use crate::world::market::economy::round_to;
 
 /// Buys an R&D project.
 pub struct StartResearchProject;
+
+const TIERS: Range = Range::between(1.0, 20.0);
 
 static SPEC: Spec = Spec {
     id: ToolId::StartResearchProject,
@@ -21,7 +25,7 @@ static SPEC: Spec = Spec {
     arguments: &[Argument {
         name: "tier",
         alias: None,
-        kind: ArgumentKind::Integer(Range::between(1.0, 20.0)),
+        kind: ArgumentKind::Integer(TIERS),
         required: true,
         unit: "tier",
         doc: "R&D tier 1 to 20; list_research_projects shows prices and means",
@@ -47,41 +51,62 @@ static SPEC: Spec = Spec {
     example: r#"{"tier": 2}"#,
 };
 
-fn tier_of(arguments: &Arguments) -> Result<u8, Refusal> {
-    let given = arguments.get("tier").unwrap_or(&Value::Null);
-    integer(given).filter(|tier| (1..=20).contains(tier)).map(|tier| tier as u8).ok_or_else(|| {
-        let message = format!("R&D tier {given} does not exist; the tiers are 1 to 20");
-        Refusal::at("tier", "rd_tier_unknown", message)
-    })
+/// A project that has been paid and runs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StartedProject {
+    /// Its identifier.
+    pub project_id: String,
+    /// Its tier.
+    pub tier: u8,
+    /// Name of the tier.
+    pub name: String,
+    /// Dollars paid.
+    #[serde(serialize_with = "plain")]
+    pub cost: f64,
+    /// Day on which it is done.
+    pub expected_completion_day: u32,
+    /// Days it takes.
+    pub expected_duration_days: u32,
+    /// Quality it adds.
+    pub expected_quality_boost: f64,
 }
 
 impl Tool for StartResearchProject {
+    type Args = u8;
+    type Answer = StartedProject;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        let tier = tier_of(arguments)?;
-        let running = |p: &&crate::world::events::Project| p.tier == tier && p.completed_day.is_none();
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<u8, Refusal> {
+        let given = arguments.get("tier").unwrap_or(&Value::Null);
+        TIERS.whole(given).ok_or_else(|| {
+            let message = format!("R&D tier {given} does not exist; the tiers are {}", TIERS.words());
+            Refusal::at("tier", "rd_tier_unknown", message)
+        })
+    }
+
+    fn plan(&self, view: &View<'_>, tier: u8) -> Result<Planned<StartedProject>, Refusal> {
+        let running = |project: &&Project| project.tier == tier && project.completed_day.is_none();
         if let Some(project) = view.world().product.research.iter().find(running) {
             let message = format!("tier {tier} is already running until day {}", project.due_day);
             return Err(Refusal::at("tier", "rd_in_progress", message));
         }
-        affordable(f64::from(view.params().research(tier).cost), view)?;
-        Ok(Command::StartResearch(tier))
-    }
-
-    fn answer(&self, view: &View<'_>, _: &Arguments, resolved: &ResolvedCommand) -> Value {
-        let ResolvedCommand::StartResearch(project, cost) = resolved else { return Value::Null };
-        let decimals = view.params().development.rd_report_decimals;
-        json!({
-            "project_id": project.id(),
-            "tier": project.tier,
-            "name": view.params().research(project.tier).name,
-            "cost": json_number(*cost),
-            "expected_completion_day": project.due_day,
-            "expected_duration_days": project.due_day - project.started_day,
-            "expected_quality_boost": round_to(project.boost, decimals),
-        })
+        let facts = view.params().research(tier);
+        affordable(f64::from(facts.cost), view)?;
+        let (name, decimals) = (facts.name.clone(), view.params().development.rd_report_decimals);
+        Ok(Planned::drawing(Command::StartResearch(tier), move |resolved| match resolved {
+            ResolvedCommand::StartResearch(project, cost) => Some(StartedProject {
+                project_id: project.id(),
+                tier: project.tier,
+                name,
+                cost: *cost,
+                expected_completion_day: project.due_day,
+                expected_duration_days: project.due_day - project.started_day,
+                expected_quality_boost: round_to(project.boost, decimals),
+            }),
+            _ => None,
+        }))
     }
 }

@@ -1,11 +1,9 @@
-use serde_json::{Value, json};
-
 use super::super::arguments::Arguments;
+use super::super::keeping::Remaining;
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
-use super::{find, stored};
-use crate::world::command::{Command, ResolvedCommand};
+use super::{find, name_of, stored};
 
 /// Deletes a script.
 pub struct DeleteScript;
@@ -39,21 +37,19 @@ static SPEC: Spec = Spec {
 };
 
 impl Tool for DeleteScript {
+    type Args = String;
+    type Answer = Remaining;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        find(arguments, view).map(|_| Command::None)
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<String, Refusal> {
+        name_of(arguments)
     }
 
-    fn task(&self, view: &View<'_>, arguments: &Arguments) -> Option<Task> {
-        let (name, _) = find(arguments, view).ok()?;
-        Some(Task::Forget { what: Kept::Script, name: name.to_owned() })
-    }
-
-    fn answer(&self, view: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
-        let Ok((name, _)) = find(arguments, view) else { return Value::Null };
-        json!({ "name": name, "remaining": stored(view).names_without(name) })
+    fn plan(&self, view: &View<'_>, name: String) -> Result<Planned<Remaining>, Refusal> {
+        find(&name, view)?;
+        Ok(Remaining::without(stored(view), Kept::Script, name))
     }
 }

@@ -1,9 +1,9 @@
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
+use super::super::keeping::owned;
+use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::stored;
-use crate::world::command::{Command, ResolvedCommand};
 
 /// Lists the scripts.
 pub struct ListScripts;
@@ -30,16 +30,26 @@ static SPEC: Spec = Spec {
     example: r#"{}"#,
 };
 
+/// The stored scripts.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Scripts {
+    /// Names in the order in which they were stored.
+    pub scripts: Vec<String>,
+}
+
 impl Tool for ListScripts {
+    type Args = ();
+    type Answer = Scripts;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+        Ok(())
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
-        json!({ "scripts": stored(view).names() })
+    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<Scripts>, Refusal> {
+        Ok(Planned::reading(Scripts { scripts: owned(stored(view).names()) }))
     }
 }

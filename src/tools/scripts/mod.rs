@@ -28,11 +28,14 @@ fn stored<'a>(view: &View<'a>) -> &'a Shelf {
     view.surroundings().notebook().shelf(Kept::Script)
 }
 
-/// Name and statements of the script that the argument `name` names.
-fn find<'a>(arguments: &'a Arguments, view: &View<'a>) -> Result<(&'a str, &'a str), Refusal> {
-    let name = text(arguments, "name")?.trim();
-    let found = stored(view).get(name).map(|code| (name, code));
-    found.ok_or_else(|| {
+/// The name of a script that the argument `name` gives.
+fn name_of(arguments: &Arguments) -> Result<String, Refusal> {
+    Ok(text(arguments, "name")?.trim().to_owned())
+}
+
+/// The statements of a stored script.
+fn find<'a>(name: &str, view: &View<'a>) -> Result<&'a str, Refusal> {
+    stored(view).get(name).ok_or_else(|| {
         let names = stored(view).names();
         let known = if names.is_empty() {
             "none is stored".to_owned()

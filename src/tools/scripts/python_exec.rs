@@ -1,11 +1,9 @@
-use serde_json::Value;
-
 use super::super::arguments::{Arguments, number, text, wrong_type};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Range, Refusal, Spec, Task, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Script, ScriptOutput, Spec, Tool,
+    ToolId, View, When,
 };
 use super::LONGEST_SECONDS;
-use crate::world::command::{Command, ResolvedCommand};
 
 /// Runs statements at once.
 pub struct PythonExec;
@@ -49,30 +47,25 @@ static SPEC: Spec = Spec {
     example: r#"{"code": "SELECT COUNT(*) AS n FROM customers"}"#,
 };
 
-fn seconds(arguments: &Arguments) -> Result<f64, Refusal> {
-    let Some(given) = arguments.get("timeout_seconds") else { return Ok(LONGEST_SECONDS) };
-    number(given)
-        .filter(|seconds| *seconds > 0.0 && *seconds <= LONGEST_SECONDS)
-        .ok_or_else(|| wrong_type("timeout_seconds", &format!("a number above 0, at most {LONGEST_SECONDS}")))
-}
-
 impl Tool for PythonExec {
+    type Args = Script;
+    type Answer = ScriptOutput;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        text(arguments, "code")?;
-        seconds(arguments)?;
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Script, Refusal> {
+        let code = text(arguments, "code")?.to_owned();
+        let seconds = arguments.read("timeout_seconds", |value, name| {
+            number(value)
+                .filter(|seconds| *seconds > 0.0 && *seconds <= LONGEST_SECONDS)
+                .ok_or_else(|| wrong_type(name, &format!("a number above 0, at most {LONGEST_SECONDS}")))
+        })?;
+        Ok(Script { code, seconds: seconds.unwrap_or(LONGEST_SECONDS) })
     }
 
-    fn task(&self, _: &View<'_>, arguments: &Arguments) -> Option<Task> {
-        let code = text(arguments, "code").ok()?.to_owned();
-        Some(Task::Run { code, seconds: seconds(arguments).ok()? })
-    }
-
-    fn answer(&self, _: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
-        Value::Null
+    fn plan(&self, _: &View<'_>, script: Script) -> Result<Planned<ScriptOutput>, Refusal> {
+        Ok(Planned::running(script))
     }
 }

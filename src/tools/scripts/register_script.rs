@@ -1,10 +1,8 @@
-use serde_json::{Value, json};
-
 use super::super::arguments::{Arguments, text};
+use super::super::keeping::{KeptCode, NamedCode};
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
-use crate::world::command::{Command, ResolvedCommand};
 
 /// Stores a script.
 pub struct RegisterScript;
@@ -48,26 +46,22 @@ static SPEC: Spec = Spec {
 };
 
 impl Tool for RegisterScript {
+    type Args = NamedCode;
+    type Answer = KeptCode;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        if text(arguments, "name")?.trim().is_empty() {
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<NamedCode, Refusal> {
+        let name = text(arguments, "name")?.trim();
+        if name.is_empty() {
             return Err(Refusal::at("name", "script_name_blank", "the script needs a name"));
         }
-        text(arguments, "code")?;
-        Ok(Command::None)
+        Ok(NamedCode { name: name.to_owned(), code: text(arguments, "code")?.to_owned() })
     }
 
-    fn task(&self, _: &View<'_>, arguments: &Arguments) -> Option<Task> {
-        let (name, code) = (text(arguments, "name").ok()?.trim(), text(arguments, "code").ok()?);
-        Some(Task::Keep { what: Kept::Script, name: name.to_owned(), code: code.to_owned() })
-    }
-
-    fn answer(&self, _: &View<'_>, arguments: &Arguments, _: &ResolvedCommand) -> Value {
-        let name = text(arguments, "name").unwrap_or_default().trim();
-        let code = text(arguments, "code").unwrap_or_default();
-        json!({ "name": name, "code_length": code.chars().count() })
+    fn plan(&self, _: &View<'_>, given: NamedCode) -> Result<Planned<KeptCode>, Refusal> {
+        Ok(given.keep(Kept::Script))
     }
 }

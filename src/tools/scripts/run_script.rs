@@ -1,11 +1,9 @@
-use serde_json::Value;
-
 use super::super::arguments::Arguments;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Task, Tool, ToolId, View, When,
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Script, ScriptOutput, Spec, Tool, ToolId,
+    View, When,
 };
-use super::{LONGEST_SECONDS, find};
-use crate::world::command::{Command, ResolvedCommand};
+use super::{LONGEST_SECONDS, find, name_of};
 
 /// Runs a stored script.
 pub struct RunScript;
@@ -40,20 +38,19 @@ static SPEC: Spec = Spec {
 };
 
 impl Tool for RunScript {
+    type Args = String;
+    type Answer = ScriptOutput;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        find(arguments, view).map(|_| Command::None)
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<String, Refusal> {
+        name_of(arguments)
     }
 
-    fn task(&self, view: &View<'_>, arguments: &Arguments) -> Option<Task> {
-        let (_, code) = find(arguments, view).ok()?;
-        Some(Task::Run { code: code.to_owned(), seconds: LONGEST_SECONDS })
-    }
-
-    fn answer(&self, _: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
-        Value::Null
+    fn plan(&self, view: &View<'_>, name: String) -> Result<Planned<ScriptOutput>, Refusal> {
+        let code = find(&name, view)?.to_owned();
+        Ok(Planned::running(Script { code, seconds: LONGEST_SECONDS }))
     }
 }

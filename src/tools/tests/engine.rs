@@ -3,7 +3,8 @@
 use serde_json::{Value, json};
 
 use super::super::{
-    Arguments, ColumnDocument, Kept, Notebook, Refusal, Surroundings, TableDocument, Task, View, find,
+    Arguments, ColumnDocument, Kept, Notebook, Refusal, Reply, Script, Surroundings, TableDocument, View,
+    find,
 };
 use crate::world::command::ResolvedCommand;
 use crate::world::events::Facts;
@@ -47,21 +48,25 @@ impl Surroundings for Desk {
 }
 
 impl Desk {
-    fn try_call(&mut self, name: &str, given: &Value) -> Result<(Value, Option<Task>), Refusal> {
+    /// The answer, or the statements that are run for it.
+    fn try_call(&mut self, name: &str, given: &Value) -> Result<Result<Value, Script>, Refusal> {
         let tool = find(name).expect("the tool exists");
         let params = Params::shipped();
         let world = World::open(500, 1.0, &params, &mut Facts::default());
         let view = View::new(&world, &params).within(self);
         let arguments = Arguments::of(tool.spec(), given)?;
-        tool.plan(&view, &arguments)?;
-        let answer = tool.answer(&view, &arguments, &ResolvedCommand::None);
-        let task = tool.task(&view, &arguments);
-        task.iter().for_each(|task| self.notebook.apply(task));
-        Ok((answer, task))
+        let planned = tool.plan(&view, &arguments)?;
+        let told = match planned.reply {
+            Reply::Output(script, _) => Err(script),
+            reply => Ok(reply.without_running(&ResolvedCommand::None).expect("an answer").to_json()),
+        };
+        planned.change.iter().for_each(|change| self.notebook.apply(change));
+        Ok(told)
     }
 
     fn call(&mut self, name: &str, given: Value) -> Value {
-        self.try_call(name, &given).unwrap_or_else(|refusal| panic!("{name} {given}: {refusal}")).0
+        let told = self.try_call(name, &given).unwrap_or_else(|refusal| panic!("{name} {given}: {refusal}"));
+        told.unwrap_or_default()
     }
 
     fn assert_refused(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
@@ -133,8 +138,8 @@ fn scripts_are_stored_found_and_deleted() {
     let missing = [(json!({"name": "nothing"}), "script_not_found", "name")];
     desk.assert_refused("run_script", &missing);
     desk.assert_refused("delete_script", &missing);
-    let (_, task) = desk.try_call("run_script", &json!({"name": "churn"})).expect("it is stored");
-    assert_eq!(task, Some(Task::Run { code: "SELECT 1".to_owned(), seconds: 600.0 }));
+    let script = desk.try_call("run_script", &json!({"name": "churn"})).expect("it is stored");
+    assert_eq!(script, Err(Script { code: "SELECT 1".to_owned(), seconds: 600.0 }));
     let data = desk.call("delete_script", json!({"name": "churn"}));
     assert_eq!(data, json!({"name": "churn", "remaining": ["other"]}));
     desk.assert_refused("run_script", &[(json!({"name": "churn"}), "script_not_found", "name")]);
@@ -143,9 +148,9 @@ fn scripts_are_stored_found_and_deleted() {
 #[test]
 fn python_exec() {
     let mut desk = Desk::default();
-    let (_, task) =
+    let script =
         desk.try_call("python_exec", &json!({"code": "SELECT 1", "timeout_seconds": 2.5})).expect("a script");
-    assert_eq!(task, Some(Task::Run { code: "SELECT 1".to_owned(), seconds: 2.5 }));
+    assert_eq!(script, Err(Script { code: "SELECT 1".to_owned(), seconds: 2.5 }));
     desk.assert_refused(
         "python_exec",
         &[

@@ -1,8 +1,7 @@
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::command::{Command, ResolvedCommand};
+use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 
 /// Tells the day.
 pub struct GetVars;
@@ -25,16 +24,26 @@ static SPEC: Spec = Spec {
     example: "{}",
 };
 
+/// Where the run stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Vars {
+    /// The last simulated day.
+    pub current_day: u32,
+}
+
 impl Tool for GetVars {
+    type Args = ();
+    type Answer = Vars;
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+        Ok(())
     }
 
-    fn answer(&self, view: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
-        json!({ "current_day": view.day() })
+    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<Vars>, Refusal> {
+        Ok(Planned::reading(Vars { current_day: view.day() }))
     }
 }

@@ -3,8 +3,9 @@ use serde_json::Value;
 
 use super::super::arguments::{Arguments, number};
 use super::super::bounds::{MOST_FORECAST, refuse_beyond};
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::command::{Command, ResolvedCommand};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+};
 
 /// Lets a week pass. The session does it; this entry documents it and checks what must be filed first.
 pub struct NextWeek;
@@ -60,19 +61,32 @@ static SPEC: Spec = Spec {
     example: r#"{"rationale": "hold", "predictions": {"cash_1wk": {"point": 990000, "lower": 980000, "upper": 995000}}}"#,
 };
 
+/// What is filed before a week.
+pub struct Filing {
+    /// Why the week looks the way it does.
+    pub rationale: String,
+    /// Cash in 7, 28, 84 and 182 days.
+    pub forecasts: [Forecast; 4],
+}
+
 impl Tool for NextWeek {
+    type Args = Filing;
+    type Answer = ();
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, arguments: &Arguments) -> Result<Command, Refusal> {
-        rationale(arguments.get("rationale").unwrap_or(&Value::Null))?;
-        forecasts(arguments.get("predictions").unwrap_or(&Value::Null), &[7, 28, 84, 182])?;
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Filing, Refusal> {
+        let given = |name| arguments.get(name).unwrap_or(&Value::Null);
+        Ok(Filing {
+            rationale: rationale(given("rationale"))?,
+            forecasts: forecasts(given("predictions"), &[7, 28, 84, 182])?,
+        })
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
-        Value::Null
+    fn plan(&self, _: &View<'_>, _: Filing) -> Result<Planned<()>, Refusal> {
+        Ok(Planned::reading(()))
     }
 }
 

@@ -1,8 +1,7 @@
-use serde_json::Value;
-
 use super::super::arguments::Arguments;
-use super::super::{Argument, ArgumentKind, Kind, Module, Output, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::command::{Command, ResolvedCommand};
+use super::super::{
+    Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+};
 
 /// Asks the database. The session answers it; this entry documents it.
 pub struct Query;
@@ -43,15 +42,18 @@ static SPEC: Spec = Spec {
 };
 
 impl Tool for Query {
+    type Args = ();
+    type Answer = ();
+
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
-    fn plan(&self, _: &View<'_>, _: &Arguments) -> Result<Command, Refusal> {
-        Ok(Command::None)
+    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+        Ok(())
     }
 
-    fn answer(&self, _: &View<'_>, _: &Arguments, _: &ResolvedCommand) -> Value {
-        Value::Null
+    fn plan(&self, _: &View<'_>, (): ()) -> Result<Planned<()>, Refusal> {
+        Ok(Planned::reading(()))
     }
 }

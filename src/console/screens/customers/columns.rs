@@ -1,7 +1,5 @@
 //! The table of the groups: its columns, and the rows behind every figure in it.
 
-use serde_json::Value;
-
 use super::model::{Facts, Market, ad_budgets, development_budget};
 use crate::console::company::Company;
 use crate::console::screens::Figure;
@@ -70,9 +68,8 @@ pub fn columns() -> Vec<Column> {
 
 /// Share of the market as its study estimates it: customers of the individual and companies of the others.
 fn of_market(group: Group, facts: &Facts, company: &Company) -> Option<f64> {
-    let estimates = company.insights.get(&group)?.get("estimates")?;
-    let market = estimates.get("market_cap").and_then(Value::as_f64).filter(|market| *market > 0.0)?;
-    Some(facts.sum(|held| held.customers) / market)
+    let market = company.insights.get(&group)?.estimates.market_cap;
+    (market > 0).then(|| facts.sum(|held| held.customers) / market as f64)
 }
 
 /// The row of a group.

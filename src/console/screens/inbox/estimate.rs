@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::Value;
-
 use super::model::Thread;
 use crate::console::company::Company;
 use crate::session::Rows;
@@ -37,10 +35,9 @@ impl Usage {
         if let Some((seats, units)) = self.0.get(group).filter(|(seats, _)| *seats > 0.0) {
             return Some((units / seats, format!("{group} on the last day")));
         }
-        let told = Group::parse(group).and_then(|group| company.insights.get(&group))?;
-        let studied = told.get("estimates")?.get("usage_volume").and_then(Value::as_f64)?;
-        let level = told.get("info_level").and_then(Value::as_u64).unwrap_or(0);
-        Some((studied, format!("the study of {group}, level {level}")))
+        let insights = Group::parse(group).and_then(|group| company.insights.get(&group))?;
+        let words = format!("the study of {group}, level {}", insights.info_level);
+        Some((insights.estimates.usage_volume, words))
     }
 }
 
@@ -82,8 +79,8 @@ impl Money {
 
 /// Dollars a unit with the model of a plan.
 fn unit_cost(company: &Company, plan: Plan) -> Option<f64> {
-    let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u32;
-    company.costs.get("model_tiers")?.get(tier.to_string())?.get("cost_per_usage_unit")?.as_f64()
+    let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u8;
+    Some(company.costs.model_tiers.get(&tier)?.cost_per_usage_unit)
 }
 
 #[cfg(test)]

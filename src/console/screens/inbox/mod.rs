@@ -277,8 +277,8 @@ impl ScreenState for Inbox {
 
     fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
         match news {
-            News::Called(tool, Ok(answer), _) => {
-                let effects = self.sent(*tool, answer);
+            News::Called(_, Ok(answer), _) => {
+                let effects = self.sent(answer);
                 self.refresh(look.company);
                 effects
             }

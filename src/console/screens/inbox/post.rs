@@ -10,7 +10,7 @@ use crate::console::effect::Effect;
 use crate::console::screens::Figure;
 use crate::console::text::count;
 use crate::notation::dollars;
-use crate::tools::ToolId;
+use crate::tools::{Answer, DealResult, ToolId};
 use crate::world::identifiers::Plan;
 
 /// Tools of this screen.
@@ -136,27 +136,24 @@ impl Inbox {
     }
 
     /// Forgets drafts and marks of what was sent or ended.
-    pub(super) fn sent(&mut self, tool: ToolId, answer: &Value) -> Vec<Effect> {
-        if tool != SEND && tool != REJECT {
-            return Vec::new();
-        }
-        let results = answer.get("results").and_then(Value::as_array).cloned().unwrap_or_default();
-        let done: Vec<u64> = results
-            .iter()
-            .filter(|result| result.get("success").is_some())
-            .filter_map(|result| result.get("customer_id")?.as_u64())
-            .collect();
-        if tool == SEND && self.marked.is_empty() && self.offer().is_rule() {
+    pub(super) fn sent(&mut self, answer: &Answer) -> Vec<Effect> {
+        let (offered, results) = match answer {
+            Answer::SendEnterpriseDeal(answer) => (true, &answer.results),
+            Answer::RejectEnterpriseDeal(answer) => (false, &answer.results),
+            _ => return Vec::new(),
+        };
+        let done: Vec<u32> = results.iter().filter_map(DealResult::done).collect();
+        if offered && self.marked.is_empty() && self.offer().is_rule() {
             self.last =
                 self.here().and_then(|thread| self.drafts.get(&thread.number)).cloned().or(self.last.take());
         }
-        let of_done = self.letters.threads.iter().filter(|thread| done.contains(&u64::from(thread.customer)));
+        let of_done = self.letters.threads.iter().filter(|thread| done.contains(&thread.customer));
         for number in of_done.map(|thread| thread.number).collect::<Vec<_>>() {
             self.marked.remove(&number);
             self.drafts.remove(&number);
         }
         let failed = results.len() - done.len();
-        let what = if tool == SEND { "offered" } else { "ended" };
+        let what = if offered { "offered" } else { "ended" };
         match failed {
             0 => vec![Effect::Say(format!("{} {what}", done.len()))],
             _ => vec![Effect::Complain(format!("{} {what}, {failed} refused: 0 shows why", done.len()))],

@@ -6,7 +6,7 @@ use crate::console::keys::{Chord, Keys};
 use crate::console::screens::Screen;
 use crate::console::test_kit::{act, company, courted, drawn, shown, sweep};
 use crate::session::{Cell as Datum, Via, WaitingThread};
-use crate::tools::ToolId;
+use crate::tools::{Answer, DealResult, DealResults, ToolId};
 use crate::world::identifiers::Plan;
 
 /// A company with 200 waiting threads: every third is a subscriber with a price of its own.
@@ -109,16 +109,16 @@ fn deals(effects: &[Effect]) -> Vec<Value> {
 
 /// The company and the screen after a call that was answered for all.
 fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
-    let customers: Vec<u64> = deals.iter().map(|deal| deal[0].as_u64().expect("a number")).collect();
-    company.seen.waiting.retain(|thread| !customers.contains(&u64::from(thread.customer)));
-    let results: Vec<Value> =
-        customers.iter().map(|customer| json!({"customer_id": customer, "success": true})).collect();
+    let customers: Vec<u32> = deals.iter().map(|deal| deal[0].as_u64().expect("a number") as u32).collect();
+    company.seen.waiting.retain(|thread| !customers.contains(&thread.customer));
+    let done = |customer_id: u32| DealResult::Done { customer_id, success: true };
+    let results = DealResults { results: customers.into_iter().map(done).collect() };
     let keys = Keys::shipped();
     let look = Look { company, keys: &keys, page: 20 };
     screen.renew(&look);
     let news = News::Called(
         ToolId::SendEnterpriseDeal,
-        Ok(json!({ "results": results })),
+        Ok(Answer::SendEnterpriseDeal(results)),
         std::sync::Arc::new(company.clone()),
     );
     screen.hear(&news, &look);

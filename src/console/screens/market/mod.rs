@@ -27,7 +27,7 @@ use crate::console::readings::Reading;
 use crate::console::widgets::Table;
 use crate::notation::{dollars, grouped};
 use crate::session::{Preview, Rows};
-use crate::tools::ToolId;
+use crate::tools::{Answer, DiscoveryAttempt, ToolId};
 use crate::world::identifiers::Group;
 
 /// Its panes, in the order of the tab key.
@@ -209,22 +209,18 @@ impl ScreenState for Market {
                 (Err(refusal), Some(_)) => vec![Effect::Complain(refusal.to_string())],
                 _ => Vec::new(),
             },
-            News::Called(FIND, Ok(answer), _) => {
-                let found = answer.get("discovered_group_id").and_then(Value::as_str).and_then(Group::parse);
-                match found {
-                    Some(group) => {
-                        self.show(group);
-                        vec![Effect::Say(format!("{group} was found: {}", name_of(look.company, group)))]
-                    }
-                    None => {
-                        vec![Effect::Say("nothing was found this time; the next may be luckier".to_owned())]
-                    }
+            News::Called(_, Ok(Answer::ResearchMarket(attempt)), _) => match attempt {
+                DiscoveryAttempt::Found { discovered_group_id: group } => {
+                    self.show(*group);
+                    vec![Effect::Say(format!("{group} was found: {}", name_of(look.company, *group)))]
                 }
-            }
-            News::Called(STUDY, Ok(answer), _) => {
+                DiscoveryAttempt::Nothing { .. } => {
+                    vec![Effect::Say("nothing was found this time; the next may be luckier".to_owned())]
+                }
+            },
+            News::Called(_, Ok(Answer::ResearchGroup(study)), _) => {
                 self.target = None;
-                let day = answer.get("expected_completion_day").and_then(Value::as_u64);
-                day.map(|day| Effect::Say(format!("the study is due on day {day}"))).into_iter().collect()
+                vec![Effect::Say(format!("the study is due on day {}", study.expected_completion_day))]
             }
             _ => Vec::new(),
         }

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::Value;
-
 use crate::console::company::Company;
 use crate::console::readings::Reading;
 use crate::session::{Cell, Rows, RunningStudy};
@@ -114,19 +112,17 @@ pub fn study_of(company: &Company, group: Group) -> Option<&RunningStudy> {
 
 /// Level of a known group, as its insight report says.
 pub fn level_of(company: &Company, group: Group) -> u8 {
-    let level = company.insights.get(&group).and_then(|told| told.get("info_level"));
-    level.and_then(Value::as_u64).and_then(|level| u8::try_from(level).ok()).unwrap_or(0)
+    company.insights.get(&group).map_or(0, |insights| insights.info_level)
 }
 
 /// Name of a known group.
 pub fn name_of(company: &Company, group: Group) -> &str {
-    let told = company.insights.get(&group).and_then(|told| told.get("group_name"));
-    told.and_then(Value::as_str).unwrap_or_default()
+    company.insights.get(&group).map_or("", |insights| &insights.group_name)
 }
 
 /// Groups that are still to be found, as get_market_overview counts them.
-pub fn undiscovered(company: &Company) -> u64 {
-    company.market.get("undiscovered_count").and_then(Value::as_u64).unwrap_or(0)
+pub fn undiscovered(company: &Company) -> usize {
+    company.market.undiscovered_count
 }
 
 /// Level that a study aims at: the chosen one as far as it is allowed, else the next.

@@ -1,7 +1,6 @@
 //! The insight report of a group: estimates with what the truth can be, influence, and the next study.
 
 use ratatui::layout::Rect;
-use serde_json::Value;
 use unicode_width::UnicodeWidthStr;
 
 use super::model::{bounds, level_of, name_of, study_of, target_of};
@@ -15,6 +14,7 @@ use crate::console::screens::{Figure, Look};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, percent};
+use crate::tools::{Estimates, Influence};
 use crate::world::identifiers::Group;
 
 /// A line: words to the left, figures to the right.
@@ -35,18 +35,18 @@ impl Line {
     }
 }
 
-/// An estimate: its name in the answer, the words for it, its unit, and how it is written.
-type Estimate = (&'static str, &'static str, &'static str, fn(f64) -> String);
+/// An estimate: where the insights hold it, the words for it, its unit, and how it is written.
+type Estimate = (fn(&Estimates) -> Option<f64>, &'static str, &'static str, fn(f64) -> String);
 
 const ESTIMATES: [Estimate; 8] = [
-    ("willingness_to_pay", "budget", "$/month", figure),
-    ("usage_volume", "usage demand", "units/day", figure),
-    ("quality_floor_q_min", "quality floor", "", exact),
-    ("market_cap", "market", "customers", figure),
-    ("annual_market_cap_growth_rate", "growth of the market", "a year", share),
-    ("contract_lockin_aversion", "lock-in aversion", "", exact),
-    ("decision_rounds", "rounds of a deal", "", figure),
-    ("avg_response_days", "days to an answer", "", figure),
+    (|all| Some(all.willingness_to_pay), "budget", "$/month", figure),
+    (|all| Some(all.usage_volume), "usage demand", "units/day", figure),
+    (|all| Some(all.quality_floor_q_min), "quality floor", "", exact),
+    (|all| Some(all.market_cap as f64), "market", "customers", figure),
+    (|all| Some(all.annual_market_cap_growth_rate), "growth of the market", "a year", share),
+    (|all| Some(all.contract_lockin_aversion), "lock-in aversion", "", exact),
+    (|all| all.decision_rounds.map(|rounds| rounds as f64), "rounds of a deal", "", figure),
+    (|all| all.avg_response_days, "days to an answer", "", figure),
 ];
 
 fn figure(value: f64) -> String {
@@ -68,12 +68,11 @@ fn share(value: f64) -> String {
 
 /// The report of a known group.
 pub fn lines(company: &Company, group: Group) -> Vec<Line> {
-    let Some(told) = company.insights.get(&group) else { return Vec::new() };
+    let Some(insights) = company.insights.get(&group) else { return Vec::new() };
     let noise = company.terms.level(level_of(company, group)).map_or(0.0, |level| level.noise);
     let mut lines = vec![Line::head("estimate", "the truth is in")];
-    let estimates = told.get("estimates");
-    for (field, words, unit, write) in ESTIMATES {
-        let Some(value) = estimates.and_then(|all| all.get(field)).and_then(Value::as_f64) else { continue };
+    for (estimate, words, unit, write) in ESTIMATES {
+        let Some(value) = estimate(&insights.estimates) else { continue };
         let (from, to) = bounds(value, noise);
         let unit = match (unit, group.is_enterprise()) {
             ("$/month", true) => "$/month a seat",
@@ -86,7 +85,8 @@ pub fn lines(company: &Company, group: Group) -> Vec<Line> {
             format!("{} – {}", write(from), write(to)),
         ));
     }
-    if let Some([least, most]) = estimates.and_then(|all| all.get("seat_range")).and_then(pair) {
+    if let Some(range) = insights.estimates.seat_range {
+        let [least, most] = range.map(|seats| seats as f64);
         let (from, to) = (bounds(least, noise).0, bounds(most, noise).1);
         let seats = format!("{} – {}", figure(least), figure(most));
         lines.push(Line::of(
@@ -94,24 +94,17 @@ pub fn lines(company: &Company, group: Group) -> Vec<Line> {
             format!("{} – {}", figure(from), figure(to)),
         ));
     }
-    influence(&mut lines, told, "network_influence", "leads a day per 1,000 subscribers", &|rate| {
-        figure(rate * 1000.0)
-    });
-    influence(&mut lines, told, "reputation_influence", "weight of reputation", &exact);
+    lines.push(Line::head("word of mouth", "leads a day per 1,000 subscribers"));
+    influence(&mut lines, &insights.network_influence, &|rate| figure(rate * 1000.0));
+    lines.push(Line::head("reputation", "weight of reputation"));
+    influence(&mut lines, &insights.reputation_influence, &exact);
     lines
 }
 
-fn pair(value: &Value) -> Option<[f64; 2]> {
-    let list = value.as_array()?;
-    Some([list.first()?.as_f64()?, list.get(1)?.as_f64()?])
-}
-
-fn influence(lines: &mut Vec<Line>, told: &Value, field: &str, unit: &str, write: &dyn Fn(f64) -> String) {
-    lines.push(Line::head(if field.starts_with("network") { "word of mouth" } else { "reputation" }, unit));
-    for (side, words) in [("outgoing", "for"), ("incoming", "from")] {
-        let all = told.get(field).and_then(|all| all.get(side)).and_then(Value::as_object);
-        let mut links: Vec<(&String, f64)> =
-            all.into_iter().flatten().map(|(id, value)| (id, value.as_f64().unwrap_or(0.0))).collect();
+fn influence(lines: &mut Vec<Line>, influence: &Influence, write: &dyn Fn(f64) -> String) {
+    for (all, words) in [(&influence.outgoing, "for"), (&influence.incoming, "from")] {
+        let mut links: Vec<(&'static str, f64)> =
+            all.iter().map(|(group, value)| (group.id(), *value)).collect();
         links.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(right.0)));
         if links.is_empty() {
             lines.push(Line::of(format!("  {words} no known group"), String::new()));

@@ -2,12 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::Value;
-
 use crate::console::company::Company;
 use crate::session::{Category, Rows, WeekFigures};
 use crate::session::{number_at, text_at};
-use crate::tools::ToolId;
+use crate::tools::{CapacityTierFacts, ResearchTierFacts, ToolId};
 use crate::world::identifiers::Plan;
 
 /// A plan and what it earns.
@@ -88,11 +86,12 @@ impl Sales {
             let plan = Plan::ALL[at].id();
             let tier = company.setting(ToolId::SetModelTiers, plan) as u32;
             let ((customers, seats, monthly), (users, units)) = (self.held[at], self.used[at]);
+            let model = company.costs.model_tiers.get(&(tier as u8));
             PlanFacts {
                 tier,
                 quota: company.setting(ToolId::SetUsageQuotas, plan),
                 price: company.setting(ToolId::SetPrices, plan),
-                unit_cost: cost(company, "model_tiers", tier, "cost_per_usage_unit"),
+                unit_cost: model.map_or(0.0, |model| model.cost_per_usage_unit),
                 customers,
                 seats,
                 monthly,
@@ -110,11 +109,6 @@ fn by_plan(rows: &Rows) -> impl Iterator<Item = (usize, &Vec<crate::session::Cel
     })
 }
 
-fn cost(company: &Company, table: &str, tier: u32, what: &str) -> f64 {
-    let entry = company.costs.get(table).and_then(|tiers| tiers.get(tier.to_string()));
-    entry.and_then(|entry| entry.get(what)).and_then(Value::as_f64).unwrap_or(0.0)
-}
-
 /// A step of the capacity ladder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rung {
@@ -128,13 +122,14 @@ pub struct Rung {
 
 /// The capacity ladder, the smallest first.
 pub fn ladder(company: &Company) -> Vec<Rung> {
-    let tiers = company.costs.get("capacity_tiers").and_then(Value::as_object);
-    let mut numbers: Vec<u32> =
-        tiers.into_iter().flat_map(|tiers| tiers.keys()).filter_map(|key| key.parse().ok()).collect();
-    numbers.sort_unstable();
-    let value = |tier, what| cost(company, "capacity_tiers", tier, what);
-    let rung = |tier| Rung { tier, units: value(tier, "capacity_units"), cost: value(tier, "cost_per_day") };
-    numbers.into_iter().map(rung).collect()
+    let rung = |(tier, facts): (&u8, &CapacityTierFacts)| Rung {
+        tier: u32::from(*tier),
+        units: f64::from(facts.capacity_units),
+        cost: f64::from(facts.cost_per_day),
+    };
+    let mut ladder: Vec<Rung> = company.costs.capacity_tiers.iter().map(rung).collect();
+    ladder.sort_by_key(|rung| rung.tier);
+    ladder
 }
 
 /// A day of the service.
@@ -237,22 +232,20 @@ pub struct Offer {
     /// Quality it adds on average.
     pub boost: f64,
     /// How many run, and how many are done.
-    pub counts: (u64, u64),
+    pub counts: (usize, usize),
 }
 
 /// The kinds of R&D projects.
 pub fn offers(company: &Company) -> Vec<Offer> {
-    let tiers = company.projects.get("tiers").and_then(Value::as_array);
-    let number = |tier: &Value, key: &str| tier.get(key).and_then(Value::as_f64).unwrap_or(0.0);
-    let offer = |tier: &Value| Offer {
-        tier: number(tier, "tier") as u32,
-        name: tier.get("name").and_then(Value::as_str).unwrap_or("").to_owned(),
-        cost: number(tier, "cost"),
-        days: number(tier, "mean_days").max(f64::from(company.terms.research_least_days)),
-        boost: number(tier, "mean_quality_boost"),
-        counts: (number(tier, "in_progress") as u64, number(tier, "completed") as u64),
+    let offer = |tier: &ResearchTierFacts| Offer {
+        tier: u32::from(tier.tier),
+        name: tier.name.clone(),
+        cost: f64::from(tier.cost),
+        days: tier.mean_days.max(f64::from(company.terms.research_least_days)),
+        boost: tier.mean_quality_boost,
+        counts: (tier.in_progress, tier.completed),
     };
-    tiers.into_iter().flatten().map(offer).collect()
+    company.projects.tiers.iter().map(offer).collect()
 }
 
 /// Dollars spent on a category by week, from the first week on.

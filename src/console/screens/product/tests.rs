@@ -40,7 +40,7 @@ fn the_readings_agree_with_the_company() {
     assert!(screen.plans.iter().any(|plan| plan.margin().is_some_and(|margin| margin > 0.0 && margin < 1.0)));
     assert_eq!((screen.rungs.len(), screen.places[ProductPane::Capacity as usize]), (8, 2));
     assert_eq!((screen.projects.len(), screen.projects[0].started), (1, 0));
-    assert_eq!(screen.offers.iter().map(|offer| offer.counts.0 + offer.counts.1).sum::<u64>(), 1);
+    assert_eq!(screen.offers.iter().map(|offer| offer.counts.0 + offer.counts.1).sum::<usize>(), 1);
     assert_eq!(screen.spent.operations.last(), Some(&1400.0));
     assert_eq!(last_week(&[]), None);
 }

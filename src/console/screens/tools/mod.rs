@@ -206,7 +206,7 @@ impl ScreenState for Tools {
                     {
                         form.at = place;
                     }
-                    form.answer = Some(answer.clone());
+                    form.answer = Some(answer.clone().map(|answer| answer.to_json()));
                 }
             }
             _ => {}

@@ -1,12 +1,12 @@
 //! What helps to fill a form: prices of tiers, projects on offer, budgets in force.
 
-use serde_json::Value;
+use indexmap::IndexMap;
 use unicode_width::UnicodeWidthStr;
 
 use crate::console::company::Company;
 use crate::console::text::number;
 use crate::notation::{cents, dollars, grouped};
-use crate::tools::ToolId;
+use crate::tools::{ResearchTierFacts, ToolId};
 
 /// Lines beside a form, the first one a head; empty where nothing helps.
 pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {
@@ -20,34 +20,28 @@ pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {
     }
 }
 
-fn field(value: &Value, name: &str) -> f64 {
-    value.get(name).and_then(Value::as_f64).unwrap_or(0.0)
-}
-
-/// Entries of a map by their numbers.
-fn tiers<'a>(costs: &'a Value, name: &str) -> Vec<(u32, &'a Value)> {
-    let map = costs.get(name).and_then(Value::as_object);
-    let mut tiers: Vec<(u32, &Value)> =
-        map.into_iter().flatten().filter_map(|(tier, facts)| Some((tier.parse().ok()?, facts))).collect();
+/// Tiers in the order of their numbers.
+fn tiers<T>(costs: &IndexMap<u8, T>) -> Vec<(u8, &T)> {
+    let mut tiers: Vec<(u8, &T)> = costs.iter().map(|(tier, facts)| (*tier, facts)).collect();
     tiers.sort_by_key(|(tier, _)| *tier);
     tiers
 }
 
 fn models(company: &Company) -> Vec<String> {
     let mut lines = vec!["tier  quality ×   $ per 1,000 units".to_owned()];
-    lines.extend(tiers(&company.costs, "model_tiers").into_iter().map(|(tier, facts)| {
-        let cost = field(facts, "cost_per_usage_unit") * 1000.0;
-        format!("{tier:>4}  {:>9.2}   {cost:>17.4}", field(facts, "quality_multiplier"))
+    lines.extend(tiers(&company.costs.model_tiers).into_iter().map(|(tier, facts)| {
+        let cost = facts.cost_per_usage_unit * 1000.0;
+        format!("{tier:>4}  {:>9.2}   {cost:>17.4}", facts.quality_multiplier)
     }));
     lines
 }
 
 fn capacities(company: &Company) -> Vec<String> {
-    let now = company.setting(ToolId::SetCapacityTier, "tier") as u32;
+    let now = company.setting(ToolId::SetCapacityTier, "tier") as u8;
     let mut lines = vec!["tier     units a day     $ a day".to_owned()];
-    lines.extend(tiers(&company.costs, "capacity_tiers").into_iter().map(|(tier, facts)| {
+    lines.extend(tiers(&company.costs.capacity_tiers).into_iter().map(|(tier, facts)| {
         let mark = if tier == now { "  now" } else { "" };
-        let (units, cost) = (field(facts, "capacity_units"), field(facts, "cost_per_day"));
+        let (units, cost) = (f64::from(facts.capacity_units), f64::from(facts.cost_per_day));
         format!("{tier:>4}  {:>14}  {:>10}{mark}", grouped(units, 0), dollars(cost))
     }));
     if let Some(week) = company.seen.last_week.filter(|week| week.days_run > 0) {
@@ -58,21 +52,20 @@ fn capacities(company: &Company) -> Vec<String> {
 }
 
 fn projects(company: &Company) -> Vec<String> {
-    let list = company.projects.get("tiers").and_then(Value::as_array);
-    let row = |tier: &Value| {
-        let running = if field(tier, "in_progress") > 0.0 { "running" } else { "" };
-        let name = tier.get("name").and_then(Value::as_str).unwrap_or("");
+    let row = |tier: &ResearchTierFacts| {
+        let running = if tier.in_progress > 0 { "running" } else { "" };
         [
-            number(field(tier, "tier")),
-            name.to_owned(),
-            dollars(field(tier, "cost")),
-            number(field(tier, "mean_days")),
-            format!("{:.4}", field(tier, "mean_quality_boost")),
+            tier.tier.to_string(),
+            tier.name.clone(),
+            dollars(f64::from(tier.cost)),
+            number(tier.mean_days),
+            format!("{:.4}", tier.mean_quality_boost),
             running.to_owned(),
         ]
     };
     let head = ["tier", "name", "cost", "mean days", "mean gain", "now"].map(str::to_owned);
-    let rows: Vec<[String; 6]> = std::iter::once(head).chain(list.into_iter().flatten().map(row)).collect();
+    let rows: Vec<[String; 6]> =
+        std::iter::once(head).chain(company.projects.tiers.iter().map(row)).collect();
     let width = |column: usize| rows.iter().map(|row| row[column].width()).max().unwrap_or(0);
     let widths: [usize; 6] = std::array::from_fn(width);
     let line = |row: &[String; 6]| {
@@ -105,11 +98,8 @@ fn prices(company: &Company) -> Vec<String> {
     lines.extend(["A", "B", "C"].into_iter().map(|plan| {
         let (tier, quota) =
             (company.setting(ToolId::SetModelTiers, plan), company.setting(ToolId::SetUsageQuotas, plan));
-        let unit = company
-            .costs
-            .get("model_tiers")
-            .and_then(|all| all.get(number(tier)))
-            .map_or(0.0, |facts| field(facts, "cost_per_usage_unit"));
+        let unit =
+            company.costs.model_tiers.get(&(tier as u8)).map_or(0.0, |facts| facts.cost_per_usage_unit);
         format!(
             "{plan:<4}   {:>10}   {:>18}   {:>24}",
             number(tier),

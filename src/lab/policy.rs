@@ -414,7 +414,8 @@ fn scheduled(entry: CallEntry) -> Result<ScheduledCall, String> {
             format!("there is no tool {} for policies{help}", entry.tool)
         })?;
     let arguments = serde_json::to_value(&entry.args).map_err(|error| error.to_string())?;
-    tools::Arguments::of(tool.spec(), &arguments).map_err(|refusal| refusal.to_string())?;
+    tools::Arguments::of(tool.spec(), &arguments, || tools::Numbers::shipped().into())
+        .map_err(|refusal| refusal.to_string())?;
     if tool.spec().own_unknown {
         let known = |key: &String| tool.spec().arguments.iter().any(|argument| argument.name == key);
         if let Some(key) = entry.args.keys().find(|key| !known(key)) {

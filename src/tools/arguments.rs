@@ -1,10 +1,13 @@
 //! Reading arguments: from JSON to typed values, with the refusals that all tools share
 //! (docs/interfaces/tools.md#arguments).
 
+use std::sync::Arc;
+
 use indexmap::IndexMap;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Number, Value};
 
+use super::numbers::Numbers;
 use super::refusal::Refusal;
 use super::spec::{Range, Spec};
 use super::view::View;
@@ -16,11 +19,15 @@ use crate::world::settings::{PerCustomer, PerGroup, PerPlan};
 pub struct Arguments(Map<String, Value>);
 
 impl Arguments {
-    /// Takes the arguments of a call as they came.
+    /// Takes the arguments of a call as they came; the numbers are those that documentation names.
     ///
     /// # Errors
     /// `wrong_type` when they are no object, `unknown_argument`, `argument_missing`.
-    pub fn of(spec: &Spec, given: &Value) -> Result<Arguments, Refusal> {
+    pub fn of(
+        spec: &Spec,
+        given: &Value,
+        numbers: impl FnOnce() -> Arc<Numbers>,
+    ) -> Result<Arguments, Refusal> {
         let mut map = match given {
             Value::Null => Map::new(),
             Value::Object(map) => map.clone(),
@@ -48,7 +55,7 @@ impl Arguments {
             let given = map.contains_key(argument.name)
                 || argument.alias.is_some_and(|alias| map.contains_key(alias));
             if !given {
-                let message = format!("{} is required: {}", argument.name, argument.doc);
+                let message = format!("{} is required: {}", argument.name, numbers().fill(argument.doc));
                 return Err(Refusal::at(argument.name, "argument_missing", message));
             }
         }

@@ -43,7 +43,7 @@ pub fn overview() -> String {
 pub fn manual(spec: &Spec, numbers: &Numbers) -> String {
     let mut text = format!("{}.{} ({}): {}\n", spec.module.id(), spec.name(), spec.code, spec.summary);
     for argument in spec.arguments {
-        let _ = writeln!(text, "  {}", argument_line(argument));
+        let _ = writeln!(text, "  {}", numbers.fill(&argument_line(argument)));
     }
     if !spec.effect.is_empty() {
         let _ = writeln!(text, "Effect ({}): {}", spec.when.id(), numbers.fill(spec.effect));
@@ -56,7 +56,7 @@ pub fn manual(spec: &Spec, numbers: &Numbers) -> String {
         let _ = writeln!(text, "Refusals: {}.", spec.refusals.join(", "));
     }
     for output in spec.returns {
-        let _ = writeln!(text, "Returns {} ({}): {}.", output.name, output.kind, output.doc);
+        let _ = writeln!(text, "Returns {} ({}): {}.", output.name, output.kind, numbers.fill(output.doc));
     }
     let _ = writeln!(text, "Example: {}({})", spec.name(), spec.example);
     text

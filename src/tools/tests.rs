@@ -31,7 +31,7 @@ impl Company {
     fn try_call(&mut self, name: &str, arguments: Value) -> Result<Value, Refusal> {
         let tool = find(name).expect("the tool exists");
         let view = View::new(&self.world, &self.params);
-        let arguments = Arguments::of(tool.spec(), &arguments)?;
+        let arguments = Arguments::of(tool.spec(), &arguments, || super::Numbers::shipped().into())?;
         let planned = tool.plan(&view, &arguments)?;
         super::bounds::hold(tool.spec(), &arguments)?;
         let resolved = self.world.resolve(planned.command, &self.params, &self.streams);
@@ -669,7 +669,8 @@ fn get_social_posts() {
     let view = View::new(&company.world, &company.params).with_posts(&posts);
     let tool = find("get_social_posts").expect("the tool exists");
     let read = |arguments: Value| {
-        let arguments = Arguments::of(tool.spec(), &arguments).expect("right arguments");
+        let arguments = Arguments::of(tool.spec(), &arguments, || super::Numbers::shipped().into())
+            .expect("right arguments");
         let planned = tool.plan(&view, &arguments).expect("it only reads");
         planned.reply.without_running(&ResolvedCommand::None).expect("an answer").to_json()
     };

@@ -277,7 +277,7 @@ impl Session {
         tool: &'static dyn AnyTool,
         arguments: &Value,
     ) -> Result<(Arguments, Planned<Answer>), Refusal> {
-        let given = Arguments::of(tool.spec(), arguments)?;
+        let given = Arguments::of(tool.spec(), arguments, || self.numbers())?;
         let planned = tool.plan(&self.view(), &given)?;
         Ok((given, planned))
     }

@@ -35,7 +35,7 @@ static SPEC: Spec = Spec {
             kind: ANY,
             required: false,
             unit: "posts",
-            doc: "how many at most, 50 if left out; 0 for none, a negative number for all",
+            doc: "how many at most, {limits.get_social_posts_default_limit} if left out; 0 for none, a negative number for all",
         },
     ],
     own_unknown: false,

@@ -35,7 +35,7 @@ static SPEC: Spec = Spec {
     whole: None,
     when: When::NextDay,
     effect: "From the next week on, the statements run before each week, on the company as it is then. The \
-             dashboard shows the first 500 characters of the output. A calculation of the same name is \
+             dashboard shows the first {limits.dashboard_calculation_max_chars} characters of the output. A calculation of the same name is \
              replaced.",
     cost: "nothing",
     writes: &[],

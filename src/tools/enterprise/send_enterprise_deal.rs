@@ -36,7 +36,7 @@ static SPEC: Spec = Spec {
         ),
         required: false,
         unit: "$/seat and month",
-        doc: "who is offered what: one to three offerings per company, of which it takes at most one; contracts last a month and renew at the agreed price",
+        doc: "who is offered what: one to {enterprise.enterprise_max_offerings_per_turn:word} offerings per company, of which it takes at most one; contracts last a month and renew at the agreed price",
     }],
     own_unknown: false,
     whole: Some("deals"),

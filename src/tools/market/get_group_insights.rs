@@ -39,7 +39,11 @@ static SPEC: Spec = Spec {
         Output { name: "group_id", kind: "text", doc: "the group" },
         Output { name: "group_name", kind: "text", doc: "its name" },
         Output { name: "segment", kind: "Individual or Enterprise", doc: "its segment" },
-        Output { name: "info_level", kind: "integer", doc: "level of knowledge, 1 to 5" },
+        Output {
+            name: "info_level",
+            kind: "integer",
+            doc: "level of knowledge, 1 to {group_research.max_target_level}",
+        },
         Output { name: "noise", kind: "text", doc: "largest error of the estimates" },
         Output {
             name: "estimates",

@@ -34,7 +34,7 @@ static SPEC: Spec = Spec {
         Output {
             name: "macroeconomic",
             kind: "{pmi_value, pmi_trend, pmi_change, cycle_phase, description} or null",
-            doc: "latest published index of the economy; null before day 31",
+            doc: "latest published index of the economy; null before day {macro.macro_pmi_publication_delay_days:+1}",
         },
     ],
     example: "{}",

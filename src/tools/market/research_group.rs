@@ -34,16 +34,21 @@ static SPEC: Spec = Spec {
             kind: ArgumentKind::Integer(Range::between(2.0, 5.0)),
             required: false,
             unit: "level",
-            doc: "level 2 to 5; if left out, the present level, at least 2. Levels can be skipped; the \
-                  present level is a refresh",
+            doc: "level {group_research.min_target_level} to {group_research.max_target_level}; if left out, the \
+                  present level, at least {group_research.min_target_level}. Levels can be skipped; the present \
+                  level is a refresh",
         },
     ],
     own_unknown: false,
     whole: None,
     when: When::AtCompletion,
-    effect: "On its completion day the level rises to the target, and get_group_insights describes the market of that day. Level 2 takes 3 days, 3 takes 5, 4 takes 7, 5 takes 10; the errors are at most 40, 25, 15 and 5 %. \
+    effect: "On its completion day the level rises to the target, and get_group_insights describes the market of that day. \
+             Level 2 takes {info_level.2.delay_days} days, 3 takes {info_level.3.delay_days}, 4 takes \
+             {info_level.4.delay_days}, 5 takes {info_level.5.delay_days}; the errors are at most \
+             {info_level.2.noise:100}, {info_level.3.noise:100}, {info_level.4.noise:100} and {info_level.5.noise:%}. \
              One study of a group at a time; studies of several groups run side by side.",
-    cost: "$60,000 for level 2, $175,000 for 3, $350,000 for 4, $700,000 for 5, at once",
+    cost: "{info_level.2.cost:$} for level 2, {info_level.3.cost:$} for 3, {info_level.4.cost:$} for 4, \
+           {info_level.5.cost:$} for 5, at once",
     writes: &["ledger", "group_info_levels", "notifications"],
     refusals: &[
         "group_not_discovered",

@@ -20,11 +20,11 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::Now,
-    effect: "Three attempts in ten find one of the groups still unknown, each equally likely. A group that \
+    effect: "{market_research.market_research_discover_prob:tenths} attempts in ten find one of the groups still unknown, each equally likely. A group that \
              is found is known at level 1 at once: it sends leads by word of mouth from the next day, and \
              ads, development, operations and discounts can be aimed at it. Any number of attempts a week; \
              once all groups are found, an attempt is still charged.",
-    cost: "$25,000 an attempt, at once",
+    cost: "{market_research.discovery_cost_level_1:$} an attempt, at once",
     writes: &["ledger", "segment_discovery", "group_info_levels", "notifications"],
     refusals: &["insufficient_funds"],
     returns: &[

@@ -23,7 +23,7 @@ static SPEC: Spec = Spec {
             kind: ArgumentKind::Text,
             required: true,
             unit: "",
-            doc: "the text, 1 to 280 characters",
+            doc: "the text, 1 to {limits.post_max_chars} characters",
         },
         Argument {
             name: "reply_to_post_id",
@@ -39,7 +39,7 @@ static SPEC: Spec = Spec {
     when: When::NextDay,
     effect: "On the next day every known group reads it. A post that fits a group, is specific and true, and \
              speaks to what is on its mind is shared and brings leads from the day after, half as many every \
-             three days; hype, false claims and insults cost leads. Strong reactions bring comments.",
+             {ceo_posts.multiplier_half_life_days:word} days; hype, false claims and insults cost leads. Strong reactions bring comments.",
     cost: "nothing; one post per decision day",
     writes: &["agent_social_media_posts"],
     refusals: &["too_long", "blank", "already_posted", "post_not_found"],

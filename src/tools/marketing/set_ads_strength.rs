@@ -37,7 +37,7 @@ static SPEC: Spec = Spec {
     whole: None,
     when: When::NextDay,
     effect: "Every subscriber who sees ads earns you a little each day but perceives less quality. The \
-             effective load is log10(1 + 9 s) of the summed strength s, so a small load already earns much \
+             effective load is log{ads.log_curve_k:+1}(1 + {ads.log_curve_k} s) of the summed strength s, so a small load already earns much \
              of what a full one does.",
     cost: "nothing; perceived quality falls",
     writes: &["config_overrides"],

@@ -46,7 +46,11 @@ static SPEC: Spec = Spec {
         Output { name: "cost", kind: "integer", doc: "$" },
         Output { name: "expected_completion_day", kind: "integer", doc: "day" },
         Output { name: "expected_duration_days", kind: "integer", doc: "days" },
-        Output { name: "expected_quality_boost", kind: "number", doc: "quality, 4 decimals" },
+        Output {
+            name: "expected_quality_boost",
+            kind: "number",
+            doc: "quality, {development.rd_report_decimals} decimals",
+        },
     ],
     example: r#"{"tier": 2}"#,
 };

@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::super::{
-    Arguments, ColumnDocument, Kept, Notebook, Refusal, Reply, Script, Surroundings, TableDocument, View,
-    find,
+    Arguments, ColumnDocument, Kept, Notebook, Numbers, Refusal, Reply, Script, Surroundings, TableDocument,
+    View, find,
 };
 use crate::world::command::ResolvedCommand;
 use crate::world::events::Facts;
@@ -54,7 +54,7 @@ impl Desk {
         let params = Params::shipped();
         let world = World::open(500, 1.0, &params, &mut Facts::default());
         let view = View::new(&world, &params).within(self);
-        let arguments = Arguments::of(tool.spec(), given)?;
+        let arguments = Arguments::of(tool.spec(), given, || Numbers::shipped().into())?;
         let planned = tool.plan(&view, &arguments)?;
         let told = match planned.reply {
             Reply::Output(script, _) => Err(script),

@@ -33,7 +33,8 @@ static SPEC: Spec = Spec {
             ),
             required: false,
             unit: "$",
-            doc: "cash in 7, 28, 84 and 182 days with the interval that should hold it 95 times out of 100",
+            doc: "cash in {limits.prediction_horizons_days.0}, {limits.prediction_horizons_days.1}, \
+                  {limits.prediction_horizons_days.2} and {limits.prediction_horizons_days.3} days with the interval that should hold it 95 times out of 100",
         },
     ],
     own_unknown: false,
@@ -77,11 +78,11 @@ impl Tool for NextWeek {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Filing, Refusal> {
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Filing, Refusal> {
         let given = |name| arguments.get(name).unwrap_or(&Value::Null);
         Ok(Filing {
             rationale: rationale(given("rationale"))?,
-            forecasts: forecasts(given("predictions"), &[7, 28, 84, 182])?,
+            forecasts: forecasts(given("predictions"), &view.params().limits.prediction_horizons_days)?,
         })
     }
 

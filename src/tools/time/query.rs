@@ -29,7 +29,7 @@ static SPEC: Spec = Spec {
     refusals: &["sql_empty", "sql_schema", "sql_hidden_table", "sql_write", "sql_timeout", "sql_error"],
     returns: &[
         Output { name: "columns", kind: "list of text", doc: "names of the columns" },
-        Output { name: "rows", kind: "list of objects", doc: "at most 5,000" },
+        Output { name: "rows", kind: "list of objects", doc: "at most {limits.query_row_limit:,}" },
         Output { name: "row_count", kind: "integer", doc: "number of rows" },
         Output {
             name: "truncated",

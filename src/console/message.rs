@@ -65,7 +65,7 @@ pub enum News {
     /// What a call would do; the number says which question this answers.
     Checked(u64, Result<Preview, Refusal>),
     /// A tool was called.
-    Called(ToolId, Result<Answer, Refusal>, Arc<Company>),
+    Called(ToolId, Result<Box<Answer>, Refusal>, Arc<Company>),
     /// A setting was taken back.
     Undone(Result<Vec<Change>, Refusal>, Arc<Company>),
     /// A setting that was taken back was set again.

@@ -383,7 +383,7 @@ impl SessionThread {
                 Some(News::Checked(number, session.check(tool, &arguments)))
             }
             Job::Call(tool, arguments) => {
-                let answer = session.call(tool, &arguments, Via::Form);
+                let answer = session.call(tool, &arguments, Via::Form).map(Box::new);
                 Some(News::Called(tool, answer, company(session)))
             }
             Job::Undo => {

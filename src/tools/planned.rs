@@ -20,12 +20,15 @@ pub struct Planned<A> {
     pub reply: Reply<A>,
 }
 
+/// Makes an answer from what was drawn; none if the command is another one's.
+type Teller<A> = Box<dyn FnOnce(&ResolvedCommand) -> Option<A>>;
+
 /// What a call says.
 pub enum Reply<A> {
     /// No chance is involved.
     Known(A),
-    /// Made from what was drawn; none if the command is another one's.
-    Drawn(Box<dyn FnOnce(&ResolvedCommand) -> Option<A>>),
+    /// Made from what was drawn.
+    Drawn(Teller<A>),
     /// Made from what statements say that the session runs.
     Output(Script, Box<dyn FnOnce(ScriptOutput) -> A>),
 }

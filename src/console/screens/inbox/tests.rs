@@ -118,7 +118,7 @@ fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
     screen.renew(&look);
     let news = News::Called(
         ToolId::SendEnterpriseDeal,
-        Ok(Answer::SendEnterpriseDeal(results)),
+        Ok(Box::new(Answer::SendEnterpriseDeal(results))),
         std::sync::Arc::new(company.clone()),
     );
     screen.hear(&news, &look);

@@ -88,6 +88,24 @@ impl Market {
         self.turn();
     }
 
+    /// What a call of a tool brought.
+    fn answered(&mut self, answer: &Answer, company: &Company) -> Vec<Effect> {
+        match answer {
+            Answer::ResearchMarket(DiscoveryAttempt::Found { discovered_group_id: group }) => {
+                self.show(*group);
+                vec![Effect::Say(format!("{group} was found: {}", name_of(company, *group)))]
+            }
+            Answer::ResearchMarket(DiscoveryAttempt::Nothing { .. }) => {
+                vec![Effect::Say("nothing was found this time; the next may be luckier".to_owned())]
+            }
+            Answer::ResearchGroup(study) => {
+                self.target = None;
+                vec![Effect::Say(format!("the study is due on day {}", study.expected_completion_day))]
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// Another group is selected: its report begins at the top.
     fn turn(&mut self) {
         (self.target, self.from) = (None, 0);
@@ -209,19 +227,7 @@ impl ScreenState for Market {
                 (Err(refusal), Some(_)) => vec![Effect::Complain(refusal.to_string())],
                 _ => Vec::new(),
             },
-            News::Called(_, Ok(Answer::ResearchMarket(attempt)), _) => match attempt {
-                DiscoveryAttempt::Found { discovered_group_id: group } => {
-                    self.show(*group);
-                    vec![Effect::Say(format!("{group} was found: {}", name_of(look.company, *group)))]
-                }
-                DiscoveryAttempt::Nothing { .. } => {
-                    vec![Effect::Say("nothing was found this time; the next may be luckier".to_owned())]
-                }
-            },
-            News::Called(_, Ok(Answer::ResearchGroup(study)), _) => {
-                self.target = None;
-                vec![Effect::Say(format!("the study is due on day {}", study.expected_completion_day))]
-            }
+            News::Called(_, Ok(answer), _) => self.answered(answer, look.company),
             _ => Vec::new(),
         }
     }

@@ -22,7 +22,7 @@ fn order(screen: &mut Market, session: &mut Session, action: Action) -> (String,
     let [Effect::ConfirmCall { tool, arguments, text }] = &effects[..] else { panic!("{effects:?}") };
     let answer = session.call(tool, arguments, Via::Form);
     let company = Company::of(session);
-    let called = News::Called(*tool, answer, Arc::new(company.clone()));
+    let called = News::Called(*tool, answer.map(Box::new), Arc::new(company.clone()));
     let said = with_look(&company, |look| {
         screen.renew(look);
         screen.hear(&called, look)

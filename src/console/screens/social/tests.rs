@@ -167,7 +167,7 @@ fn a_post_is_written_checked_asked_for_and_sent() {
     assert!(text.contains("cannot be undone") && text.contains("on day 15"), "{text}");
     let answer = session.call(tool, arguments, Via::Form);
     let company = Company::of(&session);
-    let called = News::Called(POST, answer, Arc::new(company.clone()));
+    let called = News::Called(POST, answer.map(Box::new), Arc::new(company.clone()));
     with_look(&company, |look| screen.hear(&called, look));
     assert!(!screen.holds_unsent_text() && screen.answers.is_none());
     let screen: Social = shown(&mut session, &company);

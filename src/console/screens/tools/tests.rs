@@ -104,7 +104,7 @@ fn after_a_call_the_keys_are_those_of_the_list_again() {
     tools.hear(&News::Called(ToolId::SetPrices, Err(refused), company.clone().into()), &look);
     assert_eq!(tools.focus, ToolsPane::Form, "a refused call is mended where it was typed");
     let set = played(0).call("set_prices", &json!({"A": 12}), Via::Form).expect("a price");
-    tools.hear(&News::Called(ToolId::SetPrices, Ok(set), company.clone().into()), &look);
+    tools.hear(&News::Called(ToolId::SetPrices, Ok(set.into()), company.clone().into()), &look);
     assert_eq!((tools.focus, tools.scopes()), (ToolsPane::List, vec![Scope::List]));
     assert!(tools.seen_form().expect("a form").answer.is_some());
     tools.hear(&News::Undone(Ok(Vec::new()), company.clone().into()), &look);

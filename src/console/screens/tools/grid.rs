@@ -140,7 +140,7 @@ fn draw_head(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
     }
     let name = format!("{} ({})", block.argument.name, block.argument.unit);
     if block.columns.len() == 1 {
-        canvas.text(row, &format!("{name}: {}", block.argument.doc), Role::Header);
+        canvas.text(row, &format!("{name}: {}", block.doc), Role::Header);
         return;
     }
     let shown = columns_shown(form, at, row.width);
@@ -193,7 +193,7 @@ fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: 
     let x = cell_area(block, row, 1).right() + 2;
     let doc = Rect { x, width: row.right().saturating_sub(x), ..row };
     if block.is_scalar() {
-        let words = format!("{}, {} · {}", block.argument.unit, block.range().words(), block.argument.doc);
+        let words = format!("{}, {} · {}", block.argument.unit, block.range().words(), block.doc);
         canvas.text(doc, &words, Role::Text);
     }
 }

@@ -61,6 +61,8 @@ fn plain(value: f64) -> String {
 pub struct Block {
     /// The argument.
     pub argument: &'static Argument,
+    /// What it is, with the numbers in force.
+    pub doc: String,
     /// Names of the rows; for a single number the argument itself.
     pub rows: Vec<String>,
     /// Names of the columns; one without a name for a single number or a map.
@@ -99,7 +101,8 @@ impl Block {
             _ => Slot::of(current),
         };
         let slots = rows.iter().map(|row| columns.iter().map(|column| slot(row, column)).collect()).collect();
-        Block { argument, rows, columns, slots }
+        let doc = company.numbers.fill(argument.doc);
+        Block { argument, doc, rows, columns, slots }
     }
 
     /// Allowed numbers.

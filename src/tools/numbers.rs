@@ -161,7 +161,7 @@ mod tests {
     /// Texts that hold typed digits: labels, bounds that the tool itself sets, and forms of formulas. What a parameter
     /// says is no such text.
     const TYPED: [(&str, &[&str]); 13] = [
-        ("set_ads_strength", &["0 to 1"]),
+        ("set_ads_strength", &["0 to 1", "(1 + "]),
         ("set_targeted_dev_spend", &["ln(1 + spend"]),
         ("set_daily_spend", &["ln(1 + spend"]),
         ("set_usage_quotas", &["a quota of 0"]),

@@ -38,7 +38,9 @@ impl Session {
     pub fn query_as(&mut self, ticket: Ticket, sql: &str) -> Result<Rows, Refusal> {
         let started = Instant::now();
         let limits = limits(self);
-        let answer = self.desk().and_then(|desk| desk.ask_as(ticket, sql, limits).map_err(Refusal::from));
+        let answer = self
+            .connection()
+            .and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from));
         self.note_query(sql, answer.as_ref(), started.elapsed());
         answer
     }
@@ -48,7 +50,7 @@ impl Session {
     /// # Errors
     /// The run has no database.
     pub fn interrupt(&mut self) -> Result<Interrupt, Refusal> {
-        self.desk().map(|desk| desk.interrupt())
+        self.connection().map(|connection| connection.interrupt())
     }
 
     /// A desk of its own, for a thread that asks while the session works. What it asks is recorded with
@@ -57,10 +59,7 @@ impl Session {
     /// # Errors
     /// The run has no database, or it cannot be read.
     pub fn open_desk(&self) -> Result<QueryConnection, Refusal> {
-        let Some(projector) = &self.projector else {
-            return Err(Refusal::new("sql_error", "this run is played without a database"));
-        };
-        projector.desk().map_err(|error| Refusal::new("sql_error", error.to_string()))
+        self.projection.open_connection()
     }
 
     /// Waits until the database holds everything up to the last decision day and this week's calls.
@@ -68,15 +67,12 @@ impl Session {
     /// # Errors
     /// The database cannot be written.
     pub fn wait_for_database(&self) -> Result<(), Refusal> {
-        if !self.sync_calls {
-            let synced = self.trajectory.as_ref().map_or(Ok(()), |trajectory| trajectory.sync_written());
-            synced.map_err(|error| Refusal::new("sql_error", error.to_string()))?;
+        let refused = |problem: String| Refusal::new("sql_error", problem);
+        if let Some(recorder) = self.recorder.as_ref().filter(|recorder| !recorder.syncs_calls()) {
+            recorder.sync_calls().map_err(|error| refused(error.to_string()))?;
             self.commit_projection();
         }
-        match &self.projector {
-            Some(projector) => projector.wait().map_err(|error| Refusal::new("sql_error", error.to_string())),
-            None => Ok(()),
-        }
+        self.projection.wait().map_err(|error| refused(error.to_string()))
     }
 
     /// Limits of a query in this run.
@@ -110,15 +106,13 @@ impl Session {
         self.asked.drain(..surplus);
     }
 
-    pub(super) fn desk(&mut self) -> Result<&QueryConnection, Refusal> {
+    /// The connection of this thread, to a database that holds everything up to now.
+    pub(super) fn connection(&mut self) -> Result<&QueryConnection, Refusal> {
         if let Err(problem) = self.wait_for_database() {
             // There may be room again.
             self.mend_database().map_err(|_| problem)?;
         }
-        if self.desk.is_none() {
-            self.desk = Some(self.open_desk()?);
-        }
-        Ok(self.desk.as_ref().expect("the desk was just opened"))
+        self.projection.connection()
     }
 }
 

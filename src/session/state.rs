@@ -1,11 +1,10 @@
 //! An open run: all it holds, and what can be read of it at once.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use crate::database::{Position, Projector, QueryConnection};
+use crate::database::Position;
 use crate::session::error::RunError;
 use crate::session::figures::changes::Decisions;
 use crate::session::figures::groups::GroupWeek;
@@ -15,8 +14,9 @@ use crate::session::folder::manifest::Manifest;
 use crate::session::play::facts_chain::{FactsChain, state_hash};
 use crate::session::play::feed::Feed;
 use crate::session::play::office::{Calculated, Office};
+use crate::session::play::projection::Projection;
+use crate::session::play::recorder::Recorder;
 use crate::session::play::this_week::ThisWeek;
-use crate::session::trajectory::TrajectoryWriter;
 use crate::session::trajectory::record::Ended;
 use crate::tools::Numbers;
 use crate::world::day::DayTrace;
@@ -32,8 +32,6 @@ pub struct Session {
     pub(super) manifest: Manifest,
     /// Folder of the run; none in memory.
     pub(super) folder: Option<PathBuf>,
-    /// Held while the run may be written.
-    pub(super) _lock: Option<File>,
     pub(super) params: Arc<Params>,
     /// The numbers of the parameters, once they were asked for.
     pub(super) numbers: OnceLock<Arc<Numbers>>,
@@ -46,14 +44,9 @@ pub struct Session {
     /// Those of the day before it, which are filled again once nobody reads them.
     pub(super) facts_before: Arc<Facts>,
     pub(super) trace: DayTrace,
-    /// None when the run is only read.
-    pub(super) trajectory: Option<TrajectoryWriter>,
     /// The last line that was written, or applied again.
     pub(super) position: Position,
-    /// Every confirmed call is on the disk before it is confirmed; headless runs sync once a week.
-    pub(super) sync_calls: bool,
-    pub(super) projector: Option<Projector>,
-    pub(super) desk: Option<QueryConnection>,
+    pub(super) projection: Projection,
     /// Cash at the end of each day, day 0 first.
     pub(super) cash_by_day: Vec<f64>,
     /// Every full or shortened week that ran.
@@ -91,6 +84,8 @@ pub struct Session {
     pub(super) ended: Option<Ended>,
     /// What the person should know about the opening of the run.
     pub(super) remarks: Vec<String>,
+    /// What writes the run; none when it is only read. Dropped last: the lock is held until the database is closed.
+    pub(super) recorder: Option<Recorder>,
 }
 
 impl Session {
@@ -182,7 +177,7 @@ impl Session {
     /// Whether everything that happened stands in the run's trajectory: not where a run is only read, or its file took no
     /// more lines.
     pub fn is_recorded_to_its_end(&self) -> bool {
-        self.trajectory.as_ref().is_some_and(TrajectoryWriter::is_complete)
+        self.recorder.as_ref().is_some_and(Recorder::is_complete)
     }
 
     /// Puts everything on the disk.
@@ -190,13 +185,10 @@ impl Session {
     /// # Errors
     /// The disk refuses.
     pub fn save(&mut self) -> Result<(), RunError> {
-        if let Some(trajectory) = &mut self.trajectory {
-            trajectory.sync()?;
+        if let Some(recorder) = &mut self.recorder {
+            recorder.sync()?;
         }
         self.keep_snapshot(|| self.state_hash().0, true);
-        match &self.projector {
-            Some(projector) => Ok(projector.wait()?),
-            None => Ok(()),
-        }
+        Ok(self.projection.wait()?)
     }
 }

@@ -183,9 +183,6 @@ impl Session {
     /// # Errors
     /// The run is played without a database, or the file cannot be written.
     pub fn copy_database(&self, file: &Path) -> Result<(), RunError> {
-        match &self.projector {
-            Some(projector) => Ok(projector.copy_for_other_programs(file)?),
-            None => Err(RunError::NotPossible("this run is played without a database".to_owned())),
-        }
+        self.projection.copy_to(file)
     }
 }

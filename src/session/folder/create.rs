@@ -5,19 +5,21 @@ use std::sync::{Arc, OnceLock};
 
 use super::agreement::agreed;
 use super::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
-use super::manifest::{FORMAT, Manifest, differences, sync_folder};
+use super::manifest::{FORMAT, Manifest, differences};
 use super::mode::Mode;
-use super::runs::{earlier_runs, label_of, lock_run};
-use crate::database::{Location, Projector};
+use super::runs::{earlier_runs, label_of};
+use crate::database::{Location, Position, Projector};
 use crate::session::error::RunError;
 use crate::session::figures::week::WeekFigures;
 use crate::session::play::facts_chain::FactsChain;
 use crate::session::play::feed::Feed;
 use crate::session::play::office::Office;
+use crate::session::play::projection::Projection;
+use crate::session::play::recorder::Recorder;
 use crate::session::play::this_week::ThisWeek;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Start;
-use crate::session::trajectory::{Durability, Record, TrajectoryWriter, now};
+use crate::session::trajectory::{Record, now};
 use crate::world::MECHANICS;
 use crate::world::day::DayTrace;
 use crate::world::events::Facts;
@@ -112,44 +114,21 @@ impl Session {
         let params = Arc::new(params);
         let mut facts = Facts::default();
         let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
-        let (mut trajectory, lock) = match &folder {
-            None => (TrajectoryWriter::in_memory(), None),
-            Some(folder) => {
-                let lock = lock_run(folder, &manifest.id)?;
-                manifest.write(folder)?;
-                let trajectory = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
-                sync_folder(folder)?;
-                (trajectory, Some(lock))
-            }
-        };
-        trajectory.append(0, &start_of(&manifest), Durability::Synced)?;
+        let recorder = Recorder::begin(&manifest, folder.as_deref(), new.sync_calls)?;
         let projector = start_projector(new.projection, folder.as_deref(), manifest.number(), &params)?;
-        let session = Session::assemble(
-            manifest,
-            folder,
-            lock,
-            params,
-            world,
-            facts,
-            trajectory,
-            projector,
-            new.sync_calls,
-        );
+        let begun = Session::assemble(manifest, folder, params, (world, facts), Projection::of(projector));
+        let session = Session { position: recorder.position(), recorder: Some(recorder), ..begun };
         session.project_opening();
         Ok(session)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "the parts of a session come from different places")]
+    /// A session with a world that nothing writes.
     pub(in crate::session) fn assemble(
         manifest: Manifest,
         folder: Option<PathBuf>,
-        lock: Option<std::fs::File>,
         params: Arc<Params>,
-        world: World,
-        facts: Facts,
-        trajectory: TrajectoryWriter,
-        projector: Option<Projector>,
-        sync_calls: bool,
+        (world, facts): (World, Facts),
+        projection: Projection,
     ) -> Session {
         let settings = world.settings.clone();
         Session {
@@ -157,7 +136,6 @@ impl Session {
             cash_by_day: vec![world.finance.cash],
             manifest,
             folder,
-            _lock: lock,
             params,
             numbers: OnceLock::new(),
             own_parameters: OnceLock::new(),
@@ -165,11 +143,9 @@ impl Session {
             facts: facts.into(),
             facts_before: Arc::default(),
             trace: DayTrace::default(),
-            position: trajectory.position(),
-            trajectory: Some(trajectory),
-            sync_calls,
-            projector,
-            desk: None,
+            position: Position { seq: 0, line_hash: String::new() },
+            recorder: None,
+            projection,
             weeks: Vec::new(),
             decisions: Vec::new(),
             running_week: WeekFigures::default(),
@@ -193,10 +169,8 @@ impl Session {
 
     /// Hands the set-up of day 0 to the database.
     pub(in crate::session) fn project_opening(&self) {
-        if let Some(projector) = &self.projector {
-            projector.write(self.entry());
-            projector.commit(self.position.clone());
-        }
+        self.projection.entries().write(|| self.entry());
+        self.projection.commit(&self.position);
     }
 }
 

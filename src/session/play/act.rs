@@ -151,7 +151,7 @@ impl Session {
                 Err(refusal)
             }
             Ok((given, accepted, answer)) => {
-                let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
+                let durability = self.durability_of_calls();
                 let record =
                     called(Value::Object(given.as_map().clone()), Outcome::Accepted(answer.to_json()));
                 // Statements can be kept even when the run is over, and then their line comes after its end.
@@ -183,7 +183,7 @@ impl Session {
             _ => None,
         };
         let before = matches!(resolved, ResolvedCommand::Set(_)).then(|| self.world.settings.clone());
-        self.world.apply(resolved, &self.params, to_fill(&mut self.facts, self.projector.as_ref()));
+        self.world.apply(resolved, &self.params, to_fill(&mut self.facts, self.projection.entries()));
         if let Some(restores) = before {
             let changed = restores != self.world.settings;
             self.this_week.keep(Step { seq, tool: spec.id, restores }, changed, reversal);
@@ -224,7 +224,7 @@ impl Session {
         }
         self.follow_up(settings);
         // The database must not be ahead of what is on the disk.
-        if self.sync_calls {
+        if self.durability_of_calls() == Durability::Synced {
             self.commit_projection();
         }
     }
@@ -309,7 +309,7 @@ impl Session {
     }
 
     fn refuse_if_only_read(&self) -> Result<(), Refusal> {
-        match &self.trajectory {
+        match &self.recorder {
             Some(_) => Ok(()),
             None => Err(Refusal::new("read_only", "this run is open read-only")),
         }

@@ -114,8 +114,7 @@ impl Session {
             via,
             calculations: calculated.clone(),
         };
-        let durability = if self.sync_calls { Durability::Synced } else { Durability::Written };
-        let at = self.append(&Record::Advance(filed), durability).map_err(not_saved)?;
+        let at = self.append(&Record::Advance(filed), self.durability_of_calls()).map_err(not_saved)?;
         self.calculated = calculated;
         self.file(text, &forecasts, &at);
         Ok(self.run_week(progress))
@@ -250,7 +249,7 @@ impl Session {
         self.facts_chain.close();
         problem = problem.or_else(|| self.close_if_over());
         let due = self.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.running_week.days_run == 0;
-        let snapshot = due && problem.is_none() && self.sync_calls;
+        let snapshot = due && problem.is_none() && self.durability_of_calls() == Durability::Synced;
         let week = self.report(problem.map(|problem| {
             format!("{problem}; the days are simulated again when the run is opened, with the same result")
         }));
@@ -326,17 +325,16 @@ impl Session {
     }
 
     fn project_forecasts(&self, forecasts: &Forecasts, at: &str) {
-        if let Some(projector) = &self.projector {
-            let submitted_at = seconds(at);
-            let row = |forecast: &crate::tools::Forecast| ForecastRow {
-                submit_day: self.world.day,
-                horizon_days: forecast.horizon_days,
-                point: forecast.point,
-                lower: forecast.lower,
-                upper: forecast.upper,
-                submitted_at,
-            };
-            projector.write(Entry { forecasts: forecasts.all.iter().map(row).collect(), ..Entry::default() });
-        }
+        let submitted_at = seconds(at);
+        let row = |forecast: &crate::tools::Forecast| ForecastRow {
+            submit_day: self.world.day,
+            horizon_days: forecast.horizon_days,
+            point: forecast.point,
+            lower: forecast.lower,
+            upper: forecast.upper,
+            submitted_at,
+        };
+        let rows = || forecasts.all.iter().map(row).collect();
+        self.projection.entries().write(|| Entry { forecasts: rows(), ..Entry::default() });
     }
 }

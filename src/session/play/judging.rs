@@ -35,7 +35,7 @@ impl Session {
             verdicts.push(Verdict { post: at as u32 + 1, effects });
             self.feed.judgements[at] = judgements;
         }
-        let facts = to_fill(&mut self.facts, self.projector.as_ref());
+        let facts = to_fill(&mut self.facts, self.projection.entries());
         reach::receive(&mut self.world, &verdicts, &self.params, &self.streams, facts);
     }
 

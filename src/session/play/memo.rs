@@ -38,7 +38,7 @@ impl Session {
     /// # Errors
     /// `not_saved`, `read_only`.
     pub fn set_memo(&mut self, text: &str) -> Result<(), Refusal> {
-        if self.trajectory.is_none() {
+        if self.recorder.is_none() {
             return Err(Refusal::new("read_only", "this run is open read-only"));
         }
         let not_saved = |error: RunError| Refusal::new("not_saved", error.to_string());

@@ -1,77 +1,105 @@
-//! What follows from a day that was simulated or a call: words of posts, the hash of the facts, rows for the database.
-//!
-//! Nothing of it changes the company, so the day after is simulated meanwhile.
+//! The database of a run as its session sees it: entries go to a writer in the background, statements to a connection.
 
+use std::path::Path;
 use std::sync::Arc;
 
-use serde_json::Value;
+use crate::database::{Entry, Position, ProjectionError, Projector, QueryConnection};
+use crate::session::error::RunError;
+use crate::tools::Refusal;
+use crate::world::events::Facts;
 
-use super::facts_chain::{FactsChain, StateHash, state_hash};
-use super::feed::Feed;
-use super::recording::{entry_of, to_fill};
-use crate::database::{Entry, Projector};
-use crate::session::state::Session;
-use crate::world::day::step_day;
-use crate::world::events::{DayFigures, Facts};
-use crate::world::params::Params;
-use crate::world::random::Streams;
-
-/// The parts of a session that a day leaves its traces in.
-struct Projection<'a> {
-    feed: &'a mut Feed,
-    facts_chain: &'a mut FactsChain,
-    projector: Option<&'a Projector>,
-    params: &'a Params,
-    streams: &'a Streams,
+/// The rows that follow from what has happened. A run that is played without a database has none: then nothing is
+/// written, and statements are refused.
+#[derive(Default)]
+pub(in crate::session) struct Projection {
+    projector: Option<Projector>,
+    /// For statements of this thread; opened with the first of them.
+    connection: Option<QueryConnection>,
 }
 
-impl Projection<'_> {
-    /// Facts are not copied for the database: the writer reads what the session still shows, and the session fills new
-    /// ones while the writer needs these.
-    /// Nothing follows where there are no notices: nothing is left to be followed.
-    fn follow(self, facts: &Arc<Facts>, notices: Option<Vec<String>>, settings: Option<Value>) {
-        let Some(notices) = notices else { return };
-        self.feed.word(facts, self.params, self.streams);
-        self.facts_chain.add(facts);
-        if let Some(projector) = self.projector {
-            let entry = entry_of(facts, notices, self.feed, self.params);
-            projector.write(Entry { settings, ..entry });
+impl Projection {
+    /// A projection with this writer, if it has one.
+    pub(in crate::session) fn of(projector: Option<Projector>) -> Projection {
+        Projection { projector, connection: None }
+    }
+
+    /// Where entries go.
+    pub(in crate::session) fn entries(&self) -> Entries<'_> {
+        Entries(self.projector.as_ref())
+    }
+
+    /// Makes everything handed over visible, as of a line.
+    pub(in crate::session) fn commit(&self, position: &Position) {
+        if let Some(projector) = &self.projector {
+            projector.commit(position.clone());
         }
     }
+
+    /// Waits until everything committed is in the database.
+    pub(in crate::session) fn wait(&self) -> Result<(), ProjectionError> {
+        self.projector.as_ref().map_or(Ok(()), Projector::wait)
+    }
+
+    /// Does something once everything handed over so far is written, with the digest of the file if it is asked for; at
+    /// once where there is no database.
+    pub(in crate::session) fn then(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
+        match &self.projector {
+            Some(projector) => projector.then(digest, work),
+            None => work(None),
+        }
+    }
+
+    /// What keeps the database from being written.
+    pub(in crate::session) fn failure(&self) -> Option<ProjectionError> {
+        self.projector.as_ref()?.failure()
+    }
+
+    /// A connection of its own, for another thread.
+    pub(in crate::session) fn open_connection(&self) -> Result<QueryConnection, Refusal> {
+        let Some(projector) = &self.projector else {
+            return Err(Refusal::new("sql_error", "this run is played without a database"));
+        };
+        projector.desk().map_err(|error| Refusal::new("sql_error", error.to_string()))
+    }
+
+    /// The connection of this thread.
+    pub(in crate::session) fn connection(&mut self) -> Result<&QueryConnection, Refusal> {
+        let connection = match self.connection.take() {
+            Some(connection) => connection,
+            None => self.open_connection()?,
+        };
+        Ok(self.connection.insert(connection))
+    }
+
+    /// Writes the rows into a new file that any SQLite tool can open.
+    pub(in crate::session) fn copy_to(&self, file: &Path) -> Result<(), RunError> {
+        match &self.projector {
+            Some(projector) => Ok(projector.copy_for_other_programs(file)?),
+            None => Err(RunError::NotPossible("this run is played without a database".to_owned())),
+        }
+    }
+
+    /// Bounds the pages that the database may take beyond those it has.
+    #[cfg(test)]
+    pub(in crate::session) fn bound_pages(&self, more: Option<u32>) {
+        self.projector.as_ref().expect("a database").bound_pages(more);
+    }
 }
 
-impl Session {
-    /// Simulates a day, and meanwhile what follows from the day before, if that is left, with its notices.
-    pub(in crate::session) fn simulate_day(&mut self, day_before: Option<Vec<String>>) -> DayFigures {
-        std::mem::swap(&mut self.facts, &mut self.facts_before);
-        let Session { world, params, streams, facts, facts_before, feed, facts_chain, projector, .. } = self;
-        let projector = projector.as_ref();
-        let today = to_fill(facts, projector);
-        let projection = Projection { feed, facts_chain, projector, params, streams };
-        let ((figures, trace), ()) = rayon::join(
-            || step_day(world, params, streams, today),
-            || projection.follow(facts_before, day_before, None),
-        );
-        self.trace = trace;
-        figures
+/// Where entries go, for whatever thread makes them.
+#[derive(Clone, Copy)]
+pub(in crate::session) struct Entries<'a>(Option<&'a Projector>);
+
+impl Entries<'_> {
+    /// Hands an entry over; it is made only if there is a database.
+    pub(in crate::session) fn write(self, entry: impl FnOnce() -> Entry) {
+        if let Some(projector) = self.0 {
+            projector.write(entry());
+        }
     }
 
-    /// What follows from a call, which left this settings family if it set one.
-    pub(in crate::session) fn follow_up(&mut self, settings: Option<Value>) {
-        let notices = self.notice_texts();
-        let Session { params, streams, facts, feed, facts_chain, projector, .. } = self;
-        Projection { feed, facts_chain, projector: projector.as_ref(), params, streams }.follow(
-            facts,
-            Some(notices),
-            settings,
-        );
-    }
-
-    /// What follows from the last day of some, if there was any, with its notices; meanwhile the state is hashed.
-    pub(in crate::session) fn end_days(&mut self, last_day: Option<Vec<String>>) -> StateHash {
-        let Session { world, params, streams, facts, feed, facts_chain, projector, .. } = self;
-        let projection = Projection { feed, facts_chain, projector: projector.as_ref(), params, streams };
-        let (parts, ()) = rayon::join(|| world.part_hashes(), || projection.follow(facts, last_day, None));
-        state_hash(parts, self.facts_chain.hash())
+    /// Facts that the writer has done with, to be filled again.
+    pub(in crate::session) fn spare_facts(self) -> Option<Arc<Facts>> {
+        self.0?.spare_facts()
     }
 }

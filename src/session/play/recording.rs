@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::feed::Feed;
-use crate::database::{Entry, Projector};
+use super::projection::Entries;
+use super::recorder::Recorder;
+use crate::database::Entry;
 use crate::session::error::RunError;
 use crate::session::state::Session;
 use crate::session::trajectory::record::View;
@@ -14,12 +16,9 @@ use crate::world::params::Params;
 
 /// Facts to be filled: these if nobody reads them any more, else some that the writer of the database has done with, or
 /// new ones. The facts of a day that is not handed over yet stay.
-pub(in crate::session) fn to_fill<'a>(
-    facts: &'a mut Arc<Facts>,
-    projector: Option<&Projector>,
-) -> &'a mut Facts {
+pub(in crate::session) fn to_fill<'a>(facts: &'a mut Arc<Facts>, entries: Entries<'_>) -> &'a mut Facts {
     if Arc::strong_count(facts) > 1 {
-        *facts = projector.and_then(Projector::spare_facts).unwrap_or_default();
+        *facts = entries.spare_facts().unwrap_or_default();
     }
     Arc::make_mut(facts)
 }
@@ -54,9 +53,13 @@ impl Session {
 
     /// Makes everything handed over visible, as of the last line.
     pub(in crate::session) fn commit_projection(&self) {
-        if let Some(projector) = &self.projector {
-            projector.commit(self.position.clone());
-        }
+        self.projection.commit(&self.position);
+    }
+
+    /// When the line of an accepted call has to be on the disk; a run that is only read keeps its database as one that is
+    /// played.
+    pub(in crate::session) fn durability_of_calls(&self) -> Durability {
+        self.recorder.as_ref().map_or(Durability::Synced, Recorder::durability_of_calls)
     }
 
     /// Appends a line; a run that is only read has none.
@@ -65,18 +68,18 @@ impl Session {
         record: &Record,
         durability: Durability,
     ) -> Result<String, RunError> {
-        let Some(trajectory) = &mut self.trajectory else { return Ok(String::new()) };
-        let at = trajectory.append(self.world.day, record, durability)?;
-        self.position = trajectory.position();
+        let Some(recorder) = &mut self.recorder else { return Ok(String::new()) };
+        let at = recorder.append(self.world.day, record, durability)?;
+        self.position = recorder.position();
         Ok(at)
     }
 
     /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
     pub(in crate::session) fn append_done(&mut self, record: &Record) -> Option<String> {
-        let trajectory = self.trajectory.as_mut()?;
-        let written = trajectory.append_done(self.world.day, record);
-        self.position = trajectory.position();
-        written.err().map(|error| error.to_string())
+        let recorder = self.recorder.as_mut()?;
+        let problem = recorder.append_done(self.world.day, record);
+        self.position = recorder.position();
+        problem
     }
 
     /// Records what the person looked at, and for how long.

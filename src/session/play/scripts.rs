@@ -67,9 +67,10 @@ impl Session {
 
     fn output_of(&mut self, code: &str, time: Duration) -> Result<Output, Refusal> {
         let limits = self.query_limits();
-        let desk = self.desk().map_err(|refusal| Refusal::new("script_failed", refusal.message))?;
+        let connection =
+            self.connection().map_err(|refusal| Refusal::new("script_failed", refusal.message))?;
         let mut output = Output::default();
-        match desk.run_script(code, limits, time, |rows| output.add(&rows)) {
+        match connection.run_script(code, limits, time, |rows| output.add(&rows)) {
             Ok(()) => Ok(output),
             Err(stopped) => {
                 let refusal = Refusal::from(stopped.error);

@@ -15,11 +15,12 @@ use crate::session::error::RunError;
 use crate::session::figures::week::week_of;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
+use crate::session::play::projection::Projection;
 use crate::session::playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
 use crate::session::playback::record_view::RecordView;
 use crate::session::resume::open::check_start;
 use crate::session::state::Session;
-use crate::session::trajectory::{Line, Record, Trajectory, TrajectoryWriter, damaged_at};
+use crate::session::trajectory::{Line, Record, Trajectory, damaged_at};
 use crate::tools::Refusal;
 use crate::world::events::Facts;
 use crate::world::params::Params;
@@ -410,22 +411,7 @@ impl Session {
     ) -> Session {
         let mut facts = Facts::default();
         let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
-        Session::unwritten_from(manifest, folder, params, (world, facts), projector)
-    }
-
-    /// The same with a world that has a past.
-    pub(super) fn unwritten_from(
-        manifest: Manifest,
-        folder: Option<PathBuf>,
-        params: Arc<Params>,
-        (world, facts): (World, Facts),
-        projector: Option<Projector>,
-    ) -> Session {
-        let nowhere = TrajectoryWriter::in_memory();
-        let mut session =
-            Session::assemble(manifest, folder, None, params, world, facts, nowhere, projector, true);
-        session.trajectory = None;
-        session
+        Session::assemble(manifest, folder, params, (world, facts), Projection::of(projector))
     }
 }
 

@@ -291,7 +291,7 @@ fn a_state_that_is_not_reached_again_stops_before_it() {
     call.args = json!({"operations": 77, "development": 5});
     call.outcome = Outcome::Accepted(json!({"operations": 77.0, "development": 5.0}));
     let copy = run.folder.with_file_name("other.jsonl");
-    let mut writer = TrajectoryWriter::create(&copy).expect("a file");
+    let mut writer = crate::session::trajectory::TrajectoryWriter::create(&copy).expect("a file");
     for line in &lines {
         writer.append(line.day, &line.record, Durability::Written).expect("a line");
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::integrity::Integrity;
 use super::open::{Access, open_projector, usable};
-use crate::database::{Location, ProjectionError, Projector, is_consistent};
+use crate::database::{Location, ProjectionError, is_consistent};
 use crate::session::error::RunError;
 use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
@@ -13,7 +13,7 @@ use crate::session::trajectory::Trajectory;
 impl Session {
     /// What keeps the database from being written; none where it holds everything, or will soon.
     pub fn database_failure(&self) -> Option<ProjectionError> {
-        self.projector.as_ref()?.failure()
+        self.projection.failure()
     }
 
     /// Brings a database that could not be written up to the last line again, from the trajectory. Desks that were
@@ -23,11 +23,11 @@ impl Session {
     /// It still cannot be written. Nothing else has changed.
     pub fn mend_database(&mut self) -> Result<(), RunError> {
         let Some(problem) = self.database_failure() else { return Ok(()) };
-        let (Some(folder), Some(trajectory)) = (self.folder.clone(), &mut self.trajectory) else {
+        let (Some(folder), Some(recorder)) = (self.folder.clone(), &mut self.recorder) else {
             return Err(problem.into());
         };
         // Lines that wait for the disk would be missing.
-        trajectory.sync()?;
+        recorder.sync()?;
         let path = folder.join("trajectory.jsonl");
         let read = Trajectory::read(&path)?;
         let sound = is_consistent(&Location::File(folder.join("world.db")));
@@ -37,13 +37,10 @@ impl Session {
         let rows = database.1.as_ref().map_or(0, |position| position.seq);
         let snapshot = usable(&integrity, &self.manifest, &read, Some(rows));
         let (manifest, params) = (self.manifest.clone(), Arc::clone(&self.params));
-        let (mut other, seen) = Session::before_replay(manifest, &folder, None, params, snapshot);
+        let (mut other, seen) = Session::before_replay(manifest, &folder, params, snapshot);
         other.replay(&path, &read, seen, Some(database), &mut |_| {})?;
-        let mended: Option<Projector> = other.projector.take();
-        if let Some(projector) = &mended {
-            projector.wait()?;
-        }
-        (self.projector, self.desk) = (mended, None);
+        other.projection.wait()?;
+        self.projection = other.projection;
         Ok(())
     }
 }
@@ -93,7 +90,7 @@ mod tests {
         let mut straight = run(first.path());
         play(&mut straight, 3);
         let mut session = run(second.path());
-        session.projector.as_ref().expect("a database").bound_pages(Some(1));
+        session.projection.bound_pages(Some(1));
         play(&mut session, 2);
         let problem = session.wait_for_database().expect_err("there is no room").message;
         assert_eq!(session.database_failure().map(|own| own.to_string()), Some(problem.clone()));

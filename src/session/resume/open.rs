@@ -1,6 +1,5 @@
 //! Going on with a run: reading its trajectory and simulating it again.
 
-use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -11,9 +10,11 @@ use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::lock_run;
 use crate::session::play::facts_chain::StateHash;
+use crate::session::play::projection::Projection;
+use crate::session::play::recorder::Recorder;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Closing, Outcome};
-use crate::session::trajectory::{Line, Record, Trajectory, TrajectoryWriter, damaged_at};
+use crate::session::trajectory::{Line, Record, Trajectory, damaged_at};
 use crate::world::params::Params;
 
 /// What may be done with an opened run.
@@ -52,11 +53,11 @@ impl Session {
         // The number of the line up to which rows are there; rows that lack need the facts before them.
         let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
         let snapshot = usable(&integrity, &manifest, &trajectory, rows);
-        let (mut session, seen) = Session::before_replay(manifest.clone(), folder, lock, params, snapshot);
+        let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, snapshot);
         session.remarks.append(&mut integrity.remarks);
         session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
-        if access == Access::Write {
-            session.trajectory = Some(TrajectoryWriter::resume(&path, &trajectory)?);
+        if let Some(lock) = lock {
+            session.recorder = Some(Recorder::resume(&path, &trajectory, lock)?);
         }
         if trajectory.unfinished > 0 {
             let bytes = trajectory.unfinished;
@@ -73,23 +74,20 @@ impl Session {
     pub(in crate::session) fn before_replay(
         manifest: Manifest,
         folder: &Path,
-        lock: Option<File>,
         params: Arc<Params>,
         snapshot: Option<&Snapshot>,
     ) -> (Session, usize) {
         let own = Some(folder.to_owned());
         let recalled = snapshot.and_then(|snapshot| Some((snapshot.recall()?, snapshot.position())));
-        let (mut session, seen) = match recalled {
+        match recalled {
             None => (Session::unwritten(manifest, own, params, None), 0),
             Some(((past, recalled), position)) => {
                 let seen = position.seq as usize + 1;
-                let mut session = Session::unwritten_from(manifest, own, params, past, None);
+                let mut session = Session::assemble(manifest, own, params, past, Projection::default());
                 session.remember(recalled, position);
                 (session, seen)
             }
-        };
-        session._lock = lock;
-        (session, seen)
+        }
     }
 
     /// Applies every line again but those the session has seen; the database gets only what it does not have yet.
@@ -107,13 +105,13 @@ impl Session {
         for line in trajectory.lines.iter().skip(seen) {
             let missing = projected.as_ref().is_none_or(|position| line.seq > position.seq);
             if missing && projector.is_some() {
-                self.projector = projector.take();
+                self.projection = Projection::of(projector.take());
             }
             self.apply_line(path, line)?;
             reached(self.world.day);
         }
         if projector.is_some() {
-            self.projector = projector;
+            self.projection = Projection::of(projector);
         }
         Ok(())
     }

@@ -51,7 +51,7 @@ fn session(runs: &Path, sync_calls: bool) -> (Session, Arc<Mutex<Vec<u8>>>) {
     let file = File::options().append(true).open(path).expect("a file");
     let unsynced = Arc::new(Mutex::new(Vec::new()));
     let medium = Volatile { file, unsynced: unsynced.clone() };
-    session.trajectory.as_mut().expect("it is written").write_to(Box::new(medium));
+    session.recorder.as_mut().expect("it is written").write_to(Box::new(medium));
     (session, unsynced)
 }
 
@@ -82,7 +82,7 @@ fn week(session: &mut Session) {
 fn after_the_cut(session: &Session, to: &Path, unsynced: &[u8], chance: &mut u64) {
     let folder = session.folder().expect("a folder");
     // The database's own care for power cuts is SQLite's affair; here its files are copied while they rest.
-    session.projector.as_ref().expect("a database").wait().expect("it is written");
+    session.projection.wait().expect("it is written");
     std::fs::create_dir_all(to).expect("a folder");
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
         let name = entry.file_name();

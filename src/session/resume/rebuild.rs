@@ -19,7 +19,7 @@ use crate::session::trajectory::Trajectory;
 pub fn rebuild_database(folder: &Path, progress: &mut dyn FnMut(u32, u32)) -> Result<(), RunError> {
     let manifest = Manifest::read(folder)?;
     let params = Arc::new(manifest.params()?);
-    let lock = lock_run(folder, &manifest.id)?;
+    let _lock = lock_run(folder, &manifest.id)?;
     let path = folder.join("trajectory.jsonl");
     let mut integrity = Integrity::of(folder, &manifest);
     let trajectory = Trajectory::read(&path)?;
@@ -30,15 +30,14 @@ pub fn rebuild_database(folder: &Path, progress: &mut dyn FnMut(u32, u32)) -> Re
     let rows = database.1.as_ref().map_or(0, |position| position.seq);
     let snapshot = usable(&integrity, &manifest, &trajectory, Some(rows));
     let days = manifest.days;
-    let (mut session, seen) = Session::before_replay(manifest.clone(), folder, Some(lock), params, snapshot);
+    let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, snapshot);
     session.replay(&path, &trajectory, seen, Some(database), &mut |day| progress(day, days))?;
-    let Some(projector) = &session.projector else { return Ok(()) };
-    projector.wait()?;
+    session.projection.wait()?;
     // The file is another one now: what vouched for the old one would call it damaged.
     if let Some(closed) = integrity.snapshot.filter(|snapshot| snapshot.database().is_some()) {
         let folder = folder.to_owned();
-        projector.then(true, move |digest| closed.vouch_for(&folder, digest));
-        projector.wait()?;
+        session.projection.then(true, move |digest| closed.vouch_for(&folder, digest));
+        session.projection.wait()?;
     }
     Ok(())
 }

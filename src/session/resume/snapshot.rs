@@ -208,19 +208,16 @@ impl Session {
     /// run without a folder keeps none. A closing one vouches for the database's file too. A disk that refuses it takes
     /// away nothing but time.
     pub(in crate::session) fn keep_snapshot(&self, state_hash: impl FnOnce() -> String, closing: bool) {
-        let Some(folder) = self.folder.as_ref().filter(|_| self.trajectory.is_some()) else {
+        let Some(folder) = self.folder.as_ref().filter(|_| self.recorder.is_some()) else {
             return self.commit_projection();
         };
         let path = folder.join(FILE);
         let (header, state) = (self.snapshot_header(state_hash()), self.state_bytes());
         // Lines without rows move the database on, too: a snapshot ahead of it could not be used.
         self.commit_projection();
-        match &self.projector {
-            None => write(&path, &header, &state),
-            Some(projector) => projector.then(closing, move |database| {
-                write(&path, &Header { database, ..header }, &state);
-            }),
-        }
+        self.projection.then(closing, move |database| {
+            write(&path, &Header { database, ..header }, &state);
+        });
     }
 
     fn snapshot_header(&self, state_hash: String) -> Header {

@@ -1,0 +1,108 @@
+//! Writing a run: its trajectory, when a line has to be on the disk, and the lock that keeps other programs out.
+
+use std::fs::File;
+use std::path::Path;
+
+use crate::database::Position;
+use crate::session::error::RunError;
+use crate::session::folder::create::start_of;
+use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::folder::runs::lock_run;
+use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
+
+/// What a run has that is played, and a run that is only read has not.
+pub(in crate::session) struct Recorder {
+    trajectory: TrajectoryWriter,
+    /// When the line of an accepted call has to be on the disk: before the call is confirmed, or, in headless runs,
+    /// with the week.
+    calls: Durability,
+    /// Held while the run may be written; none in memory.
+    _lock: Option<File>,
+}
+
+impl Recorder {
+    /// Begins the trajectory of a new run, in its folder or in memory, with the line that says what the run is.
+    pub(in crate::session) fn begin(
+        manifest: &Manifest,
+        folder: Option<&Path>,
+        sync_calls: bool,
+    ) -> Result<Recorder, RunError> {
+        let (mut trajectory, lock) = match folder {
+            None => (TrajectoryWriter::in_memory(), None),
+            Some(folder) => {
+                let lock = lock_run(folder, &manifest.id)?;
+                manifest.write(folder)?;
+                let trajectory = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
+                sync_folder(folder)?;
+                (trajectory, Some(lock))
+            }
+        };
+        trajectory.append(0, &start_of(manifest), Durability::Synced)?;
+        let calls = if sync_calls { Durability::Synced } else { Durability::Written };
+        Ok(Recorder { trajectory, calls, _lock: lock })
+    }
+
+    /// Goes on with the trajectory of a run whose lock is held.
+    pub(in crate::session) fn resume(
+        path: &Path,
+        read: &Trajectory,
+        lock: File,
+    ) -> Result<Recorder, RunError> {
+        let trajectory = TrajectoryWriter::resume(path, read)?;
+        Ok(Recorder { trajectory, calls: Durability::Synced, _lock: Some(lock) })
+    }
+
+    /// Number and hash of the last line.
+    pub(in crate::session) fn position(&self) -> Position {
+        self.trajectory.position()
+    }
+
+    /// When the line of an accepted call has to be on the disk.
+    pub(in crate::session) fn durability_of_calls(&self) -> Durability {
+        self.calls
+    }
+
+    /// Whether every call is on the disk before it is confirmed.
+    pub(in crate::session) fn syncs_calls(&self) -> bool {
+        self.calls == Durability::Synced
+    }
+
+    /// Appends a line and returns the moment it carries.
+    ///
+    /// # Errors
+    /// The disk refuses: then the line does not exist.
+    pub(in crate::session) fn append(
+        &mut self,
+        day: u32,
+        record: &Record,
+        durability: Durability,
+    ) -> Result<String, RunError> {
+        self.trajectory.append(day, record, durability)
+    }
+
+    /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
+    pub(in crate::session) fn append_done(&mut self, day: u32, record: &Record) -> Option<String> {
+        self.trajectory.append_done(day, record).err().map(|error| error.to_string())
+    }
+
+    /// Puts everything on the disk, also lines that it has refused so far.
+    pub(in crate::session) fn sync(&mut self) -> Result<(), RunError> {
+        self.trajectory.sync()
+    }
+
+    /// Puts the lines of calls on the disk that are confirmed already. The database must not know more than the disk.
+    pub(in crate::session) fn sync_calls(&self) -> Result<(), RunError> {
+        self.trajectory.sync_written()
+    }
+
+    /// Whether the file still stands where it is looked for, and no line waits for it.
+    pub(in crate::session) fn is_complete(&self) -> bool {
+        self.trajectory.is_complete()
+    }
+
+    /// Puts another medium in place of the file.
+    #[cfg(test)]
+    pub(in crate::session) fn write_to(&mut self, medium: Box<dyn crate::session::trajectory::Medium>) {
+        self.trajectory.write_to(medium);
+    }
+}

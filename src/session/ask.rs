@@ -95,15 +95,15 @@ impl Session {
 
     /// The last statements the database was asked in this run, each once, the newest last.
     pub fn asked(&self) -> &[String] {
-        &self.asked
+        &self.history.asked
     }
 
     pub(super) fn remember_query(&mut self, sql: &str) {
         const KEPT: usize = 100;
-        self.asked.retain(|known| known != sql);
-        self.asked.push(sql.to_owned());
-        let surplus = self.asked.len().saturating_sub(KEPT);
-        self.asked.drain(..surplus);
+        self.history.asked.retain(|known| known != sql);
+        self.history.asked.push(sql.to_owned());
+        let surplus = self.history.asked.len().saturating_sub(KEPT);
+        self.history.asked.drain(..surplus);
     }
 
     /// The connection of this thread, to a database that holds everything up to now.
@@ -117,7 +117,7 @@ impl Session {
 }
 
 fn limits(session: &Session) -> Limits {
-    let own = &session.params.limits;
+    let own = &session.params().limits;
     Limits {
         rows: own.query_row_limit as usize,
         time: Duration::from_secs(u64::from(own.query_timeout_seconds)),

@@ -53,7 +53,7 @@ impl Session {
                 seats: (least as f64, most as f64),
             })
         };
-        Group::all().filter(|group| self.world.market.is_known(*group)).filter_map(of).collect()
+        Group::all().filter(|group| self.simulation.world.market.is_known(*group)).filter_map(of).collect()
     }
 }
 

@@ -8,14 +8,19 @@ impl Session {
     /// Texts of the notices of the last day, or of the last call.
     pub(in crate::session) fn notice_texts(&self) -> Vec<String> {
         let mut parties = Parties::of(self);
-        self.facts.notices.iter().map(|notice| self.notice_text(notice, parties.next(notice))).collect()
+        self.simulation
+            .facts
+            .notices
+            .iter()
+            .map(|notice| self.notice_text(notice, parties.next(notice)))
+            .collect()
     }
 
     fn notice_text(&self, notice: &Notice, party: Option<Party>) -> String {
         let Notice::OwnPostSeen(reaction) = notice else { return voice::notices::notice(notice, party) };
-        let own = self.world.market.social.own.get(reaction.post as usize - 1);
+        let own = self.simulation.world.market.social.own.get(reaction.post as usize - 1);
         let content = own.map_or("", |post| post.content.as_str());
-        voice::notices::reaction_to(content, reaction, &self.params.ceo_posts)
+        voice::notices::reaction_to(content, reaction, &self.simulation.params.ceo_posts)
     }
 }
 
@@ -31,8 +36,8 @@ struct Parties {
 
 impl Parties {
     fn of(session: &Session) -> Parties {
-        let (facts, world) = (&session.facts, &session.world);
-        let patience = session.params.enterprise.agent_response_timeout_days;
+        let (facts, world) = (&session.simulation.facts, session.world());
+        let patience = session.params().enterprise.agent_response_timeout_days;
         let notices = |fits: &dyn Fn(&Notice) -> bool| facts.notices.iter().filter(|own| fits(own)).count();
         // A list that is not one to one with its notices names nobody.
         let only = |parties: Vec<Party>, count: usize| {

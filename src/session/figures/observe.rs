@@ -115,26 +115,28 @@ impl Session {
             scenario: self.manifest.scenario.clone(),
             has_own_parameters: *self.own_parameters.get_or_init(|| self.manifest.has_own_parameters()),
             participant: self.manifest.participant.clone(),
-            day: self.world.day,
+            day: self.simulation.world.day,
             last_day: self.manifest.days,
-            week: week_of(self.world.day),
-            cash: self.world.finance.cash,
+            week: week_of(self.simulation.world.day),
+            cash: self.simulation.world.finance.cash,
             starting_cash: self.manifest.cash,
             cash_change: self.cash_change(),
             booked_since: self.booked_since(),
             pace,
-            committed_before: self.daily_cost(&self.this_week.settings),
+            committed_before: self.daily_cost(&self.history.this_week.settings),
             runway_weeks: self.runway_weeks(&pace),
             subscribers: closing.individual_subscribers,
             companies: self.companies(),
             seats: closing.enterprise_seats,
-            known_groups: Group::all().filter(|group| self.world.market.is_known(*group)).collect(),
-            ended: self.ended,
+            known_groups: Group::all()
+                .filter(|group| self.simulation.world.market.is_known(*group))
+                .collect(),
+            ended: self.history.ended,
             score: self.score(),
-            last_week: self.weeks.last().copied(),
+            last_week: self.history.weeks.last().copied(),
             dashboard: self.dashboard(),
             changes: self.changes(),
-            purchases: self.this_week.done.clone(),
+            purchases: self.history.this_week.done.clone(),
             waiting: self.waiting(),
             running_research: self.running_research(),
         }
@@ -143,7 +145,7 @@ impl Session {
     /// The weekly dashboard as text: as it was when the last days had run, whatever was set since. Before the first days
     /// it is built of what is.
     pub fn dashboard(&self) -> String {
-        self.last_dashboard.clone().unwrap_or_else(|| self.build_dashboard(self.open_issues()))
+        self.history.last_dashboard.clone().unwrap_or_else(|| self.build_dashboard(self.open_issues()))
     }
 
     /// The dashboard of the company as it is.
@@ -161,24 +163,36 @@ impl Session {
             threads: waiting.len() as u32,
             days_left: waiting.iter().map(|thread| thread.days_left).min().unwrap_or(0),
         };
-        let week = if self.running_week.days_run > 0 { Some(&self.running_week) } else { self.weeks.last() };
-        dashboard::build(&self.world, &self.params, week, &stocks, &self.calculated, waiting)
+        let week = if self.history.running_week.days_run > 0 {
+            Some(&self.history.running_week)
+        } else {
+            self.history.weeks.last()
+        };
+        dashboard::build(
+            &self.simulation.world,
+            &self.simulation.params,
+            week,
+            &stocks,
+            &self.history.calculated,
+            waiting,
+        )
     }
 
     /// Quality delivered to every known group, as the dashboard shows it.
     pub fn delivered_quality(&self) -> Vec<DeliveredQuality> {
-        delivered_quality(&self.world, &self.params)
+        delivered_quality(&self.simulation.world, &self.simulation.params)
     }
 
     /// Quality before any improvement, and what development has added for everybody.
     pub fn quality_base(&self) -> (f64, f64) {
-        (self.params.quality.base_product_quality, self.world.product.shared_bonus)
+        (self.simulation.params.quality.base_product_quality, self.simulation.world.product.shared_bonus)
     }
 
     /// Active subscribers with an open issue.
     pub(in crate::session) fn open_issues(&self) -> u32 {
         let open = |days: &&u32| **days > 0;
-        self.world
+        self.simulation
+            .world
             .customers
             .blocks()
             .map(|(_, block)| block.open_issue_days.iter().filter(open).count() as u32)
@@ -187,12 +201,12 @@ impl Session {
 
     /// Threads that wait for an answer, the first to be lost first.
     fn waiting(&self) -> Vec<WaitingThread> {
-        let patience = self.params.enterprise.agent_response_timeout_days;
-        let enterprise = &self.world.enterprise;
+        let patience = self.simulation.params.enterprise.agent_response_timeout_days;
+        let enterprise = &self.simulation.world.enterprise;
         let threads = enterprise.threads.iter().filter(|thread| thread.awaits_agent());
         let waiting = threads.map(|thread| {
             let company = enterprise.company(thread.customer);
-            let row = company.and_then(|company| company.row(&self.world.customers));
+            let row = company.and_then(|company| company.row(&self.simulation.world.customers));
             WaitingThread {
                 thread: thread.number,
                 customer: thread.customer,
@@ -202,7 +216,7 @@ impl Session {
                 turn: thread.last().number,
                 own_turns: thread.agent_turns(),
                 asked: thread.asked(),
-                days_left: (thread.last().day + patience).saturating_sub(self.world.day),
+                days_left: (thread.last().day + patience).saturating_sub(self.simulation.world.day),
             }
         });
         let mut waiting: Vec<WaitingThread> = waiting.collect();
@@ -212,26 +226,36 @@ impl Session {
 
     fn companies(&self) -> u32 {
         let enterprise = Group::all().filter(|group| group.is_enterprise());
-        enterprise.map(|group| self.world.customers.groups[group].active()).sum()
+        enterprise.map(|group| self.simulation.world.customers.groups[group].active()).sum()
     }
 
     fn running_research(&self) -> u32 {
-        self.world.product.research.iter().filter(|project| project.completed_day.is_none()).count() as u32
+        self.simulation
+            .world
+            .product
+            .research
+            .iter()
+            .filter(|project| project.completed_day.is_none())
+            .count() as u32
     }
 
     fn cash_change(&self) -> f64 {
-        let week = if self.running_week.days_run > 0 { Some(&self.running_week) } else { self.weeks.last() };
+        let week = if self.history.running_week.days_run > 0 {
+            Some(&self.history.running_week)
+        } else {
+            self.history.weeks.last()
+        };
         week.map_or(0.0, |week| week.cash_change)
     }
 
     fn runway_weeks(&self, pace: &Pace) -> Option<f64> {
-        let left = f64::from(self.manifest.days.saturating_sub(self.world.day));
-        pace.runway_weeks(self.world.finance.cash).filter(|weeks| weeks * 7.0 < left)
+        let left = f64::from(self.manifest.days.saturating_sub(self.simulation.world.day));
+        pace.runway_weeks(self.simulation.world.finance.cash).filter(|weeks| weeks * 7.0 < left)
     }
 
     fn booked_since(&self) -> Booked {
-        let mut booked = self.running_week.booked;
-        self.called.iter().for_each(|entry| booked.add(entry.category, entry.amount));
+        let mut booked = self.history.running_week.booked;
+        self.history.called.iter().for_each(|entry| booked.add(entry.category, entry.amount));
         booked
     }
 }

@@ -130,23 +130,23 @@ fn cents(value: f64) -> f64 {
 impl Session {
     /// Scores of the forecasts so far, one per horizon.
     pub fn forecast_scores(&self) -> Vec<ForecastScore> {
-        let filed = filed_forecasts(&self.journal, &self.cash_by_day);
-        let horizons = self.params.limits.prediction_horizons_days.iter();
+        let filed = filed_forecasts(&self.history.journal, &self.history.cash_by_day);
+        let horizons = self.simulation.params.limits.prediction_horizons_days.iter();
         horizons.map(|horizon| ForecastScore::of(*horizon, &filed)).collect()
     }
 
     /// How money goes on from here.
     pub fn pace(&self) -> Pace {
-        let running = (self.running_week.days_run > 0).then_some(self.running_week);
-        let weeks: Vec<WeekFigures> = self.weeks.iter().copied().chain(running).collect();
-        Pace::of(self.daily_cost(&self.world.settings), &weeks)
+        let running = (self.history.running_week.days_run > 0).then_some(self.history.running_week);
+        let weeks: Vec<WeekFigures> = self.history.weeks.iter().copied().chain(running).collect();
+        Pace::of(self.daily_cost(&self.simulation.world.settings), &weeks)
     }
 
     /// The naive projection of cash.
     pub fn naive_forecasts(&self) -> Forecasts {
-        let filed = filed_forecasts(&self.journal, &self.cash_by_day);
-        let horizons = &self.params.limits.prediction_horizons_days;
-        self.pace().project(self.world.finance.cash, horizons, &filed)
+        let filed = filed_forecasts(&self.history.journal, &self.history.cash_by_day);
+        let horizons = &self.simulation.params.limits.prediction_horizons_days;
+        self.pace().project(self.simulation.world.finance.cash, horizons, &filed)
     }
 }
 

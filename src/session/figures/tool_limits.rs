@@ -90,7 +90,7 @@ pub struct RunningStudy {
 impl Session {
     /// ToolLimits of the tools in this run.
     pub fn terms(&self) -> ToolLimits {
-        let params = &self.params;
+        let params = &self.simulation.params;
         let level = |level: &crate::world::params::InfoLevel| StudyLevel {
             level: level.level,
             cost: level.cost,
@@ -131,12 +131,12 @@ impl Session {
 
     /// Share of days with an outage while usage stays within capacity, at a spend on operations of dollars a day.
     pub fn outage_share(&self, operations: f64) -> f64 {
-        outage_probability(operations, 0.0, &self.params.operations)
+        outage_probability(operations, 0.0, &self.simulation.params.operations)
     }
 
     /// Quality that a day of targeted development adds for a group before the model's multiplier, at dollars a day.
     pub fn targeted_gain(&self, dollars: f64) -> f64 {
-        targeted_development_gain(dollars, &self.params.development)
+        targeted_development_gain(dollars, &self.simulation.params.development)
     }
 
     /// Studies that run, in the order they were ordered.
@@ -146,6 +146,6 @@ impl Session {
             target: study.target,
             due_day: study.due_day,
         };
-        self.world.market.studies.iter().map(of).collect()
+        self.simulation.world.market.studies.iter().map(of).collect()
     }
 }

@@ -1,6 +1,7 @@
 //! The hidden state, for debug runs: what the player never sees.
 
 use crate::session::folder::mode::Mode;
+use crate::session::play::simulation::Simulation;
 use crate::session::state::Session;
 use crate::tools::Refusal;
 use crate::voice::judge::Judgement;
@@ -39,8 +40,8 @@ impl Session {
 
 impl<'a> Xray<'a> {
     pub(in crate::session) fn new(session: &'a Session) -> Xray<'a> {
-        let Session { world, params, facts, trace, called, feed, .. } = session;
-        Xray { world, params, facts, trace, called, judgements: &feed.judgements }
+        let Simulation { world, params, facts, trace, feed, .. } = &session.simulation;
+        Xray { world, params, facts, trace, called: &session.history.called, judgements: &feed.judgements }
     }
 
     /// Money that calls moved between the day before and the last day.

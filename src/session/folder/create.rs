@@ -10,23 +10,16 @@ use super::mode::Mode;
 use super::runs::{earlier_runs, label_of};
 use crate::database::{Location, Position, Projector};
 use crate::session::error::RunError;
-use crate::session::figures::week::WeekFigures;
-use crate::session::play::facts_chain::FactsChain;
-use crate::session::play::feed::Feed;
+use crate::session::play::history::History;
 use crate::session::play::office::Office;
 use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
-use crate::session::play::this_week::ThisWeek;
+use crate::session::play::simulation::Simulation;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Start;
 use crate::session::trajectory::{Record, now};
 use crate::world::MECHANICS;
-use crate::world::day::DayTrace;
-use crate::world::events::Facts;
-use crate::world::identifiers::ByGroup;
 use crate::world::params::Params;
-use crate::world::random::Streams;
-use crate::world::state::World;
 
 /// What a new run is to be. What is left out comes from the scenario, then from the defaults.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,58 +105,35 @@ impl Session {
         new: &NewRun,
     ) -> Result<Session, RunError> {
         let params = Arc::new(params);
-        let mut facts = Facts::default();
-        let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
         let recorder = Recorder::begin(&manifest, folder.as_deref(), new.sync_calls)?;
         let projector = start_projector(new.projection, folder.as_deref(), manifest.number(), &params)?;
-        let begun = Session::assemble(manifest, folder, params, (world, facts), Projection::of(projector));
+        let simulation = Simulation::open(&manifest, params);
+        let begun = Session::assemble(manifest, folder, simulation, Projection::of(projector));
         let session = Session { position: recorder.position(), recorder: Some(recorder), ..begun };
         session.project_opening();
         Ok(session)
     }
 
-    /// A session with a world that nothing writes.
+    /// A session that nothing writes, and in which nothing has happened.
     pub(in crate::session) fn assemble(
         manifest: Manifest,
         folder: Option<PathBuf>,
-        params: Arc<Params>,
-        (world, facts): (World, Facts),
+        simulation: Simulation,
         projection: Projection,
     ) -> Session {
-        let settings = world.settings.clone();
         Session {
-            streams: Streams::new(manifest.seed),
-            cash_by_day: vec![world.finance.cash],
             manifest,
             folder,
-            params,
             numbers: OnceLock::new(),
             own_parameters: OnceLock::new(),
-            world,
-            facts: facts.into(),
-            facts_before: Arc::default(),
-            trace: DayTrace::default(),
-            position: Position { seq: 0, line_hash: String::new() },
-            recorder: None,
+            history: History::begin(&simulation.world),
+            simulation,
             projection,
-            weeks: Vec::new(),
-            decisions: Vec::new(),
-            running_week: WeekFigures::default(),
-            group_weeks: Vec::new(),
-            running_groups: ByGroup::default(),
-            notices: Vec::new(),
-            feed: Feed::default(),
-            this_week: ThisWeek { settings, undo: Vec::new(), redo: Vec::new(), done: Vec::new() },
-            journal: Vec::new(),
-            asked: Vec::new(),
+            position: Position { seq: 0, line_hash: String::new() },
             office: Office::default(),
-            calculated: Vec::new(),
-            last_dashboard: None,
-            called: Vec::new(),
             memo_in_memory: String::new(),
-            facts_chain: FactsChain::default(),
-            ended: None,
             remarks: Vec::new(),
+            recorder: None,
         }
     }
 

@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use serde_json::{Map, Value};
 
-use super::recording::to_fill;
 use super::this_week::Step;
 use crate::notation::cents;
 use crate::session::error::RunError;
@@ -64,31 +63,33 @@ impl Session {
         match planned.command {
             Command::None | Command::ReadInsights(_) => {}
             Command::Set(change) => {
-                let now = &self.world.settings;
+                let now = &self.simulation.world.settings;
                 let mut after = now.clone();
                 after.set(change);
                 preview.cost_per_day = self.daily_cost(&after) - self.daily_cost(now);
-                preview.effect_day = Some(self.world.day + 1);
+                preview.effect_day = Some(self.simulation.world.day + 1);
                 preview.changes = changes(now, &after);
             }
-            Command::Post(_) => preview.effect_day = Some(self.world.day + 1),
+            Command::Post(_) => preview.effect_day = Some(self.simulation.world.day + 1),
             Command::StartResearch(tier) => {
-                preview.cost_now = f64::from(self.params.research(tier).cost);
-                preview.effect_day = Some(self.world.day + self.params.development.rd_min_duration_days);
+                preview.cost_now = f64::from(self.simulation.params.research(tier).cost);
+                preview.effect_day =
+                    Some(self.simulation.world.day + self.simulation.params.development.rd_min_duration_days);
             }
             Command::ResearchMarket => {
-                preview.cost_now = self.params.market_research.discovery_cost_level_1;
-                preview.effect_day = Some(self.world.day);
+                preview.cost_now = self.simulation.params.market_research.discovery_cost_level_1;
+                preview.effect_day = Some(self.simulation.world.day);
             }
             Command::ResearchGroup(_, target) => {
-                let level = self.params.level(target);
+                let level = self.simulation.params.level(target);
                 preview.cost_now = level.cost;
-                preview.effect_day = Some(self.world.day + level.delay_days);
+                preview.effect_day = Some(self.simulation.world.day + level.delay_days);
             }
             Command::SendDeals(_) => {
-                preview.effect_day = Some(self.world.day + self.params.enterprise.reply_delay_min_days);
+                preview.effect_day =
+                    Some(self.simulation.world.day + self.simulation.params.enterprise.reply_delay_min_days);
             }
-            Command::RejectDeals(_) => preview.effect_day = Some(self.world.day),
+            Command::RejectDeals(_) => preview.effect_day = Some(self.simulation.world.day),
         }
         Ok(preview)
     }
@@ -100,7 +101,7 @@ impl Session {
             return None;
         }
         let planned = tool.plan(&self.view(), args).ok()?;
-        let resolved = self.world.resolve(planned.command, &self.params, &self.streams);
+        let resolved = self.simulation.resolve(planned.command);
         planned.reply.without_running(&resolved)
     }
 
@@ -125,7 +126,7 @@ impl Session {
         let allowed = self.refuse_if_over(tool.spec().kind);
         let planned = allowed.and_then(|()| self.plan(tool, arguments)).and_then(|(given, planned)| {
             let Planned { command, change, row, reply } = planned;
-            let resolved = self.world.resolve(command, &self.params, &self.streams);
+            let resolved = self.simulation.resolve(command);
             if change.is_some() {
                 self.refuse_if_only_read()?;
             }
@@ -171,10 +172,10 @@ impl Session {
         change.iter().for_each(|change| self.keep(change));
         if !resolved.only_reads() {
             let args = Value::Object(given.as_map().clone());
-            let (day, tool) = (self.world.day, spec.id);
-            self.journal.push(JournalEntry::Call { seq, day, tool, args, reversal });
+            let (day, tool) = (self.simulation.world.day, spec.id);
+            self.history.journal.push(JournalEntry::Call { seq, day, tool, args, reversal });
         }
-        self.this_week.done.extend(self.in_words(&resolved));
+        self.history.this_week.done.extend(self.in_words(&resolved));
         if matches!(resolved, ResolvedCommand::None | ResolvedCommand::ReadInsights(_)) {
             return;
         }
@@ -182,13 +183,14 @@ impl Session {
             ResolvedCommand::Set(change) => row.or_else(|| change.family()),
             _ => None,
         };
-        let before = matches!(resolved, ResolvedCommand::Set(_)).then(|| self.world.settings.clone());
-        self.world.apply(resolved, &self.params, to_fill(&mut self.facts, self.projection.entries()));
+        let before =
+            matches!(resolved, ResolvedCommand::Set(_)).then(|| self.simulation.world.settings.clone());
+        self.simulation.apply(resolved, self.projection.entries());
         if let Some(restores) = before {
-            let changed = restores != self.world.settings;
-            self.this_week.keep(Step { seq, tool: spec.id, restores }, changed, reversal);
+            let changed = restores != self.simulation.world.settings;
+            self.history.this_week.keep(Step { seq, tool: spec.id, restores }, changed, reversal);
         }
-        self.called.extend_from_slice(&self.facts.ledger);
+        self.history.called.extend_from_slice(&self.simulation.facts.ledger);
         self.after_call(settings);
     }
 
@@ -210,7 +212,7 @@ impl Session {
             }
             ResolvedCommand::SendDeals(letters) => letters.iter().map(letter_in_words).collect(),
             ResolvedCommand::RejectDeals(threads) => {
-                let ended = self.world.enterprise.threads.iter();
+                let ended = self.simulation.world.enterprise.threads.iter();
                 let ended = ended.filter(|thread| threads.contains(&thread.number));
                 ended.map(|thread| format!("thread with customer {} ended", thread.customer)).collect()
             }
@@ -219,10 +221,11 @@ impl Session {
 
     /// What follows every applied resolved, live or replayed; with the settings family that it leaves.
     fn after_call(&mut self, settings: Option<Value>) {
-        if let Some(last) = self.cash_by_day.last_mut() {
-            *last = self.world.finance.cash;
+        if let Some(last) = self.history.cash_by_day.last_mut() {
+            *last = self.simulation.world.finance.cash;
         }
-        self.follow_up(settings);
+        let notices = self.notice_texts();
+        self.simulation.follow_call(self.projection.entries(), notices, settings);
         // The database must not be ahead of what is on the disk.
         if self.durability_of_calls() == Durability::Synced {
             self.commit_projection();
@@ -231,17 +234,20 @@ impl Session {
 
     /// Settings changed since the last week, old -> new.
     pub fn changes(&self) -> Vec<Change> {
-        changes(&self.this_week.settings, &self.world.settings)
+        self.history.changes(&self.simulation.world)
     }
 
     /// The present values of a tool's arguments, as a call would send them.
     pub fn current(&self, tool: impl AsRef<str>) -> Map<String, Value> {
-        find(tool.as_ref()).map(|tool| tool.current(&self.world.settings)).unwrap_or_default()
+        find(tool.as_ref()).map(|tool| tool.current(&self.simulation.world.settings)).unwrap_or_default()
     }
 
     /// Running costs that follow from settings alone, dollars a day.
     pub(in crate::session) fn daily_cost(&self, settings: &Settings) -> f64 {
-        daily_cost(settings, f64::from(self.params.capacity(settings.core.capacity_tier).cost_per_day))
+        daily_cost(
+            settings,
+            f64::from(self.simulation.params.capacity(settings.core.capacity_tier).cost_per_day),
+        )
     }
 
     pub(in crate::session) fn tool(&self, name: &str) -> Result<&'static dyn AnyTool, Refusal> {
@@ -258,7 +264,9 @@ impl Session {
 
     /// What tools may look at.
     fn view(&self) -> View<'_> {
-        View::new(&self.world, &self.params).within(&self.office).with_posts(&self.feed.posts)
+        View::new(&self.simulation.world, &self.simulation.params)
+            .within(&self.office)
+            .with_posts(&self.simulation.feed.posts)
     }
 
     fn plan(
@@ -287,8 +295,8 @@ impl Session {
         if !kind.acts() {
             return Ok(());
         }
-        if let Some(ended) = self.ended {
-            let day = self.world.day;
+        if let Some(ended) = self.history.ended {
+            let day = self.simulation.world.day;
             let how = match ended {
                 crate::session::trajectory::record::Ended::Horizon => {
                     format!("it reached its last day, {day}")
@@ -316,7 +324,7 @@ impl Session {
     }
 
     fn record_call(&mut self, record: &Record, durability: Durability) -> Result<(), RunError> {
-        match self.ended {
+        match self.history.ended {
             Some(_) => Ok(()),
             None => self.append(record, durability).map(|_| ()),
         }
@@ -373,7 +381,7 @@ impl Session {
         let tool = call.tool.tool();
         let (given, planned) = self.plan_again(tool, &call.args).map_err(|refusal| refusal.to_string())?;
         let Planned { command, change, row, reply } = planned;
-        let resolved = self.world.resolve(command, &self.params, &self.streams);
+        let resolved = self.simulation.resolve(command);
         // What statements said is not asked again: the database may be ahead of this line. And documents may be worded
         // differently by now.
         let is_told_again = tool.spec().kind != Kind::Engine || change.is_some();
@@ -386,6 +394,6 @@ impl Session {
 
     /// The world, for the parts of the session that build readings from it.
     pub(in crate::session) fn world(&self) -> &World {
-        &self.world
+        &self.simulation.world
     }
 }

@@ -6,8 +6,6 @@ use super::act::not_saved;
 use super::facts_chain::StateHash;
 use crate::database::{Entry, ForecastRow};
 use crate::notation::json_number;
-use crate::session::figures::changes::Decisions;
-use crate::session::figures::groups;
 use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::{Forecasts, WeekFigures};
 use crate::session::figures::xray::Xray;
@@ -16,7 +14,7 @@ use crate::session::state::Session;
 use crate::session::trajectory::record::{Advance, Closing, End, Ended, Via};
 use crate::session::trajectory::{Durability, Record, seconds};
 use crate::tools::{self, Kind, Refusal, ToolId};
-use crate::world::events::{Category, DayFigures, Notice, Sender, SubscriptionEnded, SubscriptionStatus};
+use crate::world::events::DayFigures;
 use crate::world::market::surges::week_end;
 
 /// A day that was just simulated.
@@ -96,7 +94,7 @@ impl Session {
     ) -> Result<Week, Refusal> {
         let checked = self.refuse_if_over(Kind::Time).and_then(|()| {
             let text = tools::rationale(rationale)?;
-            let all = tools::forecasts(predictions, &self.params.limits.prediction_horizons_days)?;
+            let all = tools::forecasts(predictions, &self.simulation.params.limits.prediction_horizons_days)?;
             Ok((text, Forecasts { all, filled_naively }))
         });
         let (text, forecasts) = match checked {
@@ -115,7 +113,7 @@ impl Session {
             calculations: calculated.clone(),
         };
         let at = self.append(&Record::Advance(filed), self.durability_of_calls()).map_err(not_saved)?;
-        self.calculated = calculated;
+        self.history.calculated = calculated;
         self.file(text, &forecasts, &at);
         Ok(self.run_week(progress))
     }
@@ -129,8 +127,8 @@ impl Session {
             return Err(Refusal::new("not_in_this_mode", "single days can be stepped in debug runs only"));
         }
         self.refuse_if_over(Kind::Time)?;
-        let until = self.next_decision_day().min(self.world.day + days.max(1));
-        let from = self.world.day;
+        let until = self.next_decision_day().min(self.simulation.world.day + days.max(1));
+        let from = self.simulation.world.day;
         let state = self.run_days(until, progress);
         Ok(self.close_days(Record::Step, from, state))
     }
@@ -148,12 +146,12 @@ impl Session {
 
     /// The day on which the week that holds the next day ends.
     pub fn next_decision_day(&self) -> u32 {
-        week_end(self.world.day + 1, self.params.run.days_per_week, self.manifest.days)
+        week_end(self.simulation.world.day + 1, self.simulation.params.run.days_per_week, self.manifest.days)
     }
 
     /// Runs the week of an `advance` line and closes it.
     pub(in crate::session) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
-        let from = self.world.day;
+        let from = self.simulation.world.day;
         let state = self.run_days(self.next_decision_day(), progress);
         self.close_days(Record::Week, from, state)
     }
@@ -165,79 +163,27 @@ impl Session {
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> StateHash {
         let week_end = self.next_decision_day();
-        self.notices.clear();
+        self.history.notices.clear();
         let mut day_before = None;
-        while self.world.day < until && !self.world.is_over(&self.params) {
-            let figures = self.simulate_day(day_before.take());
-            self.judge_own_posts();
-            self.cash_by_day.push(figures.cash);
-            self.count_day(&figures);
+        while self.simulation.world.day < until && !self.simulation.world.is_over(&self.simulation.params) {
+            let figures = self.simulation.simulate_day(self.projection.entries(), day_before.take());
+            self.simulation.judge_own_posts(self.projection.entries());
             let notices = self.notice_texts();
-            self.notices.extend(notices.iter().map(|text| (figures.day, text.clone())));
+            self.history.count_day(&figures, &self.simulation, &notices);
             let debug = self.manifest.mode == crate::session::folder::mode::Mode::Debug;
             let xray = debug.then(|| Xray::new(self));
             progress(&DayReport { figures: &figures, week_end, xray });
-            self.called.clear();
+            self.history.called.clear();
             day_before = Some(notices);
         }
-        self.end_days(day_before)
-    }
-
-    fn count_day(&mut self, figures: &DayFigures) {
-        groups::count(&mut self.running_groups, figures, &self.facts, &self.world);
-        let week = &mut self.running_week;
-        week.add(figures);
-        let leads = f64::from(figures.new_leads) * self.params.leads.lead_acquisition_cost;
-        week.booked.add(Category::LeadAcquisitionCost, -leads);
-        week.booked.add(Category::SubscriptionPayment, figures.payments_received);
-        for entry in self.called.iter().chain(&self.facts.ledger) {
-            week.booked.add(entry.category, entry.amount);
-        }
-        for turn in self.facts.turns.iter().filter(|turn| turn.number == 0) {
-            week.threads_opened += 1;
-            week.thread_seats += turn.seats;
-        }
-        week.issues_opened += self.facts.issues_opened.len() as u32;
-        let replies = self.facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
-        week.replies += replies.filter(|turn| turn.number > 0).count() as u32;
-        let finished = |notice: &&Notice| {
-            matches!(notice, Notice::ResearchComplete { .. } | Notice::StudyComplete { .. })
-        };
-        week.research_finished += self.facts.notices.iter().filter(finished).count() as u32;
-        let left = |ending: &&SubscriptionEnded| {
-            ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
-        };
-        for ending in self.facts.endings.iter().filter(left) {
-            week.companies_lost += 1;
-            week.seats_lost += ending.seats;
-        }
+        self.simulation.end_days(self.projection.entries(), day_before)
     }
 
     /// Ends the figures of the days that ran, and the week if it is complete.
     pub(in crate::session) fn settle_figures(&mut self) -> WeekFigures {
-        let before = self.weeks.last().map_or(self.manifest.cash, |week| week.cash);
-        self.running_week.cash_change = self.world.finance.cash - before;
-        self.running_week.open_issues = self.open_issues();
-        let figures = self.running_week;
-        let complete = self.world.day.is_multiple_of(self.params.run.days_per_week);
-        if complete || self.world.is_over(&self.params) {
-            self.weeks.push(figures);
-            self.running_week = WeekFigures::default();
-            let mut groups = std::mem::take(&mut self.running_groups);
-            groups::settle(&mut groups, &self.world);
-            self.group_weeks.push(groups);
-        }
-        self.decisions.push(Decisions {
-            day: self.decisions.last().map_or(0, |before| before.until),
-            until: self.world.day,
-            changes: self.changes(),
-            purchases: std::mem::take(&mut self.this_week.done),
-        });
-        self.journal.push(JournalEntry::Week { figures });
-        self.this_week.settings = self.world.settings.clone();
-        self.this_week.undo.clear();
-        self.this_week.redo.clear();
-        self.last_dashboard = Some(self.build_dashboard(figures.open_issues));
+        let open_issues = self.open_issues();
+        let figures = self.history.settle(&self.simulation, self.manifest.cash, open_issues);
+        self.history.last_dashboard = Some(self.build_dashboard(figures.open_issues));
         figures
     }
 
@@ -246,9 +192,10 @@ impl Session {
         let figures = self.settle_figures();
         let closing = self.closing(from, &figures, &state);
         let mut problem = self.append_done(&kind(closing));
-        self.facts_chain.close();
+        self.simulation.facts_chain.close();
         problem = problem.or_else(|| self.close_if_over());
-        let due = self.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.running_week.days_run == 0;
+        let due =
+            self.history.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.history.running_week.days_run == 0;
         let snapshot = due && problem.is_none() && self.durability_of_calls() == Durability::Synced;
         let week = self.report(problem.map(|problem| {
             format!("{problem}; the days are simulated again when the run is opened, with the same result")
@@ -264,9 +211,9 @@ impl Session {
 
     /// Closes a run whose last day has passed or whose cash is gone; the database has to be told.
     pub(in crate::session) fn close_if_over(&mut self) -> Option<String> {
-        if self.world.finance.is_bankrupt(&self.params) {
+        if self.simulation.world.finance.is_bankrupt(&self.simulation.params) {
             self.close_run(Ended::Bankruptcy)
-        } else if self.world.is_over(&self.params) {
+        } else if self.simulation.world.is_over(&self.simulation.params) {
             self.close_run(Ended::Horizon)
         } else {
             None
@@ -274,8 +221,8 @@ impl Session {
     }
 
     fn close_run(&mut self, ended: Ended) -> Option<String> {
-        self.ended = Some(ended);
-        let end = End { reason: ended, cash: self.world.finance.cash, score: self.score() };
+        self.history.ended = Some(ended);
+        let end = End { reason: ended, cash: self.simulation.world.finance.cash, score: self.score() };
         self.append_done(&Record::End(end))
     }
 
@@ -283,24 +230,20 @@ impl Session {
     pub(in crate::session) fn closing(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> Closing {
         let (state_hash, parts) = state.clone();
         Closing {
-            days_run: self.world.day - from,
+            days_run: self.simulation.world.day - from,
             figures: figures.as_json(),
-            cash: self.world.finance.cash,
+            cash: self.simulation.world.finance.cash,
             state_hash,
             parts,
         }
     }
 
     fn report(&self, remark: Option<String>) -> Week {
-        let figures = match self.running_week.days_run {
-            0 => self.weeks.last().copied().unwrap_or_default(),
-            _ => self.running_week,
-        };
         Week {
-            figures,
+            figures: self.history.latest_week(),
             dashboard: self.dashboard(),
-            notices: self.notices.clone(),
-            ended: self.ended,
+            notices: self.history.notices.clone(),
+            ended: self.history.ended,
             remark,
         }
     }
@@ -308,8 +251,8 @@ impl Session {
     /// Keeps rationale and forecasts in the journal and the database.
     fn file(&mut self, rationale: String, forecasts: &Forecasts, at: &str) {
         self.project_forecasts(forecasts, at);
-        self.journal.push(JournalEntry::Advance {
-            day: self.world.day,
+        self.history.journal.push(JournalEntry::Advance {
+            day: self.simulation.world.day,
             rationale,
             forecasts: forecasts.all.to_vec(),
             filled_naively: forecasts.filled_naively,
@@ -319,7 +262,7 @@ impl Session {
     /// Files the rationale and forecasts of an `advance` line again.
     pub(in crate::session) fn replay_forecasts(&mut self, filed: &Advance, at: &str) -> Result<(), String> {
         let forecasts = Forecasts::of(&filed.forecasts).ok_or("there are not four forecasts")?;
-        self.calculated.clone_from(&filed.calculations);
+        self.history.calculated.clone_from(&filed.calculations);
         self.file(filed.rationale.clone(), &forecasts, at);
         Ok(())
     }
@@ -327,7 +270,7 @@ impl Session {
     fn project_forecasts(&self, forecasts: &Forecasts, at: &str) {
         let submitted_at = seconds(at);
         let row = |forecast: &crate::tools::Forecast| ForecastRow {
-            submit_day: self.world.day,
+            submit_day: self.simulation.world.day,
             horizon_days: forecast.horizon_days,
             point: forecast.point,
             lower: forecast.lower,

@@ -1,6 +1,7 @@
 //! What readers make of the player's posts.
 
-use super::recording::to_fill;
+use super::projection::Entries;
+use super::simulation::Simulation;
 use crate::session::state::Session;
 use crate::tools::PublicPost;
 use crate::voice::judge::{self, Circumstances, Lexicon, Submission};
@@ -8,9 +9,9 @@ use crate::world::identifiers::Group;
 use crate::world::market::social::reach::{self, Verdict};
 use crate::world::params::PostJudge;
 
-impl Session {
+impl Simulation {
     /// Lets the readers judge what the player posted before today.
-    pub(in crate::session) fn judge_own_posts(&mut self) {
+    pub(in crate::session) fn judge_own_posts(&mut self, entries: Entries<'_>) {
         if self.params.fidelity.post_judge == PostJudge::None {
             return;
         }
@@ -35,12 +36,14 @@ impl Session {
             verdicts.push(Verdict { post: at as u32 + 1, effects });
             self.feed.judgements[at] = judgements;
         }
-        let facts = to_fill(&mut self.facts, self.projection.entries());
-        reach::receive(&mut self.world, &verdicts, &self.params, &self.streams, facts);
+        let (world, facts, params, streams) = self.between_days(entries);
+        reach::receive(world, &verdicts, params, streams, facts);
     }
+}
 
+impl Session {
     /// Every post of others so far, in the order of their numbers.
     pub fn posts(&self) -> &[PublicPost] {
-        &self.feed.posts
+        &self.simulation.feed.posts
     }
 }

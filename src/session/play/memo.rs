@@ -45,7 +45,7 @@ impl Session {
         match self.folder.clone() {
             None => self.memo_in_memory = text.to_owned(),
             // Once a run is over nothing more is recorded.
-            Some(folder) if self.ended.is_some() => {
+            Some(folder) if self.history.ended.is_some() => {
                 return write_whole(&folder.join(FILE), text.as_bytes()).map_err(not_saved);
             }
             Some(folder) => {
@@ -62,7 +62,7 @@ impl Session {
     }
 
     fn note_memo(&mut self, text: &str) -> Result<(), RunError> {
-        if self.ended.is_some() {
+        if self.history.ended.is_some() {
             return Ok(());
         }
         let memo = Memo { digest: digest(text.as_bytes()), length: text.len() as u64 };
@@ -83,7 +83,7 @@ impl Session {
             (Access::Read, false) => {}
         }
         // Once a run is over, notes are kept without a line.
-        let Some(kept) = last_digest(trajectory).filter(|_| self.ended.is_none()) else { return };
+        let Some(kept) = last_digest(trajectory).filter(|_| self.history.ended.is_none()) else { return };
         if digest_of(&folder.join(FILE)) != Some(kept) {
             self.remarks.push(
                 "memo.md is not as it was last saved: another program changed it, or it is damaged."

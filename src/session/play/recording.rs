@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::feed::Feed;
-use super::projection::Entries;
 use super::recorder::Recorder;
 use crate::database::Entry;
 use crate::session::error::RunError;
@@ -13,15 +12,6 @@ use crate::session::trajectory::{Durability, Record};
 use crate::voice;
 use crate::world::events::{Facts, Sender};
 use crate::world::params::Params;
-
-/// Facts to be filled: these if nobody reads them any more, else some that the writer of the database has done with, or
-/// new ones. The facts of a day that is not handed over yet stay.
-pub(in crate::session) fn to_fill<'a>(facts: &'a mut Arc<Facts>, entries: Entries<'_>) -> &'a mut Facts {
-    if Arc::strong_count(facts) > 1 {
-        *facts = entries.spare_facts().unwrap_or_default();
-    }
-    Arc::make_mut(facts)
-}
 
 /// The facts of a day or call with the words that belong to them.
 pub(in crate::session) fn entry_of(
@@ -48,7 +38,7 @@ pub(in crate::session) fn entry_of(
 impl Session {
     /// The facts of day 0 with the words that belong to them.
     pub(in crate::session) fn entry(&self) -> Entry {
-        entry_of(&self.facts, self.notice_texts(), &self.feed, &self.params)
+        entry_of(&self.simulation.facts, self.notice_texts(), &self.simulation.feed, &self.simulation.params)
     }
 
     /// Makes everything handed over visible, as of the last line.
@@ -69,7 +59,7 @@ impl Session {
         durability: Durability,
     ) -> Result<String, RunError> {
         let Some(recorder) = &mut self.recorder else { return Ok(String::new()) };
-        let at = recorder.append(self.world.day, record, durability)?;
+        let at = recorder.append(self.simulation.world.day, record, durability)?;
         self.position = recorder.position();
         Ok(at)
     }
@@ -77,7 +67,7 @@ impl Session {
     /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
     pub(in crate::session) fn append_done(&mut self, record: &Record) -> Option<String> {
         let recorder = self.recorder.as_mut()?;
-        let problem = recorder.append_done(self.world.day, record);
+        let problem = recorder.append_done(self.simulation.world.day, record);
         self.position = recorder.position();
         problem
     }
@@ -89,7 +79,7 @@ impl Session {
 
     /// Records something that changes nothing; once the run is over nothing more is recorded.
     pub(in crate::session) fn note(&mut self, record: Record) {
-        if self.ended.is_none() {
+        if self.history.ended.is_none() {
             // Nothing is lost with it, so a disk that refuses it is no reason to stop.
             let _ = self.append(&record, Durability::Written);
         }

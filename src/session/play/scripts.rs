@@ -49,7 +49,7 @@ impl Session {
 
     /// What the calculations said before the last week.
     pub fn calculated(&self) -> &[Calculated] {
-        &self.calculated
+        &self.history.calculated
     }
 
     /// The answer of a tool that runs statements.
@@ -86,7 +86,7 @@ impl Session {
     pub(in crate::session) fn run_calculations(&mut self) -> Vec<Calculated> {
         let entries = self.office.notebook.shelf(Kept::Calculation).entries().to_vec();
         let time = self.query_limits().time;
-        let shown = self.params.limits.dashboard_calculation_max_chars as usize;
+        let shown = self.simulation.params.limits.dashboard_calculation_max_chars as usize;
         let run = |(name, code): (String, String)| {
             let output = match self.output_of(&code, time) {
                 Ok(output) => output.results,

@@ -27,6 +27,11 @@ pub(in crate::session) struct Step {
 }
 
 impl ThisWeek {
+    /// Nothing has happened since these settings were in force.
+    pub(in crate::session) fn begin(&mut self, settings: Settings) {
+        *self = ThisWeek { settings, undo: Vec::new(), redo: Vec::new(), done: Vec::new() };
+    }
+
     /// Keeps what a setting call did, so that it can be reversed.
     pub(in crate::session) fn keep(&mut self, call: Step, changed: bool, reversal: Option<Reversal>) {
         if let Some(Reversal::Undoes(seq)) = reversal {

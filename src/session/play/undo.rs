@@ -32,7 +32,7 @@ impl Session {
     /// # Errors
     /// `nothing_to_undo`, `cannot_undo` where no call can restore the old value, and the refusals of the call.
     pub fn undo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
-        let Some(step) = self.this_week.undo.last().cloned() else {
+        let Some(step) = self.history.this_week.undo.last().cloned() else {
             let message = "no setting has changed since the last week; purchases, posts and offers cannot be \
                            taken back";
             return Err(Refusal::new("nothing_to_undo", message));
@@ -45,7 +45,7 @@ impl Session {
     /// # Errors
     /// `nothing_to_redo`, and the refusals of the call.
     pub fn redo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
-        let Some(step) = self.this_week.redo.last().cloned() else {
+        let Some(step) = self.history.this_week.redo.last().cloned() else {
             let message = "nothing has been undone since the last setting";
             return Err(Refusal::new("nothing_to_redo", message));
         };
@@ -53,10 +53,10 @@ impl Session {
     }
 
     fn restore(&mut self, step: &Step, via: Via, reversal: Reversal) -> Result<Vec<Change>, Refusal> {
-        let before = self.world.settings.clone();
+        let before = self.simulation.world.settings.clone();
         let arguments = restoring_arguments(step.tool, &before, &step.restores)?;
         self.call_recorded(step.tool.name(), &Value::Object(arguments), via, Some(reversal))?;
-        Ok(changes(&before, &self.world.settings))
+        Ok(changes(&before, &self.simulation.world.settings))
     }
 }
 

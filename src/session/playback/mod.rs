@@ -16,15 +16,14 @@ use crate::session::figures::week::week_of;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
 use crate::session::play::projection::Projection;
+use crate::session::play::simulation::Simulation;
 use crate::session::playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
 use crate::session::playback::record_view::RecordView;
 use crate::session::resume::open::check_start;
 use crate::session::state::Session;
 use crate::session::trajectory::{Line, Record, Trajectory, damaged_at};
 use crate::tools::Refusal;
-use crate::world::events::Facts;
 use crate::world::params::Params;
-use crate::world::state::World;
 
 /// A line that closes a week or single steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -409,9 +408,8 @@ impl Session {
         params: Arc<Params>,
         projector: Option<Projector>,
     ) -> Session {
-        let mut facts = Facts::default();
-        let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
-        Session::assemble(manifest, folder, params, (world, facts), Projection::of(projector))
+        let simulation = Simulation::open(&manifest, params);
+        Session::assemble(manifest, folder, simulation, Projection::of(projector))
     }
 }
 

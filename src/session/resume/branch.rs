@@ -18,16 +18,16 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run or a baseline branch, `week_unknown`, `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Refusal> {
-        if self.manifest.mode == Mode::Baseline && self.ended.is_none() {
+        if self.manifest.mode == Mode::Baseline && self.history.ended.is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
             return Err(Refusal::new("not_in_this_mode", message));
         }
         let Some(folder) = &self.folder else {
             return Err(Refusal::new("not_saved", "a run in memory cannot be branched"));
         };
-        let day = week.saturating_sub(1) * self.params.run.days_per_week;
-        if week == 0 || day > self.world.day {
-            let last = self.world.day / self.params.run.days_per_week + 1;
+        let day = week.saturating_sub(1) * self.simulation.params.run.days_per_week;
+        if week == 0 || day > self.simulation.world.day {
+            let last = self.simulation.world.day / self.simulation.params.run.days_per_week + 1;
             return Err(Refusal::at(
                 "week",
                 "week_unknown",
@@ -40,12 +40,12 @@ impl Session {
 
     /// Whether the run can be branched now.
     pub fn can_branch(&self) -> bool {
-        self.folder.is_some() && (self.manifest.mode != Mode::Baseline || self.ended.is_some())
+        self.folder.is_some() && (self.manifest.mode != Mode::Baseline || self.history.ended.is_some())
     }
 
     /// Whether the run was given up.
     pub fn is_abandoned(&self) -> bool {
-        self.ended == Some(Ended::Abandoned)
+        self.history.ended == Some(Ended::Abandoned)
     }
 }
 

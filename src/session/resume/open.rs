@@ -4,12 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::integrity::Integrity;
-use super::snapshot::Snapshot;
+use super::snapshot::{Recalled, Snapshot};
 use crate::database::{Location, Position, Projector};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::lock_run;
 use crate::session::play::facts_chain::StateHash;
+use crate::session::play::office::Office;
 use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
 use crate::session::state::Session;
@@ -78,16 +79,15 @@ impl Session {
         snapshot: Option<&Snapshot>,
     ) -> (Session, usize) {
         let own = Some(folder.to_owned());
-        let recalled = snapshot.and_then(|snapshot| Some((snapshot.recall()?, snapshot.position())));
-        match recalled {
-            None => (Session::unwritten(manifest, own, params, None), 0),
-            Some(((past, recalled), position)) => {
-                let seen = position.seq as usize + 1;
-                let mut session = Session::assemble(manifest, own, params, past, Projection::default());
-                session.remember(recalled, position);
-                (session, seen)
-            }
-        }
+        let recalled = snapshot.and_then(|snapshot| Some((snapshot.recall(&manifest, &params)?, snapshot)));
+        let Some((Recalled { simulation, history, notebook }, snapshot)) = recalled else {
+            return (Session::unwritten(manifest, own, params, None), 0);
+        };
+        let position = snapshot.position();
+        let seen = position.seq as usize + 1;
+        let office = Office { notebook };
+        let session = Session::assemble(manifest, own, simulation, Projection::default());
+        (Session { history, office, position, ..session }, seen)
     }
 
     /// Applies every line again but those the session has seen; the database gets only what it does not have yet.
@@ -108,7 +108,7 @@ impl Session {
                 self.projection = Projection::of(projector.take());
             }
             self.apply_line(path, line)?;
-            reached(self.world.day);
+            reached(self.simulation.world.day);
         }
         if projector.is_some() {
             self.projection = Projection::of(projector);
@@ -133,13 +133,13 @@ impl Session {
             }
             Record::Advance(filed) => self.replay_forecasts(filed, &line.at)?,
             Record::Week(closing) | Record::Step(closing) => {
-                let from = self.world.day;
+                let from = self.simulation.world.day;
                 let state = self.run_days(from.saturating_add(closing.days_run), &mut |_| {});
                 self.compare(from, &state, closing)?;
                 self.commit_projection();
             }
             Record::End(end) => {
-                self.ended = Some(end.reason);
+                self.history.ended = Some(end.reason);
                 self.commit_projection();
             }
             Record::Query(query) => self.remember_query(&query.sql),
@@ -156,7 +156,7 @@ impl Session {
     fn compare(&mut self, from: u32, state: &StateHash, recorded: &Closing) -> Result<(), String> {
         let figures = self.settle_figures();
         let reached = self.closing(from, &figures, state);
-        self.facts_chain.close();
+        self.simulation.facts_chain.close();
         if reached.state_hash == recorded.state_hash {
             return same_figures(&reached, recorded);
         }
@@ -166,7 +166,7 @@ impl Session {
         Err(format!(
             "the state on day {} is not the recorded one (different: {}); a line before it was changed, or another \
              version recorded it",
-            self.world.day,
+            self.simulation.world.day,
             differing.join(", ")
         ))
     }
@@ -181,7 +181,7 @@ impl Session {
         if open == Some(true) {
             let week = self.run_week(&mut |_| {});
             self.remarks.push(format!("The week up to day {} was simulated again.", week.figures.day));
-        } else if self.ended.is_none() && self.world.is_over(&self.params) {
+        } else if self.history.ended.is_none() && self.simulation.world.is_over(&self.simulation.params) {
             // The program ended between the last week and the line that closes the run.
             let remark = self.close_if_over();
             self.commit_projection();

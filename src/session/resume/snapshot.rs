@@ -11,28 +11,26 @@ use std::borrow::Cow;
 use std::fs::File;
 use std::io::Write;
 use std::path::Path;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use crate::database::Position;
 use crate::session::figures::changes::Decisions;
-use crate::session::figures::groups::GroupWeek;
 use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::WeekFigures;
 use crate::session::folder::manifest::Manifest;
-use crate::session::play::facts_chain::{FactsChain, state_hash};
+use crate::session::play::facts_chain::FactsChain;
 use crate::session::play::feed::Feed;
+use crate::session::play::history::History;
 use crate::session::play::office::Calculated;
+use crate::session::play::simulation::Simulation;
 use crate::session::play::this_week::{Step, ThisWeek};
 use crate::session::state::Session;
 use crate::session::trajectory::record::Ended;
 use crate::tools::Notebook;
 use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
-use crate::world::day::DayTrace;
-use crate::world::events::{Facts, LedgerEntry};
-use crate::world::identifiers::ByGroup;
-use crate::world::settings::Settings;
-use crate::world::state::World;
+use crate::world::params::Params;
 
 const TITLE: &[u8] = b"novamind snapshot 4\n";
 const DIGEST: usize = blake3::OUT_LEN;
@@ -95,19 +93,11 @@ pub(in crate::session) struct Snapshot {
     notes_at: usize,
 }
 
-/// What a session gets back from a snapshot besides world and facts.
+/// What a session gets back from a snapshot.
 pub(in crate::session) struct Recalled {
-    facts_chain: FactsChain,
-    trace: DayTrace,
-    cash_by_day: Vec<f64>,
-    group_weeks: Vec<ByGroup<GroupWeek>>,
-    running_groups: ByGroup<GroupWeek>,
-    called: Vec<LedgerEntry>,
-    /// Settings before the first call of this week.
-    settings: Settings,
-    undo: Vec<Step>,
-    redo: Vec<Step>,
-    notes: Notes<'static>,
+    pub(in crate::session) simulation: Simulation,
+    pub(in crate::session) history: History,
+    pub(in crate::session) notebook: Notebook,
 }
 
 impl Snapshot {
@@ -161,8 +151,8 @@ impl Snapshot {
             && self.header.parameters_digest == manifest.parameters_digest
     }
 
-    /// The state; none if it is not the one it claims to be.
-    pub(in crate::session) fn recall(&self) -> Option<((World, Facts), Recalled)> {
+    /// The state of a run; none if it is not the one it claims to be.
+    pub(in crate::session) fn recall(&self, manifest: &Manifest, params: &Arc<Params>) -> Option<Recalled> {
         let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
         let notes: Notes<'static> = serde_json::from_str(&reader.read::<String>()?).ok()?;
         // Snapshots of earlier builds lack it, and it cannot be made of a state that was changed since.
@@ -170,21 +160,34 @@ impl Snapshot {
             return None;
         }
         let chain = blake3::Hash::from_hex(&notes.facts_chain.0).ok()?;
-        let (world, facts): (World, Facts) = (reader.read()?, reader.read()?);
-        let recalled = Recalled {
-            facts_chain: FactsChain::resume(chain, notes.facts_chain.1),
-            notes,
-            trace: reader.read()?,
+        let past = (reader.read()?, reader.read()?);
+        let mut simulation = Simulation::of(manifest, params.clone(), past);
+        simulation.trace = reader.read()?;
+        simulation.facts_chain = FactsChain::resume(chain, notes.facts_chain.1);
+        simulation.feed = notes.feed.into_owned();
+        let history = History {
             cash_by_day: reader.read()?,
             group_weeks: reader.read()?,
             running_groups: reader.read()?,
             called: reader.read()?,
-            settings: reader.read()?,
-            undo: reader.read()?,
-            redo: reader.read()?,
+            this_week: ThisWeek {
+                settings: reader.read()?,
+                undo: reader.read()?,
+                redo: reader.read()?,
+                done: notes.done.into_owned(),
+            },
+            weeks: notes.weeks.into_owned(),
+            running_week: notes.running_week.into_owned(),
+            decisions: notes.decisions.into_owned(),
+            notices: notes.notices.into_owned(),
+            journal: notes.journal.into_owned(),
+            asked: notes.asked.into_owned(),
+            calculated: notes.calculated.into_owned(),
+            last_dashboard: notes.last_dashboard.map(Cow::into_owned),
+            ended: notes.ended,
         };
-        let (hash, _) = state_hash(world.part_hashes(), recalled.facts_chain.hash());
-        (reader.left() == 0 && hash == self.header.state_hash).then_some(((world, facts), recalled))
+        let same = reader.left() == 0 && simulation.state_hash().0 == self.header.state_hash;
+        same.then(|| Recalled { simulation, history, notebook: notes.notebook.into_owned() })
     }
 }
 
@@ -233,67 +236,37 @@ impl Session {
     }
 
     fn state_bytes(&self) -> Vec<u8> {
+        let Session { simulation, history, office, .. } = self;
+        let chain = &simulation.facts_chain;
         let notes = Notes {
-            weeks: Cow::Borrowed(&self.weeks),
-            running_week: Cow::Borrowed(&self.running_week),
-            decisions: Cow::Borrowed(&self.decisions),
-            notices: Cow::Borrowed(&self.notices),
-            feed: Cow::Borrowed(&self.feed),
-            done: Cow::Borrowed(&self.this_week.done),
-            journal: Cow::Borrowed(&self.journal),
-            asked: Cow::Borrowed(&self.asked),
-            notebook: Cow::Borrowed(&self.office.notebook),
-            calculated: Cow::Borrowed(&self.calculated),
-            last_dashboard: self.last_dashboard.as_deref().map(Cow::Borrowed),
-            facts_chain: (self.facts_chain.hash().to_hex().to_string(), self.facts_chain.is_closed()),
-            ended: self.ended,
+            weeks: Cow::Borrowed(&history.weeks),
+            running_week: Cow::Borrowed(&history.running_week),
+            decisions: Cow::Borrowed(&history.decisions),
+            notices: Cow::Borrowed(&history.notices),
+            feed: Cow::Borrowed(&simulation.feed),
+            done: Cow::Borrowed(&history.this_week.done),
+            journal: Cow::Borrowed(&history.journal),
+            asked: Cow::Borrowed(&history.asked),
+            notebook: Cow::Borrowed(&office.notebook),
+            calculated: Cow::Borrowed(&history.calculated),
+            last_dashboard: history.last_dashboard.as_deref().map(Cow::Borrowed),
+            facts_chain: (chain.hash().to_hex().to_string(), chain.is_closed()),
+            ended: history.ended,
         };
-        let rows: u32 = self.world.customers.active().iter().sum();
+        let rows: u32 = simulation.world.customers.active().iter().sum();
         let mut bytes = CanonicalHasher::collector(rows as usize * BYTES_OF_A_SUBSCRIBER);
         serde_json::to_string(&notes).unwrap_or_default().feed(&mut bytes);
-        self.world.feed(&mut bytes);
-        self.facts.feed(&mut bytes);
-        self.trace.feed(&mut bytes);
-        self.cash_by_day.feed(&mut bytes);
-        self.group_weeks.feed(&mut bytes);
-        self.running_groups.feed(&mut bytes);
-        self.called.feed(&mut bytes);
-        self.this_week.settings.feed(&mut bytes);
-        self.this_week.undo.feed(&mut bytes);
-        self.this_week.redo.feed(&mut bytes);
+        simulation.world.feed(&mut bytes);
+        simulation.facts.feed(&mut bytes);
+        simulation.trace.feed(&mut bytes);
+        history.cash_by_day.feed(&mut bytes);
+        history.group_weeks.feed(&mut bytes);
+        history.running_groups.feed(&mut bytes);
+        history.called.feed(&mut bytes);
+        history.this_week.settings.feed(&mut bytes);
+        history.this_week.undo.feed(&mut bytes);
+        history.this_week.redo.feed(&mut bytes);
         bytes.into_bytes()
-    }
-
-    /// Takes over what a snapshot kept besides world and facts.
-    pub(in crate::session) fn remember(&mut self, recalled: Recalled, position: Position) {
-        let Recalled {
-            facts_chain,
-            trace,
-            cash_by_day,
-            group_weeks,
-            running_groups,
-            called,
-            settings,
-            undo,
-            redo,
-            notes,
-        } = recalled;
-        self.facts_chain = facts_chain;
-        self.this_week = ThisWeek { settings, undo, redo, done: notes.done.into_owned() };
-        (self.trace, self.cash_by_day, self.called) = (trace, cash_by_day, called);
-        (self.group_weeks, self.running_groups) = (group_weeks, running_groups);
-        self.weeks = notes.weeks.into_owned();
-        self.running_week = notes.running_week.into_owned();
-        self.decisions = notes.decisions.into_owned();
-        self.notices = notes.notices.into_owned();
-        self.feed = notes.feed.into_owned();
-        self.journal = notes.journal.into_owned();
-        self.asked = notes.asked.into_owned();
-        self.office.notebook = notes.notebook.into_owned();
-        self.calculated = notes.calculated.into_owned();
-        self.last_dashboard = notes.last_dashboard.map(Cow::into_owned);
-        self.ended = notes.ended;
-        self.position = position;
     }
 }
 

@@ -1,0 +1,151 @@
+//! What has happened in a run, as far as screens, dashboard and report look back: figures of weeks, decisions, journal.
+
+use super::office::Calculated;
+use super::simulation::Simulation;
+use super::this_week::ThisWeek;
+use crate::session::figures::changes::{Change, Decisions, changes};
+use crate::session::figures::groups::{self, GroupWeek};
+use crate::session::figures::journal::JournalEntry;
+use crate::session::figures::week::WeekFigures;
+use crate::session::trajectory::record::Ended;
+use crate::world::events::{
+    Category, DayFigures, LedgerEntry, Notice, Sender, SubscriptionEnded, SubscriptionStatus,
+};
+use crate::world::identifiers::ByGroup;
+use crate::world::state::World;
+
+/// What has happened so far.
+pub(in crate::session) struct History {
+    /// Cash at the end of each day, day 0 first.
+    pub(in crate::session) cash_by_day: Vec<f64>,
+    /// Every full or shortened week that ran.
+    pub(in crate::session) weeks: Vec<WeekFigures>,
+    /// The week that has begun with single steps.
+    pub(in crate::session) running_week: WeekFigures,
+    /// What every week that ran brought of each group.
+    pub(in crate::session) group_weeks: Vec<ByGroup<GroupWeek>>,
+    /// The same of the week that has begun.
+    pub(in crate::session) running_groups: ByGroup<GroupWeek>,
+    /// What was decided before each of them, or before single steps.
+    pub(in crate::session) decisions: Vec<Decisions>,
+    /// What the last days put into the inbox: day and text.
+    pub(in crate::session) notices: Vec<(u32, String)>,
+    /// What has been set since the last week.
+    pub(in crate::session) this_week: ThisWeek,
+    /// Everything that was done, in order.
+    pub(in crate::session) journal: Vec<JournalEntry>,
+    /// Statements the database was asked in this run, each once, the newest last.
+    pub(in crate::session) asked: Vec<String>,
+    /// What the calculations said before the last week.
+    pub(in crate::session) calculated: Vec<Calculated>,
+    /// The dashboard as it was when the last days had run; none before the first.
+    pub(in crate::session) last_dashboard: Option<String>,
+    /// Money that calls moved since the last day.
+    pub(in crate::session) called: Vec<LedgerEntry>,
+    /// How the run ended, if it did.
+    pub(in crate::session) ended: Option<Ended>,
+}
+
+impl History {
+    /// Nothing has happened yet in this world.
+    pub(in crate::session) fn begin(world: &World) -> History {
+        let settings = world.settings.clone();
+        History {
+            cash_by_day: vec![world.finance.cash],
+            weeks: Vec::new(),
+            running_week: WeekFigures::default(),
+            group_weeks: Vec::new(),
+            running_groups: ByGroup::default(),
+            decisions: Vec::new(),
+            notices: Vec::new(),
+            this_week: ThisWeek { settings, undo: Vec::new(), redo: Vec::new(), done: Vec::new() },
+            journal: Vec::new(),
+            asked: Vec::new(),
+            calculated: Vec::new(),
+            last_dashboard: None,
+            called: Vec::new(),
+            ended: None,
+        }
+    }
+
+    /// Settings changed since the last week, old -> new.
+    pub(in crate::session) fn changes(&self, world: &World) -> Vec<Change> {
+        changes(&self.this_week.settings, &world.settings)
+    }
+
+    /// Counts a day that was just simulated, with its notices.
+    pub(in crate::session) fn count_day(
+        &mut self,
+        figures: &DayFigures,
+        simulation: &Simulation,
+        notices: &[String],
+    ) {
+        let Simulation { facts, params, world, .. } = simulation;
+        self.cash_by_day.push(figures.cash);
+        self.notices.extend(notices.iter().map(|text| (figures.day, text.clone())));
+        groups::count(&mut self.running_groups, figures, facts, world);
+        let week = &mut self.running_week;
+        week.add(figures);
+        let leads = f64::from(figures.new_leads) * params.leads.lead_acquisition_cost;
+        week.booked.add(Category::LeadAcquisitionCost, -leads);
+        week.booked.add(Category::SubscriptionPayment, figures.payments_received);
+        for entry in self.called.iter().chain(&facts.ledger) {
+            week.booked.add(entry.category, entry.amount);
+        }
+        for turn in facts.turns.iter().filter(|turn| turn.number == 0) {
+            week.threads_opened += 1;
+            week.thread_seats += turn.seats;
+        }
+        week.issues_opened += facts.issues_opened.len() as u32;
+        let replies = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+        week.replies += replies.filter(|turn| turn.number > 0).count() as u32;
+        let finished = |notice: &&Notice| {
+            matches!(notice, Notice::ResearchComplete { .. } | Notice::StudyComplete { .. })
+        };
+        week.research_finished += facts.notices.iter().filter(finished).count() as u32;
+        let left = |ending: &&SubscriptionEnded| {
+            ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
+        };
+        for ending in facts.endings.iter().filter(left) {
+            week.companies_lost += 1;
+            week.seats_lost += ending.seats;
+        }
+    }
+
+    /// Ends the figures of the days that ran, and the week if it is complete.
+    pub(in crate::session) fn settle(
+        &mut self,
+        Simulation { params, world, .. }: &Simulation,
+        opening_cash: f64,
+        open_issues: u32,
+    ) -> WeekFigures {
+        let before = self.weeks.last().map_or(opening_cash, |week| week.cash);
+        self.running_week.cash_change = world.finance.cash - before;
+        self.running_week.open_issues = open_issues;
+        let figures = self.running_week;
+        if world.day.is_multiple_of(params.run.days_per_week) || world.is_over(params) {
+            self.weeks.push(figures);
+            self.running_week = WeekFigures::default();
+            let mut groups = std::mem::take(&mut self.running_groups);
+            groups::settle(&mut groups, world);
+            self.group_weeks.push(groups);
+        }
+        self.decisions.push(Decisions {
+            day: self.decisions.last().map_or(0, |before| before.until),
+            until: world.day,
+            changes: self.changes(world),
+            purchases: std::mem::take(&mut self.this_week.done),
+        });
+        self.journal.push(JournalEntry::Week { figures });
+        self.this_week.begin(world.settings.clone());
+        figures
+    }
+
+    /// Figures of the week that runs, or of the last one that ran.
+    pub(in crate::session) fn latest_week(&self) -> WeekFigures {
+        match self.running_week.days_run {
+            0 => self.weeks.last().copied().unwrap_or_default(),
+            _ => self.running_week,
+        }
+    }
+}

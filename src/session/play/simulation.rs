@@ -1,0 +1,161 @@
+//! What is simulated: the company and what people write about it, under the parameters and the seed of the run. Together
+//! with its [`History`](super::history::History) this is what a snapshot keeps.
+//!
+//! What follows from a day or a call (words of posts, the hash of the facts, rows for the database) changes nothing of
+//! the company, so the day after is simulated meanwhile.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::facts_chain::{FactsChain, StateHash, state_hash};
+use super::feed::Feed;
+use super::projection::Entries;
+use super::recording::entry_of;
+use crate::database::Entry;
+use crate::session::folder::manifest::Manifest;
+use crate::world::command::{Command, ResolvedCommand};
+use crate::world::day::{DayTrace, step_day};
+use crate::world::events::{DayFigures, Facts};
+use crate::world::params::Params;
+use crate::world::random::Streams;
+use crate::world::state::World;
+
+/// The company, its words, and how far it has come.
+pub(in crate::session) struct Simulation {
+    pub(in crate::session) params: Arc<Params>,
+    pub(in crate::session) streams: Streams,
+    pub(in crate::session) world: World,
+    /// Facts of the last day or call.
+    pub(in crate::session) facts: Arc<Facts>,
+    /// Those of the day before it, which are filled again once nobody reads them.
+    facts_before: Arc<Facts>,
+    /// How the leads of the last day came about.
+    pub(in crate::session) trace: DayTrace,
+    /// What people wrote in public, in words.
+    pub(in crate::session) feed: Feed,
+    /// Hashes of this week's facts.
+    pub(in crate::session) facts_chain: FactsChain,
+}
+
+impl Simulation {
+    /// The company of a run on day 0.
+    pub(in crate::session) fn open(manifest: &Manifest, params: Arc<Params>) -> Simulation {
+        let mut facts = Facts::default();
+        let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
+        Simulation::of(manifest, params, (world, facts))
+    }
+
+    /// A company of a run that has come somewhere, with the facts of its last day or call.
+    pub(in crate::session) fn of(
+        manifest: &Manifest,
+        params: Arc<Params>,
+        (world, facts): (World, Facts),
+    ) -> Simulation {
+        Simulation {
+            params,
+            streams: Streams::new(manifest.seed),
+            world,
+            facts: facts.into(),
+            facts_before: Arc::default(),
+            trace: DayTrace::default(),
+            feed: Feed::default(),
+            facts_chain: FactsChain::default(),
+        }
+    }
+
+    /// Hash of the whole state with one hash per part, by name.
+    pub(in crate::session) fn state_hash(&self) -> StateHash {
+        state_hash(self.world.part_hashes(), self.facts_chain.hash())
+    }
+
+    /// A command with its draws made; nothing happens.
+    pub(in crate::session) fn resolve(&self, command: Command) -> ResolvedCommand {
+        self.world.resolve(command, &self.params, &self.streams)
+    }
+
+    /// Does what a command does.
+    pub(in crate::session) fn apply(&mut self, resolved: ResolvedCommand, entries: Entries<'_>) {
+        self.world.apply(resolved, &self.params, to_fill(&mut self.facts, entries));
+    }
+
+    /// The world, and facts to be filled, for what happens between two days.
+    pub(in crate::session) fn between_days(
+        &mut self,
+        entries: Entries<'_>,
+    ) -> (&mut World, &mut Facts, &Params, &Streams) {
+        (&mut self.world, to_fill(&mut self.facts, entries), &self.params, &self.streams)
+    }
+
+    /// Simulates a day, and meanwhile what follows from the day before, if that is left, with its notices.
+    pub(in crate::session) fn simulate_day(
+        &mut self,
+        entries: Entries<'_>,
+        day_before: Option<Vec<String>>,
+    ) -> DayFigures {
+        std::mem::swap(&mut self.facts, &mut self.facts_before);
+        let Simulation { world, params, streams, facts, facts_before, feed, facts_chain, .. } = self;
+        let today = to_fill(facts, entries);
+        let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
+        let ((figures, trace), ()) = rayon::join(
+            || step_day(world, params, streams, today),
+            || follow_up.follow(facts_before, day_before, None),
+        );
+        self.trace = trace;
+        figures
+    }
+
+    /// What follows from a call, with its notices and the settings family that it left if it set one.
+    pub(in crate::session) fn follow_call(
+        &mut self,
+        entries: Entries<'_>,
+        notices: Vec<String>,
+        settings: Option<Value>,
+    ) {
+        let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
+        FollowUp { feed, facts_chain, entries, params, streams }.follow(facts, Some(notices), settings);
+    }
+
+    /// What follows from the last day of some, if there was any, with its notices; meanwhile the state is hashed.
+    pub(in crate::session) fn end_days(
+        &mut self,
+        entries: Entries<'_>,
+        last_day: Option<Vec<String>>,
+    ) -> StateHash {
+        let Simulation { world, params, streams, facts, feed, facts_chain, .. } = self;
+        let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
+        let (parts, ()) = rayon::join(|| world.part_hashes(), || follow_up.follow(facts, last_day, None));
+        state_hash(parts, self.facts_chain.hash())
+    }
+}
+
+/// Facts to be filled: these if nobody reads them any more, else some that the writer of the database has done with, or
+/// new ones. The facts of a day that is not handed over yet stay.
+fn to_fill<'a>(facts: &'a mut Arc<Facts>, entries: Entries<'_>) -> &'a mut Facts {
+    if Arc::strong_count(facts) > 1 {
+        *facts = entries.spare_facts().unwrap_or_default();
+    }
+    Arc::make_mut(facts)
+}
+
+/// The parts that a day leaves its traces in.
+struct FollowUp<'a> {
+    feed: &'a mut Feed,
+    facts_chain: &'a mut FactsChain,
+    entries: Entries<'a>,
+    params: &'a Params,
+    streams: &'a Streams,
+}
+
+impl FollowUp<'_> {
+    /// Facts are not copied for the database: the writer reads what the session still shows, and the session fills new
+    /// ones while the writer needs these.
+    /// Nothing follows where there are no notices: nothing is left to be followed.
+    fn follow(self, facts: &Arc<Facts>, notices: Option<Vec<String>>, settings: Option<Value>) {
+        let Some(notices) = notices else { return };
+        self.feed.word(facts, self.params, self.streams);
+        self.facts_chain.add(facts);
+        let FollowUp { feed, params, entries, .. } = self;
+        entries.write(|| Entry { settings, ..entry_of(facts, notices, feed, params) });
+    }
+}

@@ -117,11 +117,11 @@ fn problem(attack: &Attack, outcome: &Result<Rows, QueryError>) -> Option<String
     (!fits).then(|| format!("{}\n    must be {}, but was {told}", attack.sql, attack.head))
 }
 
-fn ask_all(desk: &QueryConnection, attacks: &[Attack], secrets: &[String]) {
+fn ask_all(connection: &QueryConnection, attacks: &[Attack], secrets: &[String]) {
     let mut problems = Vec::new();
     for attack in attacks {
         let limits = if attack.head.starts_with("answered") { AMPLE } else { LIMITS };
-        let outcome = desk.ask(&attack.sql, limits);
+        let outcome = connection.ask(&attack.sql, limits);
         problems.extend(problem(attack, &outcome));
         let texts: Vec<String> = match outcome {
             Ok(rows) => {
@@ -171,16 +171,16 @@ fn statements_read_nothing_hidden_write_nothing_and_end() {
 
     let attacks = attacks();
     assert!(attacks.len() >= 300, "{}", attacks.len());
-    let desk = session.open_desk().expect("a desk");
-    ask_all(&desk, &attacks, &secrets);
+    let connection = session.open_connection().expect("a connection");
+    ask_all(&connection, &attacks, &secrets);
 
     assert_eq!(contents(&folder), before, "something was written");
     assert_eq!(session.state_hash(), hash);
     for stray in ["attack_copy.db", "attack_other.db", "attack_file.txt"] {
         assert!(!Path::new(stray).exists() && !folder.join(stray).exists(), "{stray} was made");
     }
-    // The desk still answers.
-    let rows = desk.ask("SELECT count(*) FROM group_info_levels", LIMITS).expect("an answer");
+    // The connection still answers.
+    let rows = connection.ask("SELECT count(*) FROM group_info_levels", LIMITS).expect("an answer");
     assert_eq!(first_cell(&rows), "26");
 }
 
@@ -228,7 +228,7 @@ fn sealed_columns_and_tables_do_not_exist_in_any_form() {
         attacks.extend(statements.map(|sql| Attack { head: head.to_owned(), sql }));
     }
     assert!(attacks.len() > 700);
-    ask_all(&session.open_desk().expect("a desk"), &attacks, &[]);
+    ask_all(&session.open_connection().expect("a connection"), &attacks, &[]);
 }
 
 #[test]
@@ -236,16 +236,16 @@ fn a_query_that_takes_too_much_memory_is_stopped() {
     let _alone = alone();
     let session = Session::create(NewRun { days: Some(60), ..NewRun::default() }, &Configuration::shipped())
         .expect("a run");
-    let desk = session.open_desk().expect("a desk");
+    let connection = session.open_connection().expect("a connection");
     let limits = Limits { steps: None, ..LIMITS };
     let sorted = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) \
                   SELECT length(z) FROM (SELECT randomblob(1900000) AS z FROM n ORDER BY 1)";
-    let error = desk.ask(sorted, limits).expect_err("too much memory");
+    let error = connection.ask(sorted, limits).expect_err("too much memory");
     assert_eq!(error.code, "sql_timeout", "{}", error.message);
     assert!(error.message.contains("memory"), "{}", error.message);
     let wide = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT hex(zeroblob(1000000)) FROM n";
-    let error = desk.ask(wide, limits).expect_err("too large a result");
+    let error = connection.ask(wide, limits).expect_err("too large a result");
     assert_eq!(error.code, "sql_error", "{}", error.message);
     assert!(error.message.contains("MiB"), "{}", error.message);
-    desk.ask("SELECT 1", limits).expect("an answer");
+    connection.ask("SELECT 1", limits).expect("an answer");
 }

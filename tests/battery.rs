@@ -107,12 +107,12 @@ fn answer(session: &mut Session) {
 }
 
 /// Ordinary tables, declared as the released simulator declares them, with the rows of a company.
-fn plain_tables(desk: &QueryConnection) -> Connection {
+fn plain_tables(connection: &QueryConnection) -> Connection {
     let mut plain = Connection::open_in_memory().expect("memory");
     let transaction = plain.transaction().expect("a transaction");
     for table in tables() {
         transaction.execute_batch(&table.declaration()).expect("a table");
-        let all = desk.ask(&format!("SELECT rowid, * FROM {}", table.name), EVERYTHING);
+        let all = connection.ask(&format!("SELECT rowid, * FROM {}", table.name), EVERYTHING);
         let all = all.unwrap_or_else(|error| panic!("{}: {}", table.name, error.message));
         let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
         let places = vec!["?"; columns.len() + 1].join(", ");
@@ -186,14 +186,14 @@ fn difference(sql: &str, own: &Rows, plain: &Rows) -> Option<String> {
 #[test]
 fn statements_are_answered_as_by_ordinary_tables_and_in_few_steps() {
     let session = company();
-    let desk = session.open_desk().expect("a desk");
-    let plain = plain_tables(&desk);
+    let connection = session.open_connection().expect("a connection");
+    let plain = plain_tables(&connection);
     let statements = battery();
     assert!(statements.len() >= 300, "{}", statements.len());
     let (mut problems, mut empty) = (Vec::new(), Vec::new());
     for (heading, sql) in statements {
         let t0 = Instant::now();
-        let a = desk.ask(sql, LIMITS);
+        let a = connection.ask(sql, LIMITS);
         let t1 = Instant::now();
         if std::env::var("BT").is_ok() && t1 - t0 > Duration::from_millis(200) {
             println!("own {:?} {sql}", t1 - t0);
@@ -222,19 +222,19 @@ fn how_long_the_statements_take_with_190_000_subscribers() {
     let configuration = Configuration::shipped();
     let bench = Bench { repetitions: 1, scratch: scratch.path().to_owned(), configuration };
     let session = company_to_ask(&bench).expect("a company");
-    let desk = session.open_desk().expect("a desk");
+    let connection = session.open_connection().expect("a connection");
     let patient = Limits { steps: None, time: Duration::from_secs(120), ..LIMITS };
     let mut times: Vec<(Duration, &str)> = Vec::new();
     for (_, sql) in battery() {
         let started = Instant::now();
-        if let Err(error) = desk.ask(sql, patient) {
+        if let Err(error) = connection.ask(sql, patient) {
             println!("{}: {}\n    {sql}", error.code, error.message);
         }
         times.push((started.elapsed(), sql));
     }
     times.sort_by_key(|(took, _)| Reverse(*took));
     let size =
-        |table: &str| desk.ask(&format!("SELECT count(*) FROM {table}"), patient).map(|rows| rows.rows);
+        |table: &str| connection.ask(&format!("SELECT count(*) FROM {table}"), patient).map(|rows| rows.rows);
     for table in tables() {
         println!("{:<28} {:?}", table.name, size(&table.name));
     }

@@ -10,9 +10,9 @@ use crate::console::glyphs::Glyphs;
 use crate::console::headless::Headless;
 use crate::console::keys::Keys;
 use crate::console::photograph::{self, Paper};
+use crate::console::request::Recorded;
 use crate::console::screens::ScreenId;
 use crate::console::theme::Theme;
-use crate::console::worker::Recorded;
 use crate::session::{Goal, find_run_to_read};
 
 /// Options of `pictures`.

@@ -11,8 +11,9 @@ use crate::console::effect::Effect;
 use crate::console::glyphs::Glyphs;
 use crate::console::keys::Keys;
 use crate::console::preferences::Preferences;
+use crate::console::request::Recorded;
+use crate::console::request::Request;
 use crate::console::theme::Theme;
-use crate::console::worker::Recorded;
 use crate::session::{
     Access, Configuration, Goal, Library, Mode, NewRun, RunError, Session, Storage, find_run,
 };
@@ -156,10 +157,12 @@ fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
     let start = match &options.run {
         Some(id) if options.watch => {
             let recorded = Recorded::Run(id.clone());
-            Some(Effect::Replay { recorded, goal: Goal::Last, follow: true })
+            Some(Effect::Request(Request::Replay { recorded, goal: Goal::Last, follow: true }))
         }
-        Some(id) => Some(Effect::Open(id.clone())),
-        None if options.asks_for_new_run() => Some(Effect::Create(Box::new(options.new_run(context)?))),
+        Some(id) => Some(Effect::Request(Request::Open(id.clone(), Access::Write))),
+        None if options.asks_for_new_run() => {
+            Some(Effect::Request(Request::Create(Box::new(options.new_run(context)?))))
+        }
         None => None,
     };
     show_console(options, start, context)

@@ -81,13 +81,13 @@ fn ask_file(folder: &Path, sql: &str) -> Result<Option<Rows>, Failure> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
     // Queries and views do not move the database on; only lines that change the company do.
     let last = trajectory.lines.iter().rev().find(|line| moves_database(line));
-    if let (Ok((desk, position)), Some(last)) = (connection_to_file(folder), last)
+    if let (Ok((connection, position)), Some(last)) = (connection_to_file(folder), last)
         && position.seq >= last.seq
         && trajectory.lines.get(position.seq as usize).is_some_and(|line| line.hash == position.line_hash)
     {
         let time = std::time::Duration::from_secs(120);
         let limits = crate::database::query::Limits { rows: 5000, time, steps: None };
-        return desk.ask(sql, limits).map(Some).map_err(|error| Refusal::from(error).into());
+        return connection.ask(sql, limits).map(Some).map_err(|error| Refusal::from(error).into());
     }
     Ok(None)
 }

@@ -8,7 +8,8 @@ use clap::Args;
 use super::play::show_console;
 use super::{Context, Failure, play, print};
 use crate::console::effect::Effect;
-use crate::console::worker::Recorded;
+use crate::console::request::Recorded;
+use crate::console::request::Request;
 use crate::session::{Goal, find_run_to_read, verify};
 
 /// Options of `replay`.
@@ -40,7 +41,7 @@ fn show(options: &Options, context: &Context) -> Result<(), Failure> {
     if let Recorded::Run(id) = &recorded {
         find_run_to_read(&context.runs()?, id)?;
     }
-    let effect = Effect::Replay { recorded, goal: Goal::Week(options.week), follow: false };
+    let effect = Effect::Request(Request::Replay { recorded, goal: Goal::Week(options.week), follow: false });
     show_console(&play::Options::default(), Some(effect), context)
 }
 

@@ -31,6 +31,7 @@ use super::theme::Theme;
 use super::tour::Tour;
 use super::viewer::Viewer;
 use super::worker::{Job, Question};
+use crate::console::request::Request;
 use crate::report::Story;
 use crate::session::{Configuration, Library};
 
@@ -51,8 +52,6 @@ pub enum Order {
     Write(Vec<(PathBuf, Vec<u8>)>),
     /// Save a query: its name, its title, the statement.
     SaveQuery(Configuration, [String; 3]),
-    /// List the runs.
-    ListRuns,
     /// Draw everything again.
     Redraw,
     /// Use the mouse, or leave it to the terminal.
@@ -157,7 +156,6 @@ pub struct App {
     configuration: Configuration,
     /// Named queries.
     library: Library,
-    runs: PathBuf,
     /// The command that goes on with the newest run.
     again: String,
     /// Where the person is.
@@ -228,7 +226,6 @@ impl App {
             mouse: true,
             themes: Theme::all(&settings.configuration),
             configuration: settings.configuration,
-            runs: settings.runs,
             again: settings.again,
             stage: Stage::Menu(menu),
             layers: Vec::new(),
@@ -245,13 +242,8 @@ impl App {
             clicks: Vec::new(),
             page: 10,
             window: (0, 0),
-            orders: vec![Order::ListRuns],
+            orders: vec![Order::Job(Job::Do(Request::ListRuns))],
         }
-    }
-
-    /// Folder of the runs.
-    pub fn runs_folder(&self) -> &std::path::Path {
-        &self.runs
     }
 
     /// Opens or creates a run instead of showing the menu.
@@ -343,7 +335,7 @@ impl App {
             Some(Closing::ToMenu) | None => {
                 self.layers.clear();
                 self.stage = Stage::Menu(Box::new(Menu::new(&self.configuration)));
-                self.orders.push(Order::ListRuns);
+                self.orders.push(Order::Job(Job::Do(Request::ListRuns)));
                 match problem {
                     Some(problem) => self.complain(problem),
                     None if was_replay => self.say("replay closed; nothing changed"),

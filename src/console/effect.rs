@@ -4,76 +4,42 @@ use serde_json::Value;
 
 use super::action::Action;
 use super::readings::Reading;
+use super::request::Request;
 use super::screens::ScreenId;
-use super::worker::Recorded;
 use crate::glossary::Subject;
-use crate::session::{Forecasts, Goal, Mode, NewRun};
+use crate::session::Goal;
 use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
 impl Effect {
     /// Whether it would change the run.
     pub fn changes_run(&self) -> bool {
-        matches!(
-            self,
-            Effect::Call { .. }
-                | Effect::ConfirmCall { .. }
-                | Effect::Undo
-                | Effect::Redo
-                | Effect::Advance { .. }
-                | Effect::SetMemo(_)
-        )
+        match self {
+            Effect::Request(request) => request.changes_run(),
+            Effect::ConfirmCall { .. } => true,
+            _ => false,
+        }
+    }
+
+    /// A call of a tool.
+    pub fn call(tool: ToolId, arguments: Value) -> Effect {
+        Effect::Request(Request::Call { tool, arguments })
     }
 }
 
 /// Something an update asks for.
 #[derive(Debug, Clone)]
 pub enum Effect {
-    /// Start a run.
-    Create(Box<NewRun>),
-    /// Open a run by its id, to go on with it.
-    Open(String),
-    /// Open a run by its id, to look at it; nothing of it is changed.
-    Look(String),
-    /// Play a recorded run again.
-    Replay {
-        /// Which.
-        recorded: Recorded,
-        /// Where it begins.
-        goal: Goal,
-        /// New lines are awaited: somebody else is playing it.
-        follow: bool,
-    },
+    /// Work for the thread that owns the session.
+    Request(Request),
     /// Go somewhere in the replay.
     Go(Goal),
-    /// Go on from this moment of the replay in a run of one's own.
-    TakeOver(Mode),
-    /// Open the good beginning of a damaged run of the folder as a branch.
-    Rescue(String),
     /// What a call would do; only the newest answer counts.
     Check {
         /// Tool.
         tool: ToolId,
         /// Arguments.
         arguments: Value,
-    },
-    /// Call a tool.
-    Call {
-        /// Tool.
-        tool: ToolId,
-        /// Arguments.
-        arguments: Value,
-    },
-    /// Take back the last setting.
-    Undo,
-    /// Set again what the last undo took back.
-    Redo,
-    /// Let the week pass.
-    Advance {
-        /// Why.
-        rationale: String,
-        /// Forecasts of cash.
-        forecasts: Forecasts,
     },
     /// Ask the database for the person.
     Ask(String),
@@ -83,18 +49,12 @@ pub enum Effect {
     CancelQuery,
     /// Ask the database for a screen.
     Read(Reading),
-    /// Keep the notes.
-    SetMemo(String),
     /// Put text into the clipboard.
     Copy(String),
     /// Show a text to read: its title and the text.
     ShowText(String, String),
     /// Write a file into the folder of the run; its name and contents. A name that is taken gets the next number.
     Write(String, Vec<u8>),
-    /// Tell the story of the run for the final page.
-    TellStory,
-    /// Write the report of the run into its folder.
-    WriteReport,
     /// Say something in the last line.
     Say(String),
     /// Say that something was refused.
@@ -142,12 +102,6 @@ pub enum Effect {
     Explain(Subject),
     /// Start a run for practice with the tour in it.
     StartTour,
-    /// How a run of the folder went.
-    ReadCourse(String),
-    /// Give up a run of the folder.
-    EndRun(String),
-    /// Delete a run of the folder.
-    DeleteRun(String),
     /// Save and leave, whatever is half typed.
     LeaveNow,
     /// Do what a key would do.

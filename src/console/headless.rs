@@ -15,8 +15,9 @@ use super::files;
 use super::frame;
 use super::keys::Chord;
 use super::message::{Message, News};
-use super::worker::{Job, Recorded, Workers};
-use crate::session::Goal;
+use super::request::{Recorded, Request};
+use super::worker::{Job, Workers};
+use crate::session::{Access, Goal};
 
 /// An answer that takes longer than this does not come.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -44,7 +45,7 @@ impl Headless {
     /// A console that has shown nothing yet.
     pub fn new(settings: Settings, size: (u16, u16)) -> Headless {
         let (sender, messages) = channel();
-        let workers = Workers::start(sender.clone(), settings.configuration.clone());
+        let workers = Workers::start(sender.clone(), settings.configuration.clone(), settings.runs.clone());
         Headless {
             app: App::new(settings),
             size,
@@ -63,7 +64,7 @@ impl Headless {
     /// # Errors
     /// It does not open.
     pub fn open(&mut self, run: &str) -> io::Result<()> {
-        self.open_with(Effect::Open(run.to_owned()))
+        self.open_with(Effect::Request(Request::Open(run.to_owned(), Access::Write)))
     }
 
     /// Opens a run, to look at it, and waits until everything about it is known.
@@ -71,7 +72,7 @@ impl Headless {
     /// # Errors
     /// It does not open.
     pub fn look_at(&mut self, run: &str) -> io::Result<()> {
-        self.open_with(Effect::Look(run.to_owned()))
+        self.open_with(Effect::Request(Request::Open(run.to_owned(), Access::Read)))
     }
 
     /// Plays a recorded run again from a moment on, and waits until everything about it is known.
@@ -79,7 +80,7 @@ impl Headless {
     /// # Errors
     /// It does not open.
     pub fn replay(&mut self, recorded: Recorded, goal: Goal, follow: bool) -> io::Result<()> {
-        self.open_with(Effect::Replay { recorded, goal, follow })
+        self.open_with(Effect::Request(Request::Replay { recorded, goal, follow }))
     }
 
     fn open_with(&mut self, effect: Effect) -> io::Result<()> {
@@ -185,10 +186,6 @@ impl Headless {
                 Order::AskNow(question) => {
                     self.waiting += 1;
                     self.workers.ask_now(question);
-                }
-                Order::ListRuns => {
-                    self.waiting += 1;
-                    self.workers.send(Job::List(self.app.runs_folder().to_owned()));
                 }
                 Order::Write(written) => {
                     self.waiting += 1;

@@ -49,7 +49,7 @@ pub enum News {
     /// The runs of the folder.
     Runs(Result<Vec<crate::session::RunSummary>, String>),
     /// How a run went; with its id.
-    Course(String, Result<crate::session::RunHistory, String>),
+    Preview(String, Result<crate::session::RunPreview, String>),
     /// A run was given up or deleted: a sentence, or what went wrong; and the runs of the folder now.
     Kept(Result<String, String>, Result<Vec<crate::session::RunSummary>, String>),
     /// A run is open; with a handle that stops the person's queries.

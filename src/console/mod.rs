@@ -23,6 +23,7 @@ pub(crate) mod photograph;
 mod posts;
 pub(crate) mod preferences;
 mod readings;
+pub mod request;
 pub(crate) mod screens;
 pub(crate) mod speed;
 mod terminal;
@@ -43,7 +44,7 @@ use app::{App, Order, Settings, Stage};
 use effect::Effect;
 use message::Message;
 use terminal::Screen;
-use worker::{Job, Workers};
+use worker::Workers;
 
 /// How often a frame is drawn while only time passes.
 const BETWEEN_SECONDS: Duration = Duration::from_millis(500);
@@ -56,15 +57,15 @@ const FOREVER: Duration = Duration::from_secs(3600);
 /// The terminal fails.
 pub fn play(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option<String>)> {
     let (sender, messages) = channel();
-    let workers = Workers::start(sender.clone(), settings.configuration.clone());
-    let (runs, again) = (settings.runs.clone(), settings.again.clone());
+    let workers = Workers::start(sender.clone(), settings.configuration.clone(), settings.runs.clone());
+    let again = settings.again.clone();
     let mut app = App::new(settings);
     if let Some(effect) = start {
         app.start_with(effect);
     }
     let screen = Screen::take(again)?;
     listen(sender.clone());
-    let mut console = Console { app, workers, screen, messages, sender, runs };
+    let mut console = Console { app, workers, screen, messages, sender };
     let end = console.run();
     let Console { screen, workers, .. } = console;
     drop(screen);
@@ -78,7 +79,6 @@ struct Console {
     screen: Screen,
     messages: Receiver<Message>,
     sender: Sender<Message>,
-    runs: std::path::PathBuf,
 }
 
 impl Console {
@@ -130,7 +130,6 @@ impl Console {
                 Order::SaveQuery(configuration, query) => {
                     files::save_query_behind(configuration, query, self.sender.clone());
                 }
-                Order::ListRuns => self.workers.send(Job::List(self.runs.clone())),
                 Order::Redraw => self.screen.clear()?,
                 Order::Mouse(taken) => self.screen.mouse(taken),
                 Order::Exit(code, text) => return Ok(Some((code, text))),

@@ -1,4 +1,4 @@
-//! The tables `daily_usage` and `ads_revenue`: read-only virtual tables over the shelf of blocks, which skip
+//! The tables `daily_usage` and `ads_revenue`: read-only virtual tables over the store of blocks, which skip
 //! days and customers that a query does not ask for.
 //!
 //! SQLite's interface to virtual tables is a pair of unsafe traits: their structs must start with the base
@@ -37,7 +37,7 @@ trait Kind: Send + Sync + Sized + 'static {
     type Run: Run;
     const DECLARATION: &'static CStr;
 
-    fn days(shelf: &BlockStore) -> &[Arc<PackedDay>];
+    fn days(store: &BlockStore) -> &[Arc<PackedDay>];
     fn indexes(seen: &Seen) -> &Indexes<Self::Run>;
     fn column(row: RowOf<Self>, column: c_int, context: &mut Context) -> rusqlite::Result<()>;
 }
@@ -45,7 +45,7 @@ trait Kind: Send + Sync + Sized + 'static {
 /// What a row of a table holds besides day and customer.
 type RowOf<K> = <<K as Kind>::Run as Run>::Row;
 
-/// A row: day on the shelf, run of the day, position in the run.
+/// A row: day in the store, run of the day, position in the run.
 #[derive(Clone, Copy, Default)]
 struct Place {
     day: usize,
@@ -60,8 +60,8 @@ impl Kind for Usage {
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(day INTEGER, customer_id INTEGER, usage_units INTEGER)";
 
-    fn days(shelf: &BlockStore) -> &[Arc<PackedDay>] {
-        &shelf.usage
+    fn days(store: &BlockStore) -> &[Arc<PackedDay>] {
+        &store.usage
     }
 
     fn indexes(seen: &Seen) -> &Indexes<UsageRows> {
@@ -80,8 +80,8 @@ impl Kind for Ads {
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(day INTEGER, customer_id INTEGER, group_id TEXT, ads_strength REAL, revenue REAL)";
 
-    fn days(shelf: &BlockStore) -> &[Arc<PackedDay>] {
-        &shelf.ads
+    fn days(store: &BlockStore) -> &[Arc<PackedDay>] {
+        &store.ads
     }
 
     fn indexes(seen: &Seen) -> &Indexes<AdsRun> {
@@ -168,7 +168,7 @@ unsafe impl<'vtab, K: Kind> VTab<'vtab> for BlockTable<K> {
     fn open(&mut self) -> rusqlite::Result<BlockCursor<'_, K>> {
         Ok(BlockCursor {
             base: ffi::sqlite3_vtab_cursor::default(),
-            shelf: self.seen.shelf(),
+            store: self.seen.store(),
             seen: self.seen.clone(),
             place: Place::default(),
             run: None,
@@ -187,12 +187,12 @@ type Found<K> = (Arc<ByCustomer<<K as Kind>::Run>>, Range<usize>);
 struct BlockCursor<'vtab, K: Kind> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab_cursor,
-    shelf: BlockStore,
+    store: BlockStore,
     seen: Arc<Seen>,
     place: Place,
     /// The run of the place, once a row of it was asked for.
     run: Option<K::Run>,
-    /// Days on the shelf that are asked for.
+    /// Days in the store that are asked for.
     days: Range<usize>,
     /// Only rows of this customer are asked for.
     customer: Option<f64>,
@@ -204,7 +204,7 @@ struct BlockCursor<'vtab, K: Kind> {
 impl<K: Kind> BlockCursor<'_, K> {
     /// Moves on to the first row at or after the place that may be asked for.
     fn settle(&mut self) {
-        let days = K::days(&self.shelf);
+        let days = K::days(&self.store);
         while let Some(day) = days.get(self.place.day).filter(|_| self.days.contains(&self.place.day)) {
             while self.place.run < day.len() {
                 if self.run.is_none()
@@ -236,7 +236,7 @@ impl<K: Kind> BlockCursor<'_, K> {
         match &self.found {
             Some((index, rest)) => index.numbers.get(rest.start).copied(),
             None => {
-                let day = K::days(&self.shelf).get(self.place.day)?;
+                let day = K::days(&self.store).get(self.place.day)?;
                 Some(day.row_number(self.place.run, self.place.at))
             }
         }
@@ -246,7 +246,7 @@ impl<K: Kind> BlockCursor<'_, K> {
     fn day(&self) -> Option<u32> {
         match &self.found {
             Some((index, rest)) => u32::try_from(index.numbers.get(rest.start)? >> 32).ok(),
-            None => K::days(&self.shelf).get(self.place.day).map(|day| day.day),
+            None => K::days(&self.store).get(self.place.day).map(|day| day.day),
         }
     }
 
@@ -289,7 +289,7 @@ unsafe impl<K: Kind> VTabCursor for BlockCursor<'_, K> {
                 _ => self.customer = Some(number),
             }
         }
-        let days = K::days(&self.shelf);
+        let days = K::days(&self.store);
         let end = days.partition_point(|day| f64::from(day.day) <= last_day);
         self.days = days.partition_point(|day| f64::from(day.day) < first_day).min(end)..end;
         if let Some(customer) = self.customer
@@ -356,9 +356,9 @@ mod tests {
         let group = Group::parse("S2").expect("a group");
         let ads_row = AdsRevenueRow { customer: 2, group, strength: 0.5, revenue: 0.25 };
         let ads = vec![Arc::new(PackedDay::pack(3, &AdsRun::runs_of(&[ads_row])))];
-        let shelf = BlockStore { usage: Arc::new(usage), ads: Arc::new(ads) };
+        let store = BlockStore { usage: Arc::new(usage), ads: Arc::new(ads) };
         let connection = Connection::open_in_memory().expect("memory");
-        seen.see(shelf);
+        seen.see(store);
         register(&connection, seen).expect("modules");
         connection
     }
@@ -421,7 +421,7 @@ mod tests {
         let seen = Arc::new(Seen::default());
         let connection = seen_by(&seen);
         let ask = |lookups: u32| -> (usize, i64) {
-            seen.see(seen.shelf());
+            seen.see(seen.store());
             let sql = format!(
                 "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < {lookups})
                  SELECT count(u.rowid) FROM n LEFT JOIN daily_usage u ON u.customer_id = 2 + 0 * n.x"

@@ -132,35 +132,35 @@ pub(super) struct AdsRow {
     pub revenue: f64,
 }
 
-/// The days a query can see. A query takes the whole shelf at its start and is not disturbed by later days.
+/// The days a query can see. A query takes the whole store at its start and is not disturbed by later days.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BlockStore {
     pub usage: Arc<Vec<Arc<PackedDay>>>,
     pub ads: Arc<Vec<Arc<PackedDay>>>,
 }
 
-/// The shelf that the writer fills and queries read.
-pub(super) type SharedShelf = Arc<RwLock<BlockStore>>;
+/// The store that the writer fills and queries read.
+pub(super) type SharedStore = Arc<RwLock<BlockStore>>;
 
 /// What the running statement sees, and the indexes it has made of it.
 #[derive(Default)]
 pub(super) struct Seen {
-    shelf: RwLock<BlockStore>,
+    store: RwLock<BlockStore>,
     pub usage: Indexes<UsageRows>,
     pub ads: Indexes<AdsRun>,
 }
 
 impl Seen {
-    /// From now on this shelf is seen.
-    pub fn see(&self, shelf: BlockStore) {
-        *self.shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = shelf;
+    /// From now on this store is seen.
+    pub fn see(&self, store: BlockStore) {
+        *self.store.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = store;
         self.usage.clear();
         self.ads.clear();
     }
 
-    /// The shelf that is seen.
-    pub fn shelf(&self) -> BlockStore {
-        self.shelf.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+    /// The store that is seen.
+    pub fn store(&self) -> BlockStore {
+        self.store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) enum Objection {
     Write,
 }
 
-/// The last objection, shared between the authorizer and the desk.
+/// The last objection, shared between the authorizer and the query.
 #[derive(Clone, Default)]
 pub(super) struct Objections(Arc<AtomicU8>);
 

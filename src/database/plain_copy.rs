@@ -32,13 +32,13 @@ impl Projector {
     /// The database could not be written, or the file cannot be made.
     pub fn copy_for_other_programs(&self, file: &Path) -> Result<(), ProjectionError> {
         self.wait()?;
-        let shelf = self.shelf.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
-        let copied = self.location.open_reader().and_then(|source| copy(&source, &shelf, file));
+        let store = self.store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
+        let copied = self.location.open_reader().and_then(|source| copy(&source, &store, file));
         copied.map_err(|error| ProjectionError(format!("{}: {error}", file.display())))
     }
 }
 
-fn copy(source: &Connection, shelf: &BlockStore, file: &Path) -> rusqlite::Result<()> {
+fn copy(source: &Connection, store: &BlockStore, file: &Path) -> rusqlite::Result<()> {
     let mut copy = Connection::open(file)?;
     Backup::new(source, &mut copy)?.run_to_completion(PAGES, Duration::ZERO, None)?;
     // One file without companions, and nothing to save it from: what is half written is thrown away.
@@ -46,17 +46,17 @@ fn copy(source: &Connection, shelf: &BlockStore, file: &Path) -> rusqlite::Resul
     copy.pragma_update(None, "synchronous", "OFF")?;
     let transaction = copy.transaction()?;
     transaction.execute_batch(TABLES)?;
-    copy_usage(&transaction, shelf)?;
-    copy_ads(&transaction, shelf)?;
+    copy_usage(&transaction, store)?;
+    copy_ads(&transaction, store)?;
     transaction.execute_batch(INDEXES)?;
     transaction.commit()?;
     copy.execute_batch("VACUUM")?;
     copy.pragma_update(None, "journal_mode", "DELETE")
 }
 
-fn copy_usage(transaction: &Transaction<'_>, shelf: &BlockStore) -> rusqlite::Result<()> {
+fn copy_usage(transaction: &Transaction<'_>, store: &BlockStore) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare("INSERT INTO daily_usage VALUES (?1, ?2, ?3)")?;
-    for day in shelf.usage.iter() {
+    for day in store.usage.iter() {
         for run in (0..day.len()).filter_map(|run| day.open::<UsageRows>(run)) {
             for (customer, units) in run.customers.iter().zip(&run.units) {
                 insert.execute(params![day.day, customer, units])?;
@@ -66,9 +66,9 @@ fn copy_usage(transaction: &Transaction<'_>, shelf: &BlockStore) -> rusqlite::Re
     Ok(())
 }
 
-fn copy_ads(transaction: &Transaction<'_>, shelf: &BlockStore) -> rusqlite::Result<()> {
+fn copy_ads(transaction: &Transaction<'_>, store: &BlockStore) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare("INSERT INTO ads_revenue VALUES (?1, ?2, ?3, ?4, ?5)")?;
-    for day in shelf.ads.iter() {
+    for day in store.ads.iter() {
         for run in (0..day.len()).filter_map(|run| day.open::<AdsRun>(run)) {
             for (at, customer) in run.customers.iter().enumerate() {
                 insert.execute(params![

@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 
 use rusqlite::{Connection, OptionalExtension};
 
-use super::blocks::{AdsRun, BlockStore, PackedDay, Run, SharedShelf};
+use super::blocks::{AdsRun, BlockStore, PackedDay, Run, SharedStore};
 use super::location::Location;
 use super::query::QueryConnection;
 use super::rows::{Entry, LAYOUT, RowWriter, create};
@@ -67,7 +67,7 @@ pub struct Projector {
     jobs: Option<SyncSender<Job>>,
     thread: Option<JoinHandle<()>>,
     pub(super) location: Location,
-    pub(super) shelf: SharedShelf,
+    pub(super) store: SharedStore,
     gate: Arc<RwLock<()>>,
     spare: Spare,
     failed: Failed,
@@ -99,8 +99,8 @@ impl Projector {
         params: Arc<Params>,
         known: impl Fn(&Position) -> bool,
     ) -> Result<(Projector, Option<Position>), ProjectionError> {
-        let shelf = SharedShelf::default();
-        let opened = open_existing(&location, &shelf, known);
+        let store = SharedStore::default();
+        let opened = open_existing(&location, &store, known);
         let (mut connection, position, issue_clock) = match opened {
             Some(opened) => opened,
             None => (make_anew(&location, owner, &params).map_err(told)?, None, 0),
@@ -112,11 +112,11 @@ impl Projector {
         let told: fn(rusqlite::Error) -> ProjectionError =
             if location.path().is_some() { told } else { told_of_memory };
         let (writer_spare, writer_failed) = (spare.clone(), failed.clone());
-        let (writer_gate, writer_shelf) = (gate.clone(), shelf.clone());
+        let (writer_gate, writer_store) = (gate.clone(), store.clone());
         let thread = std::thread::Builder::new()
             .name("projection".to_owned())
             .spawn(move || {
-                let rows = RowWriter::new(params, writer_shelf, issue_clock);
+                let rows = RowWriter::new(params, writer_store, issue_clock);
                 let connection = &mut connection;
                 let readers_go_on = has_log(connection);
                 let (gate, spare, failed) = (writer_gate, writer_spare, writer_failed);
@@ -124,7 +124,7 @@ impl Projector {
             })
             .map_err(|error| ProjectionError(error.to_string()))?;
         let projector =
-            Projector { jobs: Some(jobs), thread: Some(thread), location, shelf, gate, spare, failed };
+            Projector { jobs: Some(jobs), thread: Some(thread), location, store, gate, spare, failed };
         Ok((projector, position))
     }
 
@@ -167,12 +167,12 @@ impl Projector {
         self.failed.get()
     }
 
-    /// A desk for guarded queries; any number of them may work at the same time as the writer.
+    /// A connection for guarded queries; any number of them may work at the same time as the writer.
     ///
     /// # Errors
     /// The database cannot be opened for reading.
-    pub fn desk(&self) -> Result<QueryConnection, ProjectionError> {
-        QueryConnection::open(&self.location, &self.shelf, self.gate.clone()).map_err(told)
+    pub fn connection(&self) -> Result<QueryConnection, ProjectionError> {
+        QueryConnection::open(&self.location, &self.store, self.gate.clone()).map_err(told)
     }
 
     /// Leaves the database this many pages beside those it has, as a full disk does.
@@ -329,10 +329,10 @@ pub fn file_digest(path: &Path) -> Option<String> {
     Some(hasher.finalize().to_hex().to_string())
 }
 
-/// Opens a database that is there, whole, and at a known position; loads its blocks onto the shelf.
+/// Opens a database that is there, whole, and at a known position; loads its blocks into the store.
 fn open_existing(
     location: &Location,
-    shelf: &SharedShelf,
+    store: &SharedStore,
     known: impl Fn(&Position) -> bool,
 ) -> Option<(Connection, Option<Position>, u32)> {
     if !location.path()?.exists() {
@@ -344,12 +344,12 @@ fn open_existing(
         return None;
     }
     let issue_clock = connection.query_row("SELECT aged FROM issue_clock", [], |row| row.get(0)).ok()?;
-    let loaded = load_shelf(&connection)?;
-    *shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = loaded;
+    let loaded = load_store(&connection)?;
+    *store.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = loaded;
     Some((connection, Some(position), issue_clock))
 }
 
-/// A desk on a database as it stands, without a writer, and the position it stands at.
+/// A connection on a database as it stands, without a writer, and the position it stands at.
 ///
 /// # Errors
 /// There is none, or it is no database of a run.
@@ -363,11 +363,11 @@ pub fn query_connection(location: &Location) -> Result<(QueryConnection, Positio
     if !is_laid_out_now(&connection) {
         return Err(ProjectionError("another version of the program created it".to_owned()));
     }
-    let shelf = SharedShelf::default();
-    *shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner()) =
-        load_shelf(&connection).ok_or_else(missing)?;
-    let desk = QueryConnection::open(location, &shelf, Arc::new(RwLock::new(()))).map_err(told)?;
-    Ok((desk, position))
+    let store = SharedStore::default();
+    *store.write().unwrap_or_else(|poisoned| poisoned.into_inner()) =
+        load_store(&connection).ok_or_else(missing)?;
+    let connection = QueryConnection::open(location, &store, Arc::new(RwLock::new(()))).map_err(told)?;
+    Ok((connection, position))
 }
 
 /// Whether the database at a location is laid out as this version does it.
@@ -402,7 +402,7 @@ pub fn owner_of(location: &Location) -> Option<u32> {
     (owner != 0).then_some(owner as u32)
 }
 
-fn load_shelf(connection: &Connection) -> Option<BlockStore> {
+fn load_store(connection: &Connection) -> Option<BlockStore> {
     Some(BlockStore {
         usage: Arc::new(load::<UsageRows>(connection, "usage_blocks")?),
         ads: Arc::new(load::<AdsRun>(connection, "ads_blocks")?),

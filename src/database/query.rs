@@ -14,7 +14,7 @@ use rusqlite::hooks::{AuthContext, Authorization};
 use rusqlite::types::ValueRef;
 
 use super::block_table;
-use super::blocks::{BlockStore, Seen, SharedShelf};
+use super::blocks::{BlockStore, Seen, SharedStore};
 use super::guard::{
     Guard, InnerViews, Objection, Objections, is_hidden_table, is_inside, is_of_engine, limit,
 };
@@ -118,13 +118,13 @@ pub struct QueryConnection {
     connection: Connection,
     objections: Objections,
     views: Option<InnerViews>,
-    /// Set while the desk itself works on the connection.
+    /// Set while the program itself works on the connection.
     trusted: Arc<AtomicBool>,
     interrupt: Interrupt,
     /// Closed while a commit and its blocks become visible together.
     gate: Arc<RwLock<()>>,
-    /// The blocks of all desks, and those that the running query sees.
-    shelf: SharedShelf,
+    /// The blocks of all connections, and those that the running query sees.
+    store: SharedStore,
     seen: Arc<Seen>,
 }
 
@@ -132,7 +132,7 @@ impl QueryConnection {
     /// Opens a guarded connection.
     pub(super) fn open(
         location: &Location,
-        shelf: &SharedShelf,
+        store: &SharedStore,
         gate: Arc<RwLock<()>>,
     ) -> rusqlite::Result<QueryConnection> {
         let released = Released::open()?;
@@ -159,11 +159,11 @@ impl QueryConnection {
         let interrupt = Interrupt::new();
         let clock = interrupt.clone();
         connection.progress_handler(STEPS_BETWEEN_LOOKS as i32, Some(move || clock.must_end()))?;
-        let shelf = shelf.clone();
-        Ok(QueryConnection { released, connection, objections, views, trusted, interrupt, gate, shelf, seen })
+        let store = store.clone();
+        Ok(QueryConnection { released, connection, objections, views, trusted, interrupt, gate, store, seen })
     }
 
-    /// A handle that stops the queries of this desk.
+    /// A handle that stops the queries of this connection.
     pub fn interrupt(&self) -> Interrupt {
         self.interrupt.clone()
     }
@@ -240,8 +240,8 @@ impl QueryConnection {
         let _open = self.gate.read().unwrap_or_else(|poisoned| poisoned.into_inner());
         self.as_desk("BEGIN; SELECT seq FROM projection")
             .map_err(|error| self.told(sql, Fault::Sqlite(error), limits))?;
-        let shelf = self.shelf.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
-        self.seen.see(shelf);
+        let store = self.store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
+        self.seen.see(store);
         Ok(())
     }
 

@@ -71,24 +71,24 @@ impl Company {
             self.projector.commit(position(u64::from(self.world.day)));
         }
         self.projector.wait().expect("everything is written");
-        self.projector.desk().expect("a desk")
+        self.projector.connection().expect("a connection")
     }
 }
 
-fn rows(desk: &QueryConnection, sql: &str) -> Rows {
-    desk.ask(sql, LIMITS).unwrap_or_else(|error| panic!("{sql}: {} {}", error.code, error.message))
+fn rows(connection: &QueryConnection, sql: &str) -> Rows {
+    connection.ask(sql, LIMITS).unwrap_or_else(|error| panic!("{sql}: {} {}", error.code, error.message))
 }
 
-fn one(desk: &QueryConnection, sql: &str) -> f64 {
-    match rows(desk, sql).rows.first().and_then(|row| row.first()) {
+fn one(connection: &QueryConnection, sql: &str) -> f64 {
+    match rows(connection, sql).rows.first().and_then(|row| row.first()) {
         Some(Cell::Integer(number)) => *number as f64,
         Some(Cell::Real(number)) => *number,
         other => panic!("{sql}: {other:?}"),
     }
 }
 
-fn refused(desk: &QueryConnection, sql: &str) -> QueryError {
-    match desk.ask(sql, LIMITS) {
+fn refused(connection: &QueryConnection, sql: &str) -> QueryError {
+    match connection.ask(sql, LIMITS) {
         Ok(rows) => panic!("{sql} was answered: {rows:?}"),
         Err(error) => error,
     }
@@ -97,17 +97,17 @@ fn refused(desk: &QueryConnection, sql: &str) -> QueryError {
 #[test]
 fn rows_agree_with_the_world() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(16);
+    let connection = company.weeks(16);
     let world = &company.world;
-    assert!((one(&desk, "SELECT sum(amount) FROM ledger") - world.finance.cash).abs() < 1e-6);
+    assert!((one(&connection, "SELECT sum(amount) FROM ledger") - world.finance.cash).abs() < 1e-6);
     let active: u32 = world.customers.active().iter().sum();
     assert_eq!(
-        one(&desk, "SELECT count(*) FROM subscriptions WHERE status = 'subscribed'"),
+        one(&connection, "SELECT count(*) FROM subscriptions WHERE status = 'subscribed'"),
         f64::from(active)
     );
     let customers = f64::from(world.customers.next_customer - 1);
-    assert_eq!(one(&desk, "SELECT count(*) FROM customers"), customers);
-    assert_eq!(one(&desk, "SELECT count(*) FROM service_day"), 112.0);
+    assert_eq!(one(&connection, "SELECT count(*) FROM customers"), customers);
+    assert_eq!(one(&connection, "SELECT count(*) FROM service_day"), 112.0);
     for (group, block) in world.customers.blocks() {
         for at in 0..block.len() {
             let sql = format!(
@@ -124,7 +124,7 @@ fn rows_agree_with_the_world() {
                 Cell::Integer(1),
                 Cell::Text(group.id().to_owned()),
             ];
-            assert_eq!(rows(&desk, &sql).rows, [expected]);
+            assert_eq!(rows(&connection, &sql).rows, [expected]);
         }
     }
 }
@@ -144,7 +144,7 @@ fn issues_age_on_the_days_on_which_the_desk_of_issues_works() {
     projector.commit(position(4));
     projector.wait().expect("everything is written");
     let found = rows(
-        &projector.desk().expect("a desk"),
+        &projector.connection().expect("a connection"),
         "SELECT issue_id, open_day, days_open FROM issues ORDER BY 1",
     );
     let expected = [[1, 1, 2], [2, 3, 1]].map(|row| row.map(Cell::Integer).to_vec());
@@ -183,7 +183,7 @@ fn a_subscription_that_begins_and_ends_between_two_commits_has_its_days() {
     projector.commit(position(5));
     projector.wait().expect("everything is written");
     let sql = "SELECT start_day, end_day, status, effective_price FROM subscriptions";
-    let found = rows(&projector.desk().expect("a desk"), sql);
+    let found = rows(&projector.connection().expect("a connection"), sql);
     let expected =
         [Cell::Integer(2), Cell::Integer(5), Cell::Text("cancelled".to_owned()), Cell::Real(18.0)].to_vec();
     assert_eq!(found.rows, [expected]);
@@ -192,7 +192,7 @@ fn a_subscription_that_begins_and_ends_between_two_commits_has_its_days() {
 #[test]
 fn open_issues_agree_with_the_world() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(12);
+    let connection = company.weeks(12);
     let sql = "SELECT i.customer_id, i.days_open FROM issues i JOIN subscriptions s USING (customer_id) \
                WHERE i.status = 'open' AND s.status = 'subscribed' ORDER BY 1";
     let mut expected: Vec<Vec<Cell>> = Vec::new();
@@ -207,24 +207,24 @@ fn open_issues_agree_with_the_world() {
         Cell::Integer(customer) => customer,
         _ => 0,
     });
-    let found = rows(&desk, sql);
+    let found = rows(&connection, sql);
     assert!(!expected.is_empty() && (found.rows == expected || found.truncated));
     let wrong =
         "SELECT count(*) FROM issues WHERE status = 'resolved' AND days_open <> resolved_day - open_day - 1";
     // Ageing is skipped on days on which nobody active had an open issue; policy P has none of those after a month.
-    assert_eq!(one(&desk, &format!("{wrong} AND open_day > 30")), 0.0);
+    assert_eq!(one(&connection, &format!("{wrong} AND open_day > 30")), 0.0);
 }
 
 #[test]
 fn usage_older_than_a_month_goes() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(16);
-    assert_eq!(one(&desk, "SELECT min(day) FROM daily_usage"), 80.0);
-    assert_eq!(one(&desk, "SELECT max(day) FROM daily_usage"), 112.0);
-    let total = one(&desk, "SELECT sum(usage_units) FROM daily_usage WHERE day = 100");
-    assert_eq!(total, one(&desk, "SELECT total_usage_units FROM service_day WHERE day = 100"));
+    let connection = company.weeks(16);
+    assert_eq!(one(&connection, "SELECT min(day) FROM daily_usage"), 80.0);
+    assert_eq!(one(&connection, "SELECT max(day) FROM daily_usage"), 112.0);
+    let total = one(&connection, "SELECT sum(usage_units) FROM daily_usage WHERE day = 100");
+    assert_eq!(total, one(&connection, "SELECT total_usage_units FROM service_day WHERE day = 100"));
     let readings = rows(
-        &desk,
+        &connection,
         "SELECT day, pmi_trend, length(description) > 50 FROM macroeconomic_conditions ORDER BY 1",
     );
     assert_eq!(
@@ -236,8 +236,8 @@ fn usage_older_than_a_month_goes() {
 #[test]
 fn a_day_of_the_ledger_lists_leads_payments_and_then_costs() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(1);
-    let first = rows(&desk, "SELECT id, category, amount, note FROM ledger WHERE day = 0");
+    let connection = company.weeks(1);
+    let first = rows(&connection, "SELECT id, category, amount, note FROM ledger WHERE day = 0");
     let funding = [
         Cell::Integer(1),
         Cell::Text("initial_funding".to_owned()),
@@ -245,8 +245,10 @@ fn a_day_of_the_ledger_lists_leads_payments_and_then_costs() {
         Cell::Text("Initial seed funding".to_owned()),
     ];
     assert_eq!(first.rows, [funding]);
-    let order =
-        rows(&desk, "SELECT DISTINCT category FROM (SELECT category FROM ledger WHERE day = 3 ORDER BY id)");
+    let order = rows(
+        &connection,
+        "SELECT DISTINCT category FROM (SELECT category FROM ledger WHERE day = 3 ORDER BY id)",
+    );
     let order: Vec<String> = order.rows.iter().map(|row| format!("{:?}", row[0])).collect();
     let expected = [
         "lead_acquisition_cost",
@@ -258,32 +260,32 @@ fn a_day_of_the_ledger_lists_leads_payments_and_then_costs() {
         "advertising",
     ];
     assert_eq!(order, expected.map(|category| format!("{:?}", Cell::Text(category.to_owned()))));
-    assert_eq!(one(&desk, "SELECT count(*) FROM group_info_levels WHERE info_level = 1"), 6.0);
-    assert_eq!(one(&desk, "SELECT count(*) FROM config_history"), 1.0);
+    assert_eq!(one(&connection, "SELECT count(*) FROM group_info_levels WHERE info_level = 1"), 6.0);
+    assert_eq!(one(&connection, "SELECT count(*) FROM config_history"), 1.0);
 }
 
 #[test]
 fn profiles_are_written_in_words() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(6);
-    let observer = rows(&desk, "SELECT * FROM customers WHERE customer_id = 1").rows.remove(0);
+    let connection = company.weeks(6);
+    let observer = rows(&connection, "SELECT * FROM customers WHERE customer_id = 1").rows.remove(0);
     assert_eq!(observer[1], Cell::Text("small".to_owned()));
     assert_eq!(observer.iter().filter(|cell| **cell == Cell::Null).count(), 12);
     let odd = "SELECT count(*) FROM customers WHERE customer_id > 1 AND (persona_description IS NULL \
                OR persona_industry IS NULL OR persona_role IS NULL OR persona_experience IS NULL \
                OR persona_work_style IS NULL OR persona_tech_savvy IS NULL OR acquisition_source IS NULL)";
-    assert_eq!(one(&desk, odd), 0.0);
+    assert_eq!(one(&connection, odd), 0.0);
     let companies = "SELECT count(*), sum(company_culture = persona_work_style), \
                      sum(persona_experience = 'executive' AND email IS NOT NULL AND company_primary_concern IS NOT NULL \
                      AND persona_description LIKE '% seats, %') FROM customers WHERE customer_type = 'large'";
-    let counts = rows(&desk, companies).rows.remove(0);
+    let counts = rows(&connection, companies).rows.remove(0);
     assert!(counts[0] != Cell::Integer(0) && counts.iter().all(|count| *count == counts[0]), "{counts:?}");
 }
 
 #[test]
 fn what_is_hidden_cannot_be_asked() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(2);
+    let connection = company.weeks(2);
     for (sql, code) in [
         // The obvious attempts, then what people try next.
         ("", "sql_empty"),
@@ -337,21 +339,21 @@ fn what_is_hidden_cannot_be_asked() {
         ("SELEC 1", "sql_error"),
         ("SELECT day FROM ledger JOIN service_day", "sql_error"),
     ] {
-        let error = refused(&desk, sql);
+        let error = refused(&connection, sql);
         assert_eq!(error.code, code, "{sql}: {}", error.message);
         for inside in ["customer_rows", "usage_blocks", "issue_clock", "no such"] {
             assert!(!error.message.contains(inside) || sql.contains(inside), "{sql}: {}", error.message);
         }
     }
-    assert_eq!(one(&desk, "SELECT count(*) FROM ledger WHERE day = 0"), 1.0);
+    assert_eq!(one(&connection, "SELECT count(*) FROM ledger WHERE day = 0"), 1.0);
 }
 
 #[test]
 fn a_query_plan_shows_the_way_and_nothing_of_the_inside() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(1);
+    let connection = company.weeks(1);
     let plan = |sql: &str| -> Vec<String> {
-        let all = rows(&desk, &format!("EXPLAIN QUERY PLAN {sql}"));
+        let all = rows(&connection, &format!("EXPLAIN QUERY PLAN {sql}"));
         assert_eq!(all.columns, ["id", "parent", "notused", "detail"]);
         all.rows.iter().map(|row| text_at(row, 3).to_owned()).collect()
     };
@@ -376,15 +378,16 @@ fn a_query_plan_shows_the_way_and_nothing_of_the_inside() {
 #[test]
 fn rows_have_numbers_and_tables_the_name_of_their_schema() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(2);
+    let connection = company.weeks(2);
     for table in super::tables() {
         let name = &table.name;
         for number in ["rowid", "oid", "_rowid_", "\"rowid\"", "[OID]", "`_RowId_`"] {
-            let both = rows(&desk, &format!("SELECT {number}, t.{number}, t.* FROM {name} t LIMIT 0"));
+            let both = rows(&connection, &format!("SELECT {number}, t.{number}, t.* FROM {name} t LIMIT 0"));
             assert_eq!(both.columns.len(), 2 + table.columns.len());
         }
         let key = table.row_number().unwrap_or("rowid");
-        let numbers = rows(&desk, &format!("SELECT rowid, {key} FROM main.{name} ORDER BY oid LIMIT 50"));
+        let numbers =
+            rows(&connection, &format!("SELECT rowid, {key} FROM main.{name} ORDER BY oid LIMIT 50"));
         assert_eq!(numbers.columns, [key, key]);
         assert!(numbers.rows.iter().all(|row| row[0] == row[1]));
     }
@@ -402,12 +405,12 @@ fn rows_have_numbers_and_tables_the_name_of_their_schema() {
             "max(rowid)",
         ),
     ] {
-        assert_eq!(rows(&desk, sql).columns.join(", "), columns, "{sql}");
+        assert_eq!(rows(&connection, sql).columns.join(", "), columns, "{sql}");
     }
-    let error = refused(&desk, "SELECT rowid FROM ledger JOIN issues");
+    let error = refused(&connection, "SELECT rowid FROM ledger JOIN issues");
     assert_eq!(error.code, "sql_error");
     assert!(error.message.contains("ambiguous"), "{}", error.message);
-    let error = refused(&desk, "SELECT 1 FROM temp.ledger");
+    let error = refused(&connection, "SELECT 1 FROM temp.ledger");
     assert!(
         error.message.starts_with("there is no table temp.ledger; write ledger alone;"),
         "{}",
@@ -418,7 +421,7 @@ fn rows_have_numbers_and_tables_the_name_of_their_schema() {
 #[test]
 fn ordinary_questions_are_answered() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(2);
+    let connection = company.weeks(2);
     for sql in [
         "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 10) SELECT sum(x) FROM n",
         "SELECT day, amount, sum(amount) OVER (ORDER BY id) FROM ledger LIMIT 3",
@@ -431,10 +434,10 @@ fn ordinary_questions_are_answered() {
         "SELECT max(length(name)) FROM json_each('[1]'), (SELECT 'a' AS name)",
         "-- just looking\nSELECT 1",
     ] {
-        rows(&desk, sql);
+        rows(&connection, sql);
     }
     for table in super::tables() {
-        let all = rows(&desk, &format!("SELECT * FROM {}", table.name));
+        let all = rows(&connection, &format!("SELECT * FROM {}", table.name));
         let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
         assert_eq!(all.columns, columns, "{}", table.name);
     }
@@ -443,66 +446,66 @@ fn ordinary_questions_are_answered() {
 #[test]
 fn results_are_capped_and_slow_queries_end() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(1);
+    let connection = company.weeks(1);
     let counting = |most: u32| {
         format!(
             "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < {most}) SELECT x FROM n"
         )
     };
-    let full = rows(&desk, &counting(5000));
+    let full = rows(&connection, &counting(5000));
     assert_eq!((full.rows.len(), full.truncated), (5000, false));
-    let cut = rows(&desk, &format!("{} LIMIT 5500", counting(6000)));
+    let cut = rows(&connection, &format!("{} LIMIT 5500", counting(6000)));
     assert_eq!((cut.rows.len(), cut.truncated), (5000, true));
     assert!(cut.warning.is_some());
     let endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n";
-    let error = desk
+    let error = connection
         .ask(endless, Limits { rows: 10, time: Duration::from_millis(50), steps: None })
         .expect_err("too slow");
     assert_eq!(error.code, "sql_timeout");
-    let interrupt = desk.interrupt();
+    let interrupt = connection.interrupt();
     let ticket = interrupt.ticket();
     let stopper = std::thread::spawn(move || {
         std::thread::sleep(Duration::from_millis(50));
         interrupt.stop();
     });
-    let error = desk.ask_as(ticket, endless, LIMITS).expect_err("cancelled");
+    let error = connection.ask_as(ticket, endless, LIMITS).expect_err("cancelled");
     assert_eq!((error.code, error.message.as_str()), ("sql_timeout", "the query was cancelled"));
     stopper.join().expect("the stopper ends");
-    rows(&desk, "SELECT 1");
+    rows(&connection, "SELECT 1");
 }
 
 #[test]
 fn a_stop_reaches_a_query_that_has_not_begun_and_none_that_is_asked_later() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(1);
-    let interrupt = desk.interrupt();
+    let connection = company.weeks(1);
+    let interrupt = connection.interrupt();
     let endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n";
     let ticket = interrupt.ticket();
     interrupt.stop();
     for sql in [endless, "SELECT 1"] {
-        let error = desk.ask_as(ticket, sql, LIMITS).expect_err("stopped before it began");
+        let error = connection.ask_as(ticket, sql, LIMITS).expect_err("stopped before it began");
         assert_eq!((error.code, error.message.as_str()), ("sql_timeout", "the query was cancelled"));
     }
-    rows(&desk, "SELECT 1");
+    rows(&connection, "SELECT 1");
 }
 
 #[test]
 fn a_query_that_is_stopped_while_tables_are_copied_for_it_says_so() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(6);
+    let connection = company.weeks(6);
     let sql = "SELECT count(*) FROM issues RIGHT JOIN customers USING (customer_id)";
-    let all = one(&desk, sql);
+    let all = one(&connection, sql);
     let mut stopped = 0;
     for steps in (250..60_000).step_by(1250) {
-        match desk.ask(sql, Limits { steps: Some(steps), ..LIMITS }) {
+        match connection.ask(sql, Limits { steps: Some(steps), ..LIMITS }) {
             Ok(rows) => assert_eq!(super::query::number_at(&rows.rows[0], 0), all, "after {steps} steps"),
             Err(error) => {
                 assert_eq!(error.code, "sql_timeout", "after {steps} steps: {}", error.message);
                 stopped += 1;
             }
         }
-        assert_eq!(one(&desk, "SELECT 1"), 1.0, "the desk still answers");
-        assert!(desk.ask("DELETE FROM ledger", LIMITS).is_err_and(|error| error.code == "sql_write"));
+        assert_eq!(one(&connection, "SELECT 1"), 1.0, "the connection still answers");
+        assert!(connection.ask("DELETE FROM ledger", LIMITS).is_err_and(|error| error.code == "sql_write"));
     }
     assert!(stopped > 0);
 }
@@ -510,22 +513,22 @@ fn a_query_that_is_stopped_while_tables_are_copied_for_it_says_so() {
 #[test]
 fn empty_results_explain_themselves() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(1);
-    let empty = rows(&desk, "SELECT * FROM subscriptions WHERE status = 'active'");
+    let connection = company.weeks(1);
+    let empty = rows(&connection, "SELECT * FROM subscriptions WHERE status = 'active'");
     assert!(empty.hint.is_some_and(|hint| hint.contains("'subscribed'")));
-    assert_eq!(rows(&desk, "SELECT count(*) FROM subscriptions WHERE status = 'active'").hint, None);
-    let in_double_quotes = rows(&desk, "SELECT * FROM subscriptions WHERE status = \"active\"");
+    assert_eq!(rows(&connection, "SELECT count(*) FROM subscriptions WHERE status = 'active'").hint, None);
+    let in_double_quotes = rows(&connection, "SELECT * FROM subscriptions WHERE status = \"active\"");
     assert!(in_double_quotes.hint.is_some_and(|hint| hint.contains("'subscribed'")));
 }
 
 #[test]
 fn mathematical_functions_are_there() {
-    let desk = Company::open(Location::memory()).weeks(0);
+    let connection = Company::open(Location::memory()).weeks(0);
     let sql = "SELECT ceil(1.2), ceiling(1.2), floor(-1.2), sqrt(9), pow(2, 3), power(2, 3), ln(1), log(100), log(2, 8), \
                log10(1000), log2(8), exp(0), trunc(-1.7), mod(7, 4), pi(), sin(0), cos(0), tan(0), asin(0), acos(1), \
                atan(0), atan2(0, 1), sinh(0), cosh(0), tanh(0), asinh(0), acosh(1), atanh(0), degrees(0), radians(0), \
                sign(-3), sqrt(-1), floor('x')";
-    let row = rows(&desk, sql).rows.remove(0);
+    let row = rows(&connection, sql).rows.remove(0);
     let numbers: Vec<f64> = (0..row.len()).map(|at| number_at(&row, at)).collect();
     let expected = [
         2.0,
@@ -569,7 +572,7 @@ fn mathematical_functions_are_there() {
 #[test]
 fn numbers_and_texts_compare_as_in_ordinary_tables() {
     let mut company = Company::open(Location::memory());
-    let desk = company.weeks(10);
+    let connection = company.weeks(10);
     for (text, number) in [
         ("subscriptions WHERE effective_price = '9'", "subscriptions WHERE effective_price = 9"),
         ("subscriptions WHERE contract_months = '1'", "subscriptions"),
@@ -582,14 +585,17 @@ fn numbers_and_texts_compare_as_in_ordinary_tables() {
         ("customers WHERE customer_type > 5", "customers"),
     ] {
         let (left, right) = (
-            one(&desk, &format!("SELECT count(*) FROM {text}")),
-            one(&desk, &format!("SELECT count(*) FROM {number}")),
+            one(&connection, &format!("SELECT count(*) FROM {text}")),
+            one(&connection, &format!("SELECT count(*) FROM {number}")),
         );
         assert!(left == right && left > 0.0, "{text}: {left}, {right}");
     }
     assert_eq!(
-        one(&desk, "SELECT count(*) FROM subscriptions WHERE pending_price IS NULL AND pending_plan IS NULL"),
-        one(&desk, "SELECT count(*) FROM subscriptions")
+        one(
+            &connection,
+            "SELECT count(*) FROM subscriptions WHERE pending_price IS NULL AND pending_plan IS NULL"
+        ),
+        one(&connection, "SELECT count(*) FROM subscriptions")
     );
 }
 
@@ -623,12 +629,12 @@ fn a_database_is_continued_where_it_stands_or_made_anew() {
     let known = |found: &Position| *found == position(42);
     let (projector, found) = Projector::start(location.clone(), 1, params.clone(), known).expect("it opens");
     assert_eq!(found, Some(position(42)));
-    assert_eq!(rows(&projector.desk().expect("a desk"), usage), before);
+    assert_eq!(rows(&projector.connection().expect("a connection"), usage), before);
     drop(projector);
     let (projector, found) =
         Projector::start(location.clone(), 1, params.clone(), |_| false).expect("it opens");
     assert_eq!(found, None);
-    assert_eq!(one(&projector.desk().expect("a desk"), "SELECT count(*) FROM ledger"), 0.0);
+    assert_eq!(one(&projector.connection().expect("a connection"), "SELECT count(*) FROM ledger"), 0.0);
     drop(projector);
     std::fs::write(folder.path().join("world.db"), b"not a database at all, but long enough to look")
         .expect("a file");
@@ -642,28 +648,28 @@ fn queries_during_a_week_see_the_state_before_it() {
     let folder = tempfile::tempdir().expect("a folder");
     for location in [Location::memory(), Location::File(folder.path().join("world.db"))] {
         let mut company = Company::open(location);
-        let desk = company.weeks(1);
+        let connection = company.weeks(1);
         let mut facts = Facts::default();
         step_day(&mut company.world, &company.params, &company.streams, &mut facts);
         company.projector.write(entry(facts));
         let state = "SELECT (SELECT max(day) FROM service_day), (SELECT max(day) FROM daily_usage)";
-        assert_eq!(rows(&desk, state).rows, [[Cell::Integer(7), Cell::Integer(7)]]);
+        assert_eq!(rows(&connection, state).rows, [[Cell::Integer(7), Cell::Integer(7)]]);
         company.projector.commit(position(8));
         company.projector.wait().expect("written");
-        assert_eq!(rows(&desk, state).rows, [[Cell::Integer(8), Cell::Integer(8)]]);
+        assert_eq!(rows(&connection, state).rows, [[Cell::Integer(8), Cell::Integer(8)]]);
     }
 }
 
 #[test]
 fn a_reader_and_the_writer_never_wait_for_each_other() {
     let mut company = Company::open(Location::memory());
-    let desk = company.projector.desk().expect("a desk");
+    let connection = company.projector.connection().expect("a connection");
     let over = Arc::new(AtomicBool::new(false));
     let is_over = over.clone();
     // Without pause, so that it comes between the first row of a transaction and its end.
     let reader = std::thread::spawn(move || {
         while !is_over.load(Ordering::Relaxed) {
-            let answer = desk.ask("SELECT count(*) FROM ledger", LIMITS);
+            let answer = connection.ask("SELECT count(*) FROM ledger", LIMITS);
             assert!(answer.is_ok(), "{answer:?}");
         }
     });

@@ -55,7 +55,7 @@ const COMMANDS: [(&str, &str); 25] = [
 ];
 
 /// The session and how the dialogue reaches it.
-pub struct Desk {
+pub struct Interpreter {
     /// The run.
     pub session: Session,
     library: Library,
@@ -63,10 +63,10 @@ pub struct Desk {
     prompts: bool,
 }
 
-impl Desk {
-    /// A desk with named queries; `prompts` says that a person types and can be asked.
-    pub fn new(session: Session, library: Library, watch: Watch, prompts: bool) -> Desk {
-        Desk { session, library, watch, prompts }
+impl Interpreter {
+    /// An interpreter with named queries; `prompts` says that a person types and can be asked.
+    pub fn new(session: Session, library: Library, watch: Watch, prompts: bool) -> Interpreter {
+        Interpreter { session, library, watch, prompts }
     }
 
     /// Does what a line says; none for empty lines and comments.

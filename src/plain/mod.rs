@@ -19,7 +19,7 @@ pub use crate::database::text::{cell_text, table};
 use crate::notation::printable;
 use crate::session::{Library, Session};
 use answers::Answer;
-use commands::Desk;
+use commands::Interpreter;
 use input::{Input, Read};
 use signals::{Phase, Watch};
 
@@ -69,30 +69,30 @@ impl End {
 pub fn play(session: Session, library: Library, style: Style) -> io::Result<u8> {
     let prompts = io::stdin().is_terminal();
     let watch = Watch::start();
-    let mut desk = Desk::new(session, library, watch.clone(), prompts);
+    let mut interpreter = Interpreter::new(session, library, watch.clone(), prompts);
     let mut out = io::stdout();
-    greet(&mut out, &desk.session, style)?;
+    greet(&mut out, &interpreter.session, style)?;
     let mut input = Input::new(io::stdin().lock());
     let end = loop {
         if prompts {
-            prompt(&format!("day {}> ", desk.session.day()))?;
+            prompt(&format!("day {}> ", interpreter.session.day()))?;
         }
         let number = input.next_number();
-        watch.enter(Phase::Prompt, farewell(&desk.session, style, End::Signal(0)));
+        watch.enter(Phase::Prompt, farewell(&interpreter.session, style, End::Signal(0)));
         let read = input.read()?;
         watch.enter(Phase::Working, String::new());
         let (line, day) = match read {
             Read::End => break End::InputOver,
-            Read::Line(line) => (line, desk.session.day()),
+            Read::Line(line) => (line, interpreter.session.day()),
             Read::Unreadable(problem) => {
-                answer(&mut out, style, number, None, &Answer::usage(problem, 1), desk.session.day())?;
+                answer(&mut out, style, number, None, &Answer::usage(problem, 1), interpreter.session.day())?;
                 if style.strict {
                     break End::Strict;
                 }
                 continue;
             }
         };
-        let Some(reply) = desk.answer(&line, &mut input)? else { continue };
+        let Some(reply) = interpreter.answer(&line, &mut input)? else { continue };
         if reply.is_quit() {
             break End::Quit;
         }
@@ -105,8 +105,8 @@ pub fn play(session: Session, library: Library, style: Style) -> io::Result<u8> 
         }
     };
     // Everything answered `ok` is on the disk already; what is left are rows that can be made again.
-    let _ = desk.session.save();
-    writeln!(out, "{}", farewell(&desk.session, style, end))?;
+    let _ = interpreter.session.save();
+    writeln!(out, "{}", farewell(&interpreter.session, style, end))?;
     out.flush()?;
     Ok(end.code())
 }

@@ -75,16 +75,16 @@ pub struct Books {
 impl Books {
     /// Asks the database of a run, without a trace in what the person asked.
     pub fn of(session: &Session) -> Books {
-        let desk = session.wait_for_database().and_then(|()| session.open_desk());
-        let desk = match desk {
-            Ok(desk) => desk,
+        let connection = session.wait_for_database().and_then(|()| session.open_connection());
+        let connection = match connection {
+            Ok(connection) => connection,
             Err(refusal) => {
                 let missing = vec![format!("groups, channels and the ledger: {refusal}")];
                 return Books { missing, ..Books::default() };
             }
         };
         let mut missing = Vec::new();
-        let mut ask = |what: &str, sql: &str| match desk.ask(sql, session.query_limits()) {
+        let mut ask = |what: &str, sql: &str| match connection.ask(sql, session.query_limits()) {
             Ok(rows) => rows,
             Err(error) => {
                 missing.push(format!("{what}: {}", error.message));
@@ -105,8 +105,8 @@ impl Books {
 
     /// Only the ads, for those who need no more; empty if the database does not say.
     pub fn channels_of(session: &Session) -> Vec<ChannelRow> {
-        let desk = session.wait_for_database().and_then(|()| session.open_desk()).ok();
-        let rows = desk.and_then(|desk| desk.ask(CHANNELS, session.query_limits()).ok());
+        let connection = session.wait_for_database().and_then(|()| session.open_connection()).ok();
+        let rows = connection.and_then(|connection| connection.ask(CHANNELS, session.query_limits()).ok());
         rows.map(|rows| rows.rows.iter().map(|row| channel_of(row)).collect()).unwrap_or_default()
     }
 

@@ -53,12 +53,12 @@ impl Session {
         self.connection().map(|connection| connection.interrupt())
     }
 
-    /// A desk of its own, for a thread that asks while the session works. What it asks is recorded with
+    /// A connection of its own, for a thread that asks while the session works. What it asks is recorded with
     /// [`Session::note_query`].
     ///
     /// # Errors
     /// The run has no database, or it cannot be read.
-    pub fn open_desk(&self) -> Result<QueryConnection, Refusal> {
+    pub fn open_connection(&self) -> Result<QueryConnection, Refusal> {
         self.projection.open_connection()
     }
 
@@ -135,7 +135,7 @@ impl From<QueryError> for Refusal {
     }
 }
 
-/// A desk on the database file of a run as it stands, and the line of the trajectory that it stands at.
+/// A connection to the database file of a run as it stands, and the line of the trajectory that it stands at.
 ///
 /// # Errors
 /// The file is missing, no database of a run, or not the one that the program left when the run was closed.

@@ -34,17 +34,17 @@ pub use figures::xray::Xray;
 pub use folder::configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
 pub use folder::consent::{Consent, ConsentText};
 pub use folder::create::{NewRun, Storage};
-pub use folder::history::{RunHistory, run_history};
 pub use folder::library::{self, Library};
 pub use folder::manifest::{FORMAT, Manifest};
 pub use folder::mode::Mode;
+pub use folder::preview::{RunPreview, run_preview};
 pub use folder::runs::{
     RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,
     participant_folder, run_folder,
 };
 pub use play::act::Preview;
 pub use play::advance::{DayReport, Week};
-pub use play::office::Calculated;
+pub use play::surroundings::Calculated;
 pub use play::undo::undone_calls;
 pub use playback::Playback;
 pub use playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};

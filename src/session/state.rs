@@ -12,10 +12,10 @@ use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::WeekFigures;
 use crate::session::folder::manifest::Manifest;
 use crate::session::play::history::History;
-use crate::session::play::office::Office;
 use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
+use crate::session::play::surroundings::RunSurroundings;
 use crate::session::trajectory::record::Ended;
 use crate::tools::Numbers;
 use crate::world::identifiers::ByGroup;
@@ -36,7 +36,7 @@ pub struct Session {
     /// What has happened so far.
     pub(super) history: History,
     /// What is kept with the run besides its company.
-    pub(super) office: Office,
+    pub(super) surroundings: RunSurroundings,
     /// The last line that was written, or applied again.
     pub(super) position: Position,
     /// Rows that follow from what has happened.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::notebook::{Kept, NotebookChange, Shelf};
+use super::notebook::{Kept, NamedStatements, NotebookChange};
 use super::planned::Planned;
 
 /// Statements and their name, as a call gives them.
@@ -43,8 +43,8 @@ pub struct Remaining {
 
 impl Remaining {
     /// The call that forgets a name.
-    pub(super) fn without(shelf: &Shelf, what: Kept, name: String) -> Planned<Remaining> {
-        let answer = Remaining { name: name.clone(), remaining: owned(shelf.names_without(&name)) };
+    pub(super) fn without(statements: &NamedStatements, what: Kept, name: String) -> Planned<Remaining> {
+        let answer = Remaining { name: name.clone(), remaining: owned(statements.names_without(&name)) };
         Planned::keeping(NotebookChange::Forget { what, name }, answer)
     }
 }

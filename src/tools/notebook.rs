@@ -36,9 +36,9 @@ pub enum NotebookChange {
 
 /// Named statements in the order in which their names were first kept.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Shelf(Vec<(String, String)>);
+pub struct NamedStatements(Vec<(String, String)>);
 
-impl Shelf {
+impl NamedStatements {
     /// The statements of a name.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(own, _)| own == name).map(|(_, code)| code.as_str())
@@ -74,25 +74,25 @@ impl Shelf {
 /// The calculations and scripts of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Notebook {
-    calculations: Shelf,
-    scripts: Shelf,
+    calculations: NamedStatements,
+    scripts: NamedStatements,
 }
 
 impl Notebook {
     /// An empty one.
     pub const fn new() -> Notebook {
-        Notebook { calculations: Shelf(Vec::new()), scripts: Shelf(Vec::new()) }
+        Notebook { calculations: NamedStatements(Vec::new()), scripts: NamedStatements(Vec::new()) }
     }
 
     /// What is kept of a kind.
-    pub fn shelf(&self, what: Kept) -> &Shelf {
+    pub fn statements(&self, what: Kept) -> &NamedStatements {
         match what {
             Kept::Calculation => &self.calculations,
             Kept::Script => &self.scripts,
         }
     }
 
-    fn shelf_mut(&mut self, what: Kept) -> &mut Shelf {
+    fn statements_mut(&mut self, what: Kept) -> &mut NamedStatements {
         match what {
             Kept::Calculation => &mut self.calculations,
             Kept::Script => &mut self.scripts,
@@ -102,8 +102,8 @@ impl Notebook {
     /// Keeps or forgets what a change says.
     pub fn apply(&mut self, change: &NotebookChange) {
         match change {
-            NotebookChange::Keep { what, name, code } => self.shelf_mut(*what).keep(name, code),
-            NotebookChange::Forget { what, name } => self.shelf_mut(*what).forget(name),
+            NotebookChange::Keep { what, name, code } => self.statements_mut(*what).keep(name, code),
+            NotebookChange::Forget { what, name } => self.statements_mut(*what).forget(name),
         }
     }
 }
@@ -124,10 +124,10 @@ mod tests {
         for change in [keep("a", "SELECT 1"), keep("b", "SELECT 2"), keep("a", "SELECT 3")] {
             notebook.apply(&change);
         }
-        assert_eq!(notebook.shelf(what).names(), ["a", "b"]);
-        assert_eq!(notebook.shelf(what).get("a"), Some("SELECT 3"));
-        assert!(notebook.shelf(Kept::Script).names().is_empty());
+        assert_eq!(notebook.statements(what).names(), ["a", "b"]);
+        assert_eq!(notebook.statements(what).get("a"), Some("SELECT 3"));
+        assert!(notebook.statements(Kept::Script).names().is_empty());
         notebook.apply(&NotebookChange::Forget { what, name: "a".to_owned() });
-        assert_eq!(notebook.shelf(what).entries(), [("b".to_owned(), "SELECT 2".to_owned())]);
+        assert_eq!(notebook.statements(what).entries(), [("b".to_owned(), "SELECT 2".to_owned())]);
     }
 }

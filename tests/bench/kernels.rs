@@ -115,10 +115,10 @@ fn issue_pass(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     company.on_day(|day| {
         on_customers(bencher, company.subscribers(), |customers| {
-            let (mut desk, mut facts) = (company.world.issue_desk.clone(), Facts::default());
+            let (mut connection, mut facts) = (company.world.issue_desk.clone(), Facts::default());
             let mut calls =
                 customers.sweep(|group, number, block| issues::read_calls(group, number, block, day));
-            issues::allot(&mut calls, day.settings, customers, &mut desk, day);
+            issues::allot(&mut calls, day.settings, customers, &mut connection, day);
             let settled = customers.sweep_with(calls, |_, _, block, own| issues::settle(block, &own, day));
             issues::record(settled, &mut facts);
             facts.issues_opened.len()

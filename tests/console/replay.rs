@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use novamind::console::worker::Recorded;
+use novamind::console::request::Recorded;
 use novamind::session::{Configuration, Goal, Mode, NewRun, Session, Storage, Via, list_runs, verify};
 use serde_json::json;
 

@@ -50,12 +50,15 @@ pub fn view(session: &mut Session) -> Value {
     ];
     // Not `query`, which would record that it was asked.
     session.wait_for_database().expect("a database");
-    let desk = session.open_desk().expect("a desk");
+    let connection = session.open_connection().expect("a connection");
     let limits = session.query_limits();
     let rows: Vec<String> = totals
         .iter()
         .map(|sql| {
-            format!("{:?}", desk.ask(sql, limits).unwrap_or_else(|error| panic!("{sql}: {error:?}")).rows)
+            format!(
+                "{:?}",
+                connection.ask(sql, limits).unwrap_or_else(|error| panic!("{sql}: {error:?}")).rows
+            )
         })
         .collect();
     json!({

@@ -5,6 +5,7 @@ use crate::console::action::Action;
 use crate::console::dialogs::explain::Explain;
 use crate::console::dialogs::glossary::Glossary;
 use crate::console::effect::Effect;
+use crate::console::request::Request;
 use crate::console::tour::{Facts, Tour};
 use crate::glossary::Subject;
 use crate::session::NewRun;
@@ -40,7 +41,10 @@ impl App {
     /// Starts a new run for practice with the tour in it.
     pub(super) fn start_tour(&mut self) {
         self.tour_planned = true;
-        self.follow(vec![Effect::Create(Box::new(NewRun { seed: Some(42), ..NewRun::default() }))]);
+        self.follow(vec![Effect::Request(Request::Create(Box::new(NewRun {
+            seed: Some(42),
+            ..NewRun::default()
+        })))]);
     }
 
     /// Shows the tour in the run, from the first step that is not done.

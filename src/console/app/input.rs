@@ -16,6 +16,7 @@ use crate::console::dialogs::{Dialog, Outcome};
 use crate::console::effect::Effect;
 use crate::console::keys::{Chord, Meaning, written};
 use crate::console::preferences::Preferences;
+use crate::console::request::Request;
 use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::text::number;
 use crate::console::worker::Job;
@@ -241,9 +242,9 @@ impl App {
                 }
             }
             Action::Report => self.show_report(),
-            Action::WriteReport => self.follow(vec![Effect::WriteReport]),
-            Action::Undo => self.follow(vec![Effect::Undo]),
-            Action::Redo => self.follow(vec![Effect::Redo]),
+            Action::WriteReport => self.follow(vec![Effect::Request(Request::WriteReport)]),
+            Action::Undo => self.follow(vec![Effect::Request(Request::Undo)]),
+            Action::Redo => self.follow(vec![Effect::Request(Request::Redo)]),
             Action::FocusNext | Action::FocusPrevious => self.move_focus(action == Action::FocusNext),
             Action::Back => self.back(),
             Action::Explain => self.explain(),

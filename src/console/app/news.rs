@@ -12,6 +12,7 @@ use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::report::Report;
 use crate::console::effect::Effect;
 use crate::console::message::{Instead, News};
+use crate::console::request::Request;
 use crate::console::screens::{Look, ScreenId, Screens};
 use crate::console::text::number;
 use crate::console::tour::Tour;
@@ -29,9 +30,9 @@ impl App {
                     self.follow(effects);
                 }
             }
-            News::Course(id, course) => {
+            News::Preview(id, preview) => {
                 if let Stage::Menu(menu) = &mut self.stage {
-                    menu.learn(id, course);
+                    menu.learn(id, preview);
                 }
             }
             News::Kept(done, list) => {
@@ -222,7 +223,7 @@ impl App {
         let Stage::Run(run) = &self.stage else { return };
         let story = run.story.clone();
         if story.is_none() {
-            self.follow(vec![Effect::TellStory]);
+            self.follow(vec![Effect::Request(Request::TellStory)]);
         }
         self.layers.push(Layer::Dialog(Box::new(FinalPage::new(story))));
     }

@@ -6,9 +6,9 @@ use super::{App, Busy, Closing, Layer, Order, Stage};
 use crate::console::dialogs::confirm::Confirm;
 use crate::console::dialogs::reader::Reader;
 use crate::console::effect::Effect;
+use crate::console::request::Request;
 use crate::console::screens::ScreenId;
 use crate::console::worker::{Job, Question};
-use crate::session::Access;
 
 impl App {
     /// Lets effects follow, in their order.
@@ -23,42 +23,13 @@ impl App {
             return self.complain_of_replay();
         }
         match effect {
-            Effect::Replay { recorded, goal, follow } => {
-                let job = Job::Replay(self.runs.clone(), recorded, goal, follow);
-                self.start("opening the record", job);
-            }
+            Effect::Request(request) => self.request(request),
             Effect::Go(goal) => self.go(goal),
-            Effect::TakeOver(mode) => self.start("starting a run from here", Job::TakeOver(mode)),
-            Effect::Rescue(id) => {
-                let job = Job::Rescue(self.runs.clone(), id);
-                self.start("opening the intact part of the run", job);
-            }
-            Effect::Create(new) => {
-                let new = crate::session::NewRun {
-                    storage: crate::session::Storage::Runs(self.runs.clone()),
-                    projection: true,
-                    sync_calls: true,
-                    ..*new
-                };
-                self.start("starting the run", Job::Create(Box::new(new)));
-            }
-            Effect::Open(id) => {
-                let job = Job::Open(self.runs.clone(), id, Access::Write);
-                self.start("opening the run", job);
-            }
-            Effect::Look(id) => {
-                let job = Job::Open(self.runs.clone(), id, Access::Read);
-                self.start("opening the run", job);
-            }
             Effect::Check { tool, arguments } => {
                 self.checks += 1;
                 self.checker = self.run().map_or(ScreenId::Tools, |run| run.here);
                 self.orders.push(Order::Job(Job::Check(self.checks, tool, arguments)));
             }
-            Effect::Call { tool, arguments } => self.change(Job::Call(tool, arguments)),
-            Effect::Undo => self.change(Job::Undo),
-            Effect::Redo => self.change(Job::Redo),
-            Effect::Advance { rationale, forecasts } => self.advance(rationale, forecasts),
             Effect::Ask(sql) => self.sql_question = self.ask(sql),
             Effect::AskBehind(sql) => self.rows_question = self.ask(sql),
             Effect::CancelQuery => self.orders.push(Order::CancelQuery),
@@ -68,7 +39,6 @@ impl App {
                 }
                 self.load();
             }
-            Effect::SetMemo(text) => self.orders.push(Order::Job(Job::SetMemo(text))),
             Effect::Copy(text) => {
                 self.say(format!("copied: {}", crate::console::canvas::fit(&text, 60)));
                 self.orders.push(Order::Copy(text));
@@ -77,11 +47,6 @@ impl App {
                 self.layers.push(Layer::Dialog(Box::new(Reader::new(title, text))));
             }
             Effect::Write(name, contents) => self.write(vec![(name.as_str(), contents)]),
-            Effect::TellStory => self.orders.push(Order::Job(Job::Tell)),
-            Effect::WriteReport => {
-                self.say("writing the report …");
-                self.orders.push(Order::Job(Job::Report));
-            }
             Effect::Say(text) => self.say(text),
             Effect::Complain(text) => self.complain(text),
             Effect::Show(screen) => self.show(screen),
@@ -140,14 +105,11 @@ impl App {
             }
             Effect::SaveQuery { name, title, sql } => self.save_query([name, title, sql]),
             Effect::ConfirmCall { tool, arguments, text } => {
-                let confirm = Confirm::new(tool.name(), text, vec![Effect::Call { tool, arguments }]);
+                let confirm = Confirm::new(tool.name(), text, vec![Effect::call(tool, arguments)]);
                 self.layers.push(Layer::Dialog(Box::new(confirm)));
             }
             Effect::Explain(subject) => self.explain_subject(subject),
             Effect::StartTour => self.start_tour(),
-            Effect::ReadCourse(id) => self.orders.push(Order::Job(Job::Course(self.runs.clone(), id))),
-            Effect::EndRun(id) => self.orders.push(Order::Job(Job::EndRun(self.runs.clone(), id))),
-            Effect::DeleteRun(id) => self.orders.push(Order::Job(Job::DeleteRun(self.runs.clone(), id))),
             Effect::LeaveNow => self.leave(Closing::ToShell(0)),
             Effect::Do(action) => self.act(action),
         }
@@ -165,30 +127,28 @@ impl App {
         self.questions
     }
 
-    fn start(&mut self, what: &'static str, job: Job) {
-        if self.busy.is_none() {
-            self.busy = Some(Busy { what, days: None, since: Instant::now() });
-            self.orders.push(Order::Job(job));
+    /// Hands over work for the session's thread, unless it has to wait for a week.
+    pub(super) fn request(&mut self, request: Request) {
+        if request.waits_for_week() && self.busy.is_some() {
+            return self.complain("a week is running; nothing was sent: try again when it is done");
         }
-    }
-
-    /// Hands over a job that changes the run, unless a week is running.
-    fn change(&mut self, job: Job) {
-        match self.busy {
-            Some(_) => self.complain("a week is running; nothing was sent: try again when it is done"),
-            None => self.orders.push(Order::Job(job)),
+        if let Some(what) = request.busy_with() {
+            let is_advance = matches!(request, Request::Advance { .. });
+            if self.busy.is_some() {
+                return if is_advance {
+                    self.complain("a week is running already")
+                };
+            }
+            let days = self.run().filter(|_| is_advance).map(|run| {
+                let from = run.company.seen.day;
+                (from, run.company.next_decision_day, from)
+            });
+            self.busy = Some(Busy { what, days, since: Instant::now() });
         }
-    }
-
-    fn advance(&mut self, rationale: String, forecasts: crate::session::Forecasts) {
-        let Stage::Run(run) = &self.stage else { return };
-        if self.busy.is_some() {
-            return self.complain("a week is running already");
+        if matches!(request, Request::WriteReport) {
+            self.say("writing the report …");
         }
-        let from = run.company.seen.day;
-        let days = Some((from, run.company.next_decision_day, from));
-        self.busy = Some(Busy { what: "the week runs", days, since: Instant::now() });
-        self.orders.push(Order::Job(Job::Advance(rationale, forecasts)));
+        self.orders.push(Order::Job(Job::Do(request)));
     }
 
     fn save_query(&mut self, query: [String; 3]) {

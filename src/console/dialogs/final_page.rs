@@ -12,11 +12,12 @@ use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, centered, fit};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
+use crate::console::request::Recorded;
+use crate::console::request::Request;
 use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Line, Side, Unit, chart};
-use crate::console::worker::Recorded;
 use crate::notation::{dollars, grouped, percent};
 use crate::report::Story;
 use crate::report::measures::{ChannelSkill, ENOUGH_LEADS, Measures};
@@ -40,7 +41,7 @@ fn replay(company: &Company, goal: Goal) -> Outcome {
         (_, true) => Outcome::close_with(vec![Effect::Go(goal)]),
         (Some(_), _) => {
             let recorded = Recorded::Run(company.seen.run.clone());
-            Outcome::with(vec![Effect::Replay { recorded, goal, follow: false }])
+            Outcome::with(vec![Effect::Request(Request::Replay { recorded, goal, follow: false })])
         }
         (None, _) => {
             let text = "this run is kept in memory and has no record to replay";
@@ -78,7 +79,7 @@ impl Dialog for FinalPage {
             Action::WhatIf => replay(look.company, Goal::Week(look.company.seen.week.saturating_sub(1))),
             Action::ToMenu => Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun => Outcome::close(),
-            Action::ReportOfRun => Outcome::with(vec![Effect::WriteReport]),
+            Action::ReportOfRun => Outcome::with(vec![Effect::Request(Request::WriteReport)]),
             _ => Outcome::stay(),
         }
     }

@@ -6,6 +6,7 @@ use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, centered, rows_of};
 use crate::console::effect::Effect;
+use crate::console::request::Request;
 use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
@@ -28,7 +29,7 @@ impl TakeOver {
     }
 
     fn take(&self) -> Outcome {
-        Outcome::close_with(vec![Effect::TakeOver(MODES[self.selected])])
+        Outcome::close_with(vec![Effect::Request(Request::TakeOver(MODES[self.selected]))])
     }
 }
 
@@ -101,9 +102,11 @@ mod tests {
         assert!(picture.contains("on day 84 before week 13") && picture.contains("› sandbox"), "{picture}");
         assert!(in_dialog(&mut dialog, Action::Close, &company).effects.is_empty());
         let first = in_dialog(&mut dialog, Action::Open, &company);
-        assert!(matches!(first.effects[..], [Effect::TakeOver(Mode::Sandbox)]) && first.close);
+        assert!(
+            matches!(first.effects[..], [Effect::Request(Request::TakeOver(Mode::Sandbox))]) && first.close
+        );
         in_dialog(&mut dialog, Action::Down, &company);
         let second = in_dialog(&mut dialog, Action::Confirm, &company);
-        assert!(matches!(second.effects[..], [Effect::TakeOver(Mode::Debug)]));
+        assert!(matches!(second.effects[..], [Effect::Request(Request::TakeOver(Mode::Debug))]));
     }
 }

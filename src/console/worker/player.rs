@@ -6,12 +6,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::{BETWEEN_DAYS, Open, Recorded, SessionThread};
+use super::{BETWEEN_DAYS, Open, SessionThread};
 use crate::console::company::Company;
 use crate::console::message::{Arrival, Instead, Message, News};
-use crate::session::{
-    Access, Goal, Mode, Playback, RunError, SeekResult, Session, find_run, find_run_to_read, rescue,
-};
+use crate::console::request::Recorded;
+use crate::session::{Goal, Mode, Playback, RunError, SeekResult, find_run, find_run_to_read};
 
 /// Lines of somebody else are looked for this often.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(400);
@@ -70,15 +69,15 @@ impl SessionThread {
     }
 
     /// Opens a recorded run; whatever was open is closed then, and stays if that fails.
-    pub(super) fn replay(&mut self, runs: &Path, recorded: Recorded, goal: Goal, follow: bool) {
+    pub(super) fn replay(&mut self, recorded: Recorded, goal: Goal, follow: bool) {
         let id = match &recorded {
             Recorded::Run(id) => id.clone(),
             Recorded::File(_) => String::new(),
         };
         let path = match recorded {
             Recorded::File(path) => Ok(path),
-            Recorded::Run(id) if follow => find_run(runs, &id),
-            Recorded::Run(id) => find_run_to_read(runs, &id),
+            Recorded::Run(id) if follow => find_run(&self.runs, &id),
+            Recorded::Run(id) => find_run_to_read(&self.runs, &id),
         };
         let opened = path.and_then(|path| self.open_playback(&path, goal, follow));
         let playback = match opened {
@@ -93,7 +92,7 @@ impl SessionThread {
             // Everything confirmed is on the disk already; what is left are rows that can be made again.
             let _ = open.session().save();
         }
-        let interrupt = self.hand_desks(playback.session());
+        let interrupt = self.queries.connect(playback.session());
         let company = Arc::new(company_of(&playback, None));
         let place = playback.place();
         (self.company, self.due) = (Some(company.clone()), None);
@@ -137,7 +136,7 @@ impl SessionThread {
         });
         // What went wrong on the way has led to a new session, too.
         let anew = !matches!(went, Ok(SeekResult::There | SeekResult::Stopped));
-        let interrupt = if anew { self.hand_desks(playback.session()) } else { None };
+        let interrupt = if anew { self.queries.connect(playback.session()) } else { None };
         let before = self.company.take().filter(|_| !anew);
         let company = Arc::new(company_of(&playback, before.as_deref()));
         self.company = Some(company.clone());
@@ -164,22 +163,6 @@ impl SessionThread {
                 self.take(Ok(session), "", Some(remark));
             }
             Err(refusal) => self.say(News::NotOpened(refusal.to_string(), None)),
-        }
-    }
-
-    /// Opens the good beginning of a damaged run as a branch.
-    pub(super) fn rescue(&mut self, runs: &Path, id: &str) {
-        let rescued = find_run_to_read(runs, id).and_then(|folder| rescue(&folder));
-        let opened = rescued.and_then(|found| {
-            let remark = format!(
-                "run {} holds lines 1 to {} of run {id}, which is unchanged; {}",
-                found.run, found.lines, found.problem
-            );
-            Session::open(&runs.join(&found.run), Access::Write, true).map(|session| (session, remark))
-        });
-        match opened {
-            Ok((session, remark)) => self.take(Ok(session), "", Some(remark)),
-            Err(problem) => self.take(Err(problem), "", None),
         }
     }
 }

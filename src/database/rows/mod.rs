@@ -13,7 +13,7 @@ use rusqlite::{Transaction, params};
 
 pub(super) use create::{LAYOUT, create};
 
-use super::blocks::{AdsRun, PackedDay, SharedShelf};
+use super::blocks::{AdsRun, PackedDay, SharedStore};
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::events::{
     Arrival, Category, Facts, LedgerNote, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus,
@@ -96,7 +96,7 @@ struct IssueRow {
 /// Collects what changes until the next commit, so that several changes of a row become one write.
 pub(super) struct RowWriter {
     params: Arc<Params>,
-    shelf: SharedShelf,
+    store: SharedStore,
     issue_clock: u32,
     new_subscriptions: BTreeMap<u32, SubscriptionRow>,
     deals: BTreeMap<u32, DealRow>,
@@ -111,10 +111,10 @@ pub(super) struct RowWriter {
 
 impl RowWriter {
     /// A writer for a database that has its tables; `issue_clock` is the stored one.
-    pub fn new(params: Arc<Params>, shelf: SharedShelf, issue_clock: u32) -> RowWriter {
+    pub fn new(params: Arc<Params>, store: SharedStore, issue_clock: u32) -> RowWriter {
         RowWriter {
             params,
-            shelf,
+            store,
             issue_clock,
             new_subscriptions: BTreeMap::new(),
             deals: BTreeMap::new(),
@@ -348,7 +348,7 @@ impl RowWriter {
         }
     }
 
-    /// Writes what was kept back. The shelf follows with [`RowWriter::publish`], once the commit succeeded.
+    /// Writes what was kept back. The store follows with [`RowWriter::publish`], once the commit succeeded.
     pub fn flush(&mut self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         self.flush_subscriptions(transaction)?;
         let rows = std::mem::take(&mut self.new_issues).into_iter().map(|(issue, row)| {
@@ -422,22 +422,22 @@ impl RowWriter {
         Ok(())
     }
 
-    /// Puts the new days on the shelf and takes the old ones off.
+    /// Puts the new days into the store and takes the old ones out.
     pub fn publish(&mut self) {
         if self.new_usage.is_empty() && self.new_ads.is_empty() {
             return;
         }
-        let mut shelf = self.shelf.write().unwrap_or_else(|poisoned| poisoned.into_inner());
-        let mut usage = shelf.usage.to_vec();
+        let mut store = self.store.write().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let mut usage = store.usage.to_vec();
         usage.append(&mut self.new_usage);
         if let Some(first) = self.keep_usage_from.take() {
             usage.retain(|day| day.day >= first);
         }
-        shelf.usage = Arc::new(usage);
+        store.usage = Arc::new(usage);
         if !self.new_ads.is_empty() {
-            let mut ads = shelf.ads.to_vec();
+            let mut ads = store.ads.to_vec();
             ads.append(&mut self.new_ads);
-            shelf.ads = Arc::new(ads);
+            store.ads = Arc::new(ads);
         }
     }
 }

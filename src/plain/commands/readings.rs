@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
-use super::{COMMANDS, Desk, problem, tool_called, words};
+use super::{COMMANDS, Interpreter, problem, tool_called, words};
 use crate::database;
 use crate::glossary;
 use crate::notation::{dollars, grouped, nearest, signed_dollars};
@@ -18,7 +18,7 @@ use crate::session::{Change, JournalEntry, Numbers, Reversal, undone_calls};
 use crate::tools::describe::{self, ToolDocument, document};
 use crate::tools::{self, Kind};
 
-impl Desk {
+impl Interpreter {
     pub(super) fn dashboard(&self) -> Answer {
         let dashboard = self.session.dashboard();
         let data = json!({ "day": self.session.day(), "dashboard": dashboard });

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
-use super::{Desk, problem};
+use super::{Interpreter, problem};
 use crate::notation::{percent, signed_dollars};
 use crate::report::{Story, WeekReport, as_markdown};
 use crate::session::{Refusal, Verdict};
@@ -12,7 +12,7 @@ use crate::session::{Refusal, Verdict};
 /// Moves that are told.
 const TOLD: usize = 6;
 
-impl Desk {
+impl Interpreter {
     pub(super) fn report(&self, what: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
         match what {
             None | Some("week") => Ok(self.week_report()),

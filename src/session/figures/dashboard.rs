@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::week::{WeekFigures, week_of};
 use crate::notation::{dollars, grouped, percent, released_dollars, signed_dollars};
-use crate::session::play::office::Calculated;
+use crate::session::play::surroundings::Calculated;
 use crate::world::identifiers::{ByPlan, Group, Plan};
 use crate::world::market::social::own::OwnPost;
 use crate::world::params::Params;

@@ -11,10 +11,10 @@ use super::runs::{earlier_runs, label_of};
 use crate::database::{Location, Position, Projector};
 use crate::session::error::RunError;
 use crate::session::play::history::History;
-use crate::session::play::office::Office;
 use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
+use crate::session::play::surroundings::RunSurroundings;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Start;
 use crate::session::trajectory::{Record, now};
@@ -130,7 +130,7 @@ impl Session {
             simulation,
             projection,
             position: Position { seq: 0, line_hash: String::new() },
-            office: Office::default(),
+            surroundings: RunSurroundings::default(),
             memo_in_memory: String::new(),
             remarks: Vec::new(),
             recorder: None,

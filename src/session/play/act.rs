@@ -265,7 +265,7 @@ impl Session {
     /// What tools may look at.
     fn view(&self) -> View<'_> {
         View::new(&self.simulation.world, &self.simulation.params)
-            .within(&self.office)
+            .within(&self.surroundings)
             .with_posts(&self.simulation.feed.posts)
     }
 

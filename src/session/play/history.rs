@@ -1,7 +1,7 @@
 //! What has happened in a run, as far as screens, dashboard and report look back: figures of weeks, decisions, journal.
 
-use super::office::Calculated;
 use super::simulation::Simulation;
+use super::surroundings::Calculated;
 use super::this_week::ThisWeek;
 use crate::session::figures::changes::{Change, Decisions, changes};
 use crate::session::figures::groups::{self, GroupWeek};

@@ -59,7 +59,7 @@ impl Projection {
         let Some(projector) = &self.projector else {
             return Err(Refusal::new("sql_error", "this run is played without a database"));
         };
-        projector.desk().map_err(|error| Refusal::new("sql_error", error.to_string()))
+        projector.connection().map_err(|error| Refusal::new("sql_error", error.to_string()))
     }
 
     /// The connection of this thread.

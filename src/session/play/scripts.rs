@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use super::office::Calculated;
+use super::surroundings::Calculated;
 use crate::database::{self, text};
 use crate::session::state::Session;
 use crate::tools::{Kept, Notebook, NotebookChange, Refusal, Script, ScriptOutput};
@@ -44,7 +44,7 @@ fn first(text: &str, most: usize) -> String {
 impl Session {
     /// Calculations and scripts of the run.
     pub fn notebook(&self) -> &Notebook {
-        &self.office.notebook
+        &self.surroundings.notebook
     }
 
     /// What the calculations said before the last week.
@@ -84,7 +84,7 @@ impl Session {
 
     /// Runs all calculations on the company as it is. One that fails says why and does not keep the week.
     pub(in crate::session) fn run_calculations(&mut self) -> Vec<Calculated> {
-        let entries = self.office.notebook.shelf(Kept::Calculation).entries().to_vec();
+        let entries = self.surroundings.notebook.statements(Kept::Calculation).entries().to_vec();
         let time = self.query_limits().time;
         let shown = self.simulation.params.limits.dashboard_calculation_max_chars as usize;
         let run = |(name, code): (String, String)| {
@@ -99,6 +99,6 @@ impl Session {
 
     /// Keeps or forgets what an accepted call asks for.
     pub(in crate::session) fn keep(&mut self, change: &NotebookChange) {
-        self.office.notebook.apply(change);
+        self.surroundings.notebook.apply(change);
     }
 }

@@ -22,7 +22,7 @@ pub enum Goal {
 pub enum SeekResult {
     /// It is there.
     There,
-    /// It is there with a new session: desks on the old one's database tell nothing new.
+    /// It is there with a new session: connections to the old one's database show nothing new.
     Anew,
     /// It was stopped on the way; what was reached is shown, and going back leaves everything where it was.
     Stopped,

@@ -16,7 +16,7 @@ impl Session {
         self.projection.failure()
     }
 
-    /// Brings a database that could not be written up to the last line again, from the trajectory. Desks that were
+    /// Brings a database that could not be written up to the last line again, from the trajectory. Connections that were
     /// opened before know nothing of it.
     ///
     /// # Errors

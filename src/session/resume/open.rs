@@ -10,9 +10,9 @@ use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::lock_run;
 use crate::session::play::facts_chain::StateHash;
-use crate::session::play::office::Office;
 use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
+use crate::session::play::surroundings::RunSurroundings;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Closing, Outcome};
 use crate::session::trajectory::{Line, Record, Trajectory, damaged_at};
@@ -85,9 +85,9 @@ impl Session {
         };
         let position = snapshot.position();
         let seen = position.seq as usize + 1;
-        let office = Office { notebook };
+        let surroundings = RunSurroundings { notebook };
         let session = Session::assemble(manifest, own, simulation, Projection::default());
-        (Session { history, office, position, ..session }, seen)
+        (Session { history, surroundings, position, ..session }, seen)
     }
 
     /// Applies every line again but those the session has seen; the database gets only what it does not have yet.

@@ -23,8 +23,8 @@ use crate::session::folder::manifest::Manifest;
 use crate::session::play::facts_chain::FactsChain;
 use crate::session::play::feed::Feed;
 use crate::session::play::history::History;
-use crate::session::play::office::Calculated;
 use crate::session::play::simulation::Simulation;
+use crate::session::play::surroundings::Calculated;
 use crate::session::play::this_week::{Step, ThisWeek};
 use crate::session::state::Session;
 use crate::session::trajectory::record::Ended;
@@ -236,7 +236,7 @@ impl Session {
     }
 
     fn state_bytes(&self) -> Vec<u8> {
-        let Session { simulation, history, office, .. } = self;
+        let Session { simulation, history, surroundings, .. } = self;
         let chain = &simulation.facts_chain;
         let notes = Notes {
             weeks: Cow::Borrowed(&history.weeks),
@@ -247,7 +247,7 @@ impl Session {
             done: Cow::Borrowed(&history.this_week.done),
             journal: Cow::Borrowed(&history.journal),
             asked: Cow::Borrowed(&history.asked),
-            notebook: Cow::Borrowed(&office.notebook),
+            notebook: Cow::Borrowed(&surroundings.notebook),
             calculated: Cow::Borrowed(&history.calculated),
             last_dashboard: history.last_dashboard.as_deref().map(Cow::Borrowed),
             facts_chain: (chain.hash().to_hex().to_string(), chain.is_closed()),

@@ -12,7 +12,7 @@ use toml::Table;
 use crate::notation::json_number;
 use crate::session::folder::consent::Consent;
 use crate::session::folder::mode::Mode;
-use crate::session::play::office::Calculated;
+use crate::session::play::surroundings::Calculated;
 use crate::tools::{Forecast, ToolId};
 
 /// What a line says.

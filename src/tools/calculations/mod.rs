@@ -8,13 +8,13 @@ pub use list_daily_calculations::ListDailyCalculations;
 pub use register_daily_calculation::RegisterDailyCalculation;
 pub use remove_daily_calculation::RemoveDailyCalculation;
 
-use super::notebook::{Kept, Shelf};
+use super::notebook::{Kept, NamedStatements};
 use super::refusal::Refusal;
 use super::view::View;
 
 /// The calculations of the run.
-fn kept<'a>(view: &View<'a>) -> &'a Shelf {
-    view.surroundings().notebook().shelf(Kept::Calculation)
+fn kept<'a>(view: &View<'a>) -> &'a NamedStatements {
+    view.surroundings().notebook().statements(Kept::Calculation)
 }
 
 fn not_found(name: &str, view: &View<'_>) -> Refusal {

@@ -16,7 +16,7 @@ pub use register_script::RegisterScript;
 pub use run_script::RunScript;
 
 use super::arguments::{Arguments, text};
-use super::notebook::{Kept, Shelf};
+use super::notebook::{Kept, NamedStatements};
 use super::refusal::Refusal;
 use super::view::View;
 
@@ -24,8 +24,8 @@ use super::view::View;
 const LONGEST_SECONDS: f64 = 600.0;
 
 /// The scripts of the run.
-fn stored<'a>(view: &View<'a>) -> &'a Shelf {
-    view.surroundings().notebook().shelf(Kept::Script)
+fn stored<'a>(view: &View<'a>) -> &'a NamedStatements {
+    view.surroundings().notebook().statements(Kept::Script)
 }
 
 /// The name of a script that the argument `name` gives.

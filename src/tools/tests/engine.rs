@@ -12,9 +12,9 @@ use crate::world::events::Reading;
 use crate::world::params::Params;
 use crate::world::state::World;
 
-/// A desk with a notebook and two tables.
+/// A run with a notebook and two tables.
 #[derive(Default)]
-struct Desk {
+struct Host {
     notebook: Notebook,
 }
 
@@ -22,7 +22,7 @@ fn column(name: &'static str, description: &'static str) -> ColumnDocument {
     ColumnDocument { name, kind: "INTEGER", values: &[], description }
 }
 
-impl Surroundings for Desk {
+impl Surroundings for Host {
     fn describe(&self, _: &Reading) -> String {
         String::new()
     }
@@ -47,7 +47,7 @@ impl Surroundings for Desk {
     }
 }
 
-impl Desk {
+impl Host {
     /// The answer, or the statements that are run for it.
     fn try_call(&mut self, name: &str, given: &Value) -> Result<Result<Value, Script>, Refusal> {
         let tool = find(name).expect("the tool exists");
@@ -90,15 +90,15 @@ impl Desk {
 
 #[test]
 fn calculations_are_kept_listed_and_removed() {
-    let mut desk = Desk::default();
-    let data = desk.call("register_daily_calculation", json!({"name": "mrr", "code": "SELECT 1"}));
+    let mut host = Host::default();
+    let data = host.call("register_daily_calculation", json!({"name": "mrr", "code": "SELECT 1"}));
     assert_eq!(data, json!({"name": "mrr", "code_length": 8}));
-    desk.call("register_daily_calculation", json!({"name": "", "code": "SELECT '\u{e9}'"}));
-    let data = desk.call("register_daily_calculation", json!({"name": "mrr", "code": "SELECT 22"}));
+    host.call("register_daily_calculation", json!({"name": "", "code": "SELECT '\u{e9}'"}));
+    let data = host.call("register_daily_calculation", json!({"name": "mrr", "code": "SELECT 22"}));
     assert_eq!(data["code_length"], 9);
-    assert_eq!(desk.call("list_daily_calculations", json!({})), json!({"calculations": ["mrr", ""]}));
-    assert_eq!(desk.notebook.shelf(Kept::Calculation).get("mrr"), Some("SELECT 22"));
-    desk.assert_refused(
+    assert_eq!(host.call("list_daily_calculations", json!({})), json!({"calculations": ["mrr", ""]}));
+    assert_eq!(host.notebook.statements(Kept::Calculation).get("mrr"), Some("SELECT 22"));
+    host.assert_refused(
         "register_daily_calculation",
         &[
             (json!({"code": "SELECT 1"}), "argument_missing", "name"),
@@ -107,7 +107,7 @@ fn calculations_are_kept_listed_and_removed() {
             (json!({"name": "x", "code": ["SELECT 1"]}), "wrong_type", "code"),
         ],
     );
-    desk.assert_refused(
+    host.assert_refused(
         "remove_daily_calculation",
         &[
             (json!({"name": "MRR"}), "calculation_not_found", "name"),
@@ -115,15 +115,15 @@ fn calculations_are_kept_listed_and_removed() {
             (json!({}), "argument_missing", "name"),
         ],
     );
-    let data = desk.call("remove_daily_calculation", json!({"name": "mrr"}));
+    let data = host.call("remove_daily_calculation", json!({"name": "mrr"}));
     assert_eq!(data, json!({"name": "mrr", "remaining": [""]}));
-    desk.assert_refused("list_daily_calculations", &[(json!({"x": 1}), "unknown_argument", "x")]);
+    host.assert_refused("list_daily_calculations", &[(json!({"x": 1}), "unknown_argument", "x")]);
 }
 
 #[test]
 fn scripts_are_stored_found_and_deleted() {
-    let mut desk = Desk::default();
-    desk.assert_refused(
+    let mut host = Host::default();
+    host.assert_refused(
         "register_script",
         &[
             (json!({"name": " \t", "code": "SELECT 1"}), "script_name_blank", "name"),
@@ -131,27 +131,27 @@ fn scripts_are_stored_found_and_deleted() {
             (json!({"name": "x"}), "argument_missing", "code"),
         ],
     );
-    let data = desk.call("register_script", json!({"name": " churn ", "code": "SELECT 1"}));
+    let data = host.call("register_script", json!({"name": " churn ", "code": "SELECT 1"}));
     assert_eq!(data, json!({"name": "churn", "code_length": 8}));
-    desk.call("register_script", json!({"name": "other", "code": "SELECT 2"}));
-    assert_eq!(desk.call("list_scripts", json!({})), json!({"scripts": ["churn", "other"]}));
+    host.call("register_script", json!({"name": "other", "code": "SELECT 2"}));
+    assert_eq!(host.call("list_scripts", json!({})), json!({"scripts": ["churn", "other"]}));
     let missing = [(json!({"name": "nothing"}), "script_not_found", "name")];
-    desk.assert_refused("run_script", &missing);
-    desk.assert_refused("delete_script", &missing);
-    let script = desk.try_call("run_script", &json!({"name": "churn"})).expect("it is stored");
+    host.assert_refused("run_script", &missing);
+    host.assert_refused("delete_script", &missing);
+    let script = host.try_call("run_script", &json!({"name": "churn"})).expect("it is stored");
     assert_eq!(script, Err(Script { code: "SELECT 1".to_owned(), seconds: 600.0 }));
-    let data = desk.call("delete_script", json!({"name": "churn"}));
+    let data = host.call("delete_script", json!({"name": "churn"}));
     assert_eq!(data, json!({"name": "churn", "remaining": ["other"]}));
-    desk.assert_refused("run_script", &[(json!({"name": "churn"}), "script_not_found", "name")]);
+    host.assert_refused("run_script", &[(json!({"name": "churn"}), "script_not_found", "name")]);
 }
 
 #[test]
 fn python_exec() {
-    let mut desk = Desk::default();
+    let mut host = Host::default();
     let script =
-        desk.try_call("python_exec", &json!({"code": "SELECT 1", "timeout_seconds": 2.5})).expect("a script");
+        host.try_call("python_exec", &json!({"code": "SELECT 1", "timeout_seconds": 2.5})).expect("a script");
     assert_eq!(script, Err(Script { code: "SELECT 1".to_owned(), seconds: 2.5 }));
-    desk.assert_refused(
+    host.assert_refused(
         "python_exec",
         &[
             (json!({}), "argument_missing", "code"),
@@ -165,16 +165,16 @@ fn python_exec() {
 
 #[test]
 fn documents_of_tables_and_tools() {
-    let mut desk = Desk::default();
-    let data = desk.call("list_all_tables", json!({}));
+    let mut host = Host::default();
+    let data = host.call("list_all_tables", json!({}));
     assert_eq!(data, json!({"count": 2, "tables": {"ledger": "cash", "issues": "support"}}));
     let ledger = json!({"description": "cash", "columns": {"id": "INTEGER: number", "day": "INTEGER: day"}});
     for given in [json!("ledger"), json!(["ledger"]), json!(["ledger", "nothing"])] {
-        let data = desk.call("describe_tables", json!({"table_names": given}));
+        let data = host.call("describe_tables", json!({"table_names": given}));
         assert_eq!(data, json!({"tables": {"ledger": ledger}}));
     }
     for given in [json!({}), json!({"table_names": "all"}), json!({"table_names": null})] {
-        let data = desk.call("describe_tables", given);
+        let data = host.call("describe_tables", given);
         assert_eq!(data["tables"].as_object().map(|tables| tables.len()), Some(2));
     }
     let wrong = |field: &str, code: &'static str| {
@@ -192,11 +192,11 @@ fn documents_of_tables_and_tools() {
         let cases = wrong(field, code);
         let cases: Vec<(Value, &str, &str)> =
             cases.iter().map(|(given, code, field)| (given.clone(), *code, field.as_str())).collect();
-        desk.assert_refused(tool, &cases);
+        host.assert_refused(tool, &cases);
     }
-    let data = desk.call("get_tool_documentation", json!({"tool_names": ["set_prices", "query"]}));
+    let data = host.call("get_tool_documentation", json!({"tool_names": ["set_prices", "query"]}));
     assert_eq!(data.as_object().map(|tools| tools.len()), Some(2));
     assert_eq!(data["set_prices"]["name"], "set_prices");
-    let all = desk.call("get_tool_documentation", json!({}));
+    let all = host.call("get_tool_documentation", json!({}));
     assert_eq!(all.as_object().map(|tools| tools.len()), Some(super::super::CATALOGUE.len()));
 }

@@ -12,6 +12,7 @@ use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Align, Canvas, Click, centered, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
+use crate::console::request::Request;
 use crate::console::screens::Look;
 use crate::console::text::number;
 use crate::console::theme::Role;
@@ -108,7 +109,10 @@ impl Filing {
             Step::Forecasts => match self.forecasts(look.company) {
                 Ok(forecasts) => {
                     let rationale = self.rationale.text().trim().to_owned();
-                    return Outcome::close_with(vec![Effect::Advance { rationale, forecasts }]);
+                    return Outcome::close_with(vec![Effect::Request(Request::Advance {
+                        rationale,
+                        forecasts,
+                    })]);
                 }
                 Err((at, problem)) => {
                     self.at = at;

@@ -7,6 +7,7 @@ use super::offer::in_words;
 use super::{Inbox, list_prices};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
+use crate::console::request::Request;
 use crate::console::screens::Figure;
 use crate::console::text::count;
 use crate::notation::dollars;
@@ -89,7 +90,7 @@ impl Inbox {
         let text = if sent.len() == 1 {
             let to = format!("#{} ({})", first.customer, count(first.seats, "seat"));
             match first.state {
-                State::Waiting(_) => return vec![Effect::Call { tool: SEND, arguments }],
+                State::Waiting(_) => return vec![Effect::Request(Request::Call { tool: SEND, arguments })],
                 State::Theirs => format!(
                     "{to} has not answered your last offer yet. This one, {}, replaces it and uses up another \
                      turn of its patience.",

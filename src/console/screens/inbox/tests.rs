@@ -5,6 +5,7 @@ use super::*;
 use crate::console::keys::{Chord, Keys};
 use crate::console::screens::Screen;
 use crate::console::test_kit::{act, company, courted, drawn, shown, sweep};
+use crate::console::request::Request;
 use crate::session::{Cell as Datum, Via, WaitingThread};
 use crate::tools::{Answer, DealResult, DealResults, ToolId};
 use crate::world::identifiers::Plan;
@@ -100,7 +101,7 @@ fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usi
 /// The deals of a call.
 fn deals(effects: &[Effect]) -> Vec<Value> {
     match effects {
-        [Effect::ConfirmCall { arguments, .. } | Effect::Call { arguments, .. }] => {
+        [Effect::ConfirmCall { arguments, .. } | Effect::Request(Request::Call { arguments, .. })] => {
             arguments["deals"].as_array().expect("deals").clone()
         }
         other => panic!("no call: {other:?}"),
@@ -255,7 +256,7 @@ fn a_real_company_is_answered_and_found_again() {
     assert!(screen.letters.firm(first.customer).is_some_and(|firm| firm.group == first.group));
     let [Effect::EditSql(sql)] = &act(&mut screen, Action::InboxSql, &before)[..] else { panic!("no query") };
     assert_eq!(session.query(sql).expect("rows").rows.len(), first.turns.len());
-    let [Effect::Call { tool, arguments }] = &act(&mut screen, Action::SendOffer, &before)[..] else {
+    let [Effect::Request(Request::Call { tool, arguments })] = &act(&mut screen, Action::SendOffer, &before)[..] else {
         panic!("no call")
     };
     session.call(tool, arguments, Via::Form).expect("sent");

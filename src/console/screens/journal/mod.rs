@@ -15,6 +15,7 @@ use super::{Figure, Look, ScreenState};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::effect::Effect;
+use crate::console::request::Request;
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Editor, Table};
 
@@ -69,7 +70,7 @@ impl Journal {
     fn save(&mut self) -> Vec<Effect> {
         self.editing = false;
         if self.is_draft() {
-            vec![Effect::SetMemo(self.notes.text())]
+            vec![Effect::Request(Request::SetMemo(self.notes.text()))]
         } else {
             vec![Effect::Say("notes already saved".to_owned())]
         }

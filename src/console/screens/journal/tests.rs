@@ -128,7 +128,7 @@ fn a_draft_of_the_notes_survives_until_it_is_kept() {
     assert!(screen.holds_unsent_text() && screen.notes.text() == "watch S3");
     assert!(holds(&picture(&screen, &company, 80, 21), "draft, unsaved"));
     let effects = act(&mut screen, &company, Action::SaveMemo);
-    assert!(matches!(&effects[..], [Effect::SetMemo(text)] if text == "watch S3"));
+    assert!(matches!(&effects[..], [Effect::Request(Request::SetMemo(text))] if text == "watch S3"));
     company.memo = "watch S3\n".to_owned();
     with_look(&company, |look| screen.renew(look));
     assert!(!screen.holds_unsent_text());

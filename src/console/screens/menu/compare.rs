@@ -8,7 +8,7 @@ use crate::console::canvas::{Align, Canvas, rows_of};
 use crate::console::theme::Role;
 use crate::console::widgets::spark::spark;
 use crate::notation::{compact, dollars};
-use crate::session::{Mode, RunHistory, RunSummary};
+use crate::session::{Mode, RunPreview, RunSummary};
 
 /// Columns of the figures: title, width, side. A narrow window has the first of them: the curve in a row tells runs
 /// apart where colours do not.
@@ -33,17 +33,17 @@ impl Menu {
         let for_figures = (runs.len() as u16 + 3).min(area.height);
         let above = Rect { height: area.height - for_figures, ..area };
         let below = Rect { y: above.bottom(), height: for_figures, ..area };
-        let courses: Vec<(usize, &RunHistory)> = runs
+        let previews: Vec<(usize, &RunPreview)> = runs
             .iter()
             .enumerate()
-            .filter_map(|(at, run)| known(&self.courses, &run.id).map(|course| (at, course)))
+            .filter_map(|(at, run)| known(&self.previews, &run.id).map(|preview| (at, preview)))
             .collect();
         if above.height >= 5 {
             let inside = canvas.pane(above, "Cash", &format!("{} runs", runs.len()), false);
-            if courses.len() < runs.len() {
+            if previews.len() < runs.len() {
                 canvas.text(inside, " reading …", Role::Dim);
             } else {
-                draw_curves(canvas, inside, &courses);
+                draw_curves(canvas, inside, &previews);
             }
         }
         let inside = canvas.pane(below, "Where they stand", "", false);
@@ -55,12 +55,12 @@ impl Menu {
             canvas.text(rest, "cash by week", Role::Header);
         }
         for (row, (at, run)) in rows.zip(runs.iter().enumerate()) {
-            let course = known(&self.courses, &run.id);
-            let cells = cells(at, run, course);
+            let preview = known(&self.previews, &run.id);
+            let cells = cells(at, run, preview);
             draw_cells(canvas, row, &cells, |column| if column == 0 { Role::Series(at) } else { Role::Text });
             let rest = rest_of(row);
-            if let Some(course) = course {
-                let values: Vec<f64> = course.cash.iter().map(|point| point.1).collect();
+            if let Some(preview) = preview {
+                let values: Vec<f64> = preview.cash.iter().map(|point| point.1).collect();
                 canvas.text(
                     rest,
                     &spark(&thinned(&values, rest.width as usize), rest.width as usize),
@@ -71,17 +71,17 @@ impl Menu {
     }
 }
 
-fn cells(at: usize, run: &RunSummary, course: Option<&RunHistory>) -> [String; 8] {
+fn cells(at: usize, run: &RunSummary, preview: Option<&RunPreview>) -> [String; 8] {
     let figure =
-        |read: fn(&RunHistory) -> f64| course.map_or("…".to_owned(), |course| compact(read(course)));
+        |read: fn(&RunPreview) -> f64| preview.map_or("…".to_owned(), |preview| compact(read(preview)));
     [
         format!("{}━", at + 1),
         run.id.clone(),
         state(run),
         dollars(run.cash),
-        figure(|course| course.subscribers as f64),
-        figure(|course| course.seats as f64),
-        course.map_or("…".to_owned(), |course| dollars(course.recurring_revenue)),
+        figure(|preview| preview.subscribers as f64),
+        figure(|preview| preview.seats as f64),
+        preview.map_or("…".to_owned(), |preview| dollars(preview.recurring_revenue)),
         run.mode.map_or("", Mode::id).to_owned(),
     ]
 }

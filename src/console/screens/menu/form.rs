@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::effect::Effect;
+use crate::console::request::Request;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
@@ -129,7 +130,7 @@ impl Form {
             }
             None => {
                 self.refused = None;
-                vec![Effect::Create(Box::new(self.run()))]
+                vec![Effect::Request(Request::Create(Box::new(self.run())))]
             }
         }
     }

@@ -2,8 +2,8 @@
 
 use ratatui::layout::Rect;
 
-use super::runs::{draw_course, facts, state};
-use super::{Courses, Menu};
+use super::runs::{draw_preview, facts, state};
+use super::{Menu, Previews};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
@@ -116,7 +116,7 @@ impl Menu {
                 }
             }
             Some(Ok(list)) => match list.first() {
-                Some(run) => draw_run(canvas, area, "Last run", run, &self.courses),
+                Some(run) => draw_run(canvas, area, "Last run", run, &self.previews),
                 None => draw_welcome(canvas, area),
             },
         }
@@ -129,11 +129,11 @@ pub(super) fn draw_run(
     area: Rect,
     title: &str,
     run: &RunSummary,
-    courses: &Courses,
+    previews: &Previews,
 ) {
     let inside = canvas.pane(area, title, &state(run), false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-    let known = courses.get(&run.id).and_then(Option::as_ref);
+    let known = previews.get(&run.id).and_then(Option::as_ref);
     let facts = facts(run, known);
     let beside = inside.width >= 70 && inside.height < 14;
     let (above, below) = if beside {
@@ -148,7 +148,7 @@ pub(super) fn draw_run(
         let place = Rect { x: row.x + 13, width: row.width.saturating_sub(13), ..row };
         canvas.text(place, value, Role::Text);
     }
-    draw_course(canvas, below, known, run.problem.is_some());
+    draw_preview(canvas, below, known, run.problem.is_some());
 }
 
 fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {

@@ -17,9 +17,10 @@ use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Align, Canvas};
 use crate::console::effect::Effect;
 use crate::console::message::Instead;
+use crate::console::request::Request;
 use crate::console::theme::Role;
 use crate::console::widgets::Table;
-use crate::session::{Configuration, RunHistory, RunSummary};
+use crate::session::{Access, Configuration, RunPreview, RunSummary};
 use form::{Form, ROWS};
 use home::Choice;
 use runs::Asked;
@@ -28,7 +29,7 @@ use runs::Asked;
 const PAGE: u16 = 10;
 
 /// How runs went, by their names; none while it is being read.
-type Courses = BTreeMap<String, Option<Result<RunHistory, String>>>;
+type Previews = BTreeMap<String, Option<Result<RunPreview, String>>>;
 
 /// The start menu.
 pub struct Menu {
@@ -40,7 +41,7 @@ pub struct Menu {
     table: Table,
     /// Runs to be compared, in the order in which they were marked.
     marked: Vec<String>,
-    courses: Courses,
+    previews: Previews,
     /// What is asked about before it is done.
     asked: Option<Asked>,
     /// What was to be done on the first page before the runs were known: what it offers depends on them.
@@ -67,7 +68,7 @@ impl Menu {
             form: Form::new(configuration),
             table: Table::new(runs::columns()),
             marked: Vec::new(),
-            courses: Courses::new(),
+            previews: Previews::new(),
             asked: None,
             early: Vec::new(),
             configuration: configuration.clone(),
@@ -86,7 +87,7 @@ impl Menu {
         let known: Vec<String> = self.list().iter().map(|run| run.id.clone()).collect();
         self.marked.retain(|id| known.contains(id));
         // What was played since may have gone further.
-        self.courses.clear();
+        self.previews.clear();
         self.asked = None;
         self.renew_table();
         let last = self.list().first().filter(|run| run.problem.is_none()).map(|run| run.id.clone());
@@ -105,8 +106,8 @@ impl Menu {
     }
 
     /// Takes how a run went.
-    pub fn learn(&mut self, id: String, course: Result<RunHistory, String>) {
-        self.courses.insert(id, Some(course));
+    pub fn learn(&mut self, id: String, preview: Result<RunPreview, String>) {
+        self.previews.insert(id, Some(preview));
     }
 
     /// A run could not be started or opened; what can be done instead is asked.
@@ -119,11 +120,11 @@ impl Menu {
 
     /// Asks how a run went, unless that is known or asked already.
     fn read(&mut self, id: &str) -> Option<Effect> {
-        if self.courses.contains_key(id) {
+        if self.previews.contains_key(id) {
             return None;
         }
-        self.courses.insert(id.to_owned(), None);
-        Some(Effect::ReadCourse(id.to_owned()))
+        self.previews.insert(id.to_owned(), None);
+        Some(Effect::Request(Request::PreviewRun(id.to_owned())))
     }
 
     fn list(&self) -> &[RunSummary] {
@@ -242,7 +243,7 @@ impl Menu {
 
     fn open_latest(&self) -> Vec<Effect> {
         match self.latest() {
-            Some(run) => vec![Effect::Open(run.id.clone())],
+            Some(run) => vec![Effect::Request(Request::Open(run.id.clone(), Access::Write))],
             None => vec![Effect::Complain("there is no unfinished run; n starts one".to_owned())],
         }
     }

@@ -3,18 +3,19 @@
 use ratatui::layout::Rect;
 
 use super::home::draw_run;
-use super::{Courses, Menu};
+use super::{Menu, Previews};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, centered, rows_of};
 use crate::console::effect::Effect;
 use crate::console::message::Instead;
+use crate::console::request::Recorded;
+use crate::console::request::Request;
 use crate::console::text::{count, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::chart::zero_if_near;
 use crate::console::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
-use crate::console::worker::Recorded;
 use crate::notation::{dollars, grouped};
-use crate::session::{Ended, Goal, Mode, NewRun, RunHistory, RunSummary};
+use crate::session::{Access, Ended, Goal, Mode, NewRun, RunPreview, RunSummary};
 
 /// Something that cannot be taken back and is asked about first.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,7 +86,11 @@ impl Menu {
         }
         match action {
             Action::Open => {
-                return self.chosen().map(|run| Effect::Open(run.id.clone())).into_iter().collect();
+                return self
+                    .chosen()
+                    .map(|run| Effect::Request(Request::Open(run.id.clone(), Access::Write)))
+                    .into_iter()
+                    .collect();
             }
             Action::ReplayRun => return self.replay(self.chosen()),
             Action::MarkRun => return self.mark(),
@@ -107,7 +112,7 @@ impl Menu {
     pub(super) fn replay(&self, run: Option<&RunSummary>) -> Vec<Effect> {
         let replay = |run: &RunSummary| {
             let recorded = Recorded::Run(run.id.clone());
-            vec![Effect::Replay { recorded, goal: Goal::First, follow: false }]
+            vec![Effect::Request(Request::Replay { recorded, goal: Goal::First, follow: false })]
         };
         run.map(replay).unwrap_or_default()
     }
@@ -155,14 +160,20 @@ impl Menu {
     /// Answers the question about a run.
     pub(super) fn answer(&mut self, action: Action) -> Vec<Effect> {
         match (action, self.asked.take()) {
-            (Action::Confirm, Some(Asked::GiveUp(id))) => vec![Effect::EndRun(id)],
-            (Action::Confirm, Some(Asked::Delete(id))) => vec![Effect::DeleteRun(id)],
+            (Action::Confirm, Some(Asked::GiveUp(id))) => vec![Effect::Request(Request::EndRun(id))],
+            (Action::Confirm, Some(Asked::Delete(id))) => vec![Effect::Request(Request::DeleteRun(id))],
             (Action::Confirm, Some(Asked::Instead(Instead::Watch(id), _))) => {
-                vec![Effect::Replay { recorded: Recorded::Run(id), goal: Goal::Last, follow: true }]
+                vec![Effect::Request(Request::Replay {
+                    recorded: Recorded::Run(id),
+                    goal: Goal::Last,
+                    follow: true,
+                })]
             }
-            (Action::Confirm, Some(Asked::Instead(Instead::Rescue(id), _))) => vec![Effect::Rescue(id)],
+            (Action::Confirm, Some(Asked::Instead(Instead::Rescue(id), _))) => {
+                vec![Effect::Request(Request::Rescue(id))]
+            }
             (Action::Confirm, Some(Asked::Instead(Instead::Agree(new, _), _))) => {
-                vec![Effect::Create(Box::new(NewRun { agreed: true, ..*new }))]
+                vec![Effect::Request(Request::Create(Box::new(NewRun { agreed: true, ..*new })))]
             }
             (Action::ScrollUp, Some(Asked::Instead(Instead::Agree(new, from), text))) => {
                 self.asked = Some(Asked::Instead(Instead::Agree(new, from.saturating_sub(1)), text));
@@ -264,7 +275,7 @@ impl Menu {
                 }
             }
             (None, Some(run)) if for_detail > 0 => {
-                draw_run(canvas, below, &format!("Run {}", run.id), run, &self.courses)
+                draw_run(canvas, below, &format!("Run {}", run.id), run, &self.previews)
             }
             _ => {}
         }
@@ -290,7 +301,7 @@ fn minute(at: &str) -> String {
 /// Figures of a run.
 pub(super) fn facts(
     run: &RunSummary,
-    course: Option<&Result<RunHistory, String>>,
+    preview: Option<&Result<RunPreview, String>>,
 ) -> Vec<(&'static str, String)> {
     if let Some(problem) = &run.problem {
         return vec![("problem", problem.clone())];
@@ -301,15 +312,19 @@ pub(super) fn facts(
         ("run", format!("{} · {mode} · seed {}", run.id, run.seed)),
         ("scenario", run.scenario.clone()),
     ];
-    if let Some(Ok(course)) = course {
+    if let Some(Ok(preview)) = preview {
         facts.insert(
             1,
             (
                 "subscribers",
-                format!("{} · {}", grouped(course.subscribers as f64, 0), count(course.seats as f64, "seat")),
+                format!(
+                    "{} · {}",
+                    grouped(preview.subscribers as f64, 0),
+                    count(preview.seats as f64, "seat")
+                ),
             ),
         );
-        facts.insert(2, ("revenue", format!("{} a month", dollars(course.recurring_revenue))));
+        facts.insert(2, ("revenue", format!("{} a month", dollars(preview.recurring_revenue))));
     }
     if let Some(participant) = &run.participant {
         facts.push(("participant", participant.clone()));
@@ -319,14 +334,14 @@ pub(super) fn facts(
 }
 
 /// The curve of a run's cash, or why there is none.
-pub(super) fn draw_course(
+pub(super) fn draw_preview(
     canvas: &mut Canvas<'_>,
     area: Rect,
-    course: Option<&Result<RunHistory, String>>,
+    preview: Option<&Result<RunPreview, String>>,
     unreadable: bool,
 ) {
-    match course {
-        Some(Ok(course)) if course.cash.len() > 1 => draw_curves(canvas, area, &[(0, course)]),
+    match preview {
+        Some(Ok(preview)) if preview.cash.len() > 1 => draw_curves(canvas, area, &[(0, preview)]),
         Some(Ok(_)) => canvas.text(area, "no week has run yet", Role::Dim),
         Some(Err(problem)) => canvas.text(area, &format!("! {problem}"), Role::Bad),
         None if unreadable => {}
@@ -335,20 +350,22 @@ pub(super) fn draw_course(
 }
 
 /// Curves of cash over days, each in the colour of its number.
-pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, courses: &[(usize, &RunHistory)]) {
+pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, previews: &[(usize, &RunPreview)]) {
     let points =
-        |course: &RunHistory| course.cash.iter().map(|(day, cash)| (f64::from(*day), *cash)).collect();
-    let lines: Vec<Line> =
-        courses.iter().map(|(number, course)| Line::through(points(course), Role::Series(*number))).collect();
-    let values = courses.iter().flat_map(|(_, course)| course.cash.iter().map(|point| point.1));
+        |preview: &RunPreview| preview.cash.iter().map(|(day, cash)| (f64::from(*day), *cash)).collect();
+    let lines: Vec<Line> = previews
+        .iter()
+        .map(|(number, preview)| Line::through(points(preview), Role::Series(*number)))
+        .collect();
+    let values = previews.iter().flat_map(|(_, preview)| preview.cash.iter().map(|point| point.1));
     let zero = zero_if_near(values);
     let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
     chart(canvas, area, &lines, &x, &Side { unit: Unit::Dollars, holds: zero });
 }
 
-/// A course that is known.
-pub(super) fn known<'a>(courses: &'a Courses, id: &str) -> Option<&'a RunHistory> {
-    courses.get(id)?.as_ref()?.as_ref().ok()
+/// A preview that is known.
+pub(super) fn known<'a>(previews: &'a Previews, id: &str) -> Option<&'a RunPreview> {
+    previews.get(id)?.as_ref()?.as_ref().ok()
 }
 
 /// A text that a participant agrees to or not.

@@ -3,9 +3,10 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
+use crate::console::request::Recorded;
+use crate::console::request::Request;
 use crate::console::test_kit::painted;
-use crate::console::worker::Recorded;
-use crate::session::{Ended, Goal, Mode};
+use crate::session::{Access, Ended, Goal, Mode};
 
 /// An unfinished run.
 pub(in crate::console) fn summary(id: &str) -> RunSummary {
@@ -33,9 +34,9 @@ fn menu(runs: Vec<RunSummary>) -> Menu {
     menu
 }
 
-fn course() -> RunHistory {
+fn preview() -> RunPreview {
     let cash = (0..=12).map(|week| (week * 7, 1e6 + f64::from(week * week) * 2e4)).collect();
-    RunHistory { cash, subscribers: 41_950, seats: 1_240, recurring_revenue: 812_345.0 }
+    RunPreview { cash, subscribers: 41_950, seats: 1_240, recurring_revenue: 812_345.0 }
 }
 
 fn three() -> Menu {
@@ -45,7 +46,7 @@ fn three() -> Menu {
         RunSummary { problem: Some("run.toml is missing".to_owned()), ..summary("cccc0003") },
     ]);
     for id in ["aaaa0001", "bbbb0002"] {
-        menu.learn(id.to_owned(), Ok(course()));
+        menu.learn(id.to_owned(), Ok(preview()));
     }
     menu
 }
@@ -87,17 +88,21 @@ fn the_last_run_stands_beside_the_choices() {
     ] {
         assert!(screen.contains(part), "{part} is missing in\n{screen}");
     }
-    assert!(matches!(&menu.act(Action::Open)[..], [Effect::Open(id)] if id == "aaaa0001"));
+    assert!(
+        matches!(&menu.act(Action::Open)[..], [Effect::Request(Request::Open(id, Access::Write))] if id == "aaaa0001")
+    );
 }
 
 #[test]
-fn the_course_of_a_run_is_asked_for_once() {
+fn the_preview_of_a_run_is_asked_for_once() {
     let mut menu = Menu::new(&Configuration::shipped());
     let effects = menu.take(Ok(vec![summary("aaaa0001"), summary("bbbb0002")]));
-    assert!(matches!(&effects[..], [Effect::ReadCourse(id)] if id == "aaaa0001"));
+    assert!(matches!(&effects[..], [Effect::Request(Request::PreviewRun(id))] if id == "aaaa0001"));
     menu.page = Page::Runs;
     assert!(menu.read_chosen().is_empty());
-    assert!(matches!(&menu.act(Action::Down)[..], [Effect::ReadCourse(id)] if id == "bbbb0002"));
+    assert!(
+        matches!(&menu.act(Action::Down)[..], [Effect::Request(Request::PreviewRun(id))] if id == "bbbb0002")
+    );
     assert!(menu.act(Action::Up).is_empty());
 }
 
@@ -114,9 +119,13 @@ fn a_key_that_comes_before_the_runs_are_known_means_what_is_shown_then() {
         (menu, effects)
     };
     let (_, effects) = hurried(&[Action::Open], vec![summary("aaaa0001")]);
-    assert!(matches!(&effects[..], [Effect::ReadCourse(_), Effect::Open(id)] if id == "aaaa0001"));
+    assert!(
+        matches!(&effects[..], [Effect::Request(Request::PreviewRun(_)), Effect::Request(Request::Open(id, Access::Write))] if id == "aaaa0001")
+    );
     let (_, effects) = hurried(&[Action::ContinueRun], vec![summary("aaaa0001")]);
-    assert!(matches!(&effects[..], [Effect::ReadCourse(_), Effect::Open(id)] if id == "aaaa0001"));
+    assert!(
+        matches!(&effects[..], [Effect::Request(Request::PreviewRun(_)), Effect::Request(Request::Open(id, Access::Write))] if id == "aaaa0001")
+    );
     let (_, effects) = hurried(&[Action::Open], Vec::new());
     assert!(matches!(effects[..], [Effect::StartTour]));
     let (menu, _) = hurried(&[Action::Down, Action::Open], vec![summary("aaaa0001")]);
@@ -147,9 +156,13 @@ fn runs_are_given_up_and_deleted_only_after_a_question() {
     }
     menu.act(Action::DeleteRun);
     assert!(menu.act(Action::Down).is_empty() && menu.asked.is_some(), "only an answer counts");
-    assert!(matches!(&menu.act(Action::Confirm)[..], [Effect::DeleteRun(id)] if id == "aaaa0001"));
+    assert!(
+        matches!(&menu.act(Action::Confirm)[..], [Effect::Request(Request::DeleteRun(id))] if id == "aaaa0001")
+    );
     menu.act(Action::EndRun);
-    assert!(matches!(&menu.act(Action::Confirm)[..], [Effect::EndRun(id)] if id == "aaaa0001"));
+    assert!(
+        matches!(&menu.act(Action::Confirm)[..], [Effect::Request(Request::EndRun(id))] if id == "aaaa0001")
+    );
     menu.act(Action::Down);
     assert!(matches!(&menu.act(Action::EndRun)[..], [Effect::Complain(_)]), "it is over already");
 }
@@ -207,7 +220,7 @@ fn the_form_says_what_is_wrong_while_it_is_typed() {
     assert!(shown(&menu, 80, 23).contains("No branches, no rewinding"));
     menu.form.at = ROWS.len() - 1;
     match &menu.act(Action::Open)[..] {
-        [Effect::Create(new)] => {
+        [Effect::Request(Request::Create(new))] => {
             assert_eq!((new.days, new.seed, new.mode), (Some(30), Some(42), Mode::Baseline))
         }
         other => panic!("{other:?}"),
@@ -285,7 +298,13 @@ fn every_page_is_drawn_in_every_window() {
 fn a_run_is_played_again_from_the_list_and_from_the_first_page() {
     let mut menu = three();
     let replays = |effects: Vec<Effect>, wanted: &str| {
-        let [Effect::Replay { recorded: Recorded::Run(id), goal: Goal::First, follow: false }] = &effects[..]
+        let [
+            Effect::Request(Request::Replay {
+                recorded: Recorded::Run(id),
+                goal: Goal::First,
+                follow: false,
+            }),
+        ] = &effects[..]
         else {
             panic!("{effects:?}")
         };
@@ -315,8 +334,11 @@ fn a_run_that_does_not_open_is_offered_another_way_after_a_question() {
             assert_eq!(menu.scopes(), [Scope::Dialog]);
             assert!(menu.act(Action::Down).is_empty() && menu.asked.is_some(), "only an answer counts");
             match (&instead, &menu.act(Action::Confirm)[..]) {
-                (Instead::Watch(_), [Effect::Replay { goal: Goal::Last, follow: true, .. }]) => {}
-                (Instead::Rescue(_), [Effect::Rescue(id)]) => assert_eq!(id, "aaaa0001"),
+                (
+                    Instead::Watch(_),
+                    [Effect::Request(Request::Replay { goal: Goal::Last, follow: true, .. })],
+                ) => {}
+                (Instead::Rescue(_), [Effect::Request(Request::Rescue(id))]) => assert_eq!(id, "aaaa0001"),
                 (_, other) => panic!("{other:?}"),
             }
             menu.refused(long.clone(), Some(instead.clone()));
@@ -343,7 +365,7 @@ fn a_participant_agrees_or_nothing_begins() {
     assert!(shown(&menu, 80, 23).contains("You can stop at any time."));
     assert!(menu.act(Action::Cancel).is_empty() && !shown(&menu, 80, 23).contains("Before the session"));
     match &asked().act(Action::Confirm)[..] {
-        [Effect::Create(new)] => assert!(new.agreed),
+        [Effect::Request(Request::Create(new))] => assert!(new.agreed),
         other => panic!("{other:?}"),
     }
 }

@@ -132,13 +132,13 @@ impl Form {
                     );
                     vec![Effect::ConfirmCall { tool, arguments, text }]
                 }
-                _ => vec![Effect::Call { tool, arguments }],
+                _ => vec![Effect::call(tool, arguments)],
             },
             Kind::OneShot if self.sheet.is_changed() => {
                 let text = format!("{tool} {arguments} cannot be undone.");
                 vec![Effect::ConfirmCall { tool, arguments, text }]
             }
-            _ => vec![Effect::Call { tool, arguments }],
+            _ => vec![Effect::call(tool, arguments)],
         }
     }
 

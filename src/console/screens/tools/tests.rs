@@ -5,6 +5,7 @@ use crate::console::action::Scope;
 use crate::console::keys::{Chord, Keys};
 use crate::console::screens::Screen;
 use crate::console::test_kit::{act, company, drawn, played, shown, sweep};
+use crate::console::request::Request;
 use crate::session::{Refusal, Via};
 use crate::tools::ToolId;
 
@@ -33,7 +34,7 @@ fn typed(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
 fn enter_edits_a_cell_and_arrows_go_on_in_the_next() {
     let (_, effects) =
         typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "5", "ctrl-s"]);
-    let Some(Effect::Call { tool, arguments }) = effects.first() else { panic!("{effects:?}") };
+    let Some(Effect::Request(Request::Call { tool, arguments })) = effects.first() else { panic!("{effects:?}") };
     assert_eq!((*tool, arguments), (ToolId::SetPrices, &json!({"A": 12, "B": 25, "C": 55})));
 }
 
@@ -90,7 +91,7 @@ fn one_quota_is_changed_alone_and_an_emptied_number_stays_what_it_was() {
         press(&mut tools, key);
     }
     let effects = press(&mut tools, "ctrl-s");
-    let [Effect::Call { tool, arguments }] = &effects[..] else { panic!("{effects:?}") };
+    let [Effect::Request(Request::Call { tool, arguments })] = &effects[..] else { panic!("{effects:?}") };
     assert_eq!(arguments, &json!({"A": 60_000, "B": 900, "C": 1_200_000}));
     session.call(tool, arguments, Via::Form).expect("all three quotas were sent");
 }
@@ -128,7 +129,7 @@ fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
         "{effects:?}"
     );
     let (_, effects) = typed(ToolId::RejectEnterpriseDeal, &["ctrl-s"]);
-    assert!(matches!(&effects[..], [Effect::Call { .. }]), "the tool says what is missing: {effects:?}");
+    assert!(matches!(&effects[..], [Effect::Request(Request::Call { .. })]), "the tool says what is missing: {effects:?}");
 }
 
 #[test]

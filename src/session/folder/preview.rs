@@ -12,9 +12,9 @@ use super::runs::run_folder;
 use crate::session::error::RunError;
 use crate::session::trajectory::{Line, Record};
 
-/// The course of a run.
+/// The preview of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct RunHistory {
+pub struct RunPreview {
     /// Day and cash: day 0, then every day on which a week ended.
     pub cash: Vec<(u32, f64)>,
     /// Active subscriptions of individuals after the last week.
@@ -25,16 +25,16 @@ pub struct RunHistory {
     pub recurring_revenue: f64,
 }
 
-/// Reads the course of a run. Lines that cannot be read are passed over: opening the run tells what is wrong with it.
+/// Reads the preview of a run. Lines that cannot be read are passed over: opening the run tells what is wrong with it.
 ///
 /// # Errors
 /// The run or its files are not there.
-pub fn run_history(runs: &Path, id: &str) -> Result<RunHistory, RunError> {
+pub fn run_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
     let folder = run_folder(runs, id);
     let manifest = Manifest::read(&folder)?;
     let path = folder.join("trajectory.jsonl");
     let file = std::fs::File::open(&path).map_err(RunError::io(&path))?;
-    let mut course = RunHistory { cash: vec![(0, manifest.cash)], ..RunHistory::default() };
+    let mut preview = RunPreview { cash: vec![(0, manifest.cash)], ..RunPreview::default() };
     let closing = ["\"kind\":\"week\"", "\"kind\":\"step\"", "\"kind\":\"end\""];
     for line in BufReader::new(file).split(b'\n') {
         let line = line.map_err(RunError::io(&path))?;
@@ -43,13 +43,13 @@ pub fn run_history(runs: &Path, id: &str) -> Result<RunHistory, RunError> {
         if closing.iter().any(|kind| text.contains(kind))
             && let Some(line) = Line::unchecked(text.as_bytes())
         {
-            course.add(line.day, &line.record);
+            preview.add(line.day, &line.record);
         }
     }
-    Ok(course)
+    Ok(preview)
 }
 
-impl RunHistory {
+impl RunPreview {
     fn add(&mut self, day: u32, record: &Record) {
         let cash = match record {
             Record::Week(closing) | Record::Step(closing) => closing.cash,
@@ -93,20 +93,20 @@ mod tests {
         };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
         let id = session.manifest().id.clone();
-        assert_eq!(run_history(runs.path(), &id).expect("day 0").cash, [(0, 1_000_000.0)]);
+        assert_eq!(run_preview(runs.path(), &id).expect("day 0").cash, [(0, 1_000_000.0)]);
         session.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
         session.call("set_daily_spend", &json!({"operations": 200}), Via::Form).expect("spend");
         for _ in 0..3 {
             let forecasts = session.naive_forecasts();
             session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
         }
-        let course = run_history(runs.path(), &id).expect("a course");
-        let days: Vec<u32> = course.cash.iter().map(|point| point.0).collect();
+        let preview = run_preview(runs.path(), &id).expect("a preview");
+        let days: Vec<u32> = preview.cash.iter().map(|point| point.0).collect();
         assert_eq!(days, [0, 7, 14, 17]);
-        for (day, cash) in &course.cash {
+        for (day, cash) in &preview.cash {
             assert!((cash - session.cash_by_day()[*day as usize]).abs() < 1e-6, "day {day}");
         }
-        assert_eq!(course.subscribers, u64::from(session.observe().subscribers));
+        assert_eq!(preview.subscribers, u64::from(session.observe().subscribers));
     }
 
     #[test]
@@ -131,8 +131,8 @@ mod tests {
             json!({"kind": "end", "day": 7, "reason": "horizon", "cash": 4, "score": 4}).to_string(),
         ];
         std::fs::write(folder.join("trajectory.jsonl"), lines.join("\n")).expect("written");
-        let course = run_history(runs.path(), "0123abcd").expect("a course");
-        assert_eq!(course.cash, [(0, 1_000_000.0), (7, 4.0)]);
-        assert!(run_history(runs.path(), "nothing").is_err());
+        let preview = run_preview(runs.path(), "0123abcd").expect("a preview");
+        assert_eq!(preview.cash, [(0, 1_000_000.0), (7, 4.0)]);
+        assert!(run_preview(runs.path(), "nothing").is_err());
     }
 }

@@ -9,12 +9,12 @@ use crate::world::events::Reading;
 
 /// What a session has around its company.
 #[derive(Debug, Default)]
-pub(in crate::session) struct Office {
+pub(in crate::session) struct RunSurroundings {
     /// Calculations and scripts.
     pub notebook: Notebook,
 }
 
-impl Surroundings for Office {
+impl Surroundings for RunSurroundings {
     fn describe(&self, reading: &Reading) -> String {
         voice::reading(reading)
     }

@@ -1,0 +1,98 @@
+//! The session's thread with the folder of runs: what is there, and opening a run of it.
+
+use std::sync::Arc;
+
+use super::{Open, SessionThread};
+use crate::console::company::Company;
+use crate::console::message::{Instead, News};
+use crate::session::{
+    Access, NewRun, RunError, Session, Storage, delete_run, end_run, find_run, find_run_to_read, list_runs,
+    rescue, run_preview,
+};
+
+impl SessionThread {
+    pub(super) fn list_runs(&self) {
+        self.say(News::Runs(list_runs(&self.runs).map_err(|error| error.to_string())));
+    }
+
+    pub(super) fn preview_run(&self, id: String) {
+        let preview = run_preview(&self.runs, &id).map_err(|error| error.to_string());
+        self.say(News::Preview(id, preview));
+    }
+
+    pub(super) fn end_run(&self, id: &str) {
+        self.say_kept(end_run(&self.runs, id), format!("run {id} is given up; you can still open it"));
+    }
+
+    pub(super) fn delete_run(&self, id: &str) {
+        self.say_kept(delete_run(&self.runs, id), format!("run {id} is deleted"));
+    }
+
+    /// What became of a run of the folder, and the runs that are there now.
+    fn say_kept(&self, done: Result<(), RunError>, words: String) {
+        let list = list_runs(&self.runs).map_err(|error| error.to_string());
+        self.say(News::Kept(done.map(|()| words).map_err(|error| error.to_string()), list));
+    }
+
+    /// Starts a run in the folder; every call of it is on the disk before it is confirmed.
+    pub(super) fn create(&mut self, new: NewRun) {
+        let storage = Storage::Runs(self.runs.clone());
+        let new = NewRun { storage, projection: true, sync_calls: true, ..new };
+        match Session::create(new.clone(), &self.configuration) {
+            Err(RunError::ConsentNeeded(text)) => {
+                self.say(News::NotOpened(text.text, Some(Instead::Agree(Box::new(new), 0))));
+            }
+            made => self.take(made, "", None),
+        }
+    }
+
+    pub(super) fn open_run(&mut self, id: &str, access: Access) {
+        let found = match access {
+            Access::Write => find_run(&self.runs, id),
+            Access::Read => find_run_to_read(&self.runs, id),
+        };
+        let opened = found.and_then(|folder| Session::open(&folder, access, true));
+        self.take(opened, id, None);
+    }
+
+    /// Opens the good beginning of a damaged run as a branch.
+    pub(super) fn rescue(&mut self, id: &str) {
+        let rescued = find_run_to_read(&self.runs, id).and_then(|folder| rescue(&folder));
+        let opened = rescued.and_then(|found| {
+            let remark = format!(
+                "run {} holds lines 1 to {} of run {id}, which is unchanged; {}",
+                found.run, found.lines, found.problem
+            );
+            Session::open(&self.runs.join(&found.run), Access::Write, true).map(|session| (session, remark))
+        });
+        match opened {
+            Ok((session, remark)) => self.take(Ok(session), "", Some(remark)),
+            Err(problem) => self.take(Err(problem), "", None),
+        }
+    }
+
+    /// Shows a run that was opened, with a remark; if it does not open, what can be done instead.
+    pub(super) fn take(&mut self, opened: Result<Session, RunError>, id: &str, remark: Option<String>) {
+        let session = match opened {
+            Ok(session) => session,
+            Err(problem) => {
+                let instead = match &problem {
+                    RunError::InUse { id, .. } | RunError::NotWritable { id, .. } => {
+                        Some(Instead::Watch(id.clone()))
+                    }
+                    RunError::Damaged { .. } if !id.is_empty() => Some(Instead::Rescue(id.to_owned())),
+                    _ => None,
+                };
+                return self.say(News::NotOpened(problem.to_string(), instead));
+            }
+        };
+        let interrupt = self.queries.connect(&session);
+        self.mending = None;
+        let mut company = Company::of(&session);
+        company.remarks.extend(remark);
+        let company = Arc::new(company);
+        self.company = Some(company.clone());
+        (self.open, self.due) = (Some(Open::Played(Box::new(session))), None);
+        self.say(News::Opened(company, interrupt));
+    }
+}

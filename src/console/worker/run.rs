@@ -1,0 +1,73 @@
+//! The session's thread with the run that is open: calls, weeks, notes, story and report.
+
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+use std::time::Instant;
+
+use serde_json::Value;
+
+use super::BETWEEN_DAYS;
+use super::queries::QueryThreads;
+use crate::console::company::Company;
+use crate::console::message::{Message, News};
+use crate::report::{Story, as_html, as_markdown};
+use crate::session::{Forecasts, Session, Via};
+use crate::tools::ToolId;
+
+/// The run that is open, and where news of it go.
+pub(super) struct OpenRun<'a> {
+    pub(super) session: &'a mut Session,
+    /// The company as it was shown last.
+    pub(super) shown: &'a mut Option<Arc<Company>>,
+    pub(super) news: &'a Sender<Message>,
+    pub(super) queries: &'a QueryThreads,
+}
+
+impl OpenRun<'_> {
+    /// The company as it is now.
+    fn company(&mut self) -> Arc<Company> {
+        let company = Arc::new(Company::after(self.session, self.shown.as_deref()));
+        *self.shown = Some(company.clone());
+        company
+    }
+
+    pub(super) fn call(&mut self, tool: ToolId, arguments: &Value) -> Option<News> {
+        let answer = self.session.call(tool, arguments, Via::Form).map(Box::new);
+        Some(News::Called(tool, answer, self.company()))
+    }
+
+    pub(super) fn undo(&mut self) -> Option<News> {
+        let back = self.session.undo(Via::Palette);
+        Some(News::Undone(back, self.company()))
+    }
+
+    pub(super) fn redo(&mut self) -> Option<News> {
+        let again = self.session.redo(Via::Palette);
+        Some(News::Redone(again, self.company()))
+    }
+
+    pub(super) fn advance(&mut self, rationale: &str, forecasts: &Forecasts) -> Option<News> {
+        let (mut told, news) = (Instant::now(), self.news);
+        let week = self.session.advance(rationale, forecasts, Via::Form, &mut |report| {
+            if told.elapsed() >= BETWEEN_DAYS {
+                told = Instant::now();
+                let _ = news.send(Message::News(News::Day(report.figures.day, report.week_end)));
+            }
+        });
+        Some(News::Advanced(week.map(Box::new), self.company()))
+    }
+
+    pub(super) fn set_memo(&mut self, text: &str) -> Option<News> {
+        let kept = self.session.set_memo(text);
+        Some(News::MemoKept(kept, self.company()))
+    }
+
+    pub(super) fn tell_story(&mut self) -> Option<News> {
+        Some(News::Told(Arc::new(Story::of(self.session))))
+    }
+
+    pub(super) fn write_report(&mut self) -> Option<News> {
+        let story = Story::of(self.session);
+        Some(News::Reported(vec![("report.md", as_markdown(&story)), ("report.html", as_html(&story))]))
+    }
+}

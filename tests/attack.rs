@@ -1,5 +1,7 @@
 //! Hundreds of statements against the SQL prompt: nothing hidden is read, nothing is written, and each one ends
 //! within the limits (docs/formats/database.md#queries).
+//!
+//! A program of its own: SQLite counts its memory for the whole process.
 
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard};
@@ -17,7 +19,7 @@ const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(3600), ste
 /// For what is to be answered to its end.
 const AMPLE: Limits = Limits { steps: Some(1_000_000_000), ..LIMITS };
 
-/// SQLite counts its memory for the whole process: what one test takes would stop the queries of another.
+/// What one test takes of the memory would stop the queries of another.
 static MEMORY: Mutex<()> = Mutex::new(());
 
 fn alone() -> MutexGuard<'static, ()> {

@@ -2,7 +2,6 @@
 
 mod behind;
 mod company;
-mod dice;
 mod figures;
 mod guide;
 mod harness;
@@ -12,4 +11,6 @@ mod pictures;
 mod replay;
 mod sizes;
 mod stories;
+#[path = "../support/mod.rs"]
+mod support;
 mod tasks;

@@ -6,8 +6,8 @@ use std::path::Path;
 use crossterm::event::{Event, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use novamind::session::{list_runs, verify};
 
-use super::dice::Dice;
 use super::harness::Console;
+use crate::support::dice::Dice;
 
 /// Keys that are pressed; those that lead somewhere stand more than once.
 const KEYS: [&str; 88] = [

@@ -6,8 +6,8 @@ use novamind::console::request::Recorded;
 use novamind::session::{Configuration, Goal, Mode, NewRun, Session, Storage, Via, list_runs, verify};
 use serde_json::json;
 
-use super::dice::Dice;
 use super::harness::Console;
+use crate::support::dice::Dice;
 
 /// A person plays some weeks of a short run; who has it open may go on.
 pub fn played(runs: &Path, mode: Mode, weeks: u32) -> Session {

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use novamind::console::glyphs::Glyphs;
 
-use super::dice::Dice;
 use super::harness::Console;
+use crate::support::dice::Dice;
 
 /// Keys that lead to every place of the console, each followed by what closes it.
 const PLACES: [(&str, &str); 40] = [

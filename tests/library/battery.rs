@@ -1,0 +1,245 @@
+//! Hundreds of statements as agents write them, asked of a company and of ordinary tables with the same rows.
+//!
+//! How long they take with 190,000 subscribers is printed, not judged:
+//! `cargo test --release --test library -- battery --ignored --nocapture`
+
+use std::cmp::Reverse;
+use std::time::{Duration, Instant};
+
+use novamind::database::query::Limits;
+use novamind::database::{Cell, QueryConnection, Rows, tables};
+use novamind::lab::bench::{Bench, company_to_ask};
+use novamind::session::{Configuration, Mode, NewRun, Session, Via, WaitingThread};
+use rusqlite::Connection;
+use rusqlite::types::{ToSqlOutput, ValueRef};
+use serde_json::{Value, json};
+
+use crate::support::company::call;
+
+/// No clock decides here: a statement that goes through a table for every row of another has too many steps.
+const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(3600), steps: Some(6_000_000) };
+
+/// For the copy of all rows.
+const EVERYTHING: Limits = Limits { rows: usize::MAX, steps: None, ..LIMITS };
+
+/// The statements with the headings they stand under.
+fn battery() -> Vec<(&'static str, &'static str)> {
+    let mut heading = "";
+    let mut statements = Vec::new();
+    for line in include_str!("../data/battery.sql").lines() {
+        match (line.strip_prefix("-- # "), line.strip_suffix(';')) {
+            (Some(title), _) => heading = title,
+            (None, Some(statement)) => statements.push((heading, statement)),
+            (None, None) => assert!(line.is_empty() || line.starts_with("-- "), "{line} has no end"),
+        }
+    }
+    statements
+}
+
+/// A company that does a little of everything for nine weeks.
+fn company() -> Session {
+    let overrides = vec![("market_research.market_research_discover_prob".to_owned(), "0.5".to_owned())];
+    let cash = Some(20_000_000.0);
+    let new =
+        NewRun { seed: Some(11), days: Some(140), mode: Mode::Debug, cash, overrides, ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_model_tiers", json!({"A": 3, "B": 4, "C": 4})),
+        ("set_usage_quotas", json!({"A": 59.5, "B": 30_000, "C": 1_000_000})),
+        ("set_daily_spend", json!({"operations": 120, "development": 200.5})),
+        ("set_targeted_dev_spend", json!({"S1": 5000, "E1": 20_000.0, "E2": 20_000})),
+        ("set_targeted_ops_spend", json!({"by_group": {"S1": 4}, "by_plan": {"A": 2.5}})),
+        (
+            "set_targeted_ad_spend",
+            json!({"content_marketing": {"S1": 350, "S2": 120.0}, "linkedin": {"E1": 6000, "E2": 6000}}),
+        ),
+        ("set_promotion", json!({"by_group": {"S2": 3}, "global_promotion": 0.5})),
+        ("set_lead_promotion", json!({"by_channel": {"content_marketing": 2}})),
+        ("set_capacity_tier", json!({"tier": 4})),
+        ("start_research_project", json!({"tier": 1})),
+        ("start_research_project", json!({"tier": 3})),
+        ("research_group", json!({"group_id": "S1", "target_level": 2})),
+    ] {
+        call(&mut session, tool, arguments);
+    }
+    (0..9).for_each(|at| week(&mut session, at));
+    session.wait_for_database().expect("everything is written");
+    session
+}
+
+fn week(session: &mut Session, at: u32) {
+    answer(session);
+    if at < 5 {
+        call(session, "research_market", json!({}));
+    }
+    let deed = match at {
+        2 => Some(("post_social_media", json!({"content": "Support answers within a day now."}))),
+        3 => Some(("set_prices", json!({"A": 11, "B": 27.5}))),
+        4 => Some(("set_ads_strength", json!({"global_strength": 0.1, "by_group": {"S1": 0.2}}))),
+        5 => Some(("post_social_media", json!({"content": "Lower prices on plan A from today."}))),
+        6 => Some(("set_targeted_dev_spend", json!({"S1": 4000, "S2": 333}))),
+        _ => None,
+    };
+    if let Some((tool, arguments)) = deed {
+        call(session, tool, arguments);
+    }
+    let forecasts = session.naive_forecasts();
+    session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+}
+
+/// Answers most threads with what was asked, ends some, and leaves some alone.
+fn answer(session: &mut Session) {
+    let waiting = session.observe().waiting;
+    let offer = |thread: &WaitingThread| {
+        let price = thread.asked.unwrap_or(30.0);
+        json!([thread.customer, [["C", price * 1.5], ["B", price]]])
+    };
+    let of = |rest: &[u32]| {
+        waiting.iter().filter(|thread| rest.contains(&(thread.thread % 6))).collect::<Vec<_>>()
+    };
+    let offers: Vec<Value> = of(&[0, 1, 2, 3]).into_iter().map(offer).collect();
+    let ended: Vec<Value> = of(&[4]).iter().map(|thread| json!(thread.customer)).collect();
+    for (tool, deals) in [("send_enterprise_deal", offers), ("reject_enterprise_deal", ended)] {
+        if !deals.is_empty() {
+            call(session, tool, json!({ "deals": deals }));
+        }
+    }
+}
+
+/// Ordinary tables, declared as the released simulator declares them, with the rows of a company.
+fn plain_tables(connection: &QueryConnection) -> Connection {
+    let mut plain = Connection::open_in_memory().expect("memory");
+    let transaction = plain.transaction().expect("a transaction");
+    for table in tables() {
+        transaction.execute_batch(&table.declaration()).expect("a table");
+        let all = connection.ask(&format!("SELECT rowid, * FROM {}", table.name), EVERYTHING);
+        let all = all.unwrap_or_else(|error| panic!("{}: {}", table.name, error.message));
+        let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+        let places = vec!["?"; columns.len() + 1].join(", ");
+        let insert = format!("INSERT INTO {} (rowid, {}) VALUES ({places})", table.name, columns.join(", "));
+        let mut insert = transaction.prepare(&insert).expect("a statement");
+        for row in &all.rows {
+            insert.execute(rusqlite::params_from_iter(row.iter().map(stored))).expect("a row");
+        }
+        assert!(!all.rows.is_empty(), "{} is empty: the company does too little", table.name);
+    }
+    for table in ["daily_usage", "ads_revenue", "subscriptions", "issues", "enterprise_turns"] {
+        let index = format!("CREATE INDEX {table}_of_customers ON {table} (customer_id)");
+        transaction.execute_batch(&index).expect("an index");
+    }
+    transaction.commit().expect("a commit");
+    plain
+}
+
+fn stored(cell: &Cell) -> ToSqlOutput<'_> {
+    ToSqlOutput::Borrowed(match cell {
+        Cell::Null => ValueRef::Null,
+        Cell::Integer(number) => ValueRef::Integer(*number),
+        Cell::Real(number) => ValueRef::Real(*number),
+        Cell::Text(text) => ValueRef::Text(text.as_bytes()),
+    })
+}
+
+fn ask_plainly(plain: &Connection, sql: &str) -> Rows {
+    let mut statement = plain.prepare(sql).unwrap_or_else(|error| panic!("{sql}: {error}"));
+    let columns: Vec<String> = statement.column_names().map(str::to_owned).collect();
+    let width = columns.len();
+    let cell = |value: ValueRef<'_>| match value {
+        ValueRef::Null => Cell::Null,
+        ValueRef::Integer(number) => Cell::Integer(number),
+        ValueRef::Real(number) => Cell::Real(number),
+        ValueRef::Text(bytes) | ValueRef::Blob(bytes) => {
+            Cell::Text(String::from_utf8_lossy(bytes).into_owned())
+        }
+    };
+    let row = |row: &rusqlite::Row<'_>| (0..width).map(|at| row.get_ref(at).map(cell)).collect();
+    let rows = statement.query_map([], row).expect("an answer").collect::<rusqlite::Result<_>>();
+    Rows { columns, rows: rows.unwrap_or_else(|error| panic!("{sql}: {error}")), ..Rows::default() }
+}
+
+/// Whether a statement says in which order its rows come.
+fn is_ordered(sql: &str) -> bool {
+    sql.rfind("ORDER BY").is_some_and(|at| sql[at..].matches(')').count() <= sql[at..].matches('(').count())
+}
+
+/// What differs between two answers to a statement.
+fn difference(sql: &str, own: &Rows, plain: &Rows) -> Option<String> {
+    let sorted = |rows: &Rows| {
+        let mut rows: Vec<String> = rows.rows.iter().map(|row| format!("{row:?}")).collect();
+        if !is_ordered(sql) {
+            rows.sort_unstable();
+        }
+        rows
+    };
+    if own.columns != plain.columns {
+        return Some(format!("columns {:?}, not {:?}", own.columns, plain.columns));
+    }
+    let (own, plain) = (sorted(own), sorted(plain));
+    let first = own.iter().zip(&plain).find(|(own, plain)| own != plain);
+    match first {
+        Some((own, plain)) => Some(format!("{own}\n    not {plain}")),
+        None if own.len() != plain.len() => Some(format!("{} rows, not {}", own.len(), plain.len())),
+        None => None,
+    }
+}
+
+#[test]
+fn statements_are_answered_as_by_ordinary_tables_and_in_few_steps() {
+    let session = company();
+    let connection = session.open_connection().expect("a connection");
+    let plain = plain_tables(&connection);
+    let statements = battery();
+    assert!(statements.len() >= 300, "{}", statements.len());
+    let (mut problems, mut empty) = (Vec::new(), Vec::new());
+    for (heading, sql) in statements {
+        let t0 = Instant::now();
+        let a = connection.ask(sql, LIMITS);
+        let t1 = Instant::now();
+        if std::env::var("BT").is_ok() && t1 - t0 > Duration::from_millis(200) {
+            println!("own {:?} {sql}", t1 - t0);
+        }
+        let problem = match a {
+            Ok(own) => {
+                empty.extend(own.rows.is_empty().then_some(sql));
+                let p = ask_plainly(&plain, sql);
+                if std::env::var("BT").is_ok() && t1.elapsed() > Duration::from_millis(300) {
+                    println!("plain {:?} {sql}", t1.elapsed());
+                }
+                difference(sql, &own, &p)
+            }
+            Err(error) => Some(format!("refused {}: {}", error.code, error.message)),
+        };
+        problems.extend(problem.map(|problem| format!("[{heading}] {sql}\n    {problem}")));
+    }
+    assert!(problems.is_empty(), "{}:\n{}", problems.len(), problems.join("\n"));
+    assert!(empty.len() <= 8, "{} statements find nothing:\n{}", empty.len(), empty.join("\n"));
+}
+
+#[test]
+#[ignore = "takes minutes; prints how long the statements take with 190,000 subscribers"]
+fn how_long_the_statements_take_with_190_000_subscribers() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    let configuration = Configuration::shipped();
+    let bench = Bench { repetitions: 1, scratch: scratch.path().to_owned(), configuration };
+    let session = company_to_ask(&bench).expect("a company");
+    let connection = session.open_connection().expect("a connection");
+    let patient = Limits { steps: None, time: Duration::from_secs(120), ..LIMITS };
+    let mut times: Vec<(Duration, &str)> = Vec::new();
+    for (_, sql) in battery() {
+        let started = Instant::now();
+        if let Err(error) = connection.ask(sql, patient) {
+            println!("{}: {}\n    {sql}", error.code, error.message);
+        }
+        times.push((started.elapsed(), sql));
+    }
+    times.sort_by_key(|(took, _)| Reverse(*took));
+    let size =
+        |table: &str| connection.ask(&format!("SELECT count(*) FROM {table}"), patient).map(|rows| rows.rows);
+    for table in tables() {
+        println!("{:<28} {:?}", table.name, size(&table.name));
+    }
+    for (took, sql) in times.iter().take(25) {
+        println!("{:>9.1} ms  {sql}", took.as_secs_f64() * 1e3);
+    }
+}

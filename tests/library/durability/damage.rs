@@ -1,0 +1,169 @@
+//! Cut and flipped bytes: nothing wrong is ever accepted, and nothing is lost that can be had again.
+//!
+//! A few places are tried in every run of the tests, 2,000 with
+//! `cargo test --release --test library -- --ignored damage`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use novamind::session::record::Outcome;
+use novamind::session::{Access, Line, Record, Session, Trajectory};
+use serde_json::Value;
+
+use super::games::{decide, week};
+use super::run::{copy, create, open, runs, view};
+use crate::support::company::open_shop;
+use crate::support::dice::Dice;
+
+/// A run of some weeks with decisions in the present one, closed in order; its folder and what it shows.
+fn closed_run(place: &Path) -> (PathBuf, Value) {
+    let mut session = create(place, 21, 60);
+    let folder = session.folder().expect("a folder").to_owned();
+    let mut dice = Dice::new(4);
+    open_shop(&mut session);
+    for _ in 0..5 {
+        decide(&mut session, &mut dice);
+        week(&mut session);
+    }
+    session.set_memo("weeks 1 to 5: prices first").expect("kept");
+    decide(&mut session, &mut dice);
+    session.save().expect("saved");
+    let view = view(&mut session);
+    (folder, view)
+}
+
+/// Changes one byte, or cuts the file there.
+fn hurt(file: &Path, dice: &mut Dice) -> (usize, bool) {
+    let mut bytes = fs::read(file).expect("bytes");
+    let (at, cut) = (dice.roll(bytes.len()), dice.roll(2) == 0);
+    if cut {
+        bytes.truncate(at);
+    } else {
+        bytes[at] ^= 1 << dice.roll(8);
+    }
+    fs::write(file, bytes).expect("written");
+    (at, cut)
+}
+
+fn damage_beside_the_trajectory(places: usize) {
+    let (own, other) = (runs(), runs());
+    let (folder, expected) = closed_run(own.path());
+    let mut dice = Dice::of_test("damage beside the trajectory");
+    for number in 0..places {
+        let name = *dice.pick(&["world.db", "snapshot.bin", "memo.md"]);
+        let place = copy(&folder, &other.path().join(number.to_string()));
+        let (at, cut) = hurt(&place.join(name), &mut dice);
+        let mut session = open(&place);
+        assert_eq!(view(&mut session), expected, "{name}, byte {at}, cut {cut}");
+        assert!(!session.remarks().is_empty(), "{name}, byte {at}, cut {cut}: nobody was told");
+        drop(session);
+        fs::remove_dir_all(place).expect("gone");
+    }
+}
+
+fn damage_in_the_trajectory(places: usize) {
+    let (own, other) = (runs(), runs());
+    let (folder, expected) = closed_run(own.path());
+    let whole = fs::read(folder.join("trajectory.jsonl")).expect("bytes");
+    let lines = Trajectory::parse(&whole).expect("lines").lines.len();
+    let mut dice = Dice::of_test("damage in the trajectory");
+    let (mut refused, mut dropped) = (0, 0);
+    for number in 0..places {
+        let place = copy(&folder, &other.path().join(number.to_string()));
+        let path = place.join("trajectory.jsonl");
+        let (at, cut) = hurt(&path, &mut dice);
+        let hurt = fs::read(&path).expect("bytes");
+        match Session::open(&place, Access::Write, true) {
+            // Only a last line that lost its end may be dropped.
+            Ok(mut session) => {
+                assert!(
+                    at >= whole[..whole.len() - 1].iter().rposition(|b| *b == b'\n').expect("a line end")
+                );
+                let told = session.remarks().iter().any(|text| text.contains("unfinished"));
+                assert!(told, "byte {at}, cut {cut}");
+                let own = view(&mut session);
+                assert_eq!(own["weeks"], expected["weeks"], "byte {at}, cut {cut}");
+                dropped += 1;
+            }
+            Err(error) => {
+                let text = error.to_string();
+                assert!(
+                    text.contains("trajectory.jsonl") && text.contains("line"),
+                    "byte {at}, cut {cut}: {text}"
+                );
+                assert_eq!(fs::read(&path).expect("bytes"), hurt, "a refusal changes nothing");
+                // Whoever looks without writing is refused as well.
+                assert!(Session::open(&place, Access::Read, false).is_err(), "byte {at}, cut {cut}");
+                refused += 1;
+            }
+        }
+        fs::remove_dir_all(place).expect("gone");
+    }
+    println!("{lines} lines, {refused} refused, {dropped} with a dropped last line");
+    assert!(refused > dropped);
+}
+
+#[test]
+fn damage_beside_the_trajectory_costs_only_time() {
+    damage_beside_the_trajectory(50);
+}
+
+#[test]
+fn damage_in_the_trajectory_is_named_and_refused() {
+    damage_in_the_trajectory(50);
+}
+
+#[test]
+#[ignore = "minutes: all places"]
+fn damage_everywhere() {
+    damage_beside_the_trajectory(1000);
+    damage_in_the_trajectory(1000);
+}
+
+/// The last line vouches for itself: no byte of it can change unseen, even where nothing else remembers it.
+#[test]
+fn every_byte_of_the_last_line_counts() {
+    let (own, other) = (runs(), runs());
+    let (folder, _) = closed_run(own.path());
+    let place = copy(&folder, other.path());
+    ["world.db", "snapshot.bin"].iter().for_each(|name| fs::remove_file(place.join(name)).expect("gone"));
+    let path = place.join("trajectory.jsonl");
+    let whole = fs::read(&path).expect("bytes");
+    let last = whole[..whole.len() - 1].iter().rposition(|byte| *byte == b'\n').expect("a line end") + 1;
+    for at in last..whole.len() - 1 {
+        let mut changed = whole.clone();
+        changed[at] ^= 2;
+        assert!(Trajectory::parse(&changed).is_err(), "byte {at}");
+    }
+}
+
+/// A run whose last lines were cut off at a line end is noticed as long as the database or the snapshot is there.
+#[test]
+fn lines_that_are_missing_are_missed() {
+    let (own, other) = (runs(), runs());
+    let (folder, _) = closed_run(own.path());
+    let whole = fs::read(folder.join("trajectory.jsonl")).expect("bytes");
+    let ends: Vec<usize> = (0..whole.len()).filter(|at| whole[*at] == b'\n').map(|at| at + 1).collect();
+    for (number, end) in ends[1..ends.len() - 1].iter().enumerate() {
+        let place = copy(&folder, &other.path().join(number.to_string()));
+        fs::remove_file(place.join(["world.db", "snapshot.bin"][number % 2])).expect("gone");
+        fs::write(place.join("trajectory.jsonl"), &whole[..*end]).expect("written");
+        let lines = Trajectory::parse(&whole[..*end]).expect("lines").lines;
+        let error = match Session::open(&place, Access::Write, true) {
+            Err(error) => error.to_string(),
+            // What the database remembers is the last call or week; later looks and questions change nothing.
+            Ok(_) => {
+                let rest = Trajectory::parse(&whole).expect("lines").lines.split_off(lines.len());
+                let idle = |line: &Line| match &line.record {
+                    Record::Query(_) | Record::View(_) | Record::Memo(_) => true,
+                    Record::Call(call) => matches!(call.outcome, Outcome::Refused(_)),
+                    _ => false,
+                };
+                assert!(number % 2 == 1 && rest.iter().all(idle));
+                continue;
+            }
+        };
+        assert!(error.contains(&format!("line {}", lines.len() + 1)), "{error}");
+        assert!(error.contains("missing") && error.contains("rescue"), "{error}");
+    }
+}

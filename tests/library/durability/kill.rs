@@ -1,0 +1,155 @@
+//! The built program is killed at random moments of plain play: whatever it had answered `ok` to is there.
+//!
+//! 12 kills in every run of the tests (console play is killed in `tests/program/terminal`), 500 with
+//! `cargo test --release --test library -- --ignored kill`.
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use novamind::session::{Access, JournalEntry, Line, Record, Reversal, Session, Trajectory, verify};
+use serde_json::Value;
+
+use super::games::Deed;
+use super::run::runs;
+use crate::support::company::opening;
+use crate::support::dice::Dice;
+
+fn start(runs: &Path, options: &[&str]) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_novamind"));
+    command.env("NOVAMIND_RUNS", runs).env("NOVAMIND_CONFIG", runs.join("configuration"));
+    command.args(["play", "--plain", "--json"]).args(options);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+    command.spawn().expect("the program starts")
+}
+
+/// What a restless person types: about six lines a week.
+fn script(dice: &mut Dice, weeks: usize, begins: bool) -> String {
+    let mut lines = String::new();
+    if begins {
+        opening().iter().for_each(|(tool, args)| lines += &format!("{tool} {args}\n"));
+    }
+    for _ in 0..weeks {
+        for _ in 0..dice.roll(8) {
+            match Deed::any(dice, &[3, 4, 5]) {
+                Deed::Call(tool, args) => lines += &format!("{tool} {args}\n"),
+                Deed::Undo => lines += "undo\n",
+                Deed::Query(sql) => lines += &format!("sql {sql}\n"),
+                Deed::Memo(text) => lines += &format!("memo {text}\n"),
+                Deed::View(_) => {}
+            }
+        }
+        lines += "next naive\n";
+    }
+    lines
+}
+
+/// Plays until a random moment and kills; what had been answered by then.
+fn play_and_kill(mut child: Child, script: String, dice: &mut Dice) -> Vec<Value> {
+    let mut pipe = child.stdin.take().expect("a pipe");
+    // The reader may be gone before everything is written.
+    let writer = std::thread::spawn(move || drop(pipe.write_all(script.as_bytes())));
+    let mut answers = BufReader::new(child.stdout.take().expect("a pipe")).lines();
+    let mut confirmed = Vec::new();
+    let mut read = |confirmed: &mut Vec<Value>| match answers.next() {
+        // The last line may have been cut by the kill: nobody was told anything by it.
+        Some(Ok(line)) => {
+            confirmed.extend(serde_json::from_str::<Value>(&line).ok());
+            true
+        }
+        Some(Err(_)) | None => false,
+    };
+    for _ in 0..dice.roll(60) {
+        if !read(&mut confirmed) {
+            break;
+        }
+    }
+    let (moment, patience) = (Instant::now(), Duration::from_micros(dice.roll(20_000) as u64));
+    while moment.elapsed() < patience {
+        std::thread::yield_now();
+    }
+    child.kill().expect("it is killed");
+    while read(&mut confirmed) {}
+    child.wait().expect("it ends");
+    writer.join().expect("the writer ends");
+    confirmed
+}
+
+/// Tools of accepted calls and weeks, in order, as the program answered.
+fn as_answered(answers: &[Value]) -> Vec<String> {
+    let done = answers.iter().filter(|answer| answer["ok"] == true);
+    let words = done.filter_map(|answer| answer["command"].as_str());
+    words.filter(|word| !["sql", "memo", "undo"].contains(word)).map(str::to_owned).collect()
+}
+
+/// The same as the trajectory has it, without the calls that `undo` made.
+fn as_recorded(folder: &Path) -> Vec<String> {
+    let lines = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads").lines;
+    let word = |line: &Line| match (&line.record, line.record.accepted_call()) {
+        (_, Some((call, _))) if !matches!(call.reversal, Some(Reversal::Undoes(_))) => {
+            Some(call.tool.to_string())
+        }
+        (Record::Advance(_), _) => Some("next".to_owned()),
+        _ => None,
+    };
+    lines.iter().filter_map(word).collect()
+}
+
+fn only_run(runs: &Path) -> Option<PathBuf> {
+    std::fs::read_dir(runs)
+        .ok()?
+        .flatten()
+        .map(|entry| entry.path())
+        .find(|path| path.join("run.toml").exists())
+}
+
+fn kills(count: usize) {
+    let mut dice = Dice::of_test("kills");
+    let mut weeks = 0;
+    for number in 0..count {
+        let place = runs();
+        // Killed up to three times in one run; each time everything confirmed so far has to be there.
+        let mut confirmed: Vec<String> = Vec::new();
+        for life in 0..1 + dice.roll(3) {
+            let exists =
+                only_run(place.path()).is_some_and(|folder| folder.join("trajectory.jsonl").exists());
+            let seed = number.to_string();
+            let options: &[&str] =
+                if exists { &["--run", "latest"] } else { &["--seed", &seed, "--days", "140"] };
+            let script = script(&mut dice, 12, !exists);
+            let answers = play_and_kill(start(place.path(), options), script, &mut dice);
+            let Some(folder) = only_run(place.path()) else { continue };
+            confirmed.extend(as_answered(&answers));
+            let recorded = as_recorded(&folder);
+            assert!(
+                recorded.len() >= confirmed.len() && recorded[..confirmed.len()] == confirmed,
+                "run {number}, life {life}: confirmed {confirmed:?}, recorded {recorded:?}"
+            );
+            // What was on its way when the program died may have been written without an answer.
+            confirmed = recorded;
+        }
+        let Some(folder) = only_run(place.path()) else { continue };
+        let session = Session::open(&folder, Access::Write, true).unwrap_or_else(|error| panic!("{error}"));
+        let filed =
+            session.journal().iter().filter(|entry| matches!(entry, JournalEntry::Advance { .. })).count();
+        assert_eq!(filed, confirmed.iter().filter(|word| *word == "next").count(), "run {number}");
+        assert_eq!(session.weeks().len(), filed, "run {number}: a week that was confirmed is complete");
+        weeks += filed;
+        drop(session);
+        verify(&folder).unwrap_or_else(|error| panic!("run {number}: {error}"));
+    }
+    println!("{count} runs killed, {weeks} weeks confirmed");
+    assert!(weeks > count, "the kills came too early to say anything");
+}
+
+#[test]
+fn what_was_confirmed_survives_a_kill() {
+    kills(12);
+}
+
+#[test]
+#[ignore = "minutes: all kills"]
+fn what_was_confirmed_survives_five_hundred_kills() {
+    kills(500);
+}

@@ -1,0 +1,113 @@
+//! Random games keep the rules of the house: cash is the sum of the ledger, nobody subscribes without being a
+//! customer, and the same decisions give the same state, left and resumed anywhere, on one thread and on two.
+//!
+//! 50 games in every run of the tests, 1,000 with `cargo test --release --test library -- --ignored games`.
+
+use std::path::Path;
+
+use novamind::session::{Cell, Session, Trajectory, verify};
+
+use super::games::{act, decide, week};
+use super::run::{create, open, runs};
+use crate::support::company::open_shop;
+use crate::support::dice::Dice;
+
+const WEEKS: usize = 10;
+
+fn number(session: &mut Session, sql: &str) -> f64 {
+    match session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows[0][0] {
+        Cell::Integer(number) => number as f64,
+        Cell::Real(number) => number,
+        ref other => panic!("{sql}: {other:?}"),
+    }
+}
+
+fn keeps_the_rules(session: &mut Session, seed: u64) {
+    let cash = *session.cash_by_day().last().expect("a day");
+    let ledger = number(session, "SELECT SUM(amount) FROM ledger");
+    let scale = number(session, "SELECT SUM(ABS(amount)) FROM ledger");
+    assert!((cash - ledger).abs() <= 1e-9 * scale, "game {seed}: cash {cash}, ledger {ledger}");
+    let lost =
+        "SELECT COUNT(*) FROM subscriptions WHERE customer_id NOT IN (SELECT customer_id FROM customers)";
+    assert_eq!(number(session, lost), 0.0, "game {seed}");
+    let twice = "SELECT COUNT(*) FROM (SELECT customer_id FROM subscriptions WHERE status = 'subscribed' \
+                 GROUP BY customer_id HAVING COUNT(*) > 1)";
+    assert_eq!(number(session, twice), 0.0, "game {seed}");
+    let subscribed = number(
+        session,
+        "SELECT COUNT(*) FROM subscriptions JOIN customers USING (customer_id) \
+         WHERE status = 'subscribed' AND customer_type = 'small'",
+    );
+    assert_eq!(subscribed, f64::from(session.observe().subscribers), "game {seed}");
+    let odd =
+        "SELECT COUNT(*) FROM service_day WHERE error_rate < 0 OR error_rate > 1 OR total_usage_units < 0";
+    assert_eq!(number(session, odd), 0.0, "game {seed}");
+    // Latency has no floor, so its noise of 50 ms may take it below nothing; eight deviations it does not go.
+    let latency = "SELECT COUNT(*) FROM service_day WHERE p95_ms IS NULL OR ABS(p95_ms - 180 \
+                   - 800 * MAX(0, 1.0 * total_usage_units / capacity_units - 1)) > 400";
+    assert_eq!(number(session, latency), 0.0, "game {seed}");
+    let issues = "SELECT COUNT(*) FROM issues WHERE days_open < 0";
+    assert_eq!(number(session, issues), 0.0, "game {seed}");
+}
+
+/// A state from the run's folder, simulated from its first line on so many threads.
+fn verified(folder: &Path, threads: usize) -> String {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    pool.install(|| verify(folder)).unwrap_or_else(|error| panic!("{error}")).state_hash
+}
+
+fn game(seed: u64) {
+    let place = runs();
+    let mut dice = Dice::new(seed);
+    let mut session = create(place.path(), 1000 + seed, 365);
+    let folder = session.folder().expect("a folder").to_owned();
+    if dice.roll(4) > 0 {
+        open_shop(&mut session);
+    }
+    for _ in 0..WEEKS {
+        decide(&mut session, &mut dice);
+        if dice.roll(3) == 0 {
+            // Left in order, or just dropped as a program is that ends.
+            if dice.roll(2) == 0 {
+                session.save().expect("saved");
+            }
+            let (before, observed) = (session.state_hash(), session.observe());
+            drop(session);
+            session = open(&folder);
+            assert_eq!((session.state_hash(), session.observe()), (before, observed), "game {seed}");
+            act(&mut session, &mut dice);
+        }
+        week(&mut session);
+        keeps_the_rules(&mut session, seed);
+    }
+    let last = session.weeks().last().map(|week| week.day);
+    assert!(last >= Some(7), "game {seed}");
+    drop(session);
+    let recorded = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
+    let states = recorded.lines.iter().rev().find_map(|line| Some(line.record.closing()?.state_hash.clone()));
+    assert_eq!(Some(verified(&folder, 1)), states, "game {seed}");
+    assert_eq!(Some(verified(&folder, 2)), states, "game {seed}");
+}
+
+/// The seeds are printed: `NOVAMIND_TEST_SEED` begins with another one.
+fn games(first: u64, count: u64) {
+    let offset = std::env::var("NOVAMIND_TEST_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
+    println!("games {} to {}", offset + first, offset + first + count - 1);
+    (first..first + count).for_each(|seed| game(offset + seed));
+}
+
+#[test]
+fn random_games_keep_the_rules() {
+    games(1, 25);
+}
+
+#[test]
+fn more_random_games_keep_the_rules() {
+    games(26, 25);
+}
+
+#[test]
+#[ignore = "minutes: all games"]
+fn a_thousand_random_games_keep_the_rules() {
+    games(1, 1000);
+}

@@ -1,0 +1,82 @@
+//! Runs that other builds recorded are played again to the same states.
+//!
+//! `tests/data/recorded` holds a run recorded by a development build and one recorded by a release build, which are
+//! both verified by whatever build runs the tests, and one of a company that uses every lever there is. They also pin
+//! the mechanics: whoever changes what decisions lead to raises `world::MECHANICS` and records them anew.
+
+use std::fs;
+use std::path::Path;
+
+use novamind::session::{Access, Session, verify};
+
+use super::run::{copy, runs};
+
+fn recorded(build: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/recorded").join(build)
+}
+
+#[test]
+fn runs_of_other_builds_reach_the_same_states() {
+    let mut hashes = Vec::new();
+    for build in ["development", "release"] {
+        let found = verify(&recorded(build)).unwrap_or_else(|error| {
+            panic!(
+                "{error}\nIf the mechanics were changed on purpose, raise MECHANICS and record the runs anew."
+            )
+        });
+        assert_eq!((found.day, found.states), (70, 10), "{build}");
+        hashes.push(found.state_hash);
+    }
+    assert_eq!(hashes[0], hashes[1], "the same decisions were recorded by both builds");
+}
+
+#[test]
+fn a_recorded_run_with_every_lever_reaches_the_same_states() {
+    let place = runs();
+    let folder = copy(&recorded("everything"), place.path());
+    let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((found.day, found.states), (119, 17));
+    // What is not in it would be tried by nobody.
+    let mut session = Session::open(&folder, Access::Read, true).expect("it opens");
+    for (least, sql) in [
+        (20, "SELECT count(*) FROM service_day WHERE downtime_minutes > 0"),
+        (20, "SELECT count(*) FROM enterprise_turns WHERE close_reason = 'accepted'"),
+        (100, "SELECT count(*) FROM ads_revenue WHERE revenue > 0"),
+        (1, "SELECT count(*) FROM config_overrides WHERE tool_name = 'set_promotion'"),
+        (1, "SELECT count(*) FROM config_overrides WHERE tool_name = 'set_lead_promotion'"),
+        (1, "SELECT count(*) FROM config_overrides WHERE settings_json LIKE '%\"by_plan\": {\"B\"%'"),
+        (
+            1,
+            "SELECT count(*) FROM config_overrides WHERE settings_json LIKE '%\"by_group_plan\": {\"S2\": {\"A\"%'",
+        ),
+        (1, "SELECT count(*) FROM research_projects WHERE status = 'completed'"),
+        (1, "SELECT count(*) FROM agent_social_media_posts WHERE views > 0"),
+        (1, "SELECT count(*) FROM segment_discovery"),
+    ] {
+        let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+        let count = novamind::session::number_at(&rows.rows[0], 0);
+        assert!(count >= f64::from(least), "{sql}: {count}");
+    }
+}
+
+#[test]
+fn runs_of_other_mechanics_and_parameters_are_refused_with_the_version_that_can() {
+    let place = runs();
+    let folder = copy(&recorded("release"), place.path());
+    let manifest = fs::read_to_string(folder.join("run.toml")).expect("a manifest");
+    let digest = manifest.lines().find(|line| line.starts_with("parameters_digest")).expect("a digest");
+    let mechanics = manifest.lines().find(|line| line.starts_with("mechanics")).expect("mechanics");
+    for (old, new, told) in [
+        (mechanics, "mechanics = 9", "mechanics 9"),
+        (digest, "parameters_digest = \"0123\"", "parameters 0123"),
+        ("format = 1", "format = 7", "format 7"),
+    ] {
+        let changed = manifest.replace(old, new).replace("version = \"0.1.0\"", "version = \"0.9.3\"");
+        fs::write(folder.join("run.toml"), changed).expect("written");
+        let error = Session::open(&folder, Access::Write, true).err().expect("it is refused").to_string();
+        assert!(error.contains(told) && error.contains("Nothing was changed"), "{error}");
+        assert!(error.contains("0.9.3") || error.contains("newer version"), "{error}");
+    }
+    fs::write(folder.join("run.toml"), manifest).expect("written");
+    assert!(verify(&folder).is_ok(), "nothing was changed");
+}

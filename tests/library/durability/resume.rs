@@ -1,0 +1,123 @@
+//! A run that is left and taken up again is the run that was never left.
+
+use std::fs;
+
+use novamind::session::{Access, Session, verify};
+
+use super::games::{act, decide, week};
+use super::run::{copy, create, open, runs, view};
+use crate::support::company::open_shop;
+use crate::support::dice::Dice;
+
+/// At every week, and in the middle of its decisions: what is opened again equals what went on, and goes on alike.
+#[test]
+fn a_snapshot_holds_everything_at_every_week_and_between() {
+    let (own, other) = (runs(), runs());
+    let mut straight = create(own.path(), 11, 120);
+    let folder = straight.folder().expect("a folder").to_owned();
+    let mut dice = Dice::of_test("snapshots");
+    open_shop(&mut straight);
+    for number in 0..14 {
+        decide(&mut straight, &mut dice);
+        straight.save().expect("saved");
+        let again = copy(&folder, &other.path().join(number.to_string()));
+        // Without the database's rows the snapshot could not be used: that it is there counts.
+        assert!(again.join("snapshot.bin").exists());
+        let mut resumed = open(&again);
+        assert_eq!(resumed.remarks(), [""; 0], "week {number}");
+        assert_eq!(view(&mut resumed), view(&mut straight), "week {number}");
+        // Undo works on what was done before the run was left.
+        let seed = dice.roll(1 << 20) as u64;
+        let go_on = |session: &mut Session| {
+            let mut dice = Dice::new(seed);
+            let _ = session.undo(novamind::session::Via::Form);
+            (0..2).for_each(|_| act(session, &mut dice));
+            week(session);
+        };
+        go_on(&mut straight);
+        go_on(&mut resumed);
+        let (mut left, mut right) = (view(&mut resumed), view(&mut straight));
+        // The clock differs between the two, and nothing else.
+        for view in [&mut left, &mut right] {
+            view["rows"][4] = "submitted at".into();
+        }
+        assert_eq!(left, right, "after week {number}");
+    }
+    let day = straight.day();
+    assert!(day >= 35, "the company went bankrupt too early to say much: day {day}");
+    drop(straight);
+    assert_eq!(verify(&folder).expect("it verifies").day, day);
+}
+
+/// Without a snapshot, with an old one, with one of another run: only time is lost.
+#[test]
+fn snapshots_that_cannot_be_used_cost_only_time() {
+    let (own, other) = (runs(), runs());
+    let mut session = create(own.path(), 5, 60);
+    let folder = session.folder().expect("a folder").to_owned();
+    open_shop(&mut session);
+    week(&mut session);
+    session.save().expect("saved");
+    let early = fs::read(folder.join("snapshot.bin")).expect("a snapshot");
+    (0..2).for_each(|_| week(&mut session));
+    session.save().expect("saved");
+    let expected = view(&mut session);
+    drop(session);
+    let late = fs::read(folder.join("snapshot.bin")).expect("a snapshot");
+    let mut foreign = create(other.path(), 6, 60);
+    open_shop(&mut foreign);
+    foreign.save().expect("saved");
+    let foreign = fs::read(foreign.folder().expect("a folder").join("snapshot.bin")).expect("a snapshot");
+
+    let mut changed = late.clone();
+    *changed.last_mut().expect("bytes") ^= 1;
+    let mut of_the_future = late.clone();
+    of_the_future[18] = b'9';
+    for (name, bytes, told) in [
+        ("none", None, None),
+        ("an earlier one", Some(early), None),
+        ("one of another run", Some(foreign), None),
+        ("a damaged one", Some(changed), Some("is damaged")),
+        ("half of one", Some(late[..late.len() / 2].to_vec()), Some("is damaged")),
+        ("almost nothing", Some(late[..30].to_vec()), Some("is cut short")),
+        ("an empty one", Some(Vec::new()), Some("another version or damaged")),
+        ("one of another format", Some(of_the_future), Some("another version or damaged")),
+    ] {
+        let place = copy(&folder, &other.path().join(name));
+        match bytes {
+            Some(bytes) => fs::write(place.join("snapshot.bin"), bytes).expect("written"),
+            None => fs::remove_file(place.join("snapshot.bin")).expect("gone"),
+        }
+        let mut session = open(&place);
+        assert_eq!(view(&mut session), expected, "{name}");
+        let remarks = session.remarks().join(" ");
+        assert_eq!(told.is_some(), !remarks.is_empty(), "{name}: {remarks}");
+        assert!(remarks.contains(told.unwrap_or_default()), "{name}: {remarks}");
+        week(&mut session);
+        session.save().expect("saved");
+        drop(session);
+        let mut session = open(&place);
+        assert_eq!(session.remarks(), [""; 0], "{name}: the new snapshot is good");
+        assert_eq!(view(&mut session)["observation"]["day"], 28);
+    }
+}
+
+/// Looking at a run neither needs nor changes what is beside its trajectory.
+#[test]
+fn reading_changes_nothing() {
+    let own = runs();
+    let mut session = create(own.path(), 3, 60);
+    let folder = session.folder().expect("a folder").to_owned();
+    open_shop(&mut session);
+    week(&mut session);
+    session.save().expect("saved");
+    let expected = view(&mut session);
+    drop(session);
+    let files = |name: &str| fs::read(folder.join(name)).expect("bytes");
+    let before = ["snapshot.bin", "trajectory.jsonl", "run.toml", "world.db"].map(files);
+    let mut reader = Session::open(&folder, Access::Read, true).expect("it opens");
+    assert_eq!(view(&mut reader), expected);
+    reader.save().expect("nothing to save");
+    drop(reader);
+    assert_eq!(["snapshot.bin", "trajectory.jsonl", "run.toml", "world.db"].map(files), before);
+}

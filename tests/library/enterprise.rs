@@ -1,0 +1,312 @@
+//! Stories of negotiations: a company that courts companies, week by week, with its records.
+
+use std::path::Path;
+
+use novamind::session::{
+    Access, Configuration, NewRun, Record, Session, Storage, Trajectory, Via, WaitingThread, verify,
+};
+use serde_json::{Value, json};
+
+use crate::support::company::{call, column, number};
+
+fn create(storage: Storage) -> Session {
+    let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), storage, ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
+    let channels = ["social_media", "search_ads", "linkedin", "content_marketing", "referral_program"];
+    let ads: serde_json::Map<String, Value> =
+        channels.iter().map(|channel| ((*channel).to_owned(), ads.clone())).collect();
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
+        ("set_model_tiers", json!({"A": 4, "B": 4, "C": 4})),
+        ("set_usage_quotas", json!({"A": 300, "B": 30_000, "C": 1_000_000})),
+        ("set_daily_spend", json!({"operations": 500})),
+        ("set_targeted_ops_spend", json!({"by_group": {"E1": 1500, "E2": 1500, "E3": 1500}})),
+        ("set_targeted_dev_spend", json!({"E1": 4000, "E2": 5000, "E3": 5000})),
+        ("set_targeted_ad_spend", json!({ "targeted_spend": ads })),
+        ("set_capacity_tier", json!({"tier": 5})),
+    ] {
+        call(&mut session, tool, arguments);
+    }
+    session
+}
+
+/// Answers some threads, ends some, leaves some alone, and asks a subscriber for another price.
+fn answer(session: &mut Session) {
+    let seen = session.observe();
+    let mine = |thread: &&WaitingThread, rest: u32| {
+        thread.thread % 7 != 6 && (thread.thread % 5 == 4) == (rest == 1)
+    };
+    let offers: Vec<Value> = seen
+        .waiting
+        .iter()
+        .filter(|thread| mine(thread, 0))
+        .map(|thread| {
+            let price = thread.asked.unwrap_or(34.0);
+            json!([thread.customer, [["C", price * 1.2], ["B", price], ["A", price / 3.0]]])
+        })
+        .collect();
+    let ended: Vec<Value> =
+        seen.waiting.iter().filter(|thread| mine(thread, 1)).map(|thread| json!(thread.customer)).collect();
+    for (tool, deals) in [("send_enterprise_deal", offers), ("reject_enterprise_deal", ended)] {
+        if !deals.is_empty() {
+            call(session, tool, json!({ "deals": deals }));
+        }
+    }
+    if session.day() % 21 == 14 {
+        let sql = "SELECT customer_id FROM subscriptions JOIN customers USING (customer_id) \
+                   WHERE status = 'subscribed' AND customer_type = 'large' ORDER BY 1";
+        for customer in column(session, sql).into_iter().step_by(9) {
+            let deal = json!({"deals": [[customer, [["B", 30]]]]});
+            // In an open thread the company may just have been answered; that is a turn more.
+            session.call("send_enterprise_deal", &deal, Via::Script).expect("a subscriber can be written to");
+        }
+    }
+}
+
+fn week(session: &mut Session) {
+    answer(session);
+    let forecasts = session.naive_forecasts();
+    session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+}
+
+#[track_caller]
+fn assert_none(session: &mut Session, wrong: &str) {
+    let rows = session.query(wrong).unwrap_or_else(|refusal| panic!("{wrong}: {refusal}")).rows;
+    assert!(rows.is_empty(), "{wrong}\n{:?}", &rows[..rows.len().min(5)]);
+}
+
+#[test]
+fn a_run_with_deals_is_left_continued_and_played_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut straight = create(Storage::Memory);
+    (0..15).for_each(|_| week(&mut straight));
+
+    let mut session = create(Storage::Runs(folder.path().to_owned()));
+    let place = session.folder().expect("a folder").to_owned();
+    for at in 0..15 {
+        week(&mut session);
+        if at % 4 == 2 {
+            drop(session);
+            session = Session::open(&place, Access::Write, true).expect("it opens");
+        }
+    }
+    assert_eq!(session.state_hash(), straight.state_hash());
+    for sql in [
+        "SELECT count(*) FROM enterprise_turns",
+        "SELECT sum(message_id * turn_number * length(message_text)) FROM enterprise_turns",
+        "SELECT sum(listed_price * seat_count * contract_end_day) FROM subscriptions",
+        "SELECT sum(amount) FROM ledger",
+        "SELECT count(*) FROM notifications WHERE type = 'deal_won'",
+    ] {
+        assert_eq!(number(&mut session, sql), number(&mut straight, sql), "{sql}");
+    }
+    assert!(number(&mut session, "SELECT count(*) FROM notifications WHERE type = 'deal_won'") > 20.0);
+    assert_eq!(session.observe().waiting, straight.observe().waiting);
+    drop(session);
+    assert_eq!(verify(&place).expect("it verifies").states, 15);
+    a_changed_price_is_found(&place);
+}
+
+/// A trajectory in which an offer was changed does not verify: the chain of its lines breaks.
+fn a_changed_price_is_found(place: &Path) {
+    let path = place.join("trajectory.jsonl");
+    let text = std::fs::read_to_string(&path).expect("a trajectory");
+    let lines = Trajectory::read(&path).expect("it is whole").lines;
+    assert!(
+        lines
+            .iter()
+            .any(|line| matches!(&line.record, Record::Call(call) if call.tool == novamind::tools::ToolId::SendEnterpriseDeal))
+    );
+    std::fs::write(&path, text.replacen("[\"B\",34", "[\"B\",33", 1)).expect("written");
+    assert!(verify(place).is_err());
+}
+
+/// What a row shows, and what it does not.
+#[test]
+fn turns_are_recorded_as_a_manager_sees_them() {
+    let mut session = create(Storage::Memory);
+    (0..16).for_each(|_| week(&mut session));
+    let run = &mut session;
+    for kind in ["new_lead", "churn_prevention", "plan_change", "renegotiation"] {
+        let sql = format!("SELECT count(*) FROM enterprise_turns WHERE thread_type = '{kind}'");
+        assert!(number(run, &sql) > 0.0, "{kind}");
+    }
+    // Turns are numbered without gaps; only what is sent twice in one call could share a number.
+    assert_none(
+        run,
+        "SELECT thread_id, count(*) AS n, max(turn_number) AS m FROM enterprise_turns GROUP BY 1 HAVING m <> n - 1",
+    );
+    assert_none(
+        run,
+        "SELECT * FROM enterprise_turns WHERE message_id > (SELECT count(*) FROM enterprise_turns)",
+    );
+    // Only companies have words and addresses, and the market at the end of a deal.
+    assert_none(run, "SELECT * FROM enterprise_turns WHERE (sender = 'customer') <> (email LIKE '%@%.%')");
+    assert_none(
+        run,
+        "SELECT * FROM enterprise_turns WHERE (message_text <> '') <> (sender = 'customer' OR (sender = 'system' AND closed))",
+    );
+    assert_none(
+        run,
+        "SELECT t.email FROM enterprise_turns t JOIN customers c USING (customer_id) WHERE sender = 'customer' AND t.email <> c.email",
+    );
+    // Offers.
+    assert_none(
+        run,
+        "SELECT * FROM enterprise_turns WHERE sender = 'agent' AND close_reason = '' \
+         AND (json_array_length(offer_json) NOT BETWEEN 1 AND 3 OR json_extract(offer_json, '$[0].contract_months') <> 1)",
+    );
+    assert_none(
+        run,
+        "SELECT * FROM enterprise_turns WHERE sender = 'agent' AND turn_number > 0 AND seat_count <> 1",
+    );
+    assert_none(
+        run,
+        "SELECT * FROM enterprise_turns WHERE sender = 'agent' AND turn_number = 0 AND (seat_count < 30 OR thread_type <> 'renegotiation')",
+    );
+    // A thread closes with the company's yes and the market's record, or with a rejection; death does not show.
+    assert_none(
+        run,
+        "SELECT * FROM enterprise_turns WHERE closed <> (close_reason IN ('accepted', 'agent_rejected'))",
+    );
+    assert_none(
+        run,
+        "SELECT thread_id, group_concat(sender) AS who FROM enterprise_turns WHERE closed GROUP BY 1 \
+         HAVING who NOT IN ('customer,system', 'agent')",
+    );
+    assert_none(
+        run,
+        "SELECT * FROM enterprise_turns a JOIN enterprise_turns b ON a.thread_id = b.thread_id \
+         WHERE a.close_reason = 'agent_rejected' AND b.message_id > a.message_id",
+    );
+    let silent = "SELECT count(DISTINCT thread_id) FROM enterprise_turns WHERE thread_id NOT IN \
+                  (SELECT thread_id FROM enterprise_turns WHERE closed) AND customer_id IN \
+                  (SELECT customer_id FROM subscriptions WHERE status IN ('lost', 'cancelled'))";
+    assert!(number(run, silent) > 5.0);
+    // Nothing hidden has a column.
+    let columns = run.query("SELECT * FROM enterprise_turns LIMIT 1").expect("a row").columns;
+    let visible = [
+        "message_id",
+        "thread_id",
+        "customer_id",
+        "thread_type",
+        "turn_number",
+        "sender",
+        "message_text",
+        "offer_json",
+        "day",
+        "email",
+        "seat_count",
+        "closed",
+        "close_reason",
+    ];
+    assert_eq!(columns, visible);
+}
+
+/// Subscriptions, bills and customers after deals.
+#[test]
+fn deals_show_in_subscriptions_and_bills() {
+    let mut session = create(Storage::Memory);
+    (0..16).for_each(|_| week(&mut session));
+    let seen = session.observe();
+    let run = &mut session;
+    let companies = "FROM subscriptions s JOIN customers c USING (customer_id) WHERE customer_type = 'large'";
+    assert_eq!(
+        number(run, &format!("SELECT count(*) {companies} AND status = 'subscribed'")),
+        f64::from(seen.companies)
+    );
+    assert!(seen.companies > 10 && seen.seats > 1000, "{} {}", seen.companies, seen.seats);
+    // A lead's record: its day of billing stays, everything else follows the deal.
+    assert_none(run, &format!("SELECT * {companies} AND billing_day_mod30 <> created_day % 30"));
+    assert_none(
+        run,
+        &format!(
+            "SELECT * {companies} AND status IN ('lead', 'lost') AND (plan <> 'pending' OR start_day <> created_day)"
+        ),
+    );
+    assert_none(
+        run,
+        &format!(
+            "SELECT * {companies} AND status = 'subscribed' AND contract_end_day <> contract_start_day + 30"
+        ),
+    );
+    let accepted = "SELECT customer_id, min(day) AS first, max(day) AS last, max(message_id) AS message \
+                    FROM enterprise_turns WHERE sender = 'customer' AND closed GROUP BY 1";
+    assert_none(
+        run,
+        &format!(
+            "WITH a AS ({accepted}) SELECT * FROM a JOIN subscriptions s USING (customer_id) \
+             JOIN customers c USING (customer_id) JOIN enterprise_turns t ON t.message_id = a.message \
+             WHERE start_day <> first OR contract_start_day <> last \
+             OR abs(listed_price - json_extract(t.offer_json, '$.price')) > 1e-9"
+        ),
+    );
+    assert_none(
+        run,
+        &format!(
+            "SELECT * {companies} AND status IN ('subscribed', 'cancelled') AND c.contract_start_day IS NULL"
+        ),
+    );
+    // Who was cancelled because nobody answered ends at the end of the month that was agreed on.
+    assert!(number(run, &format!("SELECT count(*) {companies} AND status = 'cancelled'")) > 0.0);
+    assert_none(
+        run,
+        &format!("SELECT * {companies} AND status IN ('cancelled', 'lost') AND end_day IS NULL"),
+    );
+    // Every bill is a price times whole seats on the billing day.
+    let bills = "SELECT l.day, l.amount FROM ledger l JOIN customers c ON l.note = \
+                 'Subscription payment from customer ' || c.customer_id JOIN subscriptions s USING (customer_id) \
+                 WHERE customer_type = 'large'";
+    assert!(number(run, &format!("SELECT count(*) FROM ({bills})")) > 20.0);
+    assert_none(run, &format!("{bills} AND l.day % 30 <> s.billing_day_mod30"));
+    assert_none(run, &format!("{bills} AND l.day < s.start_day"));
+    assert_none(
+        run,
+        &format!(
+            "{bills} AND status = 'subscribed' AND contract_start_day < l.day - 30 AND l.day > 100 \
+                  AND abs(l.amount - s.effective_price * s.seat_count) > 0.5"
+        ),
+    );
+    // The inbox names customers where it may.
+    assert_none(
+        run,
+        "SELECT day, count(*) AS n FROM notifications WHERE type = 'deal_won' GROUP BY 1 \
+         HAVING n <> (SELECT count(*) FROM enterprise_turns t WHERE t.day = notifications.day AND sender = 'customer' AND closed)",
+    );
+}
+
+#[test]
+fn the_week_counts_threads_replies_and_what_waits() {
+    let mut session = create(Storage::Memory);
+    (0..12).for_each(|_| week(&mut session));
+    let seen = session.observe();
+    let figures = seen.last_week.expect("a week");
+    let run = &mut session;
+    let from = "day BETWEEN 78 AND 84";
+    let opened = format!("SELECT count(*) FROM enterprise_turns WHERE turn_number = 0 AND {from}");
+    assert_eq!(number(run, &opened), f64::from(figures.threads_opened));
+    let replies = format!(
+        "SELECT count(*) FROM enterprise_turns WHERE sender = 'customer' AND turn_number > 0 AND {from}"
+    );
+    assert_eq!(number(run, &replies), f64::from(figures.replies));
+    assert!(figures.replies > 0 && figures.threads_opened > 0);
+    assert!(seen.dashboard.contains(&format!("- {} new replies", figures.replies)));
+    assert!(seen.dashboard.contains("awaiting your response"));
+    assert!(seen.waiting.iter().all(|thread| (1..=7).contains(&thread.days_left) && thread.seats >= 30));
+    for thread in &seen.waiting {
+        let sql = format!(
+            "SELECT count(*) FROM enterprise_turns WHERE thread_id = {} AND sender = 'agent'",
+            thread.thread
+        );
+        assert_eq!(number(run, &sql), f64::from(thread.own_turns));
+    }
+    // What was written since the week is told, and cannot be taken back.
+    answer(run);
+    let done = run.observe().purchases;
+    assert!(
+        done.iter().any(|line| line.starts_with("offered to customer ") && line.contains(": C $")),
+        "{done:?}"
+    );
+    assert_eq!(run.undo(Via::Script).expect_err("nothing was set").code, "nothing_to_undo");
+}

@@ -1,0 +1,11 @@
+//! Stories through the library: runs, their records and tables, what outlives a crash, what hides from a query.
+
+mod battery;
+mod durability;
+mod enterprise;
+mod notebook;
+mod session;
+#[path = "../support/mod.rs"]
+mod support;
+mod tables;
+mod wiring;

@@ -1,0 +1,182 @@
+//! Calculations and scripts of a run: kept, run, shown, replayed.
+
+use novamind::session::{Access, Configuration, NewRun, Refusal, Session, Storage, Via, verify};
+use serde_json::{Value, json};
+
+use crate::support::company::{call, week};
+
+fn create(storage: Storage) -> Session {
+    let new = NewRun { seed: Some(7), days: Some(28), storage, ..NewRun::default() };
+    Session::create(new, &Configuration::shipped()).expect("the run begins")
+}
+
+fn try_call(session: &mut Session, tool: &str, arguments: Value) -> Result<Value, Refusal> {
+    session.call(tool, &arguments, Via::Script).map(|answer| answer.to_json())
+}
+
+#[test]
+fn statements_are_run_as_tables() {
+    let mut session = create(Storage::Memory);
+    let data = call(&mut session, "python_exec", json!({"code": "SELECT COUNT(*) AS n FROM customers"}));
+    assert_eq!(data, json!({"returncode": 0, "stdout": "n\n1\n", "stderr": ""}));
+    let several = "SELECT day, category FROM ledger; -- more\n SELECT 'a;b' AS t;\n;";
+    let data = call(&mut session, "python_exec", json!({"code": several}));
+    assert_eq!(data["stdout"], "day  category\n0    initial_funding\nt\na;b\n");
+    let empty = call(&mut session, "python_exec", json!({"code": " -- nothing\n"}));
+    assert_eq!((&empty["stdout"], &empty["returncode"]), (&json!(""), &json!(0)));
+    let long = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000) SELECT x FROM n; \
+                SELECT * FROM subscriptions WHERE status = 'active'";
+    let data = call(&mut session, "python_exec", json!({"code": long}));
+    let length = |field: &str| data[field].as_str().map_or(0, |text| text.chars().count());
+    assert_eq!(length("stdout"), 5000);
+    let remarks = data["stderr"].as_str().expect("text");
+    assert!(remarks.contains("first 5000 rows") && remarks.contains("status is never 'active'"), "{remarks}");
+}
+
+#[test]
+fn what_a_query_may_not_a_script_may_not() {
+    let mut session = create(Storage::Memory);
+    let hash = session.state_hash();
+    for (code, part) in [
+        ("SELECT 1; DELETE FROM ledger", "statement 2: only reading is allowed"),
+        ("SELECT c_max FROM customers", "statement 1: there is no column c_max"),
+        (
+            "SELECT 1; SELECT 2; SELECT * FROM customer_state",
+            "statement 3: table customer_state is not accessible",
+        ),
+        ("PRAGMA query_only = 0", "statement 1: schema"),
+        ("SELECT 1; COMMIT", "statement 2: only reading"),
+        ("print('hello')", "statement 1: "),
+    ] {
+        let refusal = try_call(&mut session, "python_exec", json!({ "code": code })).expect_err(code);
+        assert_eq!((refusal.code, refusal.field.as_deref()), ("script_failed", Some("code")), "{code}");
+        assert!(refusal.message.starts_with(part), "{code}: {}", refusal.message);
+    }
+    let endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n";
+    let given = json!({"code": endless, "timeout_seconds": 0.05});
+    let refusal = try_call(&mut session, "python_exec", given).expect_err("endless");
+    assert_eq!(refusal.code, "script_timeout");
+    call(&mut session, "register_script", json!({"name": "bad", "code": "SELECT nothing"}));
+    let refusal = try_call(&mut session, "run_script", json!({"name": "bad"})).expect_err("no such column");
+    assert_eq!(refusal.code, "script_failed");
+    assert_eq!(session.state_hash(), hash);
+    call(&mut session, "python_exec", json!({"code": "SELECT 1"}));
+}
+
+#[test]
+fn calculations_run_before_the_week_and_stand_on_its_dashboard() {
+    let mut session = create(Storage::Memory);
+    let cash = "SELECT max(day) AS day, sum(amount) AS cash FROM ledger";
+    call(&mut session, "register_daily_calculation", json!({"name": "money", "code": cash}));
+    call(
+        &mut session,
+        "register_daily_calculation",
+        json!({"name": "wrong", "code": "SELECT c_max FROM customers"}),
+    );
+    let long =
+        "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 900) SELECT x FROM n";
+    call(&mut session, "register_daily_calculation", json!({"name": "long", "code": long}));
+    assert!(!session.dashboard().contains("Weekly Calculations"));
+    let dashboard = week(&mut session).dashboard;
+    let expected = "\n--- Weekly Calculations ---\nmoney:\n  day  cash\n  0    1000000.0\nwrong:\n  failed: statement 1: there is no column c_max";
+    assert!(dashboard.contains(expected), "{dashboard}");
+    assert_eq!(session.calculated()[2].output.chars().count(), 500);
+    call(&mut session, "remove_daily_calculation", json!({"name": "long"}));
+    let dashboard = week(&mut session).dashboard;
+    assert!(
+        dashboard.contains("money:\n  day  cash\n  7    999405.0\n") && !dashboard.contains("long:"),
+        "{dashboard}"
+    );
+}
+
+#[test]
+fn what_is_kept_survives_leaving_and_is_verified() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = create(Storage::Runs(runs.path().to_owned()));
+    let folder = session.folder().expect("a folder").to_owned();
+    let cash = "SELECT sum(amount) AS cash FROM ledger";
+    call(&mut session, "register_daily_calculation", json!({"name": "money", "code": cash}));
+    call(&mut session, "register_script", json!({"name": "one", "code": "SELECT 1"}));
+    call(&mut session, "register_script", json!({"name": "two", "code": "SELECT 2"}));
+    call(&mut session, "delete_script", json!({"name": "one"}));
+    let random = call(&mut session, "python_exec", json!({"code": "SELECT random() AS r"}));
+    assert_eq!(random["returncode"], 0);
+    call(&mut session, "run_script", json!({"name": "two"}));
+    let dashboard = week(&mut session).dashboard;
+    drop(session);
+    // What a script said is not asked again: chance in SQL does not damage a run.
+    assert_eq!(verify(&folder).expect("it verifies").states, 1);
+    let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
+    assert_eq!(session.dashboard(), dashboard);
+    assert!(dashboard.contains("money:\n  cash\n  1000000.0\n"), "{dashboard}");
+    assert_eq!(call(&mut session, "list_scripts", json!({})), json!({"scripts": ["two"]}));
+    assert_eq!(call(&mut session, "run_script", json!({"name": "two"}))["stdout"], "2\n2\n");
+    let dashboard = week(&mut session).dashboard;
+    assert!(dashboard.contains("money:\n  cash\n  999405.0\n"), "{dashboard}");
+
+    // Branches take along what was kept before them.
+    let mut branch = session.branch(2, novamind::session::Mode::Sandbox).expect("a branch");
+    assert_eq!(call(&mut branch, "list_daily_calculations", json!({})), json!({"calculations": ["money"]}));
+}
+
+#[test]
+fn after_the_end_scripts_still_run() {
+    let mut session = create(Storage::Memory);
+    (0..4).for_each(|_| {
+        week(&mut session);
+    });
+    assert!(session.ended().is_some());
+    assert_eq!(call(&mut session, "python_exec", json!({"code": "SELECT 5 AS x"}))["stdout"], "x\n5\n");
+    call(&mut session, "register_script", json!({"name": "late", "code": "SELECT 1"}));
+    assert_eq!(
+        try_call(&mut session, "research_market", json!({})).expect_err("it is over").code,
+        "run_over"
+    );
+    assert_eq!(call(&mut session, "get_market_overview", json!({}))["undiscovered_count"], 20);
+}
+
+#[test]
+fn documents_come_from_the_run() {
+    let mut session = create(Storage::Memory);
+    let tables = call(&mut session, "list_all_tables", json!({}));
+    assert_eq!(
+        (tables["count"].as_u64(), tables["tables"].as_object().map(|all| all.len())),
+        (Some(19), Some(19))
+    );
+    let described = call(&mut session, "describe_tables", json!({}));
+    let columns = described["tables"].as_object().expect("tables").values();
+    let count: usize =
+        columns.map(|table| table["columns"].as_object().map_or(0, |columns| columns.len())).sum();
+    assert_eq!(count, 148);
+    let overview = call(&mut session, "get_market_overview", json!({}));
+    assert_eq!(overview["macroeconomic"], Value::Null);
+}
+
+#[test]
+fn the_dashboard_is_that_of_the_last_week_until_the_next() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let new = NewRun { days: Some(60), storage: Storage::Runs(runs.path().to_owned()), ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let set = |session: &mut Session, price: f64| {
+        session.call("set_prices", &json!({ "A": price }), Via::Script).expect("prices");
+    };
+    set(&mut session, 12.0);
+    assert!(session.dashboard().contains("Prices: A $12"), "before the first week it is fresh");
+    let forecasts = session.naive_forecasts();
+    let told = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").dashboard;
+    set(&mut session, 13.0);
+    assert!(told.contains("Prices: A $12"), "{told}");
+    assert_eq!((session.dashboard(), session.observe().dashboard), (told.clone(), told.clone()));
+    session.save().expect("saved");
+    let folder = session.folder().expect("a folder").to_owned();
+    drop(session);
+    // From the snapshot, and without it.
+    for _ in 0..2 {
+        let again = Session::open(&folder, Access::Read, true).expect("it opens");
+        assert_eq!(again.dashboard(), told);
+        std::fs::remove_file(folder.join("snapshot.bin")).ok();
+    }
+    let mut again = Session::open(&folder, Access::Write, true).expect("it opens");
+    let next = again.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").dashboard;
+    assert!(next.contains("Prices: A $13"), "{next}");
+}

@@ -1,0 +1,88 @@
+//! Money for support: each pool solves the issues it is for, and no others.
+
+use novamind::session::{Session, Storage};
+use serde_json::{Value, json};
+
+use super::create;
+use crate::support::company::{call, numbers, week, weeks};
+
+/// A company of several groups and plans where nobody's issues are solved by themselves.
+fn waiting_company() -> Session {
+    let overrides = [("issues.issue_resolution_base_rate", "0.0")];
+    let mut session = create(Storage::Memory, &overrides);
+    call(&mut session, "set_prices", json!({"A": 8, "B": 12, "C": 16}));
+    call(&mut session, "set_model_tiers", json!({"A": 2, "B": 3, "C": 4}));
+    call(&mut session, "set_usage_quotas", json!({"A": 30000, "B": 90000, "C": 1200000}));
+    let spend = json!({"content_marketing": {"S1": 3000, "S2": 3000}, "search_ads": {"S3": 3000}});
+    call(&mut session, "set_targeted_ad_spend", json!({"targeted_spend": spend}));
+    call(
+        &mut session,
+        "set_targeted_dev_spend",
+        json!({"targeted_spend": {"S1": 5000, "S2": 5000, "S3": 5000}}),
+    );
+    weeks(&mut session, 5);
+    session
+}
+
+/// Nobody changes their plan between two billing days; those of days 36 to 42 are left out.
+const SAME_PLAN: &str = "s.billing_day_mod30 NOT BETWEEN 6 AND 12";
+
+/// Issues that were open on day 35, inside and outside of a condition, and how many of them were solved since.
+fn solved(session: &mut Session, inside: &str) -> [f64; 4] {
+    let sql = format!(
+        "SELECT total(({inside})), total(({inside}) AND i.resolved_day > 35), total(NOT ({inside})), \
+         total(NOT ({inside}) AND i.resolved_day > 35) \
+         FROM issues i JOIN customers c USING (customer_id) JOIN subscriptions s USING (customer_id) \
+         WHERE i.open_day < 35 AND s.status = 'subscribed' AND s.start_day < 35 \
+           AND (i.resolved_day IS NULL OR i.resolved_day > 35) AND {SAME_PLAN}"
+    );
+    numbers(session, &sql).remove(0).try_into().expect("four numbers")
+}
+
+fn fund(arguments: Value, inside: &str) {
+    let mut session = waiting_company();
+    call(&mut session, "set_targeted_ops_spend", arguments.clone());
+    week(&mut session);
+    let [issues, helped, others, others_helped] = solved(&mut session, inside);
+    assert!(issues >= 1.0 && others > 20.0, "{arguments}: {issues} issues inside, {others} outside");
+    assert_eq!(others_helped, 0.0, "{arguments} helps somebody else");
+    assert!(helped > 0.8 * issues, "{arguments}: {helped} of {issues} are solved");
+}
+
+#[test]
+fn money_for_a_group_solves_its_issues_alone() {
+    fund(json!({"by_group": {"S3": 20_000}}), "c.group_id = 'S3'");
+}
+
+#[test]
+fn money_for_a_plan_solves_its_issues_alone() {
+    fund(json!({"by_plan": {"B": 20_000}}), "s.plan = 'B'");
+}
+
+#[test]
+fn money_for_a_plan_of_a_group_solves_its_issues_alone() {
+    fund(json!({"by_group_plan": {"S1": {"A": 20_000}}}), "c.group_id = 'S1' AND s.plan = 'A'");
+}
+
+#[test]
+fn money_for_one_customer_solves_their_issue_alone() {
+    let mut session = waiting_company();
+    let sql = format!(
+        "SELECT max(i.customer_id) FROM issues i JOIN subscriptions s USING (customer_id) \
+         WHERE i.resolved_day IS NULL AND i.open_day < 35 AND s.status = 'subscribed' AND s.start_day < 35 \
+           AND {SAME_PLAN}"
+    );
+    let customer = numbers(&mut session, &sql)[0][0];
+    fund(json!({"by_customer": {(customer.to_string()): 500}}), &format!("c.customer_id = {customer}"));
+}
+
+#[test]
+fn money_for_everybody_solves_the_issues_of_all() {
+    let mut session = waiting_company();
+    call(&mut session, "set_daily_spend", json!({"operations": 20_000}));
+    week(&mut session);
+    for group in ["S1", "S2", "S3"] {
+        let [issues, helped, ..] = solved(&mut session, &format!("c.group_id = '{group}'"));
+        assert!(issues > 5.0 && helped > 0.8 * issues, "{group}: {helped} of {issues}");
+    }
+}

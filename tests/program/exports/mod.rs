@@ -1,0 +1,395 @@
+//! Runs that are handed over: archives out and in, their tables, the session summary, runs side by side, and the schema
+//! of the lines.
+
+mod handover;
+mod schema;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use crate::support::home::{Home, Said, bytes_of, id};
+use rusqlite::Connection;
+use serde_json::Value;
+
+const PLAY: &str = "set_prices A=12 B=25 C=55
+set_usage_quotas A=60000 B=250000 C=1200000
+set_model_tiers B=2 C=4
+set_targeted_ad_spend {\"content_marketing\": {\"S1\": 750}, \"linkedin\": {\"S1\": 100}}
+set_prices A=0
+sql SELECT count(*) FROM ledger
+memo watch the costs
+next \"If it goes well, we wait\" naive
+set_ads_strength global_strength=0.5
+next \"as planned\" naive
+next \"as planned\" naive
+";
+
+/// A baseline run of three weeks by a participant; its folder.
+fn played(home: &Home, participant: &str) -> PathBuf {
+    let before: Vec<PathBuf> = folders(&home.runs());
+    let options = ["--days", "28", "--mode", "baseline", "--participant", participant, "--seed", "7"];
+    let said = home.play(&options, PLAY);
+    assert_eq!(said.code, 0, "{}", said.err);
+    folders(&home.runs()).into_iter().find(|folder| !before.contains(folder)).expect("a new run")
+}
+
+fn folders(runs: &Path) -> Vec<PathBuf> {
+    fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path()).collect()
+}
+
+fn text(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+fn export(home: &Home, run: &Path, name: &str) -> (PathBuf, Said) {
+    let archive = home.0.path().join(name);
+    let said = home.run(&["runs", "export", &id(run), "--out", &text(&archive)]);
+    (archive, said)
+}
+
+fn import(home: &Home, archive: &Path) -> Said {
+    home.run(&["runs", "import", &text(archive)])
+}
+
+/// The files of a plain archive.
+fn contents(archive: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    for entry in tar::Archive::new(fs::File::open(archive).expect("a file")).entries().expect("entries") {
+        let mut entry = entry.expect("an entry");
+        let name = entry.path().expect("a path").to_string_lossy().into_owned();
+        let mut bytes = Vec::new();
+        entry.read_to_end(&mut bytes).expect("bytes");
+        files.insert(name, bytes);
+    }
+    files
+}
+
+/// An archive of files, as anybody could make one.
+fn forged(archive: &Path, files: &[(String, Vec<u8>)]) {
+    let mut builder = tar::Builder::new(fs::File::create(archive).expect("a file"));
+    for (name, bytes) in files {
+        builder
+            .append(&header(name, bytes.len() as u64, tar::EntryType::Regular), &bytes[..])
+            .expect("an entry");
+    }
+    builder.finish().expect("an archive");
+}
+
+fn header(name: &str, size: u64, kind: tar::EntryType) -> tar::Header {
+    let mut header = tar::Header::new_ustar();
+    // Past the checks of the crate, which does not write dangerous names.
+    header.as_old_mut().name[..name.len()].copy_from_slice(name.as_bytes());
+    header.set_size(size);
+    header.set_mode(0o644);
+    header.set_entry_type(kind);
+    header.set_cksum();
+    header
+}
+
+#[test]
+fn a_run_goes_out_sealed_and_comes_back_the_same() {
+    let (home, other) = (Home::new(), Home::new());
+    let run = played(&home, "P01");
+    let before = bytes_of(&run, "trajectory.jsonl");
+    for name in ["run.tar.gz", "run.tar"] {
+        let (archive, said) = export(&home, &run, name);
+        assert_eq!(said.code, 0, "{}", said.err);
+        let checksum = said.out.split("checksum ").nth(1).expect("a checksum").trim().to_owned();
+        assert_eq!(checksum.len(), 64);
+        let (_, again) = export(&home, &run, name);
+        again.fails(1, &["already exists"]);
+        let imported = import(&other, &archive);
+        assert_eq!(imported.code, 0, "{}", imported.err);
+        assert!(imported.out.contains(&checksum), "{}", imported.out);
+    }
+    // The second archive found the run there already.
+    let there = other.runs().join(id(&run));
+    for file in ["run.toml", "trajectory.jsonl", "memo.md"] {
+        assert_eq!(bytes_of(&there, file), bytes_of(&run, file), "{file}");
+    }
+    assert_eq!(folders(&other.runs()), [there], "nothing else is left behind");
+    assert_eq!(other.run(&["replay", &id(&run), "--verify"]).code, 0);
+    let go_on = other.play(&["--run", &id(&run)], "next \"the end\" naive\n");
+    assert_eq!(go_on.code, 0, "{}", go_on.err);
+    import(&other, &home.0.path().join("run.tar")).fails(1, &["already exists", "played further since"]);
+    let (later, _) = export(&other, &run, "later.tar");
+    import(&home, &later).fails(1, &["already exists", "later state"]);
+    assert_eq!(bytes_of(&run, "trajectory.jsonl"), before, "nothing was overwritten");
+}
+
+#[test]
+fn the_database_of_an_archive_opens_without_the_program() {
+    let home = Home::new();
+    let run = played(&home, "P01");
+    fs::write(run.join("snapshot.bin"), "hidden").expect("a snapshot");
+    let (archive, _) = export(&home, &run, "run.tar");
+    let files = contents(&archive);
+    let names: Vec<&str> = files.keys().map(|name| name.split_once('/').expect("a folder").1).collect();
+    assert_eq!(names, ["memo.md", "run.toml", "seal.toml", "trajectory.jsonl", "world.db"]);
+    let file = home.0.path().join("copy.db");
+    fs::write(&file, &files[&format!("{}/world.db", id(&run))]).expect("a copy");
+    let database = Connection::open(&file).expect("it opens");
+    let ask = |sql: &str| -> f64 {
+        database.query_row(sql, [], |row| row.get(0)).unwrap_or_else(|e| panic!("{sql}: {e}"))
+    };
+    for table in novamind::database::tables() {
+        let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+        ask(&format!("SELECT 1.0 * count(*) FROM (SELECT {} FROM {})", columns.join(", "), table.name));
+    }
+    for sql in [
+        "SELECT 1.0 * count(*) FROM daily_usage",
+        "SELECT 1.0 * sum(usage_units * day + customer_id) FROM daily_usage",
+        "SELECT 1.0 * count(*) FROM ads_revenue",
+        "SELECT coalesce(sum(revenue), 0.0) FROM ads_revenue",
+        "SELECT sum(amount) FROM ledger",
+    ] {
+        let own = home.run(&["query", &id(&run), sql, "--format", "csv"]);
+        let expected: f64 = own.out.lines().nth(1).expect("a row").parse().expect("a number");
+        assert!(
+            (ask(sql) - expected).abs() <= 1e-9 * expected.abs(),
+            "{sql}: {} is not {expected}",
+            ask(sql)
+        );
+    }
+    assert!(
+        ask("SELECT 1.0 * count(*) FROM daily_usage") > 0.0
+            && ask("SELECT 1.0 * count(*) FROM ads_revenue") > 0.0
+    );
+    let packed = "SELECT 1.0 * count(*) FROM sqlite_master WHERE name LIKE '%_blocks'";
+    assert_eq!(ask(packed), 0.0, "there is nothing only the program can read");
+}
+
+#[test]
+fn what_was_changed_is_refused_and_named() {
+    let (home, other) = (Home::new(), Home::new());
+    let run = played(&home, "P01");
+    let (archive, _) = export(&home, &run, "run.tar");
+    let files: Vec<(String, Vec<u8>)> = contents(&archive).into_iter().collect();
+    let bad = home.0.path().join("bad.tar");
+    let refused = |files: &[(String, Vec<u8>)], parts: &[&str]| {
+        forged(&bad, files);
+        import(&other, &bad).fails(3, &[parts, &["bad.tar", "Nothing was imported"]].concat());
+        assert!(folders(&other.runs()).is_empty());
+    };
+    forged(&bad, &files);
+    assert_eq!(import(&other, &bad).code, 0, "the files as they were are fine");
+    fs::remove_dir_all(other.runs().join(id(&run))).expect("it was there");
+    for (at, (name, bytes)) in files.iter().enumerate().filter(|(_, (name, _))| !name.ends_with("seal.toml"))
+    {
+        let file = name.split_once('/').expect("a folder").1;
+        let mut changed = files.clone();
+        changed[at].1[bytes.len() / 2] ^= 1;
+        refused(&changed, &[file, "not the file that was sealed"]);
+        let mut cut = files.clone();
+        cut[at].1.pop();
+        refused(&cut, &[file, "not the file that was sealed"]);
+        let mut missing = files.clone();
+        missing.remove(at);
+        refused(&missing, &[file, "is missing"]);
+    }
+    let seal = files.iter().position(|(name, _)| name.ends_with("seal.toml")).expect("a seal");
+    let mut changed = files.clone();
+    let text = String::from_utf8(changed[seal].1.clone()).expect("text");
+    changed[seal].1 = text.replace("last_seq = ", "last_seq = 1").into_bytes();
+    refused(&changed, &["seal.toml", "checksum"]);
+    let mut missing = files.clone();
+    missing.remove(seal);
+    refused(&missing, &["seal.toml is missing"]);
+    let mut twice = files.clone();
+    twice.push(files[0].clone());
+    refused(&twice, &["twice"]);
+    let mut stranger = files.clone();
+    stranger.push((format!("{}/snapshot.bin", id(&run)), b"x".to_vec()));
+    refused(&stranger, &["snapshot.bin", "does not belong"]);
+}
+
+#[test]
+fn dangerous_and_foreign_files_are_refused() {
+    let home = Home::new();
+    let bad = home.0.path().join("bad.tar");
+    for name in ["../../evil", "/etc/evil", "0123abcd/../evil", "0123abcd/sub/run.toml", "latest/run.toml"] {
+        forged(&bad, &[(name.to_owned(), b"x".to_vec())]);
+        import(&home, &bad).fails(3, &["does not belong to a run"]);
+    }
+    for kind in
+        [tar::EntryType::Symlink, tar::EntryType::Link, tar::EntryType::XHeader, tar::EntryType::GNULongName]
+    {
+        let mut builder = tar::Builder::new(fs::File::create(&bad).expect("a file"));
+        builder.append(&header("0123abcd/run.toml", 0, kind), &b""[..]).expect("an entry");
+        builder.finish().expect("an archive");
+        import(&home, &bad).fails(3, &["not an ordinary file"]);
+    }
+    // What a damaged archive holds is told in one line that does not steer the terminal.
+    forged(&bad, &[("0123abcd/\u{1b}[2J\nrun.toml".to_owned(), b"x".to_vec())]);
+    import(&home, &bad).fails(3, &["0123abcd/\\u{1b}[2J\\nrun.toml does not belong to a run"]);
+    let mut torn = header("0123abcd/run.toml", 0, tar::EntryType::Regular);
+    torn.as_old_mut().cksum = *b"FRO\nM\x1b[m";
+    fs::write(&bad, torn.as_bytes()).expect("a header");
+    import(&home, &bad).fails(3, &["not an archive of a run", "FRO\\nM\\u{1b}[m"]);
+    // A size that is only claimed: nothing is read and nothing is reserved.
+    fs::write(&bad, header("0123abcd/run.toml", 7 << 30, tar::EntryType::Regular).as_bytes())
+        .expect("a header");
+    import(&home, &bad).fails(3, &["run.toml is too large"]);
+    fs::write(&bad, "this is a letter, not an archive").expect("a file");
+    import(&home, &bad).fails(3, &["not an archive of a run"]);
+    fs::write(&bad, "").expect("a file");
+    import(&home, &bad).fails(3, &["seal.toml is missing"]);
+    import(&home, &home.0.path().join("nowhere.tar")).fails(3, &["nowhere.tar"]);
+    assert!(folders(&home.runs()).is_empty(), "nothing is left behind");
+    assert!(!home.0.path().join("evil").exists());
+}
+
+#[test]
+fn a_compressed_archive_that_is_cut_or_flipped_anywhere_is_refused() {
+    let (home, other) = (Home::new(), Home::new());
+    let run = played(&home, "P01");
+    let (archive, _) = export(&home, &run, "run.tar.gz");
+    let whole = fs::read(&archive).expect("bytes");
+    let bad = home.0.path().join("bad.tar.gz");
+    for share in [0.1, 0.5, 0.9, 0.999] {
+        let at = (whole.len() as f64 * share) as usize;
+        fs::write(&bad, &whole[..at]).expect("a cut");
+        import(&other, &bad).fails(3, &["bad.tar.gz"]);
+        let mut flipped = whole.clone();
+        flipped[at] ^= 0x10;
+        fs::write(&bad, &flipped).expect("a flip");
+        import(&other, &bad).fails(3, &["bad.tar.gz"]);
+        assert!(folders(&other.runs()).is_empty());
+    }
+}
+
+#[test]
+fn damaged_runs_are_not_exported_and_unfinished_lines_are_left_out() {
+    let home = Home::new();
+    let run = played(&home, "P01");
+    let good = bytes_of(&run, "trajectory.jsonl");
+    let torn = [&good[..], b"{\"seq\":99,\"ki"].concat();
+    fs::write(run.join("trajectory.jsonl"), &torn).expect("a torn line");
+    let (archive, said) = export(&home, &run, "torn.tar");
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(contents(&archive)[&format!("{}/trajectory.jsonl", id(&run))], good);
+    assert_eq!(bytes_of(&run, "trajectory.jsonl"), torn, "an export changes nothing");
+    let text = String::from_utf8(good).expect("text");
+    fs::write(run.join("trajectory.jsonl"), text.replacen("\"A\":12", "\"A\":13", 1)).expect("a change");
+    let (archive, said) = export(&home, &run, "bad.tar");
+    said.fails(3, &["trajectory.jsonl, line 2", "its own sum", "good"]);
+    assert!(!archive.exists());
+    let hidden = |entry: &PathBuf| {
+        entry.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".novamind"))
+    };
+    assert!(!folders(home.0.path()).iter().any(hidden), "no drafts are left behind");
+}
+
+fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(path).expect("a table");
+    reader.deserialize().map(|row| row.expect("a row")).collect()
+}
+
+#[test]
+fn all_runs_go_out_with_tables_that_agree_with_them() {
+    let home = Home::new();
+    let (first, second) = (played(&home, "P01"), played(&home, "P, \"02\""));
+    let out = home.0.path().join("study");
+    let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let runs = table(&out.join("runs.csv"));
+    assert_eq!(runs.iter().map(|row| row["run"].clone()).collect::<Vec<_>>(), [id(&first), id(&second)]);
+    assert_eq!(runs[1]["participant"], "P, \"02\"");
+    let row = &runs[0];
+    let told = |name: &str| row[name].as_str();
+    assert_eq!([told("mode"), told("day"), told("weeks"), told("calls")], ["baseline", "21", "3", "5"]);
+    assert_eq!([told("refused"), told("queries"), told("if_words"), told("memos")], ["1", "1", "1", "1"]);
+    let weeks = table(&out.join("weeks.csv"));
+    let own: Vec<_> = weeks.iter().filter(|row| row["run"] == id(&first)).collect();
+    assert_eq!(own.iter().map(|row| row["day"].as_str()).collect::<Vec<_>>(), ["7", "14", "21"]);
+    assert_eq!(own[2]["cash"], row["cash"]);
+    assert_eq!(own[0]["forecast_7_outcome"], own[0]["cash"]);
+    let trajectory = String::from_utf8(bytes_of(&first, "trajectory.jsonl")).expect("text");
+    for (week, line) in own.iter().zip(trajectory.lines().filter(|line| line.contains("\"kind\":\"week\""))) {
+        let line: Value = serde_json::from_str(line).expect("a line");
+        assert_eq!(week["state_hash"], line["state_hash"].as_str().expect("a hash"));
+        for (name, value) in line["figures"].as_object().expect("figures") {
+            assert_eq!(week[name], value.to_string(), "{name}");
+        }
+    }
+    // The codebook knows every column of both tables.
+    let columns = table(&out.join("columns.csv"));
+    for (name, first) in [("runs", &runs[0]), ("weeks", &weeks[0])] {
+        let known: Vec<&str> =
+            columns.iter().filter(|row| row["table"] == name).map(|row| row["column"].as_str()).collect();
+        assert_eq!(known.len(), first.len());
+        assert!(first.keys().all(|column| known.contains(&column.as_str())));
+    }
+    for run in [&first, &second] {
+        let archive = out.join(format!("{}.tar.gz", id(run)));
+        let there = Home::new();
+        assert_eq!(import(&there, &archive).code, 0);
+    }
+    // Again, of one participant only; the archives may be there already.
+    let one = home.run(&["runs", "export", "--all", "--participant", "P01", "--out", &text(&out)]);
+    assert_eq!((one.code, table(&out.join("runs.csv")).len()), (0, 1));
+    let list = home.run(&["runs", "list", "--participant", "P01"]);
+    assert_eq!(list.out.lines().count(), 1, "{}", list.out);
+    // A damaged run is named and keeps nobody else's from going out.
+    fs::write(first.join("trajectory.jsonl"), "nonsense\n").expect("damage");
+    let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
+    said.fails(3, &["1 of 2 runs"]);
+    let damaged =
+        table(&out.join("runs.csv")).into_iter().find(|row| row["run"] == id(&first)).expect("a row");
+    assert!(damaged["problem"].contains("line 1") && damaged["cash"].is_empty(), "{damaged:?}");
+}
+
+#[test]
+fn sessions_are_summed_up_and_runs_compared() {
+    let home = Home::new();
+    let (first, second) = (played(&home, "P01"), played(&home, "P02"));
+    let ended = home.run(&["runs", "end", &id(&second)]);
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let page = home.run(&["report", &id(&first), "--session"]);
+    assert!(page.out.contains("P01 played 3 weeks") && page.out.contains("## Breaks"), "{}", page.out);
+    let summary: Value =
+        serde_json::from_str(&home.run(&["report", &id(&first), "--session", "--format", "json"]).out)
+            .expect("JSON");
+    assert_eq!(
+        (&summary["total"]["calls"], &summary["weeks"][0]["queries"]),
+        (&Value::from(5), &Value::from(1))
+    );
+    home.run(&["report", &id(&first), "--format", "json"]).fails(2, &["--session"]);
+
+    let names = [id(&first), id(&second)];
+    let said = home.run(&["lab", "compare", &names[0], &names[1]]);
+    for part in ["P01", "P02", "rule-based baseline", "cash on day 21", "day 0", "Claude Fable 5", "differ"] {
+        // Both runs are played alike, so nothing but their end differs.
+        assert_eq!(said.out.contains(part), part != "differ", "{part}: {}", said.out);
+    }
+    let object = home.run(&["lab", "compare", &names[0], &names[1], "--json"]).out;
+    let object: Value = serde_json::from_str(&object).expect("JSON");
+    let figures = object["comparison"]["figures"].as_array().expect("figures");
+    let figure = |name: &str| figures.iter().find(|row| row["figure"] == name).expect(name)["values"].clone();
+    let share = figure("ad spend on the best channel, as measured");
+    assert_eq!(share[0], share[1], "the same decisions");
+    let truly = figure("ad spend on the truly best channel");
+    assert!(truly[0].is_null() && truly[1].is_number(), "only a run that is over tells: {truly}");
+    let cash = object["comparison"]["cash"].as_array().expect("cash");
+    assert_eq!(cash.last().expect("a row")["values"][0], object["runs"][0]["logbook"]["cash"]);
+    let csv = home.run(&["lab", "compare", &names[0], &names[1], "--csv"]).out;
+    assert!(
+        csv.lines().next().expect("a head").starts_with(&format!("figure,of,unit,{},{}", names[0], names[1]))
+    );
+    home.run(&["lab", "compare", "zzzz"]).fails(3, &["there is no run"]);
+}
+
+#[test]
+fn the_documents_say_what_the_program_says() {
+    let said = Home::new().run(&["runs", "columns"]);
+    assert_eq!(said.out, include_str!("../../../assets/columns.md"), "write it anew: novamind runs columns");
+    let page = include_str!("../../../docs/formats/trajectory.md");
+    let examples: Vec<Value> = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("{\"seq\""))
+        .map(|line| serde_json::from_str(&format!("{{\"seq\"{line}")).expect("JSON"))
+        .collect();
+    schema::check_examples(&examples);
+}

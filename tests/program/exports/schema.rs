@@ -1,0 +1,254 @@
+//! The JSON Schema of trajectories against the lines that runs really write, of every kind.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use novamind::session::{Configuration, Mode, NewRun, Session, Storage, Via};
+use serde_json::{Map, Value, json};
+use time::OffsetDateTime;
+use time::format_description::well_known::Rfc3339;
+
+use crate::support::home::Home;
+
+fn schema() -> Value {
+    serde_json::from_str(include_str!("../../../assets/trajectory.schema.json")).expect("the schema is JSON")
+}
+
+/// A part of the schema, with references followed.
+fn resolve<'a>(root: &'a Value, part: &'a Value) -> &'a Value {
+    match part.get("$ref").and_then(Value::as_str) {
+        Some(reference) => {
+            let target = reference.strip_prefix('#').and_then(|pointer| root.pointer(pointer));
+            resolve(root, target.unwrap_or_else(|| panic!("{reference} leads nowhere")))
+        }
+        None => part,
+    }
+}
+
+/// What a value has against a part of the schema. Knows every keyword the schema uses and no others.
+fn problems(root: &Value, part: &Value, value: &Value, place: &str, found: &mut Vec<String>) {
+    let rules = resolve(root, part).as_object().expect("a schema is an object");
+    let mut wrong = |what: String| found.push(format!("{place}: {what}"));
+    let number = |rule: &Value| rule.as_f64().expect("a number");
+    let mut inner: Vec<(Value, Value, String)> = Vec::new();
+    for (keyword, rule) in rules {
+        let ok = match keyword.as_str() {
+            "title" | "description" | "examples" | "$schema" | "$defs" => true,
+            "type" => types(rule).iter().any(|name| has_type(value, name)),
+            "const" => value == rule,
+            "enum" => rule.as_array().expect("values").contains(value),
+            "minimum" => value.as_f64().is_none_or(|own| own >= number(rule)),
+            "exclusiveMinimum" => value.as_f64().is_none_or(|own| own > number(rule)),
+            "minItems" => value.as_array().is_none_or(|own| own.len() as f64 >= number(rule)),
+            "maxItems" => value.as_array().is_none_or(|own| own.len() as f64 <= number(rule)),
+            "pattern" => {
+                value.as_str().is_none_or(|own| is_hexadecimal(own, rule.as_str().expect("a pattern")))
+            }
+            "format" => value.as_str().is_none_or(|own| OffsetDateTime::parse(own, &Rfc3339).is_ok()),
+            "required" => names(rule).iter().all(|name| value.get(name).is_some()),
+            "properties" => {
+                for (name, own) in rule.as_object().expect("properties") {
+                    inner.extend(
+                        value.get(name).map(|value| (own.clone(), value.clone(), format!("{place}.{name}"))),
+                    );
+                }
+                true
+            }
+            "additionalProperties" => {
+                let known = rules.get("properties").and_then(Value::as_object);
+                let others = value.as_object().into_iter().flatten();
+                let others = others.filter(|(name, _)| known.is_none_or(|known| !known.contains_key(*name)));
+                inner
+                    .extend(others.map(|(name, own)| (rule.clone(), own.clone(), format!("{place}.{name}"))));
+                true
+            }
+            "items" => {
+                let all = value.as_array().into_iter().flatten().enumerate();
+                inner.extend(all.map(|(at, own)| (rule.clone(), own.clone(), format!("{place}[{at}]"))));
+                true
+            }
+            "oneOf" => {
+                let fits = rule.as_array().expect("choices").iter().filter(|choice| {
+                    let mut against = Vec::new();
+                    problems(root, choice, value, place, &mut against);
+                    against.is_empty()
+                });
+                fits.count() == 1
+            }
+            other => panic!("the schema uses the keyword {other}, which this test does not know"),
+        };
+        if !ok {
+            wrong(format!("{value} against {keyword} {rule}"));
+        }
+    }
+    for (part, value, place) in inner {
+        problems(root, &part, &value, &place, found);
+    }
+}
+
+fn names(rule: &Value) -> Vec<&str> {
+    rule.as_array().into_iter().flatten().filter_map(Value::as_str).collect()
+}
+
+fn types(rule: &Value) -> Vec<&str> {
+    rule.as_str().map_or_else(|| names(rule), |one| vec![one])
+}
+
+fn has_type(value: &Value, name: &str) -> bool {
+    match name {
+        "object" => value.is_object(),
+        "array" => value.is_array(),
+        "string" => value.is_string(),
+        "boolean" => value.is_boolean(),
+        "null" => value.is_null(),
+        "number" => value.is_number(),
+        "integer" => value.is_i64() || value.is_u64(),
+        other => panic!("no type {other}"),
+    }
+}
+
+/// The only patterns of the schema: so many hexadecimal digits.
+fn is_hexadecimal(text: &str, pattern: &str) -> bool {
+    let count = pattern.strip_prefix("^[0-9a-f]{").and_then(|rest| rest.strip_suffix("}$"));
+    let count: usize =
+        count.and_then(|count| count.parse().ok()).unwrap_or_else(|| panic!("pattern {pattern}"));
+    text.len() == count && text.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
+}
+
+/// What speaks against a line: its own kind is asked, so that the answer names the field.
+fn against(root: &Value, line: &Value) -> Vec<String> {
+    let kind = line["kind"].as_str().unwrap_or_default();
+    let Some(part) = root.pointer(&format!("/$defs/{kind}")) else { return vec![format!("no kind {kind}")] };
+    let mut found = Vec::new();
+    problems(root, part, line, kind, &mut found);
+    if found.is_empty() {
+        // The whole schema must come to the same end.
+        problems(root, root, line, "line", &mut found);
+    }
+    found
+}
+
+fn kinds(root: &Value) -> BTreeSet<String> {
+    let references = root["oneOf"].as_array().expect("kinds").iter();
+    references.map(|own| own["$ref"].as_str().expect("a reference").replace("#/$defs/", "")).collect()
+}
+
+/// Examples of a document: valid lines, one of each kind.
+pub fn check_examples(examples: &[Value]) {
+    let root = schema();
+    for example in examples {
+        assert_eq!(against(&root, example), Vec::<String>::new());
+    }
+    let shown: BTreeSet<String> =
+        examples.iter().filter_map(|line| line["kind"].as_str()).map(str::to_owned).collect();
+    assert_eq!(shown, kinds(&root));
+}
+
+fn lines_of(folder: &Path) -> Vec<Value> {
+    let text = std::fs::read_to_string(folder.join("trajectory.jsonl")).expect("a trajectory");
+    text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+}
+
+/// Runs that use every kind of line there is a way to write.
+fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
+    let new = NewRun {
+        days: Some(35),
+        mode: Mode::Debug,
+        participant: Some("P01".to_owned()),
+        overrides: vec![("competitor.competitor_feedback_u_max".to_owned(), "0.5".to_owned())],
+        storage: Storage::Runs(runs.to_owned()),
+        ..NewRun::default()
+    };
+    let mut run = Session::create(new, &Configuration::shipped()).expect("a run");
+    run.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
+    run.call("set_prices", &json!({"A": 14}), Via::Palette).expect("a price");
+    run.undo(Via::Plain).expect("it is taken back");
+    run.call("set_prices", &json!({"A": 0}), Via::Http).expect_err("no price");
+    run.call("research_market", &json!({}), Via::Policy).expect("research");
+    run.query("SELECT count(*) FROM ledger").expect("a count");
+    run.query("SELECT 1 FROM nowhere").expect_err("no table");
+    run.note_view("cash", "", 1234);
+    run.set_memo("größer").expect("a memo");
+    let calculation = json!({"name": "cash now", "code": "SELECT sum(amount) FROM ledger"});
+    run.call("register_daily_calculation", &calculation, Via::Script).expect("a calculation");
+    run.advance_given(&json!(""), &json!({}), [false; 4], Via::Form, &mut |_| {}).expect_err("no rationale");
+    let forecasts = run.naive_forecasts();
+    run.advance("wait", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+    run.step(2, &mut |_| {}).expect("two days");
+    let mut branch = run.branch(2, Mode::Sandbox).expect("a branch");
+    while branch.ended().is_none() {
+        let forecasts = branch.naive_forecasts();
+        branch.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+    }
+    run.end().expect("it is given up");
+    let folders = [run.folder(), branch.folder()].map(|folder| folder.expect("a folder").to_owned());
+    folders.iter().flat_map(|folder| lines_of(folder)).collect()
+}
+
+#[test]
+fn every_line_that_runs_write_is_as_the_schema_says() {
+    let (root, runs) = (schema(), tempfile::tempdir().expect("a folder"));
+    let lines = all_kinds_of_lines(runs.path());
+    for line in &lines {
+        assert_eq!(against(&root, line), Vec::<String>::new());
+        // Fields may be added to the format, but not without being written down.
+        let kind = line["kind"].as_str().expect("a kind");
+        let known =
+            root.pointer(&format!("/$defs/{kind}/properties")).and_then(Value::as_object).expect("fields");
+        for field in line.as_object().expect("an object").keys() {
+            assert!(known.contains_key(field), "{kind}.{field} is not in the schema");
+        }
+    }
+    let written: BTreeSet<String> =
+        lines.iter().map(|line| line["kind"].as_str().expect("a kind").to_owned()).collect();
+    let mut missing = kinds(&root);
+    missing.retain(|kind| !written.contains(kind));
+    assert_eq!(missing.into_iter().collect::<Vec<_>>(), ["override"], "all others are written");
+    assert!(lines.iter().any(|line| line.get("calculations").is_some() && line["kind"] == "advance"));
+    assert!(lines.iter().any(|line| line.get("undoes").is_some()));
+}
+
+#[test]
+fn every_kind_and_every_field_is_explained_with_an_example() {
+    let root = schema();
+    for kind in kinds(&root) {
+        let own = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
+        assert!(own["description"].as_str().is_some_and(|text| text.len() > 15), "{kind}");
+        for (name, field) in own["properties"].as_object().expect("fields") {
+            let explained = resolve(&root, field).get("description").or(field.get("description")).is_some();
+            assert!(explained || field.get("const").is_some(), "{kind}.{name}");
+        }
+        let examples = own["examples"].as_array().expect("examples");
+        assert!(!examples.is_empty());
+        for example in examples {
+            assert_eq!(against(&root, example), Vec::<String>::new());
+        }
+    }
+}
+
+#[test]
+fn lines_that_lack_or_twist_a_field_are_not_as_the_schema_says() {
+    let root = schema();
+    for kind in kinds(&root) {
+        let own = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
+        let example: Map<String, Value> = own["examples"][0].as_object().expect("an example").clone();
+        for name in names(&own["required"]) {
+            let mut without = example.clone();
+            without.remove(name);
+            assert!(!against(&root, &without.into()).is_empty(), "{kind} without {name}");
+            if own["properties"][name].get("type").is_some() || own["properties"][name].get("$ref").is_some()
+            {
+                let mut twisted = example.clone();
+                twisted.insert(name.to_owned(), json!([["no such thing"]]));
+                assert!(!against(&root, &twisted.into()).is_empty(), "{kind} with a strange {name}");
+            }
+        }
+    }
+    assert!(!against(&root, &json!({"kind": "wish"})).is_empty());
+}
+
+#[test]
+fn the_program_prints_the_schema() {
+    let said = Home::new().run(&["runs", "schema"]);
+    assert_eq!(serde_json::from_str::<Value>(&said.out).expect("JSON"), schema());
+}

@@ -1,0 +1,174 @@
+//! Records that somebody changed with care: every sum that can be made anew was made anew.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use novamind::session::Seal;
+use serde_json::{Map, Value};
+
+use crate::support::home::{Home, Said, id};
+
+/// The lines of a trajectory as objects.
+type Lines = Vec<Map<String, Value>>;
+
+fn lines_of(text: &str) -> Lines {
+    text.lines().map(|line| serde_json::from_str(line).expect("a line")).collect()
+}
+
+fn hash(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+/// The line with a sum that fits it.
+fn summed(mut line: Map<String, Value>) -> String {
+    line.shift_remove("sum");
+    let sum = hash(&Value::Object(line.clone()).to_string())[..16].to_owned();
+    line.insert("sum".to_owned(), sum.into());
+    Value::Object(line).to_string()
+}
+
+/// The file with every sum made anew, and every link to the line before too if asked.
+fn written(lines: Lines, chained: bool) -> String {
+    let mut text = String::new();
+    let mut before = hash("");
+    for mut line in lines {
+        if chained {
+            line.insert("prev".to_owned(), before.into());
+        }
+        let line = summed(line);
+        before = hash(&line);
+        text += &(line + "\n");
+    }
+    text
+}
+
+/// Changes the price of the second week.
+fn cheaper(lines: &mut Lines) -> usize {
+    let is_it = |line: &Map<String, Value>| line.get("args").is_some_and(|args| args["C"] == 50);
+    let at = lines.iter().position(is_it).expect("the call of the second week");
+    lines[at]["args"]["C"] = 49.into();
+    at
+}
+
+/// An archive taken apart: its files, and a seal that can be made to fit again.
+struct Opened {
+    files: BTreeMap<String, Vec<u8>>,
+    seal: Seal,
+}
+
+impl Opened {
+    fn of(home: &Home, run: &Path) -> Opened {
+        let archive = home.0.path().join("run.tar");
+        let said = home.run(&["runs", "export", &id(run), "--out", &archive.to_string_lossy()]);
+        assert_eq!(said.code, 0, "{}", said.err);
+        let mut files = BTreeMap::new();
+        for entry in tar::Archive::new(fs::File::open(&archive).expect("a file")).entries().expect("entries")
+        {
+            let mut entry = entry.expect("an entry");
+            let name =
+                entry.path().expect("a path").file_name().expect("a name").to_string_lossy().into_owned();
+            let mut bytes = Vec::new();
+            entry.read_to_end(&mut bytes).expect("bytes");
+            files.insert(name, bytes);
+        }
+        let seal = files.remove("seal.toml").expect("a seal");
+        let seal = toml::from_str(&String::from_utf8(seal).expect("text")).expect("a seal");
+        Opened { files, seal }
+    }
+
+    fn text(&self, file: &str) -> String {
+        String::from_utf8(self.files[file].clone()).expect("text")
+    }
+
+    /// Puts another file in, and a seal that vouches for it.
+    fn put(&mut self, file: &str, text: String) {
+        if file == "trajectory.jsonl" {
+            self.seal.last_hash = hash(text.lines().last().expect("lines"));
+        }
+        let own = self.seal.file.iter_mut().find(|own| own.name == file).expect("it is sealed");
+        (own.bytes, own.blake3) = (text.len() as u64, hash(&text));
+        self.files.insert(file.to_owned(), text.into_bytes());
+        self.seal = self.seal.clone().signed();
+    }
+
+    fn import(&self, home: &Home) -> Said {
+        let archive = home.0.path().join("forged.tar");
+        let mut builder = tar::Builder::new(fs::File::create(&archive).expect("a file"));
+        let seal = ("seal.toml".to_owned(), self.seal.text().into_bytes());
+        for (name, bytes) in self.files.clone().into_iter().chain([seal]) {
+            let mut header = tar::Header::new_ustar();
+            header.set_size(bytes.len() as u64);
+            header.set_mode(0o644);
+            builder
+                .append_data(&mut header, format!("{}/{name}", self.seal.run), &bytes[..])
+                .expect("an entry");
+        }
+        builder.finish().expect("an archive");
+        home.run(&["runs", "import", &archive.to_string_lossy()])
+    }
+}
+
+fn two_weeks() -> (Home, PathBuf) {
+    let home = Home::new();
+    let run = home.two_weeks();
+    (home, run)
+}
+
+#[test]
+fn a_middle_line_that_was_edited_and_summed_anew_is_refused_by_the_next() {
+    let (home, run) = two_weeks();
+    let path = run.join("trajectory.jsonl");
+    let mut lines = lines_of(&fs::read_to_string(&path).expect("text"));
+    let at = cheaper(&mut lines);
+    fs::write(&path, written(lines, false)).expect("written");
+    let next = format!("line {}", at + 2);
+    home.run(&["replay", &id(&run), "--verify"]).fails(3, &[&next, "does not follow from the one before"]);
+}
+
+#[test]
+fn a_trajectory_that_was_chained_anew_does_not_reach_its_states() {
+    let (home, run) = two_weeks();
+    let path = run.join("trajectory.jsonl");
+    let mut lines = lines_of(&fs::read_to_string(&path).expect("text"));
+    cheaper(&mut lines);
+    fs::write(&path, written(lines, true)).expect("written");
+    // The database would tell that it was made of other lines; without it the states have to.
+    fs::remove_file(run.join("world.db")).expect("it is there");
+    fs::remove_file(run.join("snapshot.bin")).unwrap_or_default();
+    let said = home.run(&["replay", &id(&run), "--verify"]);
+    said.fails(3, &["different"]);
+}
+
+#[test]
+fn an_archive_that_was_sealed_anew_is_still_read_line_by_line() {
+    let (home, run) = two_weeks();
+    let other = Home::new();
+    let whole = Opened::of(&home, &run);
+    let opened = || Opened { files: whole.files.clone(), seal: whole.seal.clone() };
+    assert_eq!(whole.import(&other).code, 0, "a fitting seal is accepted");
+    fs::remove_dir_all(other.runs().join(id(&run))).expect("it was there");
+
+    let mut forged = opened();
+    let mut lines = lines_of(&forged.text("trajectory.jsonl"));
+    cheaper(&mut lines);
+    forged.put("trajectory.jsonl", written(lines, false));
+    forged.import(&other).fails(3, &["trajectory.jsonl", "does not follow"]);
+
+    let mut forged = opened();
+    let seed =
+        forged.text("run.toml").lines().find(|line| line.starts_with("seed")).expect("a seed").to_owned();
+    let manifest = forged.text("run.toml").replace(&seed, "seed = 8");
+    forged.put("run.toml", manifest);
+    let said = forged.import(&other);
+    assert_eq!(said.code, 3, "another seed than the first line names: {}{}", said.out, said.err);
+
+    // Whoever makes everything anew makes another run; its states tell.
+    let mut forged = opened();
+    let mut lines = lines_of(&forged.text("trajectory.jsonl"));
+    cheaper(&mut lines);
+    forged.put("trajectory.jsonl", written(lines, true));
+    assert_eq!(forged.import(&other).code, 0);
+    other.run(&["replay", &id(&run), "--verify"]).fails(3, &["different"]);
+}

@@ -1,0 +1,154 @@
+//! A disk that is full: what is not saved does not happen, and what happened is not lost.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::support::home::{Home, Said, bytes_of, id, lines_of, said};
+
+/// Blocks of 512 bytes a file may have.
+const BLOCKS: usize = 2048;
+/// A statement whose line of the trajectory is about this much longer than without.
+const PADDING: usize = 490_000;
+
+/// Plays on a disk on which no file grows beyond the limit.
+fn play(home: &Home, options: &str, lines: &str) -> Said {
+    let program = env!("CARGO_BIN_EXE_novamind");
+    let script = format!("trap '' XFSZ; ulimit -f {BLOCKS}; exec '{program}' play --plain --json {options}");
+    said(home.command("sh").args(["-c", &script]), lines)
+}
+
+fn padding(length: usize) -> String {
+    format!("sql SELECT LENGTH('{}') AS n\n", "x".repeat(length))
+}
+
+fn length(folder: &Path) -> usize {
+    bytes_of(folder, "trajectory.jsonl").len()
+}
+
+fn price(objects: &[Value]) -> Option<f64> {
+    let changes = objects.iter().rev().find(|object| object["command"] == "changes")?;
+    let all = changes["data"]["changes"].as_array()?;
+    all.iter().find(|change| change["setting"] == "price A")?["new"].as_f64()
+}
+
+#[test]
+fn what_was_not_saved_did_not_happen() {
+    let home = Home::new();
+    let mut lines = "set_prices A=10\n".to_owned() + &padding(PADDING) + &padding(PADDING);
+    for amount in 11..400 {
+        lines += &format!("set_prices A={amount}\n");
+    }
+    lines += "next naive\nget_vars\nchanges\n";
+    let said = play(&home, "--days 28", &lines);
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    let objects = said.objects();
+    let refused: Vec<&Value> = objects.iter().filter(|object| object["code"] == "not_saved").collect();
+    assert!(refused.len() > 10, "the disk is not full: {}", objects.len());
+    assert!(refused.iter().all(|object| {
+        object["error"]
+            .as_str()
+            .is_some_and(|text| text.contains("trajectory.jsonl") && text.contains("safe"))
+    }));
+    let last = objects.iter().rfind(|object| object["command"] == "set_prices" && object["ok"] == true);
+    let accepted = last.expect("an accepted call")["data"]["current"]["A"].as_f64();
+    assert_eq!(price(&objects), accepted, "memory is what was confirmed");
+    let next = objects.iter().find(|object| object["command"] == "next").expect("an answer");
+    assert_eq!((next["code"].as_str(), next["day"].as_u64()), (Some("not_saved"), Some(0)));
+
+    let folder = home.only_run();
+    let again = home.play(&["--run", &id(&folder), "--json"], "changes\nset_prices A=5\nnext naive\n");
+    assert_eq!(again.code, 0, "{}", again.err);
+    let objects = again.objects();
+    assert_eq!(price(&objects), accepted, "the file is what was confirmed");
+    assert!(objects.iter().all(|object| object["ok"] != false), "there is room again: {}", again.out);
+    assert_eq!(home.run(&["replay", &id(&folder), "--verify"]).code, 0);
+}
+
+#[test]
+fn a_week_whose_closing_line_did_not_fit_is_simulated_again() {
+    // How long the lines are.
+    let home = Home::new();
+    let start = "set_prices A=12\n".to_owned() + &padding(PADDING);
+    home.play(&["--days", "28"], &(start.clone() + "next naive\n"));
+    let bytes = bytes_of(&home.only_run(), "trajectory.jsonl");
+    let lines = lines_of(&bytes);
+    let [before @ .., padded, advance, week] = &lines[..] else { panic!("there are lines") };
+    let frame = padded.len() - PADDING;
+    let before = before.concat().len() + padded.len();
+    let (advance, week) = (advance.len(), week.len());
+
+    for (room, accepted, remark) in
+        [(advance / 2, false, false), (advance + week / 2, true, true), (advance + week + 2000, true, false)]
+    {
+        let home = Home::new();
+        let more = BLOCKS * 512 - before - room - frame;
+        let said = play(&home, "--days 28", &(start.clone() + &padding(more) + "next naive\nstatus\n"));
+        assert_eq!(said.code, 0, "{}", said.err);
+        let objects = said.objects();
+        let next = objects.iter().find(|object| object["command"] == "next").expect("an answer");
+        assert_eq!(next["ok"], accepted, "room for {room} bytes: {next}");
+        let told = next["data"]["remark"].as_str().is_some_and(|text| text.contains("simulated again"));
+        assert_eq!(told, remark, "room for {room} bytes: {next}");
+        let status = objects.iter().find(|object| object["command"] == "status").expect("an answer");
+        let folder = home.only_run();
+        assert!(length(&folder) <= BLOCKS * 512);
+
+        let again = home.play(&["--run", &id(&folder), "--json"], "status\n");
+        assert_eq!(again.code, 0, "{}", again.err);
+        let objects = again.objects();
+        assert_eq!(objects[1]["data"], status["data"], "room for {room} bytes");
+        assert_eq!(objects[0]["day"], if accepted { 7 } else { 0 });
+        assert_eq!(home.run(&["replay", &id(&folder), "--verify"]).code, 0);
+    }
+}
+
+#[test]
+fn an_archive_that_finds_no_room_is_not_blamed() {
+    let (home, other) = (Home::new(), Home::new());
+    let run = home.two_weeks();
+    let archive = home.0.path().join("run.tar.gz").to_string_lossy().into_owned();
+    assert_eq!(home.run(&["runs", "export", &id(&run), "--out", &archive]).code, 0);
+    let program = env!("CARGO_BIN_EXE_novamind");
+    let script = format!("trap '' XFSZ; ulimit -f 2; exec '{program}' runs import '{archive}'");
+    let full = said(other.command("sh").args(["-c", &script]), "");
+    full.fails(3, &["trajectory.jsonl", "File too large"]);
+    assert!(!full.err.contains("ask for the archive again"), "{}", full.err);
+    assert_eq!(fs::read_dir(other.runs()).expect("a folder").count(), 0, "it leaves nothing behind");
+    assert_eq!(other.run(&["runs", "import", &archive]).code, 0, "there is room again");
+}
+
+#[test]
+fn a_query_makes_a_missing_database_anew_on_the_disk_and_changes_nothing_else() {
+    let home = Home::new();
+    let run = home.two_weeks();
+    let ask = || home.run(&["query", &id(&run), "SELECT count(*), sum(amount) FROM ledger"]);
+    let (before, trajectory) = (ask().out, bytes_of(&run, "trajectory.jsonl"));
+    for snapshot in [true, false] {
+        fs::remove_file(run.join("world.db")).expect("gone");
+        if !snapshot {
+            fs::remove_file(run.join("snapshot.bin")).expect("gone");
+        }
+        let answer = ask();
+        assert_eq!((answer.code, &answer.out), (0, &before), "{}", answer.err);
+        assert!(run.join("world.db").exists(), "the next question finds it");
+        assert_eq!(bytes_of(&run, "trajectory.jsonl"), trajectory);
+    }
+    assert_eq!(ask().out, before);
+    // Where it finds no room it is made in memory.
+    fs::remove_file(run.join("world.db")).expect("gone");
+    let program = env!("CARGO_BIN_EXE_novamind");
+    let sql = "SELECT count(*), sum(amount) FROM ledger";
+    let script = format!("trap '' XFSZ; ulimit -f 8; exec '{program}' query {} '{sql}'", id(&run));
+    assert_eq!(said(home.command("sh").args(["-c", &script]), "").out, before);
+}
+
+#[test]
+fn a_run_that_finds_no_room_at_all_does_not_begin() {
+    let home = Home::new();
+    let program = env!("CARGO_BIN_EXE_novamind");
+    let script = format!("trap '' XFSZ; ulimit -f 0; exec '{program}' play --plain");
+    said(home.command("sh").args(["-c", &script]), "").fails(3, &["runs"]);
+    assert_eq!(fs::read_dir(home.runs()).expect("a folder").count(), 0, "it leaves nothing behind");
+}

@@ -1,0 +1,14 @@
+//! Stories of the built program: pipes, scripts, files, archives, terminals; and its figures beside recorded ones.
+
+mod determinism;
+mod edges;
+mod exports;
+mod forged;
+mod golden;
+mod hardship;
+mod plain;
+mod scenarios;
+#[path = "../support/mod.rs"]
+mod support;
+#[cfg(unix)]
+mod terminal;

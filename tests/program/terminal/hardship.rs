@@ -1,0 +1,231 @@
+//! What happens to programs: small windows, signals, failures, terminals without colours.
+
+use super::pty::Terminal;
+
+#[test]
+fn a_small_window_asks_for_a_larger_one_and_growing_brings_the_screen() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", "1"], (40, 5));
+    terminal.wait_for("NovaMind needs 60×16");
+    terminal.resize(100, 30);
+    terminal.wait_for("Needs you");
+    terminal.resize(20, 5);
+    terminal.wait_for("NovaMind needs 60×");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn termination_restores_the_terminal_and_keeps_the_run() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
+    terminal.wait_for("day 0/500");
+    terminal.signal("-TERM");
+    let (code, screen) = terminal.end();
+    assert_eq!(code, 128 + 15);
+    assert!(screen.contains("is saved at day 0"), "{screen}");
+}
+
+#[test]
+fn a_stopped_program_gives_the_terminal_back_and_takes_it_again() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
+    terminal.wait_for("Needs you");
+    assert!(terminal.is_raw());
+    for _ in 0..2 {
+        terminal.signal("-TSTP");
+        terminal.wait_until_stopped();
+        assert!(!terminal.is_raw(), "whoever has the terminal now can type");
+        terminal.wait_for_bytes(b"\x1b[?1049l");
+        terminal.signal("-CONT");
+        terminal.wait_for("Needs you");
+        terminal.wait_until_raw();
+    }
+    // Nobody is asked before this one; another program may leave the terminal as it likes.
+    terminal.signal("-STOP");
+    terminal.wait_until_stopped();
+    terminal.cook();
+    terminal.signal("-CONT");
+    terminal.wait_until_raw();
+    terminal.type_keys("8");
+    terminal.wait_for("set_prices");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_and_forgotten_once_there_is_room() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
+    terminal.wait_for("Needs you");
+    let run = std::fs::read_dir(runs.path()).expect("a folder").next().expect("a run").expect("a run").path();
+    let written = std::fs::metadata(run.join("world.db-wal")).expect("a database").len();
+    terminal.bound_files(&written.to_string());
+    terminal.type_keys("n");
+    terminal.wait_for("[1 review]");
+    terminal.type_keys("\rbecause\r");
+    terminal.wait_for("[3 forecasts]");
+    terminal.type_keys("f\r");
+    terminal.wait_for("Week 1 · day 7");
+    terminal.wait_for("The database is behind");
+    terminal.type_keys("\r3");
+    terminal.wait_for("stale");
+    terminal.bound_files("unlimited");
+    terminal.wait_for("up to date again");
+    terminal.wait_until_gone("The database is behind");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn the_screen_is_drawn_again_on_request() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
+    terminal.wait_for("Needs you");
+    terminal.forget();
+    terminal.type_keys("\x0c");
+    terminal.wait_for("Needs you");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn the_farewell_names_whose_run_goes_on() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--as", "P01", "--new"], (120, 30));
+    terminal.wait_for("Needs you");
+    terminal.type_keys("q");
+    let (code, screen) = terminal.end();
+    assert_eq!(code, 0);
+    assert!(screen.contains("`novamind --as P01 --run latest` continues"), "{screen}");
+    let mut terminal = Terminal::start(runs.path(), &["--as", "P01", "--run", "latest"], (120, 30));
+    terminal.wait_for("day 0/500");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn what_was_chosen_by_key_is_there_the_next_time() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
+    terminal.wait_for("Needs you");
+    assert!(!terminal.contents().is_ascii());
+    terminal.type_keys(";c");
+    terminal.wait_for("theme high-contrast, from now on");
+    terminal.type_keys(";d");
+    terminal.wait_for("drawn with blocks");
+    terminal.type_keys(";d");
+    terminal.wait_for("drawn with ASCII signs");
+    let chosen = runs.path().join("no-configuration/console.toml");
+    let is_kept = || std::fs::read_to_string(&chosen).is_ok_and(|text| text.contains("ascii"));
+    terminal.wait_until_true("the choice is kept", is_kept);
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+    assert!(std::fs::read_to_string(&chosen).expect("a file").contains("high-contrast"));
+    let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (100, 30));
+    terminal.wait_for("Needs you");
+    assert!(terminal.contents().is_ascii(), "{}", terminal.contents());
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn a_wrong_theme_or_key_file_is_named_before_the_terminal_is_taken() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let (code, screen) = Terminal::start(runs.path(), &["--theme", "pink"], (100, 30)).end();
+    assert_eq!(code, 2);
+    assert!(screen.contains("there is no theme pink"), "{screen}");
+    let configuration = runs.path().join("no-configuration");
+    std::fs::create_dir(&configuration).expect("a folder");
+    std::fs::write(configuration.join("keys.toml"), "[global]\nquit = [\"hyper\"]").expect("written");
+    let (code, screen) = Terminal::start(runs.path(), &[], (100, 30)).end();
+    assert_eq!(code, 3);
+    assert!(screen.contains("keys.toml") && screen.contains("is no key"), "{screen}");
+}
+
+#[test]
+fn ascii_and_no_colour_are_honoured() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--ascii", "--theme", "mono", "--new"], (100, 30));
+    terminal.wait_for("day 0/500");
+    terminal.wait_for("Needs you");
+    let contents = terminal.contents();
+    assert!(contents.is_ascii(), "{contents}");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn without_colour_no_colour_is_written() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start_with(
+        runs.path(),
+        &["--new"],
+        (100, 30),
+        &[("NO_COLOR", "1"), ("COLORTERM", "truecolor")],
+    );
+    terminal.wait_for("day 0/500");
+    terminal.wait_for("Needs you");
+    let colours = sequences(terminal.written()).into_iter().filter(|parameters| sets_colour(parameters));
+    assert_eq!(colours.collect::<Vec<_>>(), Vec::<String>::new());
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+/// Parameters of the sequences that set how text looks: `38;5;6` of `ESC [ 38;5;6 m`.
+fn sequences(written: &[u8]) -> Vec<String> {
+    let text = String::from_utf8_lossy(written);
+    let parts = text.split("\x1b[").skip(1);
+    let looks = |part: &str| {
+        let end = part.find(|letter: char| !letter.is_ascii_digit() && letter != ';')?;
+        part[end..].starts_with('m').then(|| part[..end].to_owned())
+    };
+    parts.filter_map(looks).collect()
+}
+
+/// 39 and 49 ask for the terminal's own colours; every other number from 30 to 49 or from 90 on is a colour.
+fn sets_colour(parameters: &str) -> bool {
+    parameters
+        .split(';')
+        .filter_map(|number| number.parse::<u32>().ok())
+        .any(|number| (30..=48).contains(&number) && number != 39 || (90..=107).contains(&number))
+}
+
+#[test]
+fn what_was_confirmed_survives_a_kill() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
+    terminal.wait_for("day 0/500");
+    terminal.type_keys("8\r\r12\t25\t55\r");
+    terminal.wait_for("pricing.set_prices");
+    terminal.type_keys("\x13");
+    terminal.wait_for("set_prices: done");
+    terminal.signal("-KILL");
+    terminal.killed();
+    let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (120, 40));
+    terminal.wait_for("day 0/500");
+    terminal.wait_for("Tools ●3");
+    terminal.type_keys("c");
+    terminal.wait_for("Changes of this week");
+    terminal.wait_for("→ 12");
+    terminal.type_keys("\x03");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn a_failure_of_the_program_gives_the_terminal_back_and_names_the_run() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal =
+        Terminal::start_with(runs.path(), &["--new"], (120, 40), &[("NOVAMIND_FAULT", "panic")]);
+    terminal.wait_for("day 0/500");
+    // F12
+    terminal.type_keys("\x1b[24~");
+    let (code, screen) = terminal.end();
+    assert_eq!(code, 101);
+    assert!(screen.contains("everything confirmed is safe in"), "{screen}");
+    let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (120, 40));
+    terminal.wait_for("day 0/500");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}

@@ -1,0 +1,98 @@
+//! The program is killed at random moments of console play: whatever the screen had confirmed is there.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use novamind::session::{Access, Record, Session, Trajectory, verify};
+
+use super::pty::Terminal;
+use crate::support::dice::Dice;
+
+const KILLS: usize = 8;
+/// With `cargo test --release --test program -- --ignored kill`.
+const ALL_KILLS: usize = 100;
+
+fn only_run(runs: &Path) -> PathBuf {
+    let folders = std::fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
+    folders.into_iter().find(|folder| folder.join("run.toml").exists()).expect("a run")
+}
+
+/// Accepted calls and weeks that the trajectory has.
+fn recorded(runs: &Path) -> (usize, usize) {
+    let lines = Trajectory::read(&only_run(runs).join("trajectory.jsonl")).expect("it reads").lines;
+    let calls = lines.iter().filter(|line| line.record.accepted_call().is_some()).count();
+    (calls, lines.iter().filter(|line| matches!(line.record, Record::Advance(_))).count())
+}
+
+/// Sets a price and says when the screen has confirmed it.
+fn set_a_price(terminal: &mut Terminal, price: usize) {
+    terminal.type_keys("8");
+    terminal.wait_for("set_prices");
+    terminal.type_keys(&format!("\r\r{price}\r"));
+    terminal.wait_for("pricing.set_prices");
+    terminal.type_keys("\x13");
+    terminal.wait_for("set_prices: done");
+}
+
+fn begin_a_week(terminal: &mut Terminal) {
+    terminal.type_keys("n");
+    terminal.wait_for("[1 review]");
+    terminal.type_keys("\rbecause\r");
+    terminal.wait_for("[3 forecasts]");
+    terminal.type_keys("f\r");
+}
+
+fn kills(count: usize) {
+    let mut dice = Dice::of_test("kills in the console");
+    for number in 0..count {
+        let runs = tempfile::tempdir().expect("a folder");
+        let seed = number.to_string();
+        let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", &seed], (100, 30));
+        terminal.wait_for("day 0/500");
+        let (mut calls, mut weeks) = (0, 0);
+        set_a_price(&mut terminal, 10);
+        calls += 1;
+        for week in 1..=dice.roll(3) {
+            begin_a_week(&mut terminal);
+            terminal.wait_for(&format!("Week {week} · day"));
+            terminal.type_keys("\r");
+            weeks += 1;
+        }
+        // Something is under way when it happens.
+        match *dice.pick(&["week", "call"]) {
+            "week" => begin_a_week(&mut terminal),
+            _ => terminal.type_keys("8\r\r17\r\x13"),
+        }
+        let (moment, patience) = (Instant::now(), Duration::from_micros(dice.roll(60_000) as u64));
+        while moment.elapsed() < patience {
+            std::thread::yield_now();
+        }
+        terminal.signal("-KILL");
+        terminal.killed();
+        let (kept_calls, kept_weeks) = recorded(runs.path());
+        assert!(
+            kept_calls >= calls && kept_weeks >= weeks,
+            "kill {number}: {kept_calls} calls, {kept_weeks} weeks"
+        );
+        let folder = only_run(runs.path());
+        let session = Session::open(&folder, Access::Write, true).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(session.weeks().len(), kept_weeks, "kill {number}");
+        drop(session);
+        verify(&folder).unwrap_or_else(|error| panic!("kill {number}: {error}"));
+        let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (100, 30));
+        terminal.wait_for(&format!("day {}/500", 7 * kept_weeks));
+        terminal.type_keys("\x03");
+        terminal.end();
+    }
+}
+
+#[test]
+fn what_the_screen_confirmed_survives_a_kill() {
+    kills(KILLS);
+}
+
+#[test]
+#[ignore = "minutes: all kills"]
+fn what_the_screen_confirmed_survives_every_kill() {
+    kills(ALL_KILLS);
+}

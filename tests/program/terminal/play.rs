@@ -1,0 +1,189 @@
+//! A person plays: weeks, SQL, companies, the mouse, the clipboard.
+
+use super::pty::{Terminal, run_of};
+
+#[test]
+fn a_person_starts_plays_two_weeks_leaves_and_continues() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &[], (120, 40));
+    terminal.wait_for("New run");
+    terminal.type_keys("n");
+    terminal.wait_for("enter starts the run");
+    terminal.type_keys("\r");
+    terminal.wait_for("day 0/500");
+    terminal.type_keys("8\r\r12\t25\t55\r");
+    terminal.wait_for("pricing.set_prices");
+    terminal.type_keys("\x13");
+    terminal.wait_for("set_prices: done");
+    for (week, day) in [(1, 7), (2, 14)] {
+        terminal.type_keys("n");
+        terminal.wait_for("[1 review]");
+        terminal.type_keys("\rbecause\r");
+        terminal.wait_for("[3 forecasts]");
+        terminal.type_keys("f\r");
+        terminal.wait_for(&format!("Week {week} · day {day}"));
+        terminal.type_keys("\r");
+    }
+    terminal.wait_for("day 14/500");
+    terminal.type_keys("q");
+    let (code, screen) = terminal.end();
+    assert_eq!(code, 0);
+    assert!(screen.contains("is saved at day 14"), "{screen}");
+    let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (80, 24));
+    terminal.wait_for("day 14/500");
+    terminal.type_keys("\x03");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn the_first_run_of_a_person_begins_with_the_tour() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &[], (80, 24));
+    terminal.wait_for("New here?");
+    terminal.type_keys("\r");
+    terminal.wait_for("Tour · 1 of 11");
+    terminal.type_keys("8");
+    terminal.wait_for("Tour · 2 of 11");
+    terminal.type_keys("\r\r12\t25\t55\r\x13");
+    terminal.wait_for("Tour · 3 of 11");
+    // F3 passes over a step.
+    terminal.type_keys("\x1bOR");
+    terminal.wait_for("Tour · 4 of 11");
+    terminal.type_keys("\x1bOR");
+    terminal.wait_for("Tour · 5 of 11");
+    terminal.type_keys("\x1bOR");
+    terminal.wait_for("Tour · 6 of 11");
+    terminal.type_keys("n");
+    terminal.wait_for("Tour · 7 of 11");
+    terminal.type_keys("\rcurious\r");
+    terminal.wait_for("Tour · 8 of 11");
+    terminal.type_keys("f\r");
+    terminal.wait_for("Tour · 9 of 11");
+    terminal.type_keys("\x1b");
+    terminal.wait_for("Tour · 10 of 11");
+    // F2 explains, F4 closes the tour.
+    terminal.type_keys("\x1bOQ");
+    terminal.wait_for("Tour · 11 of 11");
+    terminal.type_keys("\x1bOS");
+    terminal.wait_until_gone("Tour ·");
+    terminal.type_keys("\x03");
+    let (code, screen) = terminal.end();
+    assert_eq!(code, 0, "{screen}");
+}
+
+#[test]
+fn a_statement_is_completed_run_and_a_slow_one_cancelled() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", "5"], (120, 40));
+    terminal.wait_for("day 0/500");
+    terminal.type_keys("9");
+    terminal.wait_for("Query");
+    terminal.type_keys("SELECT count(*) AS plans FROM rese");
+    terminal.wait_for("FROM rese");
+    terminal.type_keys("\t");
+    terminal.wait_for("FROM research_projects");
+    // F5
+    terminal.type_keys("\x1b[15~");
+    terminal.wait_for("Result · 1 row");
+    terminal.wait_for("plans");
+    // Pasted text goes in as a whole, line ends included, and runs nothing.
+    let slow = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)\nSELECT count(*) FROM n";
+    terminal.type_keys("\x0e");
+    terminal.wait_until_gone("FROM research_projects");
+    terminal.type_keys(&format!("\x1b[200~{slow}\x1b[201~"));
+    terminal.wait_for("SELECT count(*) FROM n");
+    terminal.type_keys("\x1b[15~");
+    terminal.wait_for("esc cancels");
+    terminal.type_keys("\x1b");
+    terminal.wait_for("stopped");
+    terminal.wait_for("SELECT count(*) FROM n");
+    terminal.type_keys("\x03");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn many_companies_are_answered_by_one_rule() {
+    let runs = tempfile::tempdir().expect("a folder");
+    run_of(runs.path(), &["--policy", "P10", "--seed", "3", "--until", "35"]);
+    let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (120, 40));
+    terminal.wait_for("day 35/500");
+    terminal.type_keys("6");
+    terminal.wait_for("waiting for you");
+    terminal.type_keys("a");
+    terminal.wait_for("marked");
+    terminal.type_keys("\x13");
+    terminal.wait_for("y yes");
+    terminal.type_keys("y");
+    terminal.wait_for("0 waiting for you");
+    terminal.type_keys("q");
+    let (code, screen) = terminal.end();
+    assert_eq!(code, 0, "{screen}");
+}
+
+#[test]
+fn the_mouse_presses_and_can_be_left_to_the_terminal() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
+    terminal.wait_for("day 0/500");
+    // A click on the second line opens the screen whose name is there.
+    let tabs = terminal.contents().lines().nth(1).expect("a second line").to_owned();
+    let column = tabs.find("8 Tools").expect("a tab") + 1;
+    terminal.type_keys(&format!("\x1b[<0;{};2M\x1b[<0;{};2m", column + 2, column + 2));
+    terminal.wait_for("set_prices");
+    terminal.type_keys(";");
+    terminal.wait_for("esc cancel");
+    terminal.type_keys("m");
+    terminal.wait_for("mouse off");
+    terminal.wait_for_bytes(b"\x1b[?1000l");
+    terminal.type_keys(";m");
+    terminal.wait_for("shift and drag");
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn a_call_is_copied_through_the_terminal() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
+    terminal.wait_for("day 0/500");
+    terminal.type_keys("8\r\r12\t25\t55\r");
+    terminal.wait_for("pricing.set_prices");
+    terminal.type_keys("y");
+    terminal.wait_for("copied");
+    terminal.wait_for_bytes(b"\x1b]52;c;");
+    terminal.type_keys("\x03y");
+    assert_eq!(terminal.end().0, 0);
+}
+
+#[test]
+fn a_recorded_run_is_played_again_and_taken_over() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new", "--days", "28"], (120, 40));
+    terminal.wait_for("day 0/28");
+    for (week, day) in [(1, 7), (2, 14)] {
+        terminal.type_keys("n");
+        terminal.wait_for("[1 review]");
+        terminal.type_keys("\rbecause\r");
+        terminal.wait_for("[3 forecasts]");
+        terminal.type_keys("f\r");
+        terminal.wait_for(&format!("Week {week} · day {day}"));
+        terminal.type_keys("\r");
+    }
+    terminal.type_keys("q");
+    assert_eq!(terminal.end().0, 0);
+    let mut terminal = Terminal::start(runs.path(), &["replay", "latest"], (120, 40));
+    terminal.wait_for("week 0/2");
+    terminal.type_keys("FFFF ");
+    terminal.wait_for("week 2/2");
+    terminal.wait_for("end of the record");
+    terminal.type_keys("#1\r");
+    terminal.wait_for("week 1/2");
+    terminal.type_keys("T");
+    terminal.wait_for("on day 7 before week 2");
+    terminal.type_keys("\r");
+    terminal.wait_for("SANDBOX");
+    terminal.type_keys("q");
+    let (code, screen) = terminal.end();
+    assert_eq!(code, 0);
+    assert!(screen.contains("is saved at day 7"), "{screen}");
+}

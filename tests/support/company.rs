@@ -1,0 +1,88 @@
+//! A company that is run through the library: calls, weeks, and what its database says.
+
+use novamind::session::{Cell, Session, Via, Week};
+use serde_json::{Value, json};
+
+/// Calls a tool that has to accept.
+#[track_caller]
+pub fn call(session: &mut Session, tool: &str, arguments: Value) -> Value {
+    let answer = session.call(tool, &arguments, Via::Script);
+    answer.unwrap_or_else(|refusal| panic!("{tool}: {refusal}")).to_json()
+}
+
+/// Opens shop as a sensible beginner would.
+pub fn open_shop(session: &mut Session) {
+    for (tool, arguments) in opening() {
+        call(session, tool, arguments);
+    }
+}
+
+/// The calls that open shop.
+pub fn opening() -> [(&'static str, Value); 6] {
+    [
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_model_tiers", json!({"B": 2, "C": 4})),
+        ("set_usage_quotas", json!({"A": 60000, "B": 250000, "C": 1200000})),
+        ("set_daily_spend", json!({"operations": 200, "development": 200})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 6000}})),
+        (
+            "set_targeted_ad_spend",
+            json!({"targeted_spend": {"content_marketing": {"S1": 750}, "linkedin": {"E1": 3000}}}),
+        ),
+    ]
+}
+
+/// Lets a week pass with the naive forecasts.
+#[track_caller]
+pub fn week(session: &mut Session) -> Week {
+    let forecasts = session.naive_forecasts();
+    session.advance("if leads hold, grow", &forecasts, Via::Script, &mut |_| {}).expect("a week")
+}
+
+/// Lets some weeks pass.
+#[track_caller]
+pub fn weeks(session: &mut Session, count: usize) {
+    for _ in 0..count {
+        week(session);
+    }
+}
+
+/// All rows of a statement.
+#[track_caller]
+pub fn rows(session: &mut Session, sql: &str) -> Vec<Vec<Cell>> {
+    let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+    assert!(!rows.truncated, "{sql}");
+    rows.rows
+}
+
+/// All rows of a statement as numbers.
+#[track_caller]
+pub fn numbers(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
+    let number = |cell: &Cell| match cell {
+        Cell::Integer(number) => *number as f64,
+        Cell::Real(number) => *number,
+        other => panic!("{sql}: {other:?}"),
+    };
+    rows(session, sql).iter().map(|row| row.iter().map(number).collect()).collect()
+}
+
+/// The first column of a statement as numbers.
+#[track_caller]
+pub fn column(session: &mut Session, sql: &str) -> Vec<f64> {
+    numbers(session, sql).iter().map(|row| row[0]).collect()
+}
+
+/// The first cell of a statement as a number.
+#[track_caller]
+pub fn number(session: &mut Session, sql: &str) -> f64 {
+    column(session, sql)[0]
+}
+
+/// The first cell of a statement as a text.
+#[track_caller]
+pub fn text(session: &mut Session, sql: &str) -> String {
+    match &rows(session, sql)[0][0] {
+        Cell::Text(text) => text.clone(),
+        other => panic!("{sql}: {other:?}"),
+    }
+}

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::run::progress_bar;
 use super::{Context, Failure, print};
-use crate::lab::bench::{Bench, CASES, Case, Figure, Samples, Unit, Verdict, calibrate};
+use crate::lab::bench::{Bench, BenchFigure, CASES, Case, Samples, Unit, Verdict, calibrate};
 use crate::lab::median;
 use crate::notation::grouped;
 
@@ -58,7 +58,7 @@ impl Options {
 /// A measured row.
 struct Row {
     case: &'static str,
-    figure: &'static Figure,
+    figure: &'static BenchFigure,
     samples: Vec<f64>,
 }
 

@@ -9,7 +9,9 @@ use rayon::prelude::*;
 
 use super::run::{Seeds, parse_seeds, progress_bar, thread_pool};
 use super::{Context, Failure, print};
-use crate::lab::{Collector, Comparison, Figure, Policy, Reference, RunSpec, compare, play, read_reference};
+use crate::lab::{
+    Collector, Figure, GoldenComparison, Policy, Reference, RunSpec, compare, play, read_reference,
+};
 
 /// Options of `lab`.
 #[derive(Debug, Args)]
@@ -66,7 +68,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 struct Verdict {
-    comparison: Comparison,
+    comparison: GoldenComparison,
     biased: Vec<(String, f64, f64)>,
 }
 
@@ -168,7 +170,7 @@ fn figures(
 /// Runs the following seeds for figures that look biased: (figure, first median, second median) of those that
 /// are off to the same side again.
 fn confirm(
-    comparison: &Comparison,
+    comparison: &GoldenComparison,
     policy: &Policy,
     reference: &Reference,
     seeds: &Seeds,

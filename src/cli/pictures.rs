@@ -40,15 +40,15 @@ pub struct Options {
     #[arg(long)]
     ascii: bool,
     /// Text or SVG.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    format: Format,
+    #[arg(long, value_enum, default_value_t = PictureFormat::Text)]
+    format: PictureFormat,
     /// Folder for one file per screen; without it everything goes to standard output.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
+enum PictureFormat {
     Text,
     Svg,
 }
@@ -124,8 +124,8 @@ fn take_pictures(
         let frame = console.draw();
         let paper = if options.theme == "light" { Paper::LIGHT } else { Paper::DARK };
         let (picture, ending) = match options.format {
-            Format::Text => (photograph::text(&frame), "txt"),
-            Format::Svg => (photograph::svg(&frame, paper), "svg"),
+            PictureFormat::Text => (photograph::text(&frame), "txt"),
+            PictureFormat::Svg => (photograph::svg(&frame, paper), "svg"),
         };
         match &options.out {
             None => print(&picture)?,

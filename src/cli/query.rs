@@ -24,12 +24,12 @@ pub struct Options {
     sql: String,
     /// Format of the result.
     #[arg(long, value_enum, default_value = "table")]
-    format: Format,
+    format: RowFormat,
 }
 
 /// Format of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub enum RowFormat {
     /// Aligned columns.
     Table,
     /// Comma-separated values.
@@ -43,9 +43,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
     let rows = ask(&folder, &options.sql)?;
     match options.format {
-        Format::Table => print(&printable(&crate::plain::table(&rows))),
-        Format::Csv => print(&as_csv(&rows)?),
-        Format::Json => print(&format!("{}\n", serde_json::Value::Object(rows_as_json(&rows)))),
+        RowFormat::Table => print(&printable(&crate::plain::table(&rows))),
+        RowFormat::Csv => print(&as_csv(&rows)?),
+        RowFormat::Json => print(&format!("{}\n", serde_json::Value::Object(rows_as_json(&rows)))),
     }
 }
 

@@ -18,7 +18,7 @@ pub struct Options {
     session: bool,
     /// Format of the report.
     #[arg(long, value_enum, default_value = "markdown")]
-    format: Format,
+    format: ReportFormat,
     /// Write to this file instead of standard output.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -26,7 +26,7 @@ pub struct Options {
 
 /// Format of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub enum ReportFormat {
     /// Text with headings and tables.
     Markdown,
     /// One page with charts, without scripts or other files.
@@ -50,26 +50,26 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 /// The report of the run in a folder; nothing of the run is changed.
-fn report_of(folder: &Path, format: Format) -> Result<String, Failure> {
+fn report_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
     let told = |write: fn(&Story) -> String| -> Result<String, Failure> {
         Ok(write(&Story::of(&Session::open(folder, Access::Read, true)?)))
     };
     match format {
-        Format::Markdown => told(as_markdown),
-        Format::Html => told(as_html),
-        Format::Json => Err(Failure::usage(
+        ReportFormat::Markdown => told(as_markdown),
+        ReportFormat::Html => told(as_html),
+        ReportFormat::Json => Err(Failure::usage(
             "a report is markdown or html; json needs --session, and `novamind query` gives the figures",
         )),
     }
 }
 
 /// How the run in a folder was played; nothing of the run is changed.
-fn session_of(folder: &Path, format: Format) -> Result<String, Failure> {
+fn session_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
     let logbook = logbook_of(folder)?;
     Ok(match format {
-        Format::Markdown => session_as_markdown(&logbook),
-        Format::Html => session_as_html(&logbook),
-        Format::Json => serde_json::to_string_pretty(&logbook).unwrap_or_default() + "\n",
+        ReportFormat::Markdown => session_as_markdown(&logbook),
+        ReportFormat::Html => session_as_html(&logbook),
+        ReportFormat::Json => serde_json::to_string_pretty(&logbook).unwrap_or_default() + "\n",
     })
 }
 
@@ -101,28 +101,29 @@ mod tests {
             participant: None,
             names_runs: true,
         };
-        let written = |format: Format, name: &str| {
+        let written = |format: ReportFormat, name: &str| {
             let path = runs.path().join(name);
             let options =
                 Options { run: "latest".to_owned(), session: false, format, out: Some(path.clone()) };
             run(&options, &context).expect("a report");
             std::fs::read_to_string(path).expect("a file")
         };
-        let markdown = written(Format::Markdown, "report.md");
+        let markdown = written(ReportFormat::Markdown, "report.md");
         assert!(
             markdown.starts_with(&format!("# NovaMind · run {id}\n\n**Day 7 of 21. Cash is $")),
             "{markdown}"
         );
         assert!(markdown.contains("“wait and see”"), "{markdown}");
-        assert!(written(Format::Html, "report.html").contains("<svg "));
+        assert!(written(ReportFormat::Html, "report.html").contains("<svg "));
         let nowhere = Options {
             run: id,
             session: true,
-            format: Format::Html,
+            format: ReportFormat::Html,
             out: Some("/nowhere/at/all.html".into()),
         };
         assert_eq!(run(&nowhere, &context).expect_err("no such folder").code, 1);
-        let unknown = Options { run: "zzzz".to_owned(), session: false, format: Format::Html, out: None };
+        let unknown =
+            Options { run: "zzzz".to_owned(), session: false, format: ReportFormat::Html, out: None };
         assert_eq!(run(&unknown, &context).expect_err("no such run").code, 3);
     }
 }

@@ -8,11 +8,11 @@ use super::{Context, Failure, print};
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
-    command: Choice,
+    command: ScenarioCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Choice {
+enum ScenarioCommand {
     /// List all scenarios.
     List,
     /// Show the effective parameters of a scenario as TOML.
@@ -26,7 +26,7 @@ enum Choice {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let configuration = &context.configuration;
     match &options.command {
-        Choice::List => {
+        ScenarioCommand::List => {
             let (mut text, mut unreadable) = (String::new(), Vec::new());
             for name in configuration.scenarios() {
                 match configuration.scenario(&name) {
@@ -38,7 +38,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             print(&text)?;
             if unreadable.is_empty() { Ok(()) } else { Err(Failure::unreadable(unreadable.join("\n"))) }
         }
-        Choice::Show { name } => {
+        ScenarioCommand::Show { name } => {
             let scenario = configuration.scenario(name)?;
             let params = configuration.parameters(&scenario, &[], true)?;
             let table = toml::to_string(&params)

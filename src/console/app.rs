@@ -19,7 +19,7 @@ use super::action::{Action, Scope};
 use super::canvas::Click;
 use super::company::Company;
 use super::dialogs::Dialog;
-use super::dialogs::filing::Filing;
+use super::dialogs::filing::FilingDialog;
 use super::effect::Effect;
 use super::glyphs::Glyphs;
 use super::keys::{Chord, Keys};
@@ -115,7 +115,7 @@ pub struct Run {
     /// Every screen.
     pub screens: Screens,
     /// The dialog before a week.
-    pub filing: Filing,
+    pub filing: FilingDialog,
     /// The story of the run, once it is over and was told.
     pub story: Option<Arc<Story>>,
     /// Counts what has changed the run, so that late answers are told from fresh ones.

@@ -43,7 +43,7 @@ use std::time::Duration;
 use app::{App, Order, Settings, Stage};
 use effect::Effect;
 use message::Message;
-use terminal::Screen;
+use terminal::TerminalScreen;
 use worker::Workers;
 
 /// How often a frame is drawn while only time passes.
@@ -63,7 +63,7 @@ pub fn play(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option
     if let Some(effect) = start {
         app.start_with(effect);
     }
-    let screen = Screen::take(again)?;
+    let screen = TerminalScreen::take(again)?;
     listen(sender.clone());
     let mut console = Console { app, workers, screen, messages, sender };
     let end = console.run();
@@ -76,7 +76,7 @@ pub fn play(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option
 struct Console {
     app: App,
     workers: Workers,
-    screen: Screen,
+    screen: TerminalScreen,
     messages: Receiver<Message>,
     sender: Sender<Message>,
 }

@@ -8,7 +8,7 @@ use crate::world::identifiers::Group;
 
 /// Who writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum PostKind {
     /// Customers of their own accord.
     Customers,
     /// Rivals and the economy, in the news.
@@ -19,17 +19,17 @@ pub enum Kind {
     Own,
 }
 
-impl Kind {
+impl PostKind {
     /// All kinds in the order they are chosen.
-    pub const ALL: [Kind; 4] = [Kind::Customers, Kind::Press, Kind::Comments, Kind::Own];
+    pub const ALL: [PostKind; 4] = [PostKind::Customers, PostKind::Press, PostKind::Comments, PostKind::Own];
 
     /// Name.
     pub fn name(self) -> &'static str {
         match self {
-            Kind::Customers => "customers",
-            Kind::Press => "press",
-            Kind::Comments => "comments",
-            Kind::Own => "our posts",
+            PostKind::Customers => "customers",
+            PostKind::Press => "press",
+            PostKind::Comments => "comments",
+            PostKind::Own => "our posts",
         }
     }
 }
@@ -38,7 +38,7 @@ impl Kind {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Post {
     /// Who writes.
-    pub kind: Kind,
+    pub kind: PostKind,
     /// Number among the posts of others, or among ours.
     pub number: u32,
     /// Day.
@@ -70,11 +70,11 @@ impl Post {
     /// The line above its text.
     pub fn head(&self) -> String {
         match (self.kind, self.answers) {
-            (Kind::Own, Some(post)) => {
+            (PostKind::Own, Some(post)) => {
                 format!("our post {}, answers #{post} · {}", self.number, self.reactions())
             }
-            (Kind::Own, None) => format!("our post {} · {}", self.number, self.reactions()),
-            (Kind::Comments, Some(own)) => {
+            (PostKind::Own, None) => format!("our post {} · {}", self.number, self.reactions()),
+            (PostKind::Comments, Some(own)) => {
                 format!("{} · #{} on our post {own}, day {}", self.author, self.number, self.day)
             }
             _ => format!("{} · #{}", self.author, self.number),
@@ -117,10 +117,10 @@ fn post_of(told: &SocialPost) -> Post {
     // The press writes as the first group and has no profile; customers of groups that were found have none either.
     let is_press = told.group_id.is_some() && told.group_id == Group::at(0);
     let (kind, author) = match (told.reply_to_agent_post_id, told.persona_name.as_deref()) {
-        (Some(_), name) => (Kind::Comments, format!("{} · {group}", name.unwrap_or("somebody"))),
-        (None, Some(name)) => (Kind::Customers, format!("{name} · {group}")),
-        (None, None) if is_press => (Kind::Press, "press".to_owned()),
-        (None, None) => (Kind::Customers, group.to_owned()),
+        (Some(_), name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("somebody"))),
+        (None, Some(name)) => (PostKind::Customers, format!("{name} · {group}")),
+        (None, None) if is_press => (PostKind::Press, "press".to_owned()),
+        (None, None) => (PostKind::Customers, group.to_owned()),
     };
     Post {
         kind,
@@ -155,9 +155,9 @@ mod tests {
             })
         };
         let who = |post: Post| (post.kind, post.author);
-        assert_eq!(who(told("D_S06", None)), (Kind::Customers, "D_S06".to_owned()));
-        assert_eq!(who(told("S1", None)), (Kind::Press, "press".to_owned()));
-        assert_eq!(who(told("S1", Some("Ada"))), (Kind::Customers, "Ada · S1".to_owned()));
+        assert_eq!(who(told("D_S06", None)), (PostKind::Customers, "D_S06".to_owned()));
+        assert_eq!(who(told("S1", None)), (PostKind::Press, "press".to_owned()));
+        assert_eq!(who(told("S1", Some("Ada"))), (PostKind::Customers, "Ada · S1".to_owned()));
     }
     use crate::console::test_kit::played;
     use crate::session::Via;

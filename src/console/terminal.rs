@@ -19,7 +19,7 @@ use super::app::App;
 use super::frame;
 
 /// The terminal while the console has it; given back when this is dropped.
-pub struct Screen {
+pub struct TerminalScreen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
 }
 
@@ -31,12 +31,12 @@ pub fn remember_run(folder: Option<String>) {
     *SAVED_AT.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = folder;
 }
 
-impl Screen {
+impl TerminalScreen {
     /// Takes the terminal. A failure of the program names the command that goes on with the newest run.
     ///
     /// # Errors
     /// It does not let itself be taken.
-    pub fn take(again: String) -> io::Result<Screen> {
+    pub fn take(again: String) -> io::Result<TerminalScreen> {
         let taken = prepare().and_then(|()| Terminal::new(CrosstermBackend::new(io::stdout())));
         let terminal = taken.inspect_err(|_| restore())?;
         let usual = std::panic::take_hook();
@@ -51,7 +51,7 @@ impl Screen {
                 }
             }
         }));
-        Ok(Screen { terminal })
+        Ok(TerminalScreen { terminal })
     }
 
     /// Gives the terminal back and stops the program until it is continued; then takes the terminal again.
@@ -127,7 +127,7 @@ impl Screen {
     }
 }
 
-impl Drop for Screen {
+impl Drop for TerminalScreen {
     fn drop(&mut self) {
         restore();
     }

@@ -59,7 +59,7 @@ pub enum Role {
 
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-struct Look {
+struct RoleStyle {
     fg: Option<Color>,
     bg: Option<Color>,
     bold: bool,
@@ -68,7 +68,7 @@ struct Look {
     underline: bool,
 }
 
-impl Look {
+impl RoleStyle {
     fn style(self) -> Style {
         let modifiers = [
             (self.bold, Modifier::BOLD),
@@ -85,29 +85,29 @@ impl Look {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    text: Look,
-    dim: Look,
-    strong: Look,
-    title: Look,
-    border: Look,
-    focus: Look,
-    selection: Look,
-    selection_idle: Look,
-    tab: Look,
-    tab_here: Look,
-    key: Look,
-    good: Look,
-    bad: Look,
-    warning: Look,
-    header: Look,
-    field: Look,
-    changed: Look,
-    series: Vec<Look>,
-    fan: Look,
-    keyword: Look,
-    string: Look,
-    number: Look,
-    comment: Look,
+    text: RoleStyle,
+    dim: RoleStyle,
+    strong: RoleStyle,
+    title: RoleStyle,
+    border: RoleStyle,
+    focus: RoleStyle,
+    selection: RoleStyle,
+    selection_idle: RoleStyle,
+    tab: RoleStyle,
+    tab_here: RoleStyle,
+    key: RoleStyle,
+    good: RoleStyle,
+    bad: RoleStyle,
+    warning: RoleStyle,
+    header: RoleStyle,
+    field: RoleStyle,
+    changed: RoleStyle,
+    series: Vec<RoleStyle>,
+    fan: RoleStyle,
+    keyword: RoleStyle,
+    string: RoleStyle,
+    number: RoleStyle,
+    comment: RoleStyle,
 }
 
 /// A set of colours.

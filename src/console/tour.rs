@@ -35,7 +35,7 @@ enum Done {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Step {
+struct TourStep {
     title: String,
     look: String,
     press: String,
@@ -44,16 +44,16 @@ struct Step {
 
 #[derive(Deserialize)]
 struct Steps {
-    step: Vec<Step>,
+    step: Vec<TourStep>,
 }
 
-static STEPS: LazyLock<Vec<Step>> = LazyLock::new(|| {
+static STEPS: LazyLock<Vec<TourStep>> = LazyLock::new(|| {
     let text = include_str!("../../assets/tour.toml");
     toml::from_str::<Steps>(text).expect("a test reads the shipped tour").step
 });
 
 /// What a step is judged by.
-pub struct Facts<'a> {
+pub struct TourFacts<'a> {
     /// The company.
     pub company: &'a Company,
     /// The screen that is shown.
@@ -69,7 +69,7 @@ pub struct Facts<'a> {
 }
 
 impl Done {
-    fn holds(self, facts: &Facts<'_>) -> bool {
+    fn holds(self, facts: &TourFacts<'_>) -> bool {
         let company = facts.company;
         let weeks = company.weeks.len();
         let any = |tool: ToolId| ["A", "B", "C"].iter().any(|plan| company.setting(tool, plan) > 0.0);
@@ -108,7 +108,7 @@ pub struct Tour {
 
 impl Tour {
     /// Goes on over every step that is done; false when none is left.
-    pub fn settle(&mut self, facts: &Facts<'_>) -> bool {
+    pub fn settle(&mut self, facts: &TourFacts<'_>) -> bool {
         while STEPS.get(self.at).is_some_and(|step| step.done.holds(facts)) {
             self.at += 1;
         }
@@ -192,8 +192,8 @@ mod tests {
     use crate::console::company::Company;
     use crate::console::test_kit::{company, painted, played};
 
-    fn facts(company: &Company) -> Facts<'_> {
-        Facts {
+    fn facts(company: &Company) -> TourFacts<'_> {
+        TourFacts {
             company,
             here: ScreenId::Overview,
             before: &[],
@@ -230,14 +230,14 @@ mod tests {
         let mut tour = Tour::default();
         assert!(tour.settle(&facts(&fresh)));
         assert_eq!(tour.at, 0);
-        assert!(tour.settle(&Facts { here: ScreenId::Tools, ..facts(&fresh) }));
+        assert!(tour.settle(&TourFacts { here: ScreenId::Tools, ..facts(&fresh) }));
         assert_eq!(STEPS[tour.at].done, Done::PriceSet);
         let played = Company::of(&played(1));
-        assert!(tour.settle(&Facts { dialog: true, ..facts(&played) }));
+        assert!(tour.settle(&TourFacts { dialog: true, ..facts(&played) }));
         assert_eq!(STEPS[tour.at].done, Done::ReportRead);
         assert!(tour.settle(&facts(&played)));
         assert_eq!(STEPS[tour.at].done, Done::Explained);
-        assert!(tour.settle(&Facts { explained: true, ..facts(&played) }));
+        assert!(tour.settle(&TourFacts { explained: true, ..facts(&played) }));
         assert_eq!(STEPS[tour.at].done, Done::SecondWeek);
         tour.skip();
         assert!(!tour.settle(&facts(&played)), "the tour is over");

@@ -33,7 +33,7 @@ pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::R
 }
 
 /// What the two tables differ in. Columns 0 and 1 are always day and customer_id.
-trait Kind: Send + Sync + Sized + 'static {
+trait BlockKind: Send + Sync + Sized + 'static {
     type Run: Run;
     const DECLARATION: &'static CStr;
 
@@ -43,11 +43,11 @@ trait Kind: Send + Sync + Sized + 'static {
 }
 
 /// What a row of a table holds besides day and customer.
-type RowOf<K> = <<K as Kind>::Run as Run>::Row;
+type RowOf<K> = <<K as BlockKind>::Run as Run>::Row;
 
 /// A row: day in the store, run of the day, position in the run.
 #[derive(Clone, Copy, Default)]
-struct Place {
+struct RowPlace {
     day: usize,
     run: usize,
     at: usize,
@@ -55,7 +55,7 @@ struct Place {
 
 struct Usage;
 
-impl Kind for Usage {
+impl BlockKind for Usage {
     type Run = UsageRows;
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(day INTEGER, customer_id INTEGER, usage_units INTEGER)";
@@ -75,7 +75,7 @@ impl Kind for Usage {
 
 struct Ads;
 
-impl Kind for Ads {
+impl BlockKind for Ads {
     type Run = AdsRun;
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(day INTEGER, customer_id INTEGER, group_id TEXT, ads_strength REAL, revenue REAL)";
@@ -115,7 +115,7 @@ fn letter(column: c_int, operator: IndexConstraintOp) -> Option<char> {
 }
 
 #[repr(C)]
-struct BlockTable<K: Kind> {
+struct BlockTable<K: BlockKind> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab,
     seen: Arc<Seen>,
@@ -123,7 +123,7 @@ struct BlockTable<K: Kind> {
 }
 
 // SAFETY: the struct is `repr(C)` and starts with `sqlite3_vtab`, as the trait requires.
-unsafe impl<'vtab, K: Kind> VTab<'vtab> for BlockTable<K> {
+unsafe impl<'vtab, K: BlockKind> VTab<'vtab> for BlockTable<K> {
     type Aux = Arc<Seen>;
     type Cursor = BlockCursor<'vtab, K>;
 
@@ -170,7 +170,7 @@ unsafe impl<'vtab, K: Kind> VTab<'vtab> for BlockTable<K> {
             base: ffi::sqlite3_vtab_cursor::default(),
             store: self.seen.store(),
             seen: self.seen.clone(),
-            place: Place::default(),
+            place: RowPlace::default(),
             run: None,
             days: 0..0,
             customer: None,
@@ -181,15 +181,15 @@ unsafe impl<'vtab, K: Kind> VTab<'vtab> for BlockTable<K> {
 }
 
 /// Rows of one customer in an index, those that are still to come.
-type Found<K> = (Arc<ByCustomer<<K as Kind>::Run>>, Range<usize>);
+type Found<K> = (Arc<ByCustomer<<K as BlockKind>::Run>>, Range<usize>);
 
 #[repr(C)]
-struct BlockCursor<'vtab, K: Kind> {
+struct BlockCursor<'vtab, K: BlockKind> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab_cursor,
     store: BlockStore,
     seen: Arc<Seen>,
-    place: Place,
+    place: RowPlace,
     /// The run of the place, once a row of it was asked for.
     run: Option<K::Run>,
     /// Days in the store that are asked for.
@@ -201,7 +201,7 @@ struct BlockCursor<'vtab, K: Kind> {
     kind: PhantomData<&'vtab K>,
 }
 
-impl<K: Kind> BlockCursor<'_, K> {
+impl<K: BlockKind> BlockCursor<'_, K> {
     /// Moves on to the first row at or after the place that may be asked for.
     fn settle(&mut self) {
         let days = K::days(&self.store);
@@ -227,7 +227,7 @@ impl<K: Kind> BlockCursor<'_, K> {
                 }
                 (self.place.run, self.place.at, self.run) = (self.place.run + 1, 0, None);
             }
-            self.place = Place { day: self.place.day + 1, run: 0, at: 0 };
+            self.place = RowPlace { day: self.place.day + 1, run: 0, at: 0 };
         }
     }
 
@@ -268,7 +268,7 @@ impl<K: Kind> BlockCursor<'_, K> {
 }
 
 // SAFETY: the struct is `repr(C)` and starts with `sqlite3_vtab_cursor`, as the trait requires.
-unsafe impl<K: Kind> VTabCursor for BlockCursor<'_, K> {
+unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
     fn filter(&mut self, _: c_int, plan: Option<&str>, values: &Filters<'_>) -> rusqlite::Result<()> {
         let (mut first_day, mut last_day) = (f64::NEG_INFINITY, f64::INFINITY);
         (self.customer, self.found, self.run) = (None, None, None);
@@ -299,7 +299,7 @@ unsafe impl<K: Kind> VTabCursor for BlockCursor<'_, K> {
             self.found = Some((index, rows));
             return Ok(());
         }
-        self.place = Place { day: self.days.start, run: 0, at: 0 };
+        self.place = RowPlace { day: self.days.start, run: 0, at: 0 };
         self.settle();
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Help for the SQL prompt: what an error means here, and why a result may be empty.
 
 use super::catalogue::{Table, table, tables};
-use super::tokens::{Kind, Token, tokens};
+use super::tokens::{Token, TokenKind, tokens};
 
 /// The message of the engine, with what is valid instead.
 pub(super) fn explain_error(message: &str, sql: &str) -> String {
@@ -93,8 +93,8 @@ fn is_text(token: &Token<'_>) -> bool {
         columns.any(|column| column.name.eq_ignore_ascii_case(name))
     };
     match token.kind {
-        Kind::Text => true,
-        Kind::Quoted => token.written.starts_with('"') && !is_column(&token.content()),
+        TokenKind::Text => true,
+        TokenKind::Quoted => token.written.starts_with('"') && !is_column(&token.content()),
         _ => false,
     }
 }

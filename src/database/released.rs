@@ -115,7 +115,8 @@ impl Released {
     /// difference.
     fn respelled(&self, sql: String) -> String {
         let own = tokens(&sql);
-        let places: Vec<Place> = (0..own.len()).filter_map(|at| Place::of(&own, at)).collect();
+        let places: Vec<StatementPlace> =
+            (0..own.len()).filter_map(|at| StatementPlace::of(&own, at)).collect();
         let Some(program) = self.program(&sql).filter(|_| !places.is_empty()) else { return sql };
         let qualifiers = qualifiers(&own);
         let mut spelled = sql.clone();
@@ -170,7 +171,7 @@ impl Statements<'_> {
 }
 
 /// A place in a statement that ordinary tables understand and views do not.
-struct Place {
+struct StatementPlace {
     begin: usize,
     end: usize,
     /// The number of a row, with no table before it; otherwise `main.`, or one with a table.
@@ -183,8 +184,8 @@ enum PlaceKind {
     RowNumber { qualified: bool },
 }
 
-impl Place {
-    fn of(tokens: &[Token<'_>], at: usize) -> Option<Place> {
+impl StatementPlace {
+    fn of(tokens: &[Token<'_>], at: usize) -> Option<StatementPlace> {
         let token = &tokens[at];
         let dot =
             |at: Option<usize>| at.and_then(|at| tokens.get(at)).is_some_and(|token| token.is_sign("."));
@@ -194,11 +195,11 @@ impl Place {
         let (name, place) = (token.content(), token.place());
         if name.eq_ignore_ascii_case("main") && dot(Some(at + 1)) {
             let end = tokens.get(at + 2)?.at;
-            return Some(Place { begin: place.start, end, kind: PlaceKind::Main });
+            return Some(StatementPlace { begin: place.start, end, kind: PlaceKind::Main });
         }
         let is_number = ROW_NUMBERS.iter().any(|number| name.eq_ignore_ascii_case(number));
         let qualified = dot(at.checked_sub(1));
-        is_number.then_some(Place {
+        is_number.then_some(StatementPlace {
             begin: place.start,
             end: place.end,
             kind: PlaceKind::RowNumber { qualified },

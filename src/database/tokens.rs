@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// What a token is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum TokenKind {
     /// A name, or a word of the language.
     Name,
     /// A name in double quotes, brackets or backquotes; in double quotes a text, where no name is meant.
@@ -22,7 +22,7 @@ pub(super) enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Token<'a> {
     /// What it is.
-    pub kind: Kind,
+    pub kind: TokenKind,
     /// As it is written.
     pub written: &'a str,
     /// Where it begins, in bytes.
@@ -38,8 +38,8 @@ impl<'a> Token<'a> {
     /// What it means without its quotes.
     pub fn content(&self) -> Cow<'a, str> {
         let quote = match (self.kind, self.written.chars().next()) {
-            (Kind::Quoted | Kind::Text, Some('[')) => ']',
-            (Kind::Quoted | Kind::Text, Some(quote)) => quote,
+            (TokenKind::Quoted | TokenKind::Text, Some('[')) => ']',
+            (TokenKind::Quoted | TokenKind::Text, Some(quote)) => quote,
             _ => return Cow::Borrowed(self.written),
         };
         let inner = &self.written[1..];
@@ -52,17 +52,17 @@ impl<'a> Token<'a> {
 
     /// Whether it is this word of the language or this name; case does not count.
     pub fn is(&self, word: &str) -> bool {
-        self.kind == Kind::Name && self.written.eq_ignore_ascii_case(word)
+        self.kind == TokenKind::Name && self.written.eq_ignore_ascii_case(word)
     }
 
     /// Whether it is this sign.
     pub fn is_sign(&self, sign: &str) -> bool {
-        self.kind == Kind::Sign && self.written == sign
+        self.kind == TokenKind::Sign && self.written == sign
     }
 
     /// Whether it may name something: a name, quoted or not.
     pub fn may_name(&self) -> bool {
-        matches!(self.kind, Kind::Name | Kind::Quoted | Kind::Text)
+        matches!(self.kind, TokenKind::Name | TokenKind::Quoted | TokenKind::Text)
     }
 }
 
@@ -79,20 +79,22 @@ pub(super) fn tokens(sql: &str) -> Vec<Token<'_>> {
 }
 
 /// Kind and length of what a text begins with; blanks and comments have no kind.
-fn next(rest: &str) -> (Option<Kind>, usize) {
+fn next(rest: &str) -> (Option<TokenKind>, usize) {
     let until = |end: &str, from: usize| rest[from..].find(end).map(|at| from + at + end.len());
     let first = rest.chars().next().unwrap_or(' ');
     match first {
         _ if rest.starts_with("--") => (None, until("\n", 2).unwrap_or(rest.len())),
         _ if rest.starts_with("/*") => (None, until("*/", 2).unwrap_or(rest.len())),
         blank if blank.is_ascii_whitespace() => (None, 1),
-        '\'' => (Some(Kind::Text), quoted(rest, '\'')),
-        '"' | '`' => (Some(Kind::Quoted), quoted(rest, first)),
-        '[' => (Some(Kind::Quoted), until("]", 1).unwrap_or(rest.len())),
-        '?' | '0'..='9' => (Some(Kind::Number), 1 + word_length(&rest[1..])),
-        ':' | '@' | '#' if word_length(&rest[1..]) > 0 => (Some(Kind::Number), 1 + word_length(&rest[1..])),
-        letter if begins_name(letter) => (Some(Kind::Name), word_length(rest)),
-        other => (Some(Kind::Sign), other.len_utf8()),
+        '\'' => (Some(TokenKind::Text), quoted(rest, '\'')),
+        '"' | '`' => (Some(TokenKind::Quoted), quoted(rest, first)),
+        '[' => (Some(TokenKind::Quoted), until("]", 1).unwrap_or(rest.len())),
+        '?' | '0'..='9' => (Some(TokenKind::Number), 1 + word_length(&rest[1..])),
+        ':' | '@' | '#' if word_length(&rest[1..]) > 0 => {
+            (Some(TokenKind::Number), 1 + word_length(&rest[1..]))
+        }
+        letter if begins_name(letter) => (Some(TokenKind::Name), word_length(rest)),
+        other => (Some(TokenKind::Sign), other.len_utf8()),
     }
 }
 
@@ -125,19 +127,19 @@ mod tests {
     fn statements_fall_into_names_texts_and_signs() {
         let sql =
             "SELECT c.\"row\"\"id\", 'it''s' -- from words\n FROM [a b] /* x */ c WHERE x<>1.5e3 AND ?1=:a";
-        let words: Vec<(Kind, String)> =
+        let words: Vec<(TokenKind, String)> =
             tokens(sql).iter().map(|token| (token.kind, token.content().into_owned())).collect();
-        let name = |word: &str| (Kind::Name, word.to_owned());
-        let sign = |word: &str| (Kind::Sign, word.to_owned());
-        let quoted = |word: &str| (Kind::Quoted, word.to_owned());
-        let number = |word: &str| (Kind::Number, word.to_owned());
+        let name = |word: &str| (TokenKind::Name, word.to_owned());
+        let sign = |word: &str| (TokenKind::Sign, word.to_owned());
+        let quoted = |word: &str| (TokenKind::Quoted, word.to_owned());
+        let number = |word: &str| (TokenKind::Number, word.to_owned());
         let expected = [
             name("SELECT"),
             name("c"),
             sign("."),
             quoted("row\"id"),
             sign(","),
-            (Kind::Text, "it's".to_owned()),
+            (TokenKind::Text, "it's".to_owned()),
             name("FROM"),
             quoted("a b"),
             name("c"),

@@ -145,7 +145,7 @@ pub struct ComparedCell {
 
 /// The comparison of one policy.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Comparison {
+pub struct GoldenComparison {
     /// Policy.
     pub policy: String,
     /// Cells that count.
@@ -157,13 +157,13 @@ pub struct Comparison {
 }
 
 /// Compares our runs, one list of figures per seed, with a reference.
-pub fn compare(reference: &Reference, runs: &[Vec<Figure>]) -> Comparison {
+pub fn compare(reference: &Reference, runs: &[Vec<Figure>]) -> GoldenComparison {
     let mut own: BTreeMap<(&str, &str, u32), Vec<f64>> = BTreeMap::new();
     for figure in runs.iter().flatten() {
         own.entry((figure.figure, figure.group, figure.day)).or_default().push(figure.value);
     }
     let mut comparison =
-        Comparison { policy: reference.policy.clone(), cells: vec![], shown: vec![], missing: vec![] };
+        GoldenComparison { policy: reference.policy.clone(), cells: vec![], shown: vec![], missing: vec![] };
     let mut missing = BTreeSet::new();
     let countable = reference.cells.iter().filter(|(_, sample)| sample.count >= FEWEST_SEEDS);
     for (cell @ (figure, group, day), sample) in countable {
@@ -213,7 +213,7 @@ fn z_score(reference: &Sample, own: &Sample) -> f64 {
     if error == 0.0 { 99.0f64.copysign(difference) } else { difference / error }
 }
 
-impl Comparison {
+impl GoldenComparison {
     /// Share of cells with |z| below a bound.
     pub fn share_below(&self, bound: f64) -> f64 {
         let below = self.cells.iter().filter(|cell| cell.z.abs() < bound).count();

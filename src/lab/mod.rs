@@ -15,7 +15,7 @@ mod statistics;
 mod symbols;
 
 pub use answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
-pub use golden::{Comparison, GoldenError, Reference, compare, read_reference};
+pub use golden::{GoldenComparison, GoldenError, Reference, compare, read_reference};
 pub use metrics::{Collector, Figure};
 pub use policy::{Policy, PolicyError};
 pub use runner::{Outcome, RunEnd, RunError, RunSpec, play};

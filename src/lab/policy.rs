@@ -10,7 +10,7 @@ use crate::session::Configuration;
 use crate::shipped;
 use crate::tools;
 use crate::world::identifiers::Plan;
-use crate::world::params::Source;
+use crate::world::params::ParameterSource;
 
 /// What drives a run without a person.
 #[derive(Debug, Clone, PartialEq)]
@@ -340,7 +340,7 @@ impl Policy {
         let wrong = |problem: String| PolicyError { source: name.to_owned(), line: None, problem };
         if name.ends_with(".toml") || name.contains(std::path::is_separator) {
             let text = std::fs::read_to_string(name).map_err(|error| wrong(error.to_string()))?;
-            return Policy::parse(&Source { name: name.to_owned(), text });
+            return Policy::parse(&ParameterSource { name: name.to_owned(), text });
         }
         let own =
             configuration.file(format!("policies/{name}.toml")).map_err(|error| wrong(error.to_string()))?;
@@ -350,7 +350,7 @@ impl Policy {
         match shipped::policies().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => {
                 let file = format!("configs/policies/{name}.toml");
-                Policy::parse(&Source { name: file, text: text.to_owned() })
+                Policy::parse(&ParameterSource { name: file, text: text.to_owned() })
             }
             None => {
                 let mut known: Vec<String> =
@@ -365,7 +365,7 @@ impl Policy {
     ///
     /// # Errors
     /// Unknown keys, a day that is no decision day, unknown tools or arguments, and what contradicts itself.
-    pub fn parse(source: &Source) -> Result<Policy, PolicyError> {
+    pub fn parse(source: &ParameterSource) -> Result<Policy, PolicyError> {
         let at = |span: Option<std::ops::Range<usize>>, problem: String| PolicyError {
             source: source.name.clone(),
             line: span.map(|span| source.text[..span.start.min(source.text.len())].matches('\n').count() + 1),
@@ -438,7 +438,7 @@ mod tests {
     use super::*;
 
     fn parse(text: &str) -> Result<Policy, PolicyError> {
-        Policy::parse(&Source { name: "mine.toml".to_owned(), text: text.to_owned() })
+        Policy::parse(&ParameterSource { name: "mine.toml".to_owned(), text: text.to_owned() })
     }
 
     #[test]

@@ -125,7 +125,7 @@ fn ruined(ruin: &Ruin) -> Vec<Block> {
 fn rank(story: &Story) -> Vec<Block> {
     let standing = &story.standing;
     let most = standing.places.iter().map(|place| place.cash).fold(1.0, f64::max);
-    let bar = |place: &super::ranking::Place| Bar {
+    let bar = |place: &super::ranking::RankedRun| Bar {
         name: place.name.clone(),
         shown: money(place.cash),
         share: (place.cash / most).clamp(0.0, 1.0),

@@ -70,7 +70,7 @@ pub enum Whose {
 
 /// A result.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Place {
+pub struct RankedRun {
     /// Name.
     pub name: String,
     /// Cash at the end, dollars.
@@ -83,7 +83,7 @@ pub struct Place {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Standing {
     /// Results; this run's is among them once it has a score that can be compared.
-    pub places: Vec<Place>,
+    pub places: Vec<RankedRun>,
     /// Place of this run, from 1.
     pub rank: Option<usize>,
     /// The run has a score, whether it can be compared or not.
@@ -96,7 +96,7 @@ pub struct Standing {
 
 impl Standing {
     /// The best places and those around this run's: enough to see where it stands.
-    pub fn around(&self, best: usize, beside: usize) -> Vec<&Place> {
+    pub fn around(&self, best: usize, beside: usize) -> Vec<&RankedRun> {
         let own = self.places.iter().position(|place| place.whose == Whose::Own);
         let wanted = |at: usize| at < best || own.is_some_and(|own| own.abs_diff(at) <= beside);
         self.places.iter().enumerate().filter(|(at, _)| wanted(*at)).map(|(_, place)| place).collect()
@@ -114,8 +114,8 @@ impl Standing {
 
 /// Where a score stands; of equal results the published ones come first.
 pub fn standing(score: Option<f64>, seen: &Observation, start_cash: f64) -> Standing {
-    let place = |name: &str, cash: f64, whose: Whose| Place { name: name.to_owned(), cash, whose };
-    let mut places: Vec<Place> =
+    let place = |name: &str, cash: f64, whose: Whose| RankedRun { name: name.to_owned(), cash, whose };
+    let mut places: Vec<RankedRun> =
         published().agent.iter().map(|agent| place(&agent.name, agent.best_cash, Whose::Agent)).collect();
     places.push(place("Rule-based baseline", published().rule_based_baseline, Whose::Baseline));
     let is_comparable = is_comparable((seen.last_day, start_cash), &seen.scenario, seen.has_own_parameters);

@@ -156,7 +156,7 @@ impl Grammar {
     /// unknown rule gives an empty text; reading the grammar made sure that no rule names one.
     pub fn write(&self, rule: &str, context: &Context, choose: Chooser<'_>) -> String {
         let mut writer =
-            Writer { grammar: self, context, choose, used: BTreeSet::new(), text: String::new() };
+            Expansion { grammar: self, context, choose, used: BTreeSet::new(), text: String::new() };
         writer.rule(rule);
         polish(&writer.text)
     }
@@ -185,7 +185,7 @@ fn values_given(parts: &[Part], context: &Context) -> bool {
     })
 }
 
-struct Writer<'a> {
+struct Expansion<'a> {
     grammar: &'a Grammar,
     context: &'a Context,
     choose: Chooser<'a>,
@@ -193,7 +193,7 @@ struct Writer<'a> {
     text: String,
 }
 
-impl<'a> Writer<'a> {
+impl<'a> Expansion<'a> {
     fn rule(&mut self, name: &str) {
         let Some((name, alternatives)) = self.grammar.rules.get_key_value(name) else { return };
         let fitting =

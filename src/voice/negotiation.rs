@@ -80,7 +80,7 @@ fn written(turn: &ThreadTurn, phrases: &Phrases, facts: &[(&str, String)], perso
 
 /// The last sentence: how the company decides, what it worries about, and that talks take long.
 fn ending(turn: &ThreadTurn, personas: &Personas) -> String {
-    let profile = Profile::of(turn, personas);
+    let profile = CompanyProfile::of(turn, personas);
     let settled = matches!(turn.content, TurnContent::Acceptance(_));
     let choice = (turn.message / 3 + turn.customer) as usize;
     if !settled && turn.number >= LONG_TALKS && choice.is_multiple_of(2) {
@@ -99,20 +99,20 @@ fn with_article(word: &str) -> String {
 }
 
 /// Words of a company's profile, as the table of customers shows them.
-struct Profile<'a> {
+struct CompanyProfile<'a> {
     culture: &'a str,
     decision: &'a str,
     concern: &'a str,
 }
 
-impl<'a> Profile<'a> {
-    fn of(turn: &ThreadTurn, personas: &'a Personas) -> Profile<'a> {
+impl<'a> CompanyProfile<'a> {
+    fn of(turn: &ThreadTurn, personas: &'a Personas) -> CompanyProfile<'a> {
         let own = &personas.group[Group::index(turn.group)];
         let [.., culture, decision, concern] = turn.persona.0;
         let word = |list: &'a [String], at: u8, otherwise: &'a str| {
             list.get(usize::from(at)).map_or(otherwise, String::as_str)
         };
-        Profile {
+        CompanyProfile {
             culture: word(&own.culture, culture, "practical"),
             decision: word(&own.decision_style, decision, "pragmatic"),
             concern: word(&own.primary_concern, concern, "value"),

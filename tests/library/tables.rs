@@ -440,7 +440,7 @@ fn issues_are_exactly_what_happened() {
                     .issues_resolved
                     .iter()
                     .any(|number| active_before.contains(&issues[number].customer));
-                // The connection looks at nobody on days without an open issue of an active subscriber.
+                // Support looks at nobody on days without an open issue of an active subscriber.
                 if waits || had {
                     let waiting = issues.values_mut().filter(|issue| issue.resolved_day.is_none());
                     waiting.for_each(|issue| issue.days_open += 1);

@@ -3,6 +3,7 @@
 
 mod documents;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -86,6 +87,31 @@ fn a_file_is_one_idea() {
         .map(|file| format!("{}: {} lines", file.path.display(), file.lines.len()))
         .collect();
     assert_none(&long);
+}
+
+#[test]
+fn a_type_name_means_one_thing_in_its_house() {
+    // Every subcommand has options; a machine without vector registers has other streams.
+    const TWINS: [&str; 2] = ["Options", "Key"];
+    let mut places: BTreeMap<(String, String), Vec<String>> = BTreeMap::new();
+    for file in &sources() {
+        for (number, line) in file.code() {
+            let declared = ["struct ", "enum ", "trait ", "union "].iter().find_map(|word| {
+                let (before, after) = line.split_once(word)?;
+                let visible = before.is_empty() || before.starts_with("pub");
+                visible.then(|| after.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or(""))
+            });
+            if let Some(name) = declared.filter(|name| !TWINS.contains(name)) {
+                let place = format!("{}:{number}", file.path.display());
+                places.entry((file.house(), name.to_owned())).or_default().push(place);
+            }
+        }
+    }
+    assert!(places.len() > 500, "types are found");
+    let twice = places.iter().filter(|(_, places)| places.len() > 1);
+    let complaints: Vec<String> =
+        twice.map(|((house, name), places)| format!("{name} in {house}: {}", places.join(", "))).collect();
+    assert_none(&complaints);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::console::glyphs::Glyphs;
 use crate::console::keys::Keys;
 use crate::console::speed;
 use crate::console::theme::Theme;
-use crate::lab::bench::{Bench, BenchError, Case, Figure, Samples, Unit, keep_a_large_company};
+use crate::lab::bench::{Bench, BenchError, BenchFigure, Case, Samples, Unit, keep_a_large_company};
 
 /// Weeks whose keys are measured for each repetition: some hundred keys.
 const WEEKS: usize = 6;
@@ -14,7 +14,7 @@ const WEEKS: usize = 6;
 pub const CASES: &[Case] = &[
     Case {
         name: "frame",
-        figures: &[Figure::aimed("first frame of the console", Unit::Milliseconds, 100.0, None)],
+        figures: &[BenchFigure::aimed("first frame of the console", Unit::Milliseconds, 100.0, None)],
         fresh: true,
         long: false,
         measure: first_frame,
@@ -22,13 +22,13 @@ pub const CASES: &[Case] = &[
     Case {
         name: "keys",
         figures: &[
-            Figure::aimed(
+            BenchFigure::aimed(
                 "key to frame while a week runs, 200×60: 99 of 100",
                 Unit::Milliseconds,
                 16.0,
                 None,
             ),
-            Figure::shown("key to frame while a week runs, 200×60: median", Unit::Milliseconds),
+            BenchFigure::shown("key to frame while a week runs, 200×60: median", Unit::Milliseconds),
         ],
         fresh: false,
         long: false,

@@ -18,7 +18,7 @@ use crate::session::{
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
-    command: Option<Choice>,
+    command: Option<RunsCommand>,
     /// Only runs of this participant.
     #[arg(long, value_name = "LABEL")]
     participant: Option<String>,
@@ -28,7 +28,7 @@ pub struct Options {
 }
 
 #[derive(Debug, Subcommand)]
-enum Choice {
+enum RunsCommand {
     /// List the runs, the last played first; `runs` alone does the same.
     List {
         /// Only runs of this participant.
@@ -86,10 +86,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     };
     match &options.command {
         None => list(&runs, &folders, options.participant.as_deref(), options.json),
-        Some(Choice::List { participant }) => {
+        Some(RunsCommand::List { participant }) => {
             list(&runs, &folders, participant.as_deref().or(options.participant.as_deref()), options.json)
         }
-        Some(Choice::Show { run }) => {
+        Some(RunsCommand::Show { run }) => {
             let folder = find_in(&folders, run)?;
             let text = std::fs::read_to_string(folder.join("run.toml"))
                 .map_err(|error| Failure::unreadable(format!("{}: {error}", folder.display())))?;
@@ -100,13 +100,13 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             }
             print(&format!("{}\n{text}", summary.as_ref().map(line).unwrap_or_default()))
         }
-        Some(Choice::Path { run }) => print(&format!("{}\n", find_in(&folders, run)?.display())),
-        Some(Choice::End { run }) => {
+        Some(RunsCommand::Path { run }) => print(&format!("{}\n", find_in(&folders, run)?.display())),
+        Some(RunsCommand::End { run }) => {
             let id = id_of(&find_run(&runs, run)?);
             end_run(&runs, &id)?;
             print(&format!("run {id} has ended; you can still read it\n"))
         }
-        Some(Choice::Rescue { run }) => {
+        Some(RunsCommand::Rescue { run }) => {
             let folder = find_run_to_read(&runs, run)?;
             let (found, whole) = (rescue(&folder)?, id_of(&folder));
             print(&format!(
@@ -115,7 +115,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
                 found.run, found.lines, found.day, found.mode, found.problem, found.run
             ))
         }
-        Some(Choice::Delete { run, yes }) => {
+        Some(RunsCommand::Delete { run, yes }) => {
             if !yes {
                 let folder = find_run(&runs, run)?;
                 let message = format!("this deletes {} for good; add --yes to do it", folder.display());
@@ -125,10 +125,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             delete_run(&runs, &id)?;
             print(&format!("run {id} is deleted\n"))
         }
-        Some(Choice::Export(export)) => export.run(&folders, options.json),
-        Some(Choice::Import(import)) => import.run(&runs, options.json),
-        Some(Choice::Columns) => transfer::explain_columns(options.json),
-        Some(Choice::Schema) => print(SCHEMA),
+        Some(RunsCommand::Export(export)) => export.run(&folders, options.json),
+        Some(RunsCommand::Import(import)) => import.run(&runs, options.json),
+        Some(RunsCommand::Columns) => transfer::explain_columns(options.json),
+        Some(RunsCommand::Schema) => print(SCHEMA),
     }
 }
 

@@ -6,7 +6,7 @@ use crate::console::dialogs::explain::Explain;
 use crate::console::dialogs::glossary::Glossary;
 use crate::console::effect::Effect;
 use crate::console::request::Request;
-use crate::console::tour::{Facts, Tour};
+use crate::console::tour::{Tour, TourFacts};
 use crate::glossary::Subject;
 use crate::session::NewRun;
 
@@ -87,7 +87,7 @@ impl App {
         let Stage::Run(run) = &mut self.stage else { return };
         let Some(tour) = &mut run.tour else { return };
         let filing = matches!(self.layers.last(), Some(Layer::Filing)).then(|| run.filing.step_number());
-        let facts = Facts {
+        let facts = TourFacts {
             company: &run.company,
             here: run.here,
             before: &run.before,

@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::{App, Layer, Order, Run, Stage};
 use crate::console::action::Action;
 use crate::console::company::Company;
-use crate::console::dialogs::filing::Filing;
+use crate::console::dialogs::filing::FilingDialog;
 use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::report::Report;
 use crate::console::effect::Effect;
@@ -200,7 +200,7 @@ impl App {
             zoomed: false,
             shown: Instant::now(),
             screens: Screens::default(),
-            filing: Filing::default(),
+            filing: FilingDialog::default(),
             story: None,
             changes: 0,
             asked: BTreeMap::new(),
@@ -300,7 +300,7 @@ impl App {
             signed_dollars(figures.cash_change)
         );
         if let Stage::Run(run) = &mut self.stage {
-            run.filing = Filing::default();
+            run.filing = FilingDialog::default();
         }
         self.say(text);
         match week.ended {

@@ -37,7 +37,7 @@ impl Link {
 }
 
 /// One explanation, and where the person is in it.
-struct Page {
+struct OpenPage {
     title: String,
     note: String,
     /// Heading and text of each part.
@@ -46,11 +46,11 @@ struct Page {
     selected: usize,
 }
 
-impl Page {
-    fn of(subject: Subject, numbers: &Numbers) -> Page {
+impl OpenPage {
+    fn of(subject: Subject, numbers: &Numbers) -> OpenPage {
         let told = Explanation::of(subject, numbers);
         let places = told.places.iter().filter_map(|name| Action::named(Scope::Global, name));
-        Page {
+        OpenPage {
             title: told.title,
             note: told.note,
             parts: told.sections.into_iter().map(|own| (own.name.to_owned(), own.text)).collect(),
@@ -63,7 +63,7 @@ impl Page {
 /// The dialog.
 pub struct Explain {
     /// The page that is read, and those before it.
-    pages: Vec<Page>,
+    pages: Vec<OpenPage>,
     /// There are rows behind the figure.
     rows: bool,
     /// The numbers that texts name.
@@ -73,14 +73,14 @@ pub struct Explain {
 impl Explain {
     /// Explains a subject.
     pub fn subject(subject: Subject, numbers: Arc<Numbers>) -> Explain {
-        Explain { pages: vec![Page::of(subject, &numbers)], rows: false, numbers }
+        Explain { pages: vec![OpenPage::of(subject, &numbers)], rows: false, numbers }
     }
 
     /// Explains the figure that is selected on a screen.
     pub fn figure(figure: &Figure, numbers: Arc<Numbers>) -> Explain {
         let mut page = match glossary::subject(figure.term) {
-            Some(subject) => Page::of(subject, &numbers),
-            None => Page {
+            Some(subject) => OpenPage::of(subject, &numbers),
+            None => OpenPage {
                 title: String::new(),
                 note: String::new(),
                 parts: Vec::new(),
@@ -103,7 +103,7 @@ impl Explain {
     pub fn screen(screen: ScreenId, numbers: Arc<Numbers>) -> Explain {
         let entry = screen.action().entry();
         let help = "Select a figure or a field to have it explained, or choose a term of this screen.";
-        let page = Page {
+        let page = OpenPage {
             title: entry.title.to_owned(),
             note: "screen".to_owned(),
             parts: vec![(String::new(), entry.doc.to_owned()), (String::new(), help.to_owned())],
@@ -113,7 +113,7 @@ impl Explain {
         Explain { pages: vec![page], rows: false, numbers }
     }
 
-    fn page(&self) -> &Page {
+    fn page(&self) -> &OpenPage {
         self.pages.last().expect("there is a first page")
     }
 
@@ -121,7 +121,7 @@ impl Explain {
         let page = self.page();
         match page.links.get(page.selected) {
             Some(Link::To(subject)) => {
-                let next = Page::of(*subject, &self.numbers);
+                let next = OpenPage::of(*subject, &self.numbers);
                 self.pages.push(next);
             }
             Some(Link::Place(action)) => return Outcome::close_with(vec![Effect::Do(*action)]),
@@ -240,7 +240,7 @@ impl Explain {
 }
 
 /// Headings and texts in lines of a width; the headings stand in a column of their own.
-fn lines_of(page: &Page, width: usize) -> Vec<(String, String)> {
+fn lines_of(page: &OpenPage, width: usize) -> Vec<(String, String)> {
     let column = page.parts.iter().map(|(heading, _)| heading.chars().count()).max().unwrap_or(0);
     let column = if column > 0 { column + 2 } else { 0 };
     let mut lines = Vec::new();

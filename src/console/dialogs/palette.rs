@@ -23,7 +23,7 @@ use crate::tools::{CATALOGUE, Kind, ToolId};
 const RECENT: usize = 5;
 
 /// Something that can be chosen.
-struct Entry {
+struct PaletteEntry {
     kind: &'static str,
     /// What finds it at once when it is typed whole; empty if it has none.
     code: &'static str,
@@ -33,7 +33,7 @@ struct Entry {
     effect: Effect,
 }
 
-impl Entry {
+impl PaletteEntry {
     /// Other words that people type for it.
     fn synonyms(&self) -> &'static [&'static str] {
         let Effect::Do(action) = &self.effect else { return &[] };
@@ -91,7 +91,7 @@ enum Closeness {
 
 /// The palette.
 pub struct Palette {
-    entries: Vec<Entry>,
+    entries: Vec<PaletteEntry>,
     /// Tools that were called last, the newest first.
     recent: Vec<ToolId>,
     field: Field,
@@ -200,11 +200,11 @@ fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
     }
 }
 
-fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
+fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntry> {
     let everywhere = |scope: Scope| scope == Scope::Global || (scope == Scope::Viewer && company.replayed);
     let commands = ACTIONS.iter().filter(|entry| everywhere(entry.scope) && entry.action != Action::Palette);
-    let mut list: Vec<Entry> = commands
-        .map(|entry| Entry {
+    let mut list: Vec<PaletteEntry> = commands
+        .map(|entry| PaletteEntry {
             kind: "command",
             code: "",
             title: entry.title.to_owned(),
@@ -214,7 +214,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
         })
         .collect();
     let callable = CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind != Kind::Time);
-    list.extend(callable.map(|spec| Entry {
+    list.extend(callable.map(|spec| PaletteEntry {
         kind: "tool",
         code: spec.code,
         title: spec.name().to_owned(),
@@ -222,7 +222,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
         keys: spec.code.to_owned(),
         effect: Effect::ShowTool(spec.id),
     }));
-    list.extend(company.seen.known_groups.iter().map(|group| Entry {
+    list.extend(company.seen.known_groups.iter().map(|group| PaletteEntry {
         kind: "group",
         code: "",
         title: group.id().to_owned(),
@@ -233,7 +233,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
             group.id()
         )),
     }));
-    list.extend(library.queries().iter().map(|query| Entry {
+    list.extend(library.queries().iter().map(|query| PaletteEntry {
         kind: "query",
         code: "",
         title: query.title.clone(),
@@ -241,7 +241,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
         keys: String::new(),
         effect: Effect::RunSql(query.sql.clone()),
     }));
-    list.extend(database::tables().iter().map(|table| Entry {
+    list.extend(database::tables().iter().map(|table| PaletteEntry {
         kind: "table",
         code: "",
         title: table.name.clone(),
@@ -249,7 +249,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<Entry> {
         keys: String::new(),
         effect: Effect::EditSql(format!("SELECT * FROM {} LIMIT 100", table.name)),
     }));
-    list.extend(glossary::terms().iter().map(|term| Entry {
+    list.extend(glossary::terms().iter().map(|term| PaletteEntry {
         kind: "term",
         code: "",
         title: term.title.clone(),

@@ -37,7 +37,7 @@ impl Report {
 }
 
 /// A part of the report: a heading and its lines.
-type Part<'a> = Vec<Line<'a>>;
+type Section<'a> = Vec<Line<'a>>;
 
 impl Dialog for Report {
     fn scopes(&self) -> Vec<Scope> {
@@ -102,7 +102,7 @@ impl Report {
         let taken = coming.len() + usize::from(!notices.is_empty());
         let moves = moved(canvas, told, width, room.saturating_sub(taken));
         let left = room.saturating_sub(coming.len() + moves.len());
-        let parts: [Part<'a>; 5] = [
+        let parts: [Section<'a>; 5] = [
             head,
             decided,
             with_heading(canvas, "Most unusual changes", moves),
@@ -120,7 +120,7 @@ impl Report {
         lines
     }
 
-    fn head<'a>(&self, canvas: &Canvas<'_>, told: &WeekReport, width: u16, forecasts: usize) -> Part<'a> {
+    fn head<'a>(&self, canvas: &Canvas<'_>, told: &WeekReport, width: u16, forecasts: usize) -> Section<'a> {
         let change = told.week.cash_change;
         let role = if change < 0.0 { Role::Bad } else { Role::Good };
         let mut lines = vec![Line::from(vec![
@@ -144,7 +144,7 @@ impl Report {
     }
 }
 
-fn with_heading<'a>(canvas: &Canvas<'_>, heading: &'static str, lines: Part<'a>) -> Part<'a> {
+fn with_heading<'a>(canvas: &Canvas<'_>, heading: &'static str, lines: Section<'a>) -> Section<'a> {
     std::iter::once(Line::from(canvas.span(heading, Role::Header))).chain(lines).collect()
 }
 
@@ -172,7 +172,7 @@ fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast) -> Line<'a> {
 }
 
 /// What was decided before the week, in so many lines at the most.
-fn decided<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, most: usize) -> Part<'a> {
+fn decided<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, most: usize) -> Section<'a> {
     let lines = |pieces: &[String]| flowed(pieces, (width as usize).saturating_sub(9));
     let mut shown = told.decided.len();
     let mut found = lines(&told.decided);
@@ -192,7 +192,7 @@ fn decided<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, most: usize) 
 }
 
 /// The most unusual moves that have room.
-fn moved<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, room: usize) -> Part<'a> {
+fn moved<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, room: usize) -> Section<'a> {
     if told.moves.is_empty() {
         return vec![Line::from(canvas.span("  nothing", Role::Dim))];
     }
@@ -207,7 +207,7 @@ fn moved<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, room: usize) ->
     lines
 }
 
-fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16) -> Part<'a> {
+fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16) -> Section<'a> {
     let role = match own.good {
         Some(true) => Role::Good,
         Some(false) => Role::Bad,
@@ -238,7 +238,7 @@ fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16) -> Part<'a> {
 }
 
 /// What is new, each with the key of the screen that shows it, in as many lines as it takes.
-fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>) -> Part<'a> {
+fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>) -> Section<'a> {
     let kinds: [(u32, &str, &str, Option<ScreenId>); 6] = [
         (told.week.threads_opened, "thread", "threads", Some(ScreenId::Inbox)),
         (told.week.replies, "reply", "replies", Some(ScreenId::Inbox)),
@@ -281,7 +281,7 @@ fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>)
 }
 
 /// The last notices that have room; equal ones are counted.
-fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], width: u16, room: usize) -> Part<'a> {
+fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], width: u16, room: usize) -> Section<'a> {
     let mut told: Vec<(u32, String, u32)> = Vec::new();
     for (day, text) in notices.iter().rev() {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -305,7 +305,7 @@ fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], width: u16, 
 }
 
 /// What needs the person, in two rows each at most, and the key that goes on.
-fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, look: &Look<'_>) -> Part<'a> {
+fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, look: &Look<'_>) -> Section<'a> {
     if needs.is_empty() {
         let key = look.keys.label(Action::NextWeek).unwrap_or_default();
         let text = format!("  nothing waits; {key} starts the next week");

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::company::{Company, Keep, Lap, Market, POLICY, SEED};
 use super::machine::{folder_size, peak_memory};
-use super::{Bench, BenchError, Case, Figure, Samples, Unit, queries};
+use super::{Bench, BenchError, BenchFigure, Case, Samples, Unit, queries};
 use crate::lab::statistics::median;
 use crate::lab::{Collector, Policy, RunSpec, play};
 use crate::session::{Access, Session, find_run};
@@ -14,13 +14,13 @@ pub const CASES: &[Case] = &[
     Case {
         name: "day",
         figures: &[
-            Figure::aimed(
+            BenchFigure::aimed(
                 "a day at 165,000, database in the background",
                 Unit::Milliseconds,
                 10.0,
                 Some(4.0),
             ),
-            Figure::shown("a day at 165,000, in memory", Unit::Milliseconds),
+            BenchFigure::shown("a day at 165,000, in memory", Unit::Milliseconds),
         ],
         fresh: false,
         long: false,
@@ -29,14 +29,14 @@ pub const CASES: &[Case] = &[
     Case {
         name: "million",
         figures: &[
-            Figure::aimed(
+            BenchFigure::aimed(
                 "a day at 1,000,000, database in the background",
                 Unit::Milliseconds,
                 60.0,
                 Some(25.0),
             ),
-            Figure::shown("a day at 1,000,000, in memory", Unit::Milliseconds),
-            Figure::aimed("peak memory at 1,000,000", Unit::Megabytes, 1.2 * 1_073.741_824, None),
+            BenchFigure::shown("a day at 1,000,000, in memory", Unit::Milliseconds),
+            BenchFigure::aimed("peak memory at 1,000,000", Unit::Megabytes, 1.2 * 1_073.741_824, None),
         ],
         fresh: false,
         long: true,
@@ -44,7 +44,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "run",
-        figures: &[Figure::aimed("500 days, trajectory recorded", Unit::Seconds, 3.0, Some(1.7))],
+        figures: &[BenchFigure::aimed("500 days, trajectory recorded", Unit::Seconds, 3.0, Some(1.7))],
         fresh: false,
         long: false,
         measure: run,
@@ -52,9 +52,9 @@ pub const CASES: &[Case] = &[
     Case {
         name: "save",
         figures: &[
-            Figure::aimed("500 days with --save, world.db complete", Unit::Seconds, 9.0, Some(5.0)),
-            Figure::aimed("its run directory", Unit::Megabytes, 300.0, Some(150.0)),
-            Figure::aimed("its peak memory", Unit::Megabytes, 400.0, None),
+            BenchFigure::aimed("500 days with --save, world.db complete", Unit::Seconds, 9.0, Some(5.0)),
+            BenchFigure::aimed("its run directory", Unit::Megabytes, 300.0, Some(150.0)),
+            BenchFigure::aimed("its peak memory", Unit::Megabytes, 400.0, None),
         ],
         fresh: true,
         long: false,
@@ -62,7 +62,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "resume",
-        figures: &[Figure::aimed("resume of a 500-day run", Unit::Seconds, 1.0, None)],
+        figures: &[BenchFigure::aimed("resume of a 500-day run", Unit::Seconds, 1.0, None)],
         fresh: false,
         long: false,
         measure: resume,
@@ -70,8 +70,13 @@ pub const CASES: &[Case] = &[
     Case {
         name: "week",
         figures: &[
-            Figure::aimed("a week at 165,000: key to dashboard", Unit::Milliseconds, 150.0, None),
-            Figure::aimed("a week at 165,000: key to first query answered", Unit::Milliseconds, 800.0, None),
+            BenchFigure::aimed("a week at 165,000: key to dashboard", Unit::Milliseconds, 150.0, None),
+            BenchFigure::aimed(
+                "a week at 165,000: key to first query answered",
+                Unit::Milliseconds,
+                800.0,
+                None,
+            ),
         ],
         fresh: false,
         long: false,
@@ -81,11 +86,20 @@ pub const CASES: &[Case] = &[
     Case {
         name: "scaling",
         figures: &[
-            Figure::aimed("cost per subscriber, 10,000 to 1,000,000: spread", Unit::Percent, 30.0, None),
-            Figure::shown("one thread, per subscriber and day at 10,000", Unit::NanosecondsPerSubscriberDay),
-            Figure::shown("one thread, per subscriber and day at 40,000", Unit::NanosecondsPerSubscriberDay),
-            Figure::shown("one thread, per subscriber and day at 165,000", Unit::NanosecondsPerSubscriberDay),
-            Figure::shown(
+            BenchFigure::aimed("cost per subscriber, 10,000 to 1,000,000: spread", Unit::Percent, 30.0, None),
+            BenchFigure::shown(
+                "one thread, per subscriber and day at 10,000",
+                Unit::NanosecondsPerSubscriberDay,
+            ),
+            BenchFigure::shown(
+                "one thread, per subscriber and day at 40,000",
+                Unit::NanosecondsPerSubscriberDay,
+            ),
+            BenchFigure::shown(
+                "one thread, per subscriber and day at 165,000",
+                Unit::NanosecondsPerSubscriberDay,
+            ),
+            BenchFigure::shown(
                 "one thread, per subscriber and day at 1,000,000",
                 Unit::NanosecondsPerSubscriberDay,
             ),

@@ -1,7 +1,7 @@
 //! How fast this machine simulates, a row for each thing that people or programs wait for.
 //!
 //! A [`Case`] is something that is measured in a process of its own, so that its peak memory is its own too; it
-//! yields samples of one or more [`Figure`]s, and a figure's value is their median. New figures, for instance
+//! yields samples of one or more [`BenchFigure`]s, and a figure's value is their median. New figures, for instance
 //! those of the console, are further cases: [`CASES`] are those of the simulator.
 //!
 //! **Where the subscribers come from.** All cases play the policy P1a (the paper's best configuration) with seed
@@ -119,7 +119,7 @@ impl Unit {
 
 /// One row of the speed table.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Figure {
+pub struct BenchFigure {
     /// What is measured, as people read it.
     pub name: &'static str,
     /// Unit of the numbers.
@@ -158,15 +158,15 @@ impl fmt::Display for Verdict {
     }
 }
 
-impl Figure {
+impl BenchFigure {
     /// One with a target.
-    pub const fn aimed(name: &'static str, unit: Unit, target: f64, stretch: Option<f64>) -> Figure {
-        Figure { name, unit, target: Some(target), stretch }
+    pub const fn aimed(name: &'static str, unit: Unit, target: f64, stretch: Option<f64>) -> BenchFigure {
+        BenchFigure { name, unit, target: Some(target), stretch }
     }
 
     /// One that is only shown.
-    pub const fn shown(name: &'static str, unit: Unit) -> Figure {
-        Figure { name, unit, target: None, stretch: None }
+    pub const fn shown(name: &'static str, unit: Unit) -> BenchFigure {
+        BenchFigure { name, unit, target: None, stretch: None }
     }
 
     /// How a value stands to the target.
@@ -189,7 +189,7 @@ pub struct Case {
     /// Name for `--only`.
     pub name: &'static str,
     /// What it yields.
-    pub figures: &'static [Figure],
+    pub figures: &'static [BenchFigure],
     /// Whether every repetition needs a fresh process; otherwise one process repeats.
     pub fresh: bool,
     /// Whether it takes so long that a quick look leaves it out.
@@ -251,7 +251,8 @@ mod tests {
 
     #[test]
     fn verdicts_compare_with_target_and_stretch() {
-        let figure = |target, stretch| Figure { name: "a day", unit: Unit::Milliseconds, target, stretch };
+        let figure =
+            |target, stretch| BenchFigure { name: "a day", unit: Unit::Milliseconds, target, stretch };
         let both = figure(Some(10.0), Some(4.0));
         assert_eq!(both.verdict(Some(4.0)), Verdict::WithinStretch);
         assert_eq!(both.verdict(Some(10.0)), Verdict::WithinTarget);

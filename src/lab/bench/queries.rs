@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::company::{Company, Keep};
-use super::{Bench, BenchError, Figure, Samples, Unit};
+use super::{Bench, BenchError, BenchFigure, Samples, Unit};
 use crate::lab::statistics::median;
 use crate::session::library::Library;
 use crate::session::{Session, Via};
@@ -21,19 +21,19 @@ const USAGE_OF_30_DAYS: &str = "SELECT COUNT(*) AS days, SUM(usage_units) AS uni
     WHERE day > (SELECT MAX(day) FROM service_day) - 30";
 
 /// The slowest of all, a count of millions of rows, and ten that people often ask.
-pub const FIGURES: &[Figure] = &[
-    Figure::aimed("slowest query of the library at 190,000", Unit::Milliseconds, 300.0, None),
-    Figure::aimed("usage of 30 days at 190,000, counted and summed", Unit::Milliseconds, 1_000.0, None),
-    Figure::shown("query cash-by-week", Unit::Milliseconds),
-    Figure::shown("query costs-by-week", Unit::Milliseconds),
-    Figure::shown("query growth-by-week", Unit::Milliseconds),
-    Figure::shown("query revenue-by-plan", Unit::Milliseconds),
-    Figure::shown("query leavers-by-group", Unit::Milliseconds),
-    Figure::shown("query retention-by-plan", Unit::Milliseconds),
-    Figure::shown("query acquisition-by-source", Unit::Milliseconds),
-    Figure::shown("query usage-by-group", Unit::Milliseconds),
-    Figure::shown("query support-wait", Unit::Milliseconds),
-    Figure::shown("query prices-paid", Unit::Milliseconds),
+pub const FIGURES: &[BenchFigure] = &[
+    BenchFigure::aimed("slowest query of the library at 190,000", Unit::Milliseconds, 300.0, None),
+    BenchFigure::aimed("usage of 30 days at 190,000, counted and summed", Unit::Milliseconds, 1_000.0, None),
+    BenchFigure::shown("query cash-by-week", Unit::Milliseconds),
+    BenchFigure::shown("query costs-by-week", Unit::Milliseconds),
+    BenchFigure::shown("query growth-by-week", Unit::Milliseconds),
+    BenchFigure::shown("query revenue-by-plan", Unit::Milliseconds),
+    BenchFigure::shown("query leavers-by-group", Unit::Milliseconds),
+    BenchFigure::shown("query retention-by-plan", Unit::Milliseconds),
+    BenchFigure::shown("query acquisition-by-source", Unit::Milliseconds),
+    BenchFigure::shown("query usage-by-group", Unit::Milliseconds),
+    BenchFigure::shown("query support-wait", Unit::Milliseconds),
+    BenchFigure::shown("query prices-paid", Unit::Milliseconds),
 ];
 
 /// The company that is asked when it is at its largest, with five weeks of in-app ads behind it: as many rows in every

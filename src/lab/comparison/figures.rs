@@ -7,7 +7,7 @@ use crate::report::ranking::published;
 use crate::session::ForecastScore;
 
 /// A figure: where its values come from.
-pub struct Figure {
+pub struct ComparedFigure {
     name: &'static str,
     of: &'static str,
     unit: &'static str,
@@ -15,7 +15,7 @@ pub struct Figure {
     published: fn() -> Option<Range>,
 }
 
-impl Figure {
+impl ComparedFigure {
     pub(super) fn row(&self, runs: &[Compared]) -> Row {
         Row {
             figure: self.name.to_owned(),
@@ -33,8 +33,8 @@ const fn figure(
     unit: &'static str,
     value: fn(&Compared) -> Option<f64>,
     published: fn() -> Option<Range>,
-) -> Figure {
-    Figure { name, of, unit, value, published }
+) -> ComparedFigure {
+    ComparedFigure { name, of, unit, value, published }
 }
 
 fn nothing() -> Option<Range> {
@@ -63,7 +63,7 @@ fn per_week(run: &Compared, count: u32) -> Option<f64> {
 const NOMINAL: Range = Range { least: 0.95, most: 0.95, what: "what a 95 % interval should hold" };
 
 /// Figures of the whole run, in the order they are told.
-pub const FIGURES: &[Figure] = &[
+pub const FIGURES: &[ComparedFigure] = &[
     figure(
         "final cash",
         "",

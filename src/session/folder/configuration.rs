@@ -7,7 +7,7 @@ use toml::Table;
 
 use crate::session::error::RunError;
 use crate::shipped;
-use crate::world::params::{ParameterError, Params, Source, line_of_key, shipped_sources};
+use crate::world::params::{ParameterError, ParameterSource, Params, line_of_key, shipped_sources};
 
 /// Folders of this person on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub struct Scenario {
     /// Overrides of parameters.
     pub world: Table,
     /// File it was read from.
-    source: Source,
+    source: ParameterSource,
     /// Whether it came with the program.
     pub shipped: bool,
 }
@@ -77,11 +77,11 @@ impl Configuration {
     ///
     /// # Errors
     /// It exists and cannot be read.
-    pub fn file(&self, relative: impl AsRef<Path>) -> Result<Option<Source>, RunError> {
+    pub fn file(&self, relative: impl AsRef<Path>) -> Result<Option<ParameterSource>, RunError> {
         let Some(folder) = &self.folder else { return Ok(None) };
         let path = folder.join(relative);
         match std::fs::read_to_string(&path) {
-            Ok(text) => Ok(Some(Source { name: path.display().to_string(), text })),
+            Ok(text) => Ok(Some(ParameterSource { name: path.display().to_string(), text })),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(RunError::Io { path, error }),
         }
@@ -126,7 +126,7 @@ impl Configuration {
         match shipped::scenarios().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => {
                 let file = format!("configs/scenarios/{name}.toml");
-                Ok(read_scenario(name, Source { name: file, text: text.to_owned() }, true)?)
+                Ok(read_scenario(name, ParameterSource { name: file, text: text.to_owned() }, true)?)
             }
             None => Err(RunError::NoScenario { name: name.to_owned(), known: self.scenarios().join(", ") }),
         }
@@ -168,9 +168,9 @@ impl Configuration {
 
 impl Scenario {
     /// The overrides as a source of their own.
-    fn as_overrides(&self) -> Source {
+    fn as_overrides(&self) -> ParameterSource {
         let text = toml::to_string(&self.world).expect("a table that was read can be written");
-        Source { name: self.source.name.clone(), text }
+        ParameterSource { name: self.source.name.clone(), text }
     }
 
     /// Days and starting cash, with the parameters it leads to.
@@ -187,7 +187,7 @@ impl Scenario {
     }
 }
 
-fn read_scenario(name: &str, source: Source, shipped: bool) -> Result<Scenario, ParameterError> {
+fn read_scenario(name: &str, source: ParameterSource, shipped: bool) -> Result<Scenario, ParameterError> {
     let file: ScenarioFile = toml::from_str(&source.text).map_err(|error| ParameterError {
         source: source.name.clone(),
         line: error.span().map(|span| source.text[..span.start].matches('\n').count() + 1),
@@ -215,7 +215,7 @@ fn read_scenario(name: &str, source: Source, shipped: bool) -> Result<Scenario, 
 }
 
 /// A source that sets one parameter, from `table.key` and a TOML value; a bare word counts as text.
-fn single_override(key: &str, value: &str) -> Result<Source, ParameterError> {
+fn single_override(key: &str, value: &str) -> Result<ParameterSource, ParameterError> {
     let name = format!("--set {key}={value}");
     let wrong = |problem: &str| ParameterError {
         source: name.clone(),
@@ -231,7 +231,7 @@ fn single_override(key: &str, value: &str) -> Result<Source, ParameterError> {
     let as_given = format!("{key} = {value}");
     let as_text = format!("{key} = {}", toml::Value::String(value.to_owned()));
     let text = if as_given.parse::<Table>().is_ok() { as_given } else { as_text };
-    Ok(Source { name, text })
+    Ok(ParameterSource { name, text })
 }
 
 /// Shortest run, in days.

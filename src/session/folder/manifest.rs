@@ -12,7 +12,7 @@ use crate::session::error::RunError;
 use crate::session::trajectory::record::Parent;
 use crate::session::trajectory::{Line, Record};
 use crate::world::MECHANICS;
-use crate::world::params::{ParameterError, Params, Source, shipped_sources};
+use crate::world::params::{ParameterError, ParameterSource, Params, shipped_sources};
 
 /// Format of trajectories and manifests that this program writes.
 pub const FORMAT: u32 = 1;
@@ -177,7 +177,7 @@ impl Manifest {
             own,
         };
         let text = toml::to_string(&self.parameters).expect("a table reads back");
-        let over = Source { name: "run.toml".to_owned(), text };
+        let over = ParameterSource { name: "run.toml".to_owned(), text };
         let params = Params::load(&shipped_sources(), &[over])
             .map_err(|error: ParameterError| other(format!("none that fit: {error}")))?;
         let own = params.digest();

@@ -6,7 +6,7 @@ use crate::world::customers::columns::Subscriber;
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::customers::traits::Negotiator;
 use crate::world::identifiers::Group;
-use crate::world::params::{Enterprise as Sales, Params};
+use crate::world::params::{EnterpriseParams as Sales, Params};
 use crate::world::random::{Part, Streams};
 
 /// A company that has asked for an offer and is not forgotten yet.

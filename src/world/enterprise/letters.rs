@@ -10,7 +10,7 @@ use super::company::moved_relationship;
 use super::thread::Thread;
 use crate::world::customers::Customers;
 use crate::world::events::{EndCause, Facts, Offering, Sender, ThreadKind, TurnContent};
-use crate::world::params::{Enterprise as Sales, Params};
+use crate::world::params::{EnterpriseParams as Sales, Params};
 use crate::world::random::{Part, Streams};
 
 /// Offerings for one company.

@@ -7,7 +7,7 @@ use super::{Negotiation, Step};
 use crate::world::customers::columns::Subscriber;
 use crate::world::events::{Notice, Sender, ThreadKind, TurnContent};
 use crate::world::identifiers::{Group, Plan};
-use crate::world::params::Enterprise as Sales;
+use crate::world::params::EnterpriseParams as Sales;
 use crate::world::random::Part;
 
 /// A thread that a subscriber begins.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Negotiations (`docs/mechanics/enterprise/README.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Enterprise {
+pub struct EnterpriseParams {
     /// Mean first bid as a share of the most a company would pay.
     pub enterprise_initial_offer_factor_mean: f64,
     /// Its spread.

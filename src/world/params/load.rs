@@ -8,7 +8,7 @@ use super::{Params, check};
 
 /// A text that holds parameters, with the name people know it by.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Source {
+pub struct ParameterSource {
     /// File name for messages, for instance `configs/world/market.toml`.
     pub name: String,
     /// TOML text.
@@ -45,7 +45,7 @@ impl std::error::Error for ParameterError {}
 
 macro_rules! shipped {
     ($($file:literal),* $(,)?) => {
-        [$(Source {
+        [$(ParameterSource {
             name: concat!("configs/world/", $file).to_owned(),
             text: include_str!(concat!("../../../configs/world/", $file)).to_owned(),
         }),*]
@@ -53,7 +53,7 @@ macro_rules! shipped {
 }
 
 /// The parameter files compiled into the program.
-pub fn shipped_sources() -> Vec<Source> {
+pub fn shipped_sources() -> Vec<ParameterSource> {
     Vec::from(shipped![
         "run.toml",
         "customers.toml",
@@ -81,7 +81,7 @@ impl Params {
     /// # Errors
     /// The first wrong value: unreadable text, a table in two base sources, an unknown or missing key, a wrong
     /// type, a value out of range, values that contradict each other.
-    pub fn load(base: &[Source], overrides: &[Source]) -> Result<Params, ParameterError> {
+    pub fn load(base: &[ParameterSource], overrides: &[ParameterSource]) -> Result<Params, ParameterError> {
         let mut merged = Table::new();
         for source in base {
             for (key, value) in parse(source)? {
@@ -94,7 +94,7 @@ impl Params {
             override_table(&mut merged, parse(source)?)
                 .map_err(|(key, problem)| locate(&[source], &key, &problem))?;
         }
-        let sources: Vec<&Source> = overrides.iter().rev().chain(base).collect();
+        let sources: Vec<&ParameterSource> = overrides.iter().rev().chain(base).collect();
         check::ranges(&merged).map_err(|(key, problem)| locate(&sources, &key, &problem))?;
         let params = read(merged, &sources)?;
         check::relations(&params).map_err(|(key, problem)| locate(&sources, &key, &problem))?;
@@ -102,7 +102,7 @@ impl Params {
     }
 }
 
-fn parse(source: &Source) -> Result<Table, ParameterError> {
+fn parse(source: &ParameterSource) -> Result<Table, ParameterError> {
     source.text.parse::<Table>().map_err(|error| ParameterError {
         source: source.name.clone(),
         line: error.span().map(|span| line_of(&source.text, span.start)),
@@ -111,7 +111,7 @@ fn parse(source: &Source) -> Result<Table, ParameterError> {
     })
 }
 
-fn read(merged: Table, sources: &[&Source]) -> Result<Params, ParameterError> {
+fn read(merged: Table, sources: &[&ParameterSource]) -> Result<Params, ParameterError> {
     serde_path_to_error::deserialize(Value::Table(merged)).map_err(|error| {
         let key = error.path().to_string().replace(['[', ']'], "");
         locate(sources, &key, &in_plain_words(error.inner().message()))
@@ -159,7 +159,7 @@ pub fn override_table(below: &mut Table, above: Table) -> Result<(), (String, St
 }
 
 /// An error at the place where the first of `sources` that holds `key` has it.
-fn locate(sources: &[&Source], key: &str, problem: &str) -> ParameterError {
+fn locate(sources: &[&ParameterSource], key: &str, problem: &str) -> ParameterError {
     let place = sources.iter().find_map(|source| line_of_key(&source.text, key).map(|line| (source, line)));
     ParameterError {
         source: place
@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     fn with_override(text: &str) -> ParameterError {
-        let over = Source { name: "scenario.toml".to_owned(), text: text.to_owned() };
+        let over = ParameterSource { name: "scenario.toml".to_owned(), text: text.to_owned() };
         Params::load(&shipped_sources(), &[over]).expect_err("the override is wrong")
     }
 
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn an_override_changes_one_value_and_the_digest() {
-        let over = Source {
+        let over = ParameterSource {
             name: "x".to_owned(),
             text: "[competitor]\ncompetitor_events_disabled = true".to_owned(),
         };
@@ -275,7 +275,7 @@ mod tests {
     #[test]
     fn two_files_with_one_table_are_refused() {
         let mut sources = shipped_sources();
-        sources.push(Source { name: "more.toml".to_owned(), text: "[quality]\nx = 1".to_owned() });
+        sources.push(ParameterSource { name: "more.toml".to_owned(), text: "[quality]\nx = 1".to_owned() });
         let error = Params::load(&sources, &[]).expect_err("a table stands twice");
         assert_eq!((error.source.as_str(), error.key.as_str()), ("more.toml", "quality"));
     }

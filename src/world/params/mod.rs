@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 pub use customers::*;
 pub use discovery::*;
 pub use enterprise::*;
-pub use load::{ParameterError, Source, line_of_key, override_table, shipped_sources};
+pub use load::{ParameterError, ParameterSource, line_of_key, override_table, shipped_sources};
 pub use market::*;
 pub use product::*;
 pub use retention::*;
@@ -88,11 +88,11 @@ pub struct Params {
     #[serde(rename = "macro")]
     pub economy: MacroEconomy,
     /// Posts of customers.
-    pub social: Social,
+    pub social: SocialParams,
     /// Posts of the company.
     pub ceo_posts: CeoPosts,
     /// Negotiations.
-    pub enterprise: Enterprise,
+    pub enterprise: EnterpriseParams,
     /// Finding groups.
     pub market_research: MarketResearch,
     /// Levels of knowledge 1..=5.

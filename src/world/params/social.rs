@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Posts of customers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Social {
+pub struct SocialParams {
     /// Customer posts of a posting day.
     pub max_posts_per_day: u32,
     /// Growth of the weight with the strength of a mood.

@@ -138,11 +138,11 @@ impl Resolution<'_> {
 /// where a pool holds everybody and nothing is solved yet, as in the first one of a day, a block is one run.
 #[derive(Default)]
 struct Members {
-    runs: Vec<Run>,
+    runs: Vec<SolvedRun>,
     count: u32,
 }
 
-struct Run {
+struct SolvedRun {
     /// Number of its first member.
     first: u32,
     /// Block of calls.
@@ -157,13 +157,13 @@ impl Members {
     }
 
     fn add(&mut self, calls: u32, entry: u32) {
-        self.runs.push(Run { first: self.count, calls, entry });
+        self.runs.push(SolvedRun { first: self.count, calls, entry });
         self.count += 1;
     }
 
     fn add_all(&mut self, calls: u32, entries: u32) {
         if entries > 0 {
-            self.runs.push(Run { first: self.count, calls, entry: 0 });
+            self.runs.push(SolvedRun { first: self.count, calls, entry: 0 });
             self.count += entries;
         }
     }

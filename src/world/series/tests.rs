@@ -8,7 +8,7 @@ use crate::world::market::Market;
 use crate::world::market::competitors::sampled_boost;
 use crate::world::market::economy::Dimension;
 use crate::world::market::surges::surge_factor;
-use crate::world::params::{Source, SurgeStart, shipped_sources};
+use crate::world::params::{ParameterSource, SurgeStart, shipped_sources};
 use crate::world::random::Streams;
 use crate::world::retention::renewal::involuntary_rate_of;
 use crate::world::state::World;
@@ -18,7 +18,8 @@ fn replaying() -> Params {
     let table: toml::Table = scenario.parse().expect("a scenario");
     let world = table.get("world").and_then(toml::Value::as_table).expect("overrides");
     let text = toml::to_string(world).expect("a table");
-    Params::load(&shipped_sources(), &[Source { name: "scenario".to_owned(), text }]).expect("parameters")
+    Params::load(&shipped_sources(), &[ParameterSource { name: "scenario".to_owned(), text }])
+        .expect("parameters")
 }
 
 /// A file of measured figures, row by row.

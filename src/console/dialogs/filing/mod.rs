@@ -25,15 +25,15 @@ use crate::tools::{Forecast, ToolId};
 
 /// Steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Step {
+enum FilingStep {
     Review,
     Rationale,
     Forecasts,
 }
 
 /// The dialog, with its drafts.
-pub struct Filing {
-    step: Step,
+pub struct FilingDialog {
+    step: FilingStep,
     review: Review,
     rationale: Editor,
     /// Low, point, high of every horizon.
@@ -54,10 +54,10 @@ pub struct Filing {
 /// Weeks of the horizons, in words.
 const HORIZONS: [&str; 4] = ["1 week", "4 weeks", "12 weeks", "26 weeks"];
 
-impl Default for Filing {
+impl Default for FilingDialog {
     fn default() -> Self {
-        Filing {
-            step: Step::Review,
+        FilingDialog {
+            step: FilingStep::Review,
             review: Review::default(),
             rationale: Editor::default(),
             cells: Default::default(),
@@ -72,11 +72,11 @@ impl Default for Filing {
     }
 }
 
-impl Filing {
+impl FilingDialog {
     /// Goes back to the first step; drafts stay. Warns of forms whose values were not sent.
     pub fn reopen(&mut self, unsent: Vec<ToolId>) {
         self.unsent = unsent;
-        self.step = Step::Review;
+        self.step = FilingStep::Review;
         self.review = Review::default();
         self.problem = None;
         self.typing = false;
@@ -100,13 +100,13 @@ impl Filing {
     fn next(&mut self, look: &Look<'_>) -> Outcome {
         self.problem = None;
         match self.step {
-            Step::Review => self.step = Step::Rationale,
-            Step::Rationale if self.rationale.is_blank() => {
+            FilingStep::Review => self.step = FilingStep::Rationale,
+            FilingStep::Rationale if self.rationale.is_blank() => {
                 self.problem =
                     Some("a rationale is required: one sentence on what you expect and why".to_owned());
             }
-            Step::Rationale => self.step = Step::Forecasts,
-            Step::Forecasts => match self.forecasts(look.company) {
+            FilingStep::Rationale => self.step = FilingStep::Forecasts,
+            FilingStep::Forecasts => match self.forecasts(look.company) {
                 Ok(forecasts) => {
                     let rationale = self.rationale.text().trim().to_owned();
                     return Outcome::close_with(vec![Effect::Request(Request::Advance {
@@ -126,8 +126,8 @@ impl Filing {
     fn back(&mut self) {
         self.problem = None;
         self.step = match self.step {
-            Step::Review | Step::Rationale => Step::Review,
-            Step::Forecasts => Step::Rationale,
+            FilingStep::Review | FilingStep::Rationale => FilingStep::Review,
+            FilingStep::Forecasts => FilingStep::Rationale,
         };
     }
 
@@ -212,24 +212,26 @@ impl Filing {
     }
 }
 
-impl Dialog for Filing {
+impl Dialog for FilingDialog {
     fn scopes(&self) -> Vec<Scope> {
         match self.step {
-            Step::Review => vec![Scope::Filing, Scope::List],
-            Step::Rationale => vec![Scope::Editor, Scope::Filing],
-            Step::Forecasts if self.typing => vec![Scope::Field, Scope::Filing],
-            Step::Forecasts => vec![Scope::Filing, Scope::List],
+            FilingStep::Review => vec![Scope::Filing, Scope::List],
+            FilingStep::Rationale => vec![Scope::Editor, Scope::Filing],
+            FilingStep::Forecasts if self.typing => vec![Scope::Field, Scope::Filing],
+            FilingStep::Forecasts => vec![Scope::Filing, Scope::List],
         }
     }
 
     fn hints(&self) -> Vec<Action> {
         match self.step {
-            Step::Review => vec![Action::NextStep, Action::FillNaively, Action::Close],
-            Step::Rationale => {
+            FilingStep::Review => vec![Action::NextStep, Action::FillNaively, Action::Close],
+            FilingStep::Rationale => {
                 vec![Action::NextStep, Action::PreviousStep, Action::FillRationale, Action::LeaveEditor]
             }
-            Step::Forecasts if self.typing => vec![Action::CommitNext, Action::CommitDown, Action::Discard],
-            Step::Forecasts => {
+            FilingStep::Forecasts if self.typing => {
+                vec![Action::CommitNext, Action::CommitDown, Action::Discard]
+            }
+            FilingStep::Forecasts => {
                 vec![Action::NextStep, Action::FillNaively, Action::PreviousStep, Action::Close]
             }
         }
@@ -247,13 +249,13 @@ impl Dialog for Filing {
                 self.back();
             }
             Action::Close | Action::LeaveEditor => return Outcome::close(),
-            Action::FillRationale if self.step == Step::Rationale => self.fill_rationale(look.company),
-            Action::FillNaively if self.step == Step::Forecasts => self.fill_naively(look.company),
+            Action::FillRationale if self.step == FilingStep::Rationale => self.fill_rationale(look.company),
+            Action::FillNaively if self.step == FilingStep::Forecasts => self.fill_naively(look.company),
             // A week in which nothing is decided takes one key on the way to the last step.
-            Action::FillNaively if self.step == Step::Review && !look.company.is_baseline() => {
+            Action::FillNaively if self.step == FilingStep::Review && !look.company.is_baseline() => {
                 self.fill_rationale(look.company);
                 self.fill_naively(look.company);
-                self.step = Step::Forecasts;
+                self.step = FilingStep::Forecasts;
             }
             Action::Discard => {
                 self.typing = false;
@@ -265,8 +267,8 @@ impl Dialog for Filing {
                 self.typing = false;
                 self.walk(action);
             }
-            other if self.step == Step::Forecasts => self.walk(other),
-            other if self.step == Step::Review => self.review.scroll(other, look.page as usize),
+            other if self.step == FilingStep::Forecasts => self.walk(other),
+            other if self.step == FilingStep::Review => self.review.scroll(other, look.page as usize),
             _ => {}
         }
         Outcome::stay()
@@ -274,15 +276,15 @@ impl Dialog for Filing {
 
     fn key(&mut self, key: &KeyEvent, look: &Look<'_>) -> Outcome {
         match self.step {
-            Step::Rationale if key.code == crossterm::event::KeyCode::Tab => return self.next(look),
-            Step::Rationale => {
+            FilingStep::Rationale if key.code == crossterm::event::KeyCode::Tab => return self.next(look),
+            FilingStep::Rationale => {
                 self.rationale.key(key);
                 self.problem = None;
             }
-            Step::Forecasts if self.typing => {
+            FilingStep::Forecasts if self.typing => {
                 self.problem = (!self.cell().number_key(key)).then(|| ONLY_NUMBERS.to_owned());
             }
-            Step::Forecasts => {
+            FilingStep::Forecasts => {
                 let starts = crate::console::keys::Chord::of(key).begins_number();
                 if starts {
                     self.before = self.cell().clone();
@@ -292,22 +294,22 @@ impl Dialog for Filing {
                     (self.typing, self.problem) = (true, None);
                 }
             }
-            Step::Review => {}
+            FilingStep::Review => {}
         }
         Outcome::stay()
     }
 
     fn paste(&mut self, text: &str, _: &Look<'_>) -> Outcome {
         match self.step {
-            Step::Rationale => self.rationale.insert(text),
-            Step::Forecasts if self.typing => self.cell().insert(text),
+            FilingStep::Rationale => self.rationale.insert(text),
+            FilingStep::Forecasts if self.typing => self.cell().insert(text),
             _ => {}
         }
         Outcome::stay()
     }
 
     fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
-        if self.step == Step::Forecasts && !self.typing {
+        if self.step == FilingStep::Forecasts && !self.typing {
             self.at = (row / 3, row % 3);
         }
         Outcome::stay()
@@ -316,7 +318,7 @@ impl Dialog for Filing {
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let own = centered(area, 106.min(area.width), 26.min(area.height));
         canvas.clear(own, Role::Text);
-        let mark = |step: Step, name: &str| match (self.step as u8).cmp(&(step as u8)) {
+        let mark = |step: FilingStep, name: &str| match (self.step as u8).cmp(&(step as u8)) {
             std::cmp::Ordering::Greater => format!("{name} ✓"),
             std::cmp::Ordering::Equal => format!("[{name}]"),
             std::cmp::Ordering::Less => name.to_owned(),
@@ -324,18 +326,18 @@ impl Dialog for Filing {
         let days = look.company.next_decision_day - look.company.seen.day;
         let title = format!(
             "Next week · {} · {} · {}",
-            mark(Step::Review, "1 review"),
-            mark(Step::Rationale, "2 rationale"),
-            mark(Step::Forecasts, "3 forecasts")
+            mark(FilingStep::Review, "1 review"),
+            mark(FilingStep::Rationale, "2 rationale"),
+            mark(FilingStep::Forecasts, "3 forecasts")
         );
         let note = format!("{days} days, to day {}", look.company.next_decision_day);
         let inside = canvas.pane(own, &title, &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let body = Rect { height: inside.height.saturating_sub(1), ..inside };
         match self.step {
-            Step::Review => self.review.draw(canvas, body, look.company, &self.unsent),
-            Step::Rationale => self.draw_rationale(canvas, body, look.company),
-            Step::Forecasts => self.draw_forecasts(canvas, body, look.company),
+            FilingStep::Review => self.review.draw(canvas, body, look.company, &self.unsent),
+            FilingStep::Rationale => self.draw_rationale(canvas, body, look.company),
+            FilingStep::Forecasts => self.draw_forecasts(canvas, body, look.company),
         }
         if let Some(problem) = &self.problem {
             let row = Rect { y: body.bottom(), height: 1, ..body };
@@ -344,13 +346,13 @@ impl Dialog for Filing {
         let mut actions = self.hints();
         if look.company.is_baseline() {
             actions.retain(|action| *action != Action::FillRationale);
-            actions.retain(|action| *action != Action::FillNaively || self.step == Step::Forecasts);
+            actions.retain(|action| *action != Action::FillNaively || self.step == FilingStep::Forecasts);
         }
         canvas.pane_keys(own, &look.hints(&actions));
     }
 }
 
-impl Filing {
+impl FilingDialog {
     fn draw_rationale(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
         let why = if company.is_baseline() {
             "Required, and kept with the run."

@@ -24,9 +24,9 @@ const WIDEST: u16 = 9;
 const SIDE: u16 = 8;
 
 /// Every week as a bar.
-pub struct WeeksPane;
+pub struct BarsPane;
 
-impl Pane<Cash> for WeeksPane {
+impl Pane<Cash> for BarsPane {
     fn hints(&self, _: &Cash) -> Vec<Action> {
         vec![Action::Left, Action::Right, Action::Open]
     }
@@ -90,7 +90,7 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &Books, selected: u32, pane:
     let legend_rows = (legend.len() as u16).min(area.height.saturating_sub(6) / 2);
     let nets = u16::from(width >= 7);
     let height = area.height - legend_rows - 1 - nets;
-    let scale = Scale::of(&weeks, height);
+    let scale = BarScale::of(&weeks, height);
     let line = area.y + scale.above;
     draw_side(canvas, area, &scale);
     for (at, (week, amounts)) in weeks.iter().enumerate() {
@@ -124,27 +124,27 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &Books, selected: u32, pane:
 
 /// Rows above and below the line, and the dollars of a row.
 #[derive(Debug, PartialEq)]
-struct Scale {
+struct BarScale {
     above: u16,
     below: u16,
     dollars: f64,
 }
 
-impl Scale {
-    fn of(weeks: &[(u32, Amounts)], height: u16) -> Scale {
+impl BarScale {
+    fn of(weeks: &[(u32, Amounts)], height: u16) -> BarScale {
         let most =
             |income: bool| weeks.iter().map(|(_, amounts)| side(amounts, income).abs()).fold(0.0, f64::max);
         let (income, costs) = (most(true), most(false));
         let rows = height.saturating_sub(1);
         let whole = income + costs;
         if whole <= 0.0 || !whole.is_finite() || rows == 0 {
-            return Scale { above: 0, below: rows, dollars: 1.0 };
+            return BarScale { above: 0, below: rows, dollars: 1.0 };
         }
         let above = ((f64::from(rows) * income / whole).round() as u16)
             .clamp(u16::from(income > 0.0), rows - u16::from(costs > 0.0 && rows > 1));
         let below = rows - above;
         let per_row = |most: f64, rows: u16| if rows == 0 { 0.0 } else { most / f64::from(rows) };
-        Scale { above, below, dollars: per_row(income, above).max(per_row(costs, below)) }
+        BarScale { above, below, dollars: per_row(income, above).max(per_row(costs, below)) }
     }
 
     /// Row of a value, counted from the highest; values within a row share it.
@@ -155,7 +155,7 @@ impl Scale {
 }
 
 /// The line of zero, and round values beside the rows they end in.
-fn draw_side(canvas: &mut Canvas<'_>, area: Rect, scale: &Scale) {
+fn draw_side(canvas: &mut Canvas<'_>, area: Rect, scale: &BarScale) {
     let line = Rect { y: area.y + scale.above, height: 1, ..area };
     canvas.text(line, &"─".repeat(area.width as usize), Role::Border);
     let bounds = [-f64::from(scale.below) * scale.dollars, f64::from(scale.above) * scale.dollars];
@@ -173,10 +173,10 @@ fn draw_side(canvas: &mut Canvas<'_>, area: Rect, scale: &Scale) {
 }
 
 /// Where a category ends in a bar, in eighths of a row from the line.
-type Part = (usize, u32);
+type BarEnd = (usize, u32);
 
 /// The parts of one side of a bar, from the line outwards.
-fn parts(amounts: &Amounts, income: bool, scale: &Scale, rows: u16) -> Vec<Part> {
+fn parts(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<BarEnd> {
     let mut sum = 0.0;
     let own = CATEGORIES.iter().enumerate().filter(|(_, category)| category.income == income);
     let end = own.map(|(at, _)| {
@@ -187,7 +187,7 @@ fn parts(amounts: &Amounts, income: bool, scale: &Scale, rows: u16) -> Vec<Part>
 }
 
 /// What stands in a row of eighths: the category next to the line, how far it reaches, and the one beyond it.
-fn in_row(parts: &[Part], row: u16) -> Option<(usize, u32, Option<usize>)> {
+fn in_row(parts: &[BarEnd], row: u16) -> Option<(usize, u32, Option<usize>)> {
     let (from, to) = (u32::from(row) * 8, u32::from(row) * 8 + 8);
     let mut start = 0;
     let mut shares: Vec<(usize, u32)> = Vec::new();
@@ -211,7 +211,7 @@ fn in_row(parts: &[Part], row: u16) -> Option<(usize, u32, Option<usize>)> {
 
 /// Draws the bar of a week: eighths of a row in one colour a category, or whole rows of signs where colours cannot tell
 /// the categories apart.
-fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts, scale: &Scale) {
+fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts, scale: &BarScale) {
     let coloured = in_colours(canvas);
     for income in [true, false] {
         let rows = if income { scale.above } else { scale.below };
@@ -299,15 +299,15 @@ mod tests {
     fn both_sides_of_the_line_have_the_same_scale() {
         let mut amounts = [0.0; super::super::model::COUNT];
         (amounts[0], amounts[3]) = (300.0, -100.0);
-        assert_eq!(Scale::of(&[(1, amounts)], 9), Scale { above: 6, below: 2, dollars: 50.0 });
+        assert_eq!(BarScale::of(&[(1, amounts)], 9), BarScale { above: 6, below: 2, dollars: 50.0 });
         amounts[3] = 0.0;
-        assert_eq!(Scale::of(&[(1, amounts)], 5), Scale { above: 4, below: 0, dollars: 75.0 });
-        assert_eq!(Scale::of(&[], 0).above, 0);
+        assert_eq!(BarScale::of(&[(1, amounts)], 5), BarScale { above: 4, below: 0, dollars: 75.0 });
+        assert_eq!(BarScale::of(&[], 0).above, 0);
     }
 
     #[test]
     fn a_bar_ends_at_an_eighth_of_a_row_and_a_cell_has_two_categories_at_most() {
-        let scale = Scale { above: 3, below: 3, dollars: 80.0 };
+        let scale = BarScale { above: 3, below: 3, dollars: 80.0 };
         let mut amounts = [0.0; COUNT];
         (amounts[0], amounts[1]) = (90.0, 40.0);
         let income = parts(&amounts, true, &scale, 3);

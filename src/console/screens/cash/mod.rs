@@ -14,7 +14,7 @@ use strum::VariantArray;
 
 use self::books::table_of;
 use self::forecasts::Outlook;
-use self::model::{Books, Step, Subject, statement, waterfall};
+use self::model::{Books, CashStep, Subject, statement, waterfall};
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Figure, Look, ScreenState};
 use crate::console::action::Action;
@@ -109,7 +109,7 @@ impl Cash {
     }
 
     /// The steps from the cash of the week before to that of the week.
-    fn steps(&self, company: &Company) -> Vec<Step> {
+    fn steps(&self, company: &Company) -> Vec<CashStep> {
         waterfall(&self.books, company, self.week(), usize::MAX)
     }
 
@@ -155,7 +155,7 @@ impl Paned for Cash {
     fn pane(name: CashPane) -> &'static dyn Pane<Cash> {
         match name {
             CashPane::Books => &books::BooksPane,
-            CashPane::Weeks => &bars::WeeksPane,
+            CashPane::Weeks => &bars::BarsPane,
             CashPane::Forecasts => &forecasts::ForecastsPane,
             CashPane::Waterfall => &waterfall::WaterfallPane,
             CashPane::Curve => &curve::CurvePane,

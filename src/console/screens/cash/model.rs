@@ -156,7 +156,7 @@ pub fn cash_around(company: &Company, week: u32) -> Option<(f64, f64)> {
 
 /// A step of the way from one week's cash to the next.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct CashStep {
     /// What moved the cash.
     pub name: String,
     /// Cash before and after it; a level is a step from itself to itself.
@@ -171,7 +171,7 @@ pub struct Step {
 
 /// The way from last week's cash to that of a week in at most so many rows: income first, then the costs from the
 /// largest; what finds no room of its own is taken together.
-pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Vec<Step> {
+pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Vec<CashStep> {
     let Some((before, after)) = cash_around(company, week) else { return Vec::new() };
     let amounts = books.week(week);
     let mut moved: Vec<usize> = (0..COUNT).filter(|at| amounts[*at] != 0.0).collect();
@@ -181,7 +181,7 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
         left.0.cmp(&right.0).then(left.1.total_cmp(&right.1))
     });
     let level =
-        |name: String, cash: f64| Step { name, from: cash, to: cash, is_level: true, subject: Subject::Net };
+        |name: String, cash: f64| CashStep { name, from: cash, to: cash, is_level: true, subject: Subject::Net };
     let mut steps = vec![level(format!("day {}", 7 * (week - 1)), before)];
     let mut cash = before;
     let room = most.saturating_sub(2).max(1);
@@ -189,14 +189,14 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
     for at in &moved[..own] {
         let to = cash + amounts[*at];
         let (name, subject) = (CATEGORIES[*at].name().to_owned(), Subject::Category(*at));
-        steps.push(Step { name, from: cash, to, is_level: false, subject });
+        steps.push(CashStep { name, from: cash, to, is_level: false, subject });
         cash = to;
     }
     if own < moved.len() {
         let rest: f64 = moved[own..].iter().map(|at| amounts[*at]).sum();
         let name = if own == 0 { "net" } else { "other costs" }.to_owned();
         let subject = if own == 0 { Subject::Net } else { Subject::Costs };
-        steps.push(Step { name, from: cash, to: cash + rest, is_level: false, subject });
+        steps.push(CashStep { name, from: cash, to: cash + rest, is_level: false, subject });
     }
     steps.push(level(format!("day {}", (7 * week).min(company.seen.day)), after));
     steps

@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{Step, cash_around, money, waterfall};
+use super::model::{CashStep, cash_around, money, waterfall};
 use super::{Cash, Selected, ledger_rows, week_keys};
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
@@ -82,7 +82,7 @@ fn selected(cash: &Cash, company: &Company) -> Option<Selected> {
 }
 
 /// Draws steps, one in a row. The bars begin at the lowest level on the way, or changes would be too small to see.
-fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[Step], selected: Option<usize>, pane: usize) {
+fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Option<usize>, pane: usize) {
     if steps.is_empty() {
         canvas.text(area, NO_DATA, Role::Dim);
         return;

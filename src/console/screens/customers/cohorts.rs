@@ -45,7 +45,7 @@ impl Pane<Customers> for CohortsPane {
     }
 
     fn click(&self, customers: &mut Customers, row: usize, _: &Look<'_>) -> Vec<Effect> {
-        customers.opened.cohort = Place { cohort: row / 1000, since: row % 1000 };
+        customers.opened.cohort = CohortPlace { cohort: row / 1000, since: row % 1000 };
         Vec::new()
     }
 
@@ -138,14 +138,14 @@ impl Cohorts {
 
 /// Place in the triangle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct CohortPlace {
     /// Number of the cohort, the newest being the first.
     pub cohort: usize,
     /// Weeks since.
     pub since: usize,
 }
 
-impl Place {
+impl CohortPlace {
     /// Moves in the triangle of a group.
     pub fn act(&mut self, action: Action, cohorts: &Cohorts, group: Group, now: u32) {
         let weeks = cohorts.weeks(group);
@@ -200,7 +200,7 @@ fn draw(
     area: Rect,
     cohorts: &Cohorts,
     (group, now): (Group, u32),
-    place: Option<Place>,
+    place: Option<CohortPlace>,
     pane: usize,
 ) {
     let weeks = cohorts.weeks(group);
@@ -236,7 +236,7 @@ fn draw(
         let most = now.saturating_sub(*week) as usize;
         for since in left..(most + 1).min(left + columns) {
             let share = cohort.kept(week + since as u32);
-            let here = place == Some(Place { cohort: at, since });
+            let here = place == Some(CohortPlace { cohort: at, since });
             let cell = cell_at(row, since);
             draw_cell(canvas, cell, share, here);
             canvas.click(cell, Click::Row(pane, at * 1000 + since));
@@ -288,11 +288,11 @@ mod tests {
         assert_eq!(cohorts.mean(group, 4, 7), Some(0.5), "only those who could be there that long count");
         assert_eq!(cohorts.mean(group, 2, 7), Some(0.85));
         assert_eq!(cohorts.mean(group, 9, 7), None);
-        let mut place = Place::default();
+        let mut place = CohortPlace::default();
         for _ in 0..9 {
             place.act(Action::Right, &cohorts, group, 7);
         }
-        assert_eq!(place, Place { cohort: 0, since: 3 });
+        assert_eq!(place, CohortPlace { cohort: 0, since: 3 });
         place.act(Action::Last, &cohorts, group, 7);
         assert_eq!(place.cohort, 1);
     }

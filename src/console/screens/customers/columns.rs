@@ -1,6 +1,6 @@
 //! The table of the groups: its columns, and the rows behind every figure in it.
 
-use super::model::{Facts, Market, ad_budgets, development_budget};
+use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
 use crate::console::company::Company;
 use crate::console::screens::Figure;
 use crate::console::screens::market::model::{level_of, name_of};
@@ -67,13 +67,13 @@ pub fn columns() -> Vec<Column> {
 }
 
 /// Share of the market as its study estimates it: customers of the individual and companies of the others.
-fn of_market(group: Group, facts: &Facts, company: &Company) -> Option<f64> {
+fn of_market(group: Group, facts: &CustomerFacts, company: &Company) -> Option<f64> {
     let market = company.insights.get(&group)?.estimates.market_cap;
     (market > 0).then(|| facts.sum(|held| held.customers) / market as f64)
 }
 
 /// The row of a group.
-pub fn row_of(group: Group, facts: &Facts, company: &Company, market: &Market) -> Vec<Cell> {
+pub fn row_of(group: Group, facts: &CustomerFacts, company: &Company, market: &MarketRows) -> Vec<Cell> {
     COLUMNS.iter().map(|(what, ..)| cell_of(*what, group, facts, company, market)).collect()
 }
 
@@ -91,7 +91,7 @@ fn optional(value: Option<f64>, write: &dyn Fn(f64) -> String) -> Cell {
     }
 }
 
-fn cell_of(what: What, group: Group, facts: &Facts, company: &Company, market: &Market) -> Cell {
+fn cell_of(what: What, group: Group, facts: &CustomerFacts, company: &Company, market: &MarketRows) -> Cell {
     let week = company.seen.week;
     let flow = facts.week(week);
     let budget = |value: f64| optional((value > 0.0).then_some(value), &dollars);
@@ -138,7 +138,7 @@ fn cell_of(what: What, group: Group, facts: &Facts, company: &Company, market: &
     }
 }
 
-fn new_cell(facts: &Facts, week: u32) -> Cell {
+fn new_cell(facts: &CustomerFacts, week: u32) -> Cell {
     let now = facts.week(week).signed;
     let change = now - facts.week(week.saturating_sub(1)).signed;
     let (glyph, role) = match change {

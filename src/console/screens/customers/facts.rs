@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::Customers;
-use super::model::{Facts, Market, ad_budgets, development_budget};
+use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
 use super::opened::show_rows;
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
@@ -110,7 +110,7 @@ fn fact(words: String, figures: String, title: String, term: &'static str, sql: 
 }
 
 /// The lines of a group; bars have so many cells.
-fn facts(company: &Company, market: &Market, facts: &Facts, group: Group, bars: usize) -> Vec<Fact> {
+fn facts(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: Group, bars: usize) -> Vec<Fact> {
     // A small window has room for the parts that change most; money comes last.
     let mut lines = companies(company, group);
     lines.extend(plans(facts, group, bars));
@@ -150,7 +150,7 @@ fn companies(company: &Company, group: Group) -> Vec<Fact> {
     lines
 }
 
-fn plans(facts: &Facts, group: Group, bars: usize) -> Vec<Fact> {
+fn plans(facts: &CustomerFacts, group: Group, bars: usize) -> Vec<Fact> {
     let customers = facts.sum(|held| held.customers).max(1.0);
     let line = |(plan, held): (&Plan, &super::model::Held)| {
         let share = held.customers / customers;
@@ -168,7 +168,7 @@ fn plans(facts: &Facts, group: Group, bars: usize) -> Vec<Fact> {
     lines
 }
 
-fn sources(company: &Company, facts: &Facts, group: Group) -> Vec<Fact> {
+fn sources(company: &Company, facts: &CustomerFacts, group: Group) -> Vec<Fact> {
     let heads = format!("{:>6}{:>6}{:>6}", "leads", "share", "conv.");
     let mut lines = vec![head("sources, 12 weeks", heads)];
     let mut sources: Vec<_> = facts.sources.iter().collect();
@@ -190,7 +190,7 @@ fn sources(company: &Company, facts: &Facts, group: Group) -> Vec<Fact> {
     lines
 }
 
-fn money(company: &Company, market: &Market, facts: &Facts, group: Group) -> Vec<Fact> {
+fn money(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: Group) -> Vec<Fact> {
     let or_none = |value: Option<f64>, write: fn(f64) -> String| value.map_or("–".to_owned(), write);
     let mut lines = vec![head("money", String::new())];
     if let Some(quality) = company.quality.iter().find(|quality| quality.group == group) {

@@ -13,9 +13,9 @@ use crate::console::text::count;
 use crate::console::widgets::Table;
 
 /// The table of the groups.
-pub struct GroupsPane;
+pub struct CustomerGroupsPane;
 
-impl Pane<Customers> for GroupsPane {
+impl Pane<Customers> for CustomerGroupsPane {
     fn table<'a>(&self, customers: &'a Customers) -> Option<&'a Table> {
         Some(&customers.table)
     }

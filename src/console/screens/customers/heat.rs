@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::Customers;
-use super::model::{Market, ad_budget};
+use super::model::{MarketRows, ad_budget};
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click};
 use crate::console::company::Company;
@@ -40,7 +40,7 @@ impl Pane<Customers> for ChannelsPane {
 
     fn click(&self, customers: &mut Customers, row: usize, look: &Look<'_>) -> Vec<Effect> {
         let groups = look.company.seen.known_groups.len().max(1);
-        customers.place = Place { channel: row / groups, group: row % groups };
+        customers.place = HeatPlace { channel: row / groups, group: row % groups };
         Vec::new()
     }
 
@@ -62,14 +62,14 @@ impl Pane<Customers> for ChannelsPane {
 
 /// Place on the map.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct HeatPlace {
     /// Number of the channel.
     pub channel: usize,
     /// Number of the group among the known ones.
     pub group: usize,
 }
 
-impl Place {
+impl HeatPlace {
     /// Moves on a map of so many groups.
     fn act(&mut self, action: Action, groups: usize) {
         let (last_channel, last_group) = (Channel::ALL.len() - 1, groups.saturating_sub(1));
@@ -95,8 +95,8 @@ fn draw(
     canvas: &mut Canvas<'_>,
     area: Rect,
     company: &Company,
-    market: &Market,
-    place: Place,
+    market: &MarketRows,
+    place: HeatPlace,
     focused: bool,
     pane: usize,
 ) {
@@ -124,7 +124,7 @@ fn draw(
             }
             let cell = Rect { y, ..cell };
             let value = market.measured(*channel, *group).per_thousand();
-            let selected = focused && (Place { channel: line, group: at }) == place;
+            let selected = focused && (HeatPlace { channel: line, group: at }) == place;
             draw_cell(canvas, cell, value, best, selected);
             canvas.click(cell, Click::Row(pane, line * groups.len() + at));
         }
@@ -168,7 +168,7 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, value: Option<f64>, best: f64,
 }
 
 /// The selected figure and its rows.
-fn figure(company: &Company, place: Place) -> Option<Figure> {
+fn figure(company: &Company, place: HeatPlace) -> Option<Figure> {
     let (channel, group) = (Channel::ALL.get(place.channel)?, company.seen.known_groups.get(place.group)?);
     let sql = format!(
         "SELECT day, leads_generated, spend\nFROM ad_channel_leads\nWHERE channel_id = '{}' AND group_id = '{group}'\n    \
@@ -181,7 +181,7 @@ fn figure(company: &Company, place: Place) -> Option<Figure> {
 }
 
 /// The selected pair in words.
-fn words(company: &Company, market: &Market, place: Place) -> String {
+fn words(company: &Company, market: &MarketRows, place: HeatPlace) -> String {
     let (Some(channel), Some(group)) =
         (Channel::ALL.get(place.channel), company.seen.known_groups.get(place.group))
     else {

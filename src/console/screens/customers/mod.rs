@@ -17,7 +17,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 use self::cohorts::Cohorts;
 use self::columns::{columns, row_of};
-use self::model::Market;
+use self::model::MarketRows;
 use self::opened::Opened;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenState};
@@ -65,9 +65,9 @@ const OPENED: [CustomersPane; 5] = [
 pub struct Customers {
     /// The pane that has the focus while no group is open.
     focus: CustomersPane,
-    market: Market,
+    market: MarketRows,
     table: Table,
-    place: heat::Place,
+    place: heat::HeatPlace,
     cohorts: Cohorts,
     /// The group that is open, by its number among the known ones.
     open: Option<usize>,
@@ -153,7 +153,7 @@ impl Paned for Customers {
 
     fn pane(name: CustomersPane) -> &'static dyn Pane<Customers> {
         match name {
-            CustomersPane::Groups => &groups::GroupsPane,
+            CustomersPane::Groups => &groups::CustomerGroupsPane,
             CustomersPane::Channels => &heat::ChannelsPane,
             CustomersPane::Ways => &ways::WaysPane,
             CustomersPane::Facts => &facts::FactsPane,

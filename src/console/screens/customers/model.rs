@@ -44,7 +44,7 @@ pub struct Flow {
 
 /// A group.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Facts {
+pub struct CustomerFacts {
     /// By plan.
     pub plans: [Held; 3],
     /// By week.
@@ -55,7 +55,7 @@ pub struct Facts {
     pub lost_in_30_days: f64,
 }
 
-impl Facts {
+impl CustomerFacts {
     /// A sum over the plans.
     pub fn sum(&self, figure: impl Fn(&Held) -> f64) -> f64 {
         self.plans.iter().map(figure).sum()
@@ -112,14 +112,14 @@ impl Facts {
 
 /// Leads and spend of a pair of channel and group.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Measured {
+pub struct MeasuredGroup {
     /// Leads.
     pub leads: f64,
     /// Dollars.
     pub spend: f64,
 }
 
-impl Measured {
+impl MeasuredGroup {
     /// Leads of a thousand dollars; none where nothing was spent.
     pub fn per_thousand(&self) -> Option<f64> {
         (self.spend > 0.0).then(|| self.leads / self.spend * 1000.0)
@@ -128,19 +128,19 @@ impl Measured {
 
 /// Everything the readings say.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Market {
-    groups: BTreeMap<Group, Facts>,
-    channels: BTreeMap<(usize, Group), Measured>,
+pub struct MarketRows {
+    groups: BTreeMap<Group, CustomerFacts>,
+    channels: BTreeMap<(usize, Group), MeasuredGroup>,
 }
 
-impl Market {
+impl MarketRows {
     /// The facts of a group.
-    pub fn of(&self, group: Group) -> Facts {
+    pub fn of(&self, group: Group) -> CustomerFacts {
         self.groups.get(&group).cloned().unwrap_or_default()
     }
 
     /// What was measured of a channel in a group, over the last four weeks.
-    pub fn measured(&self, channel: Channel, group: Group) -> Measured {
+    pub fn measured(&self, channel: Channel, group: Group) -> MeasuredGroup {
         self.channels.get(&(channel.index(), group)).copied().unwrap_or_default()
     }
 
@@ -175,7 +175,7 @@ impl Market {
                 Reading::LeadsByChannel => {
                     let (channel, group) = (Channel::parse(text_at(row, 0)), Group::parse(text_at(row, 1)));
                     if let (Some(channel), Some(group)) = (channel, group) {
-                        let measured = Measured { leads: number_at(row, 2), spend: number_at(row, 3) };
+                        let measured = MeasuredGroup { leads: number_at(row, 2), spend: number_at(row, 3) };
                         self.channels.insert((channel.index(), group), measured);
                     }
                 }

@@ -27,7 +27,7 @@ pub struct Opened {
     /// The flow that is selected.
     pub flow: usize,
     /// The cell of the triangle.
-    pub cohort: cohorts::Place,
+    pub cohort: cohorts::CohortPlace,
     /// First line of the study.
     pub line: usize,
 }
@@ -35,7 +35,7 @@ pub struct Opened {
 impl Default for Opened {
     fn default() -> Opened {
         let focus = CustomersPane::Ways;
-        Opened { focus, choice: 0, fact: 0, back: 0, flow: 0, cohort: cohorts::Place::default(), line: 0 }
+        Opened { focus, choice: 0, fact: 0, back: 0, flow: 0, cohort: cohorts::CohortPlace::default(), line: 0 }
     }
 }
 

@@ -15,12 +15,12 @@ fn the_groups_agree_with_the_figures_of_the_week() {
     let mut session = played(6);
     let company = Company::of(&session);
     let screen: Customers = shown(&mut session, &company);
-    let sum = |figure: &dyn Fn(&Facts) -> f64, enterprise: bool| {
+    let sum = |figure: &dyn Fn(&CustomerFacts) -> f64, enterprise: bool| {
         let groups = company.seen.known_groups.iter().filter(|group| group.is_enterprise() == enterprise);
         groups.map(|group| figure(&screen.market.of(*group))).sum::<f64>()
     };
     let week = company.seen.last_week.expect("a week");
-    let now = |figure: fn(&Flow) -> f64| move |facts: &Facts| figure(&facts.week(6));
+    let now = |figure: fn(&Flow) -> f64| move |facts: &CustomerFacts| figure(&facts.week(6));
     assert_eq!(sum(&|facts| facts.sum(|held| held.customers), false), f64::from(week.individual_subscribers));
     assert_eq!(sum(&now(|flow| flow.leads), false), f64::from(week.new_individual_leads));
     assert_eq!(sum(&now(|flow| flow.signed), false), f64::from(week.new_individual_subscribers));
@@ -41,7 +41,7 @@ fn the_groups_agree_with_the_figures_of_the_week() {
 fn a_reading_replaces_what_it_said_before() {
     let row = |cells: &[Value]| Rows { rows: vec![cells.to_vec()], ..Rows::default() };
     let text = |text: &str| Value::Text(text.to_owned());
-    let mut market = Market::default();
+    let mut market = MarketRows::default();
     let held = row(&[
         text("S1"),
         text("B"),

@@ -3,7 +3,7 @@
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::columns::flow_statement;
-use super::model::{self, Facts, Flow};
+use super::model::{self, CustomerFacts, Flow};
 use super::opened::{moved, show_rows};
 use super::{Customers, CustomersPane};
 use crate::console::action::Action;
@@ -121,7 +121,7 @@ fn plot(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], mark: Option<f64>, 
 }
 
 /// A week in words: the selected flow with its change, or all of them.
-fn flow_words(facts: &Facts, week: u32, flow: usize, room: usize) -> String {
+fn flow_words(facts: &CustomerFacts, week: u32, flow: usize, room: usize) -> String {
     let (now, before) = (facts.week(week), facts.week(week.saturating_sub(1)));
     let of = |own: &Flow| [own.leads, own.signed, own.cancelled];
     let whole = |value: f64| grouped(value, 0);

@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 
 use super::model::{State, Thread};
 use super::offer::in_words;
-use super::{Inbox, InboxPane, View, post};
+use super::{Inbox, InboxPane, InboxView, post};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, rows_of};
 use crate::console::effect::Effect;
@@ -16,9 +16,9 @@ use crate::console::widgets::{Cell, Column, Table};
 use crate::notation::grouped;
 
 /// The threads of a view.
-pub struct ListPane;
+pub struct ThreadListPane;
 
-impl Pane<Inbox> for ListPane {
+impl Pane<Inbox> for ThreadListPane {
     fn table<'a>(&self, inbox: &'a Inbox) -> Option<&'a Table> {
         Some(&inbox.table)
     }
@@ -81,9 +81,9 @@ impl Pane<Inbox> for ListPane {
     fn border(&self, inbox: &Inbox, _: Rect, look: &Look<'_>) -> Border {
         let threads = inbox.rows.len();
         let (title, worth) = match inbox.view {
-            View::Waiting => (format!("{threads} waiting for you"), true),
-            View::Theirs => (format!("{threads} waiting for them"), true),
-            View::Over => (format!("{threads} ended"), false),
+            InboxView::Waiting => (format!("{threads} waiting for you"), true),
+            InboxView::Theirs => (format!("{threads} waiting for them"), true),
+            InboxView::Over => (format!("{threads} ended"), false),
         };
         let all = inbox.rows.iter().filter_map(|at| inbox.letters.threads.get(*at));
         let seats: f64 = all.map(|thread| thread.seats).sum();
@@ -137,8 +137,8 @@ fn nobody(inbox: &Inbox, look: &Look<'_>) -> String {
 }
 
 /// Columns of the list.
-pub(super) fn columns(view: View) -> Vec<Column> {
-    let day = if view == View::Waiting { "left" } else { "since" };
+pub(super) fn columns(view: InboxView) -> Vec<Column> {
+    let day = if view == InboxView::Waiting { "left" } else { "since" };
     vec![
         Column::words("✓"),
         Column::numbers(day),
@@ -147,7 +147,7 @@ pub(super) fn columns(view: View) -> Vec<Column> {
         Column::words("kind"),
         Column::numbers("seats"),
         Column::numbers("they ask"),
-        Column::words(if view == View::Over { "end" } else { "you offered" }).at_most(34),
+        Column::words(if view == InboxView::Over { "end" } else { "you offered" }).at_most(34),
     ]
 }
 

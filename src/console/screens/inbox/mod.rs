@@ -19,7 +19,7 @@ use strum::VariantArray;
 use self::estimate::Usage;
 use self::list::{columns, row_of};
 use self::model::{Letters, State, Thread};
-use self::offer::{Choice, Offer, TERMS};
+use self::offer::{TermChoice, Offer, TERMS};
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenId, ScreenState};
 use crate::console::action::Action;
@@ -61,7 +61,7 @@ const OFFER_HEIGHT: u16 = 10;
 
 /// Which threads are listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum View {
+enum InboxView {
     /// The player's move.
     #[default]
     Waiting,
@@ -71,20 +71,20 @@ enum View {
     Over,
 }
 
-impl View {
+impl InboxView {
     fn holds(self, state: State) -> bool {
         match self {
-            View::Waiting => matches!(state, State::Waiting(_)),
-            View::Theirs => state == State::Theirs,
-            View::Over => !state.is_open(),
+            InboxView::Waiting => matches!(state, State::Waiting(_)),
+            InboxView::Theirs => state == State::Theirs,
+            InboxView::Over => !state.is_open(),
         }
     }
 
-    fn next(self) -> View {
+    fn next(self) -> InboxView {
         match self {
-            View::Waiting => View::Theirs,
-            View::Theirs => View::Over,
-            View::Over => View::Waiting,
+            InboxView::Waiting => InboxView::Theirs,
+            InboxView::Theirs => InboxView::Over,
+            InboxView::Over => InboxView::Waiting,
         }
     }
 }
@@ -93,7 +93,7 @@ impl View {
 #[derive(Default)]
 pub struct Inbox {
     focus: InboxPane,
-    view: View,
+    view: InboxView,
     letters: Letters,
     /// What seats of companies use.
     usage: Usage,
@@ -139,7 +139,7 @@ impl Inbox {
 
     /// Shows a thread among those that wait.
     pub fn show(&mut self, number: u32, company: &Company) {
-        self.view = View::Waiting;
+        self.view = InboxView::Waiting;
         self.focus = InboxPane::List;
         self.typing = None;
         self.table.act(Action::Close, 0);
@@ -203,8 +203,8 @@ impl Inbox {
             Some(value) => {
                 self.edit(|term| {
                     term.value = value;
-                    if term.plan == Choice::Nothing {
-                        term.plan = Choice::Fixed(crate::world::identifiers::Plan::B);
+                    if term.plan == TermChoice::Nothing {
+                        term.plan = TermChoice::Fixed(crate::world::identifiers::Plan::B);
                     }
                 });
                 Vec::new()
@@ -300,7 +300,7 @@ impl Paned for Inbox {
 
     fn pane(name: InboxPane) -> &'static dyn Pane<Inbox> {
         match name {
-            InboxPane::List => &list::ListPane,
+            InboxPane::List => &list::ThreadListPane,
             InboxPane::Thread => &thread::ThreadPane,
             InboxPane::Offer => &offer_pane::OfferPane,
         }

@@ -9,7 +9,7 @@ pub const TERMS: usize = 3;
 
 /// The plan of a term.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Choice {
+pub enum TermChoice {
     /// The term is not used.
     Nothing,
     /// This plan.
@@ -44,22 +44,22 @@ impl Basis {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {
     /// Its plan.
-    pub plan: Choice,
+    pub plan: TermChoice,
     /// What the value is a part of.
     pub basis: Basis,
     /// Dollars or percent.
     pub value: f64,
 }
 
-const UNUSED: Term = Term { plan: Choice::Nothing, basis: Basis::List, value: 100.0 };
+const UNUSED: Term = Term { plan: TermChoice::Nothing, basis: Basis::List, value: 100.0 };
 
 impl Term {
     /// Its plan in words.
     pub fn plan_in_words(&self) -> &'static str {
         match self.plan {
-            Choice::Nothing => "–",
-            Choice::Fixed(plan) => plan.id(),
-            Choice::Theirs => "theirs",
+            TermChoice::Nothing => "–",
+            TermChoice::Fixed(plan) => plan.id(),
+            TermChoice::Theirs => "theirs",
         }
     }
 
@@ -72,11 +72,11 @@ impl Term {
     /// The next plan.
     pub fn turn_plan(&mut self) {
         self.plan = match self.plan {
-            Choice::Nothing => Choice::Fixed(Plan::A),
-            Choice::Fixed(Plan::A) => Choice::Fixed(Plan::B),
-            Choice::Fixed(Plan::B) => Choice::Fixed(Plan::C),
-            Choice::Fixed(Plan::C) => Choice::Theirs,
-            Choice::Theirs => Choice::Nothing,
+            TermChoice::Nothing => TermChoice::Fixed(Plan::A),
+            TermChoice::Fixed(Plan::A) => TermChoice::Fixed(Plan::B),
+            TermChoice::Fixed(Plan::B) => TermChoice::Fixed(Plan::C),
+            TermChoice::Fixed(Plan::C) => TermChoice::Theirs,
+            TermChoice::Theirs => TermChoice::Nothing,
         };
     }
 
@@ -93,9 +93,9 @@ impl Term {
     pub fn price(&self, thread: &Thread, lists: [f64; 3]) -> Option<(Plan, f64)> {
         let asked = thread.asked();
         let plan = match self.plan {
-            Choice::Nothing => return None,
-            Choice::Fixed(plan) => plan,
-            Choice::Theirs => asked.and_then(|(plan, _)| plan)?,
+            TermChoice::Nothing => return None,
+            TermChoice::Fixed(plan) => plan,
+            TermChoice::Theirs => asked.and_then(|(plan, _)| plan)?,
         };
         let price = match self.basis {
             Basis::Dollars => self.value,
@@ -113,12 +113,12 @@ pub struct Offer(pub [Term; TERMS]);
 impl Offer {
     /// Plan B at its list price.
     pub fn at_list() -> Offer {
-        Offer([Term { plan: Choice::Fixed(Plan::B), ..UNUSED }, UNUSED, UNUSED])
+        Offer([Term { plan: TermChoice::Fixed(Plan::B), ..UNUSED }, UNUSED, UNUSED])
     }
 
     /// What the company asks, for the plan it named.
     pub fn as_asked() -> Offer {
-        Offer([Term { plan: Choice::Theirs, basis: Basis::Asked, value: 100.0 }, UNUSED, UNUSED])
+        Offer([Term { plan: TermChoice::Theirs, basis: Basis::Asked, value: 100.0 }, UNUSED, UNUSED])
     }
 
     /// Where to start with a company.
@@ -132,7 +132,7 @@ impl Offer {
 
     /// Whether it makes sense for other companies as it is.
     pub fn is_rule(&self) -> bool {
-        self.0.iter().all(|term| term.plan == Choice::Nothing || term.basis != Basis::Dollars)
+        self.0.iter().all(|term| term.plan == TermChoice::Nothing || term.basis != Basis::Dollars)
     }
 
     /// What a company would be sent.
@@ -143,7 +143,7 @@ impl Offer {
         let terms: Vec<(Plan, f64)> = self.0.iter().filter_map(|term| term.price(thread, lists)).collect();
         match terms.iter().find(|(_, price)| *price <= 0.0) {
             Some((plan, _)) => Err(format!("plan {plan} would be free: type a price above 0")),
-            None if terms.is_empty() && self.0.iter().all(|term| term.plan == Choice::Nothing) => {
+            None if terms.is_empty() && self.0.iter().all(|term| term.plan == TermChoice::Nothing) => {
                 Err("no plan is chosen".to_owned())
             }
             None if terms.is_empty() => Err("they named no price".to_owned()),
@@ -186,10 +186,10 @@ mod tests {
         assert_eq!(Offer::at_list().to(&silent, LISTS), Ok(vec![(Plan::B, 32.0)]));
         let mut offer = Offer::at_list();
         offer.0[0].value = 90.0;
-        offer.0[1] = Term { plan: Choice::Fixed(Plan::C), basis: Basis::Asked, value: 150.0 };
+        offer.0[1] = Term { plan: TermChoice::Fixed(Plan::C), basis: Basis::Asked, value: 150.0 };
         assert_eq!(offer.to(&asking, LISTS), Ok(vec![(Plan::B, 28.8), (Plan::C, 30.02)]));
         assert_eq!(offer.to(&silent, LISTS), Ok(vec![(Plan::B, 28.8)]), "a term without a start is left out");
-        offer.0[2] = Term { plan: Choice::Fixed(Plan::C), ..UNUSED };
+        offer.0[2] = Term { plan: TermChoice::Fixed(Plan::C), ..UNUSED };
         assert!(offer.to(&asking, LISTS).is_err_and(|why| why.contains("plan C would be free")));
         assert!(Offer([UNUSED; 3]).to(&asking, LISTS).is_err_and(|why| why.contains("no plan")));
     }

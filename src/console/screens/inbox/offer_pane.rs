@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::estimate::Money;
 use super::model::Thread;
-use super::offer::{Choice, Offer, TERMS};
+use super::offer::{TermChoice, Offer, TERMS};
 use super::post::{self, summary};
 use super::{Inbox, InboxPane, list_prices};
 use crate::console::action::{Action, Scope};
@@ -197,13 +197,13 @@ fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, offer: &Offer, 
     let here = seat.focused && inbox.term == at;
     let role = match (here, term.plan) {
         (true, _) => Role::Selection,
-        (false, Choice::Nothing) => Role::Dim,
+        (false, TermChoice::Nothing) => Role::Dim,
         (false, _) => Role::Text,
     };
     canvas.clear(row, role);
     canvas.click(row, Click::Row(seat.number, at));
-    let value = if term.plan == Choice::Nothing && !here { String::new() } else { term.value_in_words() };
-    let basis = if term.plan == Choice::Nothing && !here { "" } else { term.basis.words() };
+    let value = if term.plan == TermChoice::Nothing && !here { String::new() } else { term.value_in_words() };
+    let basis = if term.plan == TermChoice::Nothing && !here { "" } else { term.basis.words() };
     let mut text = format!("{:<6} {basis:<6} {value:>8}", term.plan_in_words());
     let single = inbox.here().filter(|_| inbox.marked.is_empty());
     if let Some((thread, sold)) = single.and_then(|thread| Some((thread, term.price(thread, lists)?))) {

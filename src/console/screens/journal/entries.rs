@@ -13,7 +13,7 @@ use crate::tools::{Forecast, Kind, Spec};
 
 /// A line.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct JournalLine {
     /// Day.
     pub day: u32,
     /// What happened, in one line.
@@ -31,7 +31,7 @@ pub struct Line {
 }
 
 /// What was filed before a week.
-struct Filing<'a> {
+struct FiledWeek<'a> {
     day: u32,
     rationale: &'a str,
     forecasts: &'a [Forecast],
@@ -41,22 +41,22 @@ struct Filing<'a> {
 /// A week: what was done before it, what was filed, how it went.
 #[derive(Default)]
 struct Group<'a> {
-    calls: Vec<Line>,
-    filed: Option<Filing<'a>>,
+    calls: Vec<JournalLine>,
+    filed: Option<FiledWeek<'a>>,
     figures: Option<&'a WeekFigures>,
 }
 
 /// All lines.
-pub fn lines(company: &Company) -> Vec<Line> {
+pub fn lines(company: &Company) -> Vec<JournalLine> {
     let mut groups = vec![Group::default()];
-    let mut settings = Settings::default();
+    let mut settings = KnownSettings::default();
     let undone = undone_calls(&company.journal);
     for entry in &company.journal {
         let Some(last) = groups.last_mut() else { continue };
         match entry {
             JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings, &undone)),
             JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
-                last.filed = Some(Filing { day: *day, rationale, forecasts, filled_naively });
+                last.filed = Some(FiledWeek { day: *day, rationale, forecasts, filled_naively });
             }
             JournalEntry::Week { figures } => {
                 last.figures = Some(figures);
@@ -68,10 +68,10 @@ pub fn lines(company: &Company) -> Vec<Line> {
 }
 
 impl Group<'_> {
-    fn lines(&self, company: &Company) -> Vec<Line> {
+    fn lines(&self, company: &Company) -> Vec<JournalLine> {
         let Some(head) = self.head(company) else { return Vec::new() };
         let whole = self.whole(company, &head);
-        let line = |day: u32, text: String, role: Role| Line {
+        let line = |day: u32, text: String, role: Role| JournalLine {
             day,
             text,
             role,
@@ -96,11 +96,11 @@ impl Group<'_> {
         if let Some(filed) = &self.filed {
             let words: Vec<&str> = filed.rationale.split_whitespace().collect();
             let why = line(filed.day, format!("  why  {}", words.join(" ")), Role::Text);
-            lines.push(Line { term: "rationale", ..why });
+            lines.push(JournalLine { term: "rationale", ..why });
             if !filed.forecasts.is_empty() {
                 let said = line(filed.day, format!("  said {}", filed.in_a_line(company)), Role::Dim);
                 let sql = format!("SELECT * FROM predictions WHERE submit_day = {}", filed.day);
-                lines.push(Line { term: "forecast", sql: Some(sql), ..said });
+                lines.push(JournalLine { term: "forecast", sql: Some(sql), ..said });
             }
         }
         lines.extend(self.calls.iter().cloned());
@@ -160,7 +160,7 @@ impl Group<'_> {
     }
 }
 
-impl Filing<'_> {
+impl FiledWeek<'_> {
     fn in_a_line(&self, company: &Company) -> String {
         let one = |forecast: &Forecast| {
             let filed = ScoredForecast::of(self.day, forecast, &company.cash_by_day);
@@ -202,7 +202,7 @@ impl Filing<'_> {
 }
 
 /// A call as a line; a call that was taken back is shown as such, and so is the call that did it.
-fn of_call(entry: &JournalEntry, settings: &mut Settings, undone: &BTreeSet<u64>) -> Option<Line> {
+fn of_call(entry: &JournalEntry, settings: &mut KnownSettings, undone: &BTreeSet<u64>) -> Option<JournalLine> {
     let JournalEntry::Call { seq, day, tool, args, reversal } = entry else { return None };
     let spec = tool.spec();
     let words = match spec.kind {
@@ -218,7 +218,7 @@ fn of_call(entry: &JournalEntry, settings: &mut Settings, undone: &BTreeSet<u64>
     };
     let gone = is_undone || matches!(reversal, Some(Reversal::Undoes(_)));
     let pretty = serde_json::to_string_pretty(args).unwrap_or_default();
-    Some(Line {
+    Some(JournalLine {
         day: *day,
         text: format!("  {sign}{tool} {words}").trim_end().to_owned(),
         role: if gone { Role::Dim } else { Role::Text },
@@ -241,9 +241,9 @@ fn kept_in(spec: &Spec, day: u32) -> Option<String> {
 
 /// What earlier calls have set, to tell old from new.
 #[derive(Default)]
-struct Settings(BTreeMap<String, f64>);
+struct KnownSettings(BTreeMap<String, f64>);
 
-impl Settings {
+impl KnownSettings {
     /// A call in words: what it changed as old → new; whatever was never set before as it is.
     fn change(&mut self, spec: &Spec, args: &Value) -> String {
         let mut leaves = Vec::new();
@@ -341,7 +341,7 @@ mod tests {
 
     #[test]
     fn a_later_call_says_what_was_before() {
-        let mut settings = Settings::default();
+        let mut settings = KnownSettings::default();
         let mut said = |tool: &str, args: Value| {
             settings.change(crate::tools::find(tool).expect("a tool").spec(), &args)
         };

@@ -11,9 +11,9 @@ use crate::console::screens::{Figure, Look};
 use crate::console::widgets::Table;
 
 /// The entries.
-pub struct ListPane;
+pub struct EntriesPane;
 
-impl Pane<Journal> for ListPane {
+impl Pane<Journal> for EntriesPane {
     fn table<'a>(&self, journal: &'a Journal) -> Option<&'a Table> {
         Some(&journal.table)
     }

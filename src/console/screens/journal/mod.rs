@@ -113,7 +113,7 @@ impl Paned for Journal {
 
     fn pane(name: JournalPane) -> &'static dyn Pane<Journal> {
         match name {
-            JournalPane::List => &list::ListPane,
+            JournalPane::List => &list::EntriesPane,
             JournalPane::Notes => &notes::NotesPane,
             JournalPane::Scores => &scores::ScoresPane,
         }

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::Market;
 use super::model::Published;
-use super::news::Item;
+use super::news::RivalNews;
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, rows_of};
 use crate::console::company::Company;
@@ -28,16 +28,16 @@ pub fn next_day(economy: &[Published], terms: &ToolLimits) -> u32 {
 }
 
 /// What the pane shows.
-pub struct View<'a> {
+pub struct EconomyView<'a> {
     /// Published measurements, the oldest first.
     pub economy: &'a [Published],
     /// The selected one.
     pub point: Option<usize>,
     /// News of the press, the newest first.
-    pub news: &'a [Item],
+    pub news: &'a [RivalNews],
 }
 
-impl<'a> View<'a> {
+impl<'a> EconomyView<'a> {
     /// The selected measurement, at first the last one.
     pub fn selected(&self) -> Option<&'a Published> {
         self.point.and_then(|at| self.economy.get(at)).or(self.economy.last())
@@ -124,7 +124,7 @@ fn read(point: &Published) -> Effect {
     Effect::ShowText(format!("PMI of day {} · {}", point.day, point.words), point.text.clone())
 }
 
-fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, view: &View<'_>, terms: &ToolLimits) {
+fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, view: &EconomyView<'_>, terms: &ToolLimits) {
     let words = format!(
         "no index yet: day 1 is published on day {}, {} days after measurement",
         next_day(view.economy, terms),
@@ -136,7 +136,7 @@ fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, view: &View<'_>, terms: &To
 }
 
 /// The curve over the days of measurement, and below it two lanes: days of publication, news of rivals.
-fn draw_curve(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &View<'_>, here: &Published) {
+fn draw_curve(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &EconomyView<'_>, here: &Published) {
     let lanes = if area.height >= 9 { 2 } else { 0 };
     // The names of the lanes stand left of the axis, and want four columns.
     let indent = if lanes > 0 { 2.min(area.width) } else { 0 };
@@ -187,7 +187,7 @@ fn draw_curve(canvas: &mut Canvas<'_>, area: Rect, company: &Company, view: &Vie
     }
 }
 
-fn count_at(news: &[Item], holds: impl Fn(u32) -> bool) -> usize {
+fn count_at(news: &[RivalNews], holds: impl Fn(u32) -> bool) -> usize {
     news.iter().filter(|item| item.rival.is_some() && holds(item.post.day)).count()
 }
 

@@ -16,9 +16,9 @@ use crate::notation::{compact, percent};
 use crate::world::identifiers::Group;
 
 /// The table of the groups.
-pub struct GroupsPane;
+pub struct KnownGroupsPane;
 
-impl Pane<Market> for GroupsPane {
+impl Pane<Market> for KnownGroupsPane {
     fn table<'a>(&self, market: &'a Market) -> Option<&'a Table> {
         Some(&market.table)
     }

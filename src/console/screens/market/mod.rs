@@ -13,8 +13,8 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::{Value, json};
 use strum::VariantArray;
 
-use self::model::{Facts, level_of, name_of, target_of, undiscovered};
-use self::news::Item;
+use self::model::{MarketFacts, level_of, name_of, target_of, undiscovered};
+use self::news::RivalNews;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Figure, Look, ScreenId, ScreenState};
 use crate::console::action::{Action, Scope};
@@ -57,12 +57,12 @@ const GROUP_HINTS: [Action; 5] =
 #[derive(Default)]
 pub struct Market {
     focus: MarketPane,
-    facts: Facts,
+    facts: MarketFacts,
     /// Groups in the order of the table: the known ones first.
     groups: Vec<Group>,
     table: Table,
     attempts: Table,
-    news: Vec<Item>,
+    news: Vec<RivalNews>,
     /// Posts from which the news were picked.
     posts: Posts,
     headlines: Table,
@@ -192,8 +192,8 @@ impl Market {
         Effect::ConfirmCall { tool, arguments, text }
     }
 
-    fn economy(&self) -> economy::View<'_> {
-        economy::View { economy: &self.facts.economy, point: self.point, news: &self.news }
+    fn economy(&self) -> economy::EconomyView<'_> {
+        economy::EconomyView { economy: &self.facts.economy, point: self.point, news: &self.news }
     }
 
     fn choose_level(&mut self, company: &Company, up: bool) {
@@ -242,10 +242,10 @@ impl Paned for Market {
 
     fn pane(name: MarketPane) -> &'static dyn Pane<Market> {
         match name {
-            MarketPane::Groups => &groups::GroupsPane,
+            MarketPane::Groups => &groups::KnownGroupsPane,
             MarketPane::Report => &report::ReportPane,
             MarketPane::Attempts => &attempts::AttemptsPane,
-            MarketPane::News => &news::NewsPane,
+            MarketPane::News => &news::RivalNewsPane,
             MarketPane::Economy => &economy::EconomyPane,
         }
     }

@@ -47,7 +47,7 @@ pub struct Published {
 
 /// Everything the readings say.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Facts {
+pub struct MarketFacts {
     /// Knowledge of the groups.
     pub known: BTreeMap<Group, Known>,
     /// Attempts, the newest first.
@@ -56,7 +56,7 @@ pub struct Facts {
     pub economy: Vec<Published>,
 }
 
-impl Facts {
+impl MarketFacts {
     /// Takes a reading in place of what it said before.
     pub fn take(&mut self, reading: Reading, rows: &Rows) {
         let rows = rows.rows.iter();
@@ -161,7 +161,7 @@ mod tests {
     fn rows_that_miss_something_are_taken_for_what_they_say() {
         let text = |text: &str| Cell::Text(text.to_owned());
         let rows = |row: Vec<Cell>| Rows { rows: vec![row], ..Rows::default() };
-        let mut facts = Facts::default();
+        let mut facts = MarketFacts::default();
         facts.take(Reading::Knowledge, &rows(vec![text("D_S01"), Cell::Integer(0), Cell::Null, Cell::Null]));
         facts.take(
             Reading::Attempts,

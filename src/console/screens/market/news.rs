@@ -9,7 +9,7 @@ use crate::console::action::{Action, Scope};
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
-use crate::console::posts::{Kind, Post};
+use crate::console::posts::{PostKind, Post};
 use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::{Figure, Look};
 use crate::console::theme::Role;
@@ -17,7 +17,7 @@ use crate::console::widgets::{Cell, Column, Table};
 
 /// A piece of news.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Item {
+pub struct RivalNews {
     /// The post.
     pub post: Arc<Post>,
     /// The rival that it names.
@@ -25,19 +25,19 @@ pub struct Item {
 }
 
 /// The news of the press, the newest first.
-pub fn of(company: &Company) -> Vec<Item> {
-    let press = company.posts.iter().filter(|post| post.kind == Kind::Press);
+pub fn of(company: &Company) -> Vec<RivalNews> {
+    let press = company.posts.iter().filter(|post| post.kind == PostKind::Press);
     let item = |post: &Arc<Post>| {
         let rival = company.terms.rivals.iter().find(|name| post.text.contains(name.as_str()));
-        Item { post: post.clone(), rival: rival.cloned() }
+        RivalNews { post: post.clone(), rival: rival.cloned() }
     };
     press.map(item).collect()
 }
 
 /// What the press writes.
-pub struct NewsPane;
+pub struct RivalNewsPane;
 
-impl Pane<Market> for NewsPane {
+impl Pane<Market> for RivalNewsPane {
     fn table<'a>(&self, market: &'a Market) -> Option<&'a Table> {
         Some(&market.headlines)
     }
@@ -66,7 +66,7 @@ impl Pane<Market> for NewsPane {
 
     fn act(&self, market: &mut Market, action: Action, look: &Look<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            let read = |item: &Item| {
+            let read = |item: &RivalNews| {
                 Effect::ShowText(format!("day {} · press", item.post.day), item.post.text.clone())
             };
             return selected(market).map(read).into_iter().collect();
@@ -96,7 +96,7 @@ impl Pane<Market> for NewsPane {
     }
 }
 
-fn selected(market: &Market) -> Option<&Item> {
+fn selected(market: &Market) -> Option<&RivalNews> {
     market.headlines.selected().and_then(|row| market.news.get(row))
 }
 
@@ -106,7 +106,7 @@ pub fn columns() -> Vec<Column> {
 }
 
 /// The row of a piece of news.
-pub fn row_of(item: &Item) -> Vec<Cell> {
+pub fn row_of(item: &RivalNews) -> Vec<Cell> {
     vec![
         Cell::number(f64::from(item.post.day), item.post.day.to_string()).role(Role::Dim),
         Cell::words(item.rival.as_deref().unwrap_or("economy")).role(match item.rival {

@@ -19,19 +19,19 @@ use crate::world::identifiers::Group;
 
 /// A line: words to the left, figures to the right.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct ReportLine {
     words: String,
     figures: String,
     role: Role,
 }
 
-impl Line {
-    fn head(words: &str, figures: &str) -> Line {
-        Line { words: words.to_owned(), figures: figures.to_owned(), role: Role::Header }
+impl ReportLine {
+    fn head(words: &str, figures: &str) -> ReportLine {
+        ReportLine { words: words.to_owned(), figures: figures.to_owned(), role: Role::Header }
     }
 
-    fn of(words: String, figures: String) -> Line {
-        Line { words, figures, role: Role::Text }
+    fn of(words: String, figures: String) -> ReportLine {
+        ReportLine { words, figures, role: Role::Text }
     }
 }
 
@@ -67,10 +67,10 @@ fn share(value: f64) -> String {
 }
 
 /// The report of a known group.
-pub fn lines(company: &Company, group: Group) -> Vec<Line> {
+pub fn lines(company: &Company, group: Group) -> Vec<ReportLine> {
     let Some(insights) = company.insights.get(&group) else { return Vec::new() };
     let noise = company.terms.level(level_of(company, group)).map_or(0.0, |level| level.noise);
-    let mut lines = vec![Line::head("estimate", "the truth is in")];
+    let mut lines = vec![ReportLine::head("estimate", "the truth is in")];
     for (estimate, words, unit, write) in ESTIMATES {
         let Some(value) = estimate(&insights.estimates) else { continue };
         let (from, to) = bounds(value, noise);
@@ -80,7 +80,7 @@ pub fn lines(company: &Company, group: Group) -> Vec<Line> {
             ("customers", true) => "companies",
             (unit, _) => unit,
         };
-        lines.push(Line::of(
+        lines.push(ReportLine::of(
             format!("{words:<21}{:>8} {unit}", write(value)),
             format!("{} – {}", write(from), write(to)),
         ));
@@ -89,27 +89,27 @@ pub fn lines(company: &Company, group: Group) -> Vec<Line> {
         let [least, most] = range.map(|seats| seats as f64);
         let (from, to) = (bounds(least, noise).0, bounds(most, noise).1);
         let seats = format!("{} – {}", figure(least), figure(most));
-        lines.push(Line::of(
+        lines.push(ReportLine::of(
             format!("{:<21}{seats:>8} seats", "size of a company"),
             format!("{} – {}", figure(from), figure(to)),
         ));
     }
-    lines.push(Line::head("word of mouth", "leads a day per 1,000 subscribers"));
+    lines.push(ReportLine::head("word of mouth", "leads a day per 1,000 subscribers"));
     influence(&mut lines, &insights.network_influence, &|rate| figure(rate * 1000.0));
-    lines.push(Line::head("reputation", "weight of reputation"));
+    lines.push(ReportLine::head("reputation", "weight of reputation"));
     influence(&mut lines, &insights.reputation_influence, &exact);
     lines
 }
 
-fn influence(lines: &mut Vec<Line>, influence: &Influence, write: &dyn Fn(f64) -> String) {
+fn influence(lines: &mut Vec<ReportLine>, influence: &Influence, write: &dyn Fn(f64) -> String) {
     for (all, words) in [(&influence.outgoing, "for"), (&influence.incoming, "from")] {
         let mut links: Vec<(&'static str, f64)> =
             all.iter().map(|(group, value)| (group.id(), *value)).collect();
         links.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(right.0)));
         if links.is_empty() {
-            lines.push(Line::of(format!("  {words} no known group"), String::new()));
+            lines.push(ReportLine::of(format!("  {words} no known group"), String::new()));
         }
-        lines.extend(links.iter().map(|(id, value)| Line::of(format!("  {words} {id}"), write(*value))));
+        lines.extend(links.iter().map(|(id, value)| ReportLine::of(format!("  {words} {id}"), write(*value))));
     }
 }
 

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use super::*;
 use crate::console::keys::Keys;
-use crate::console::posts::Kind;
+use crate::console::posts::PostKind;
 use crate::console::screens::Screen;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
 use crate::session::{Session, Via};
@@ -149,7 +149,7 @@ fn the_economy_is_shown_with_its_lag() {
     }
     screen.focus_on(MarketPane::Attempts);
     assert!(drawn(&screen, &company, 80, 21).contains("PMI "));
-    assert!(!screen.news.is_empty() && screen.news.iter().all(|item| item.post.kind == Kind::Press));
+    assert!(!screen.news.is_empty() && screen.news.iter().all(|item| item.post.kind == PostKind::Press));
     screen.focus_on(MarketPane::News);
     let effects = act(&mut screen, Action::Open, &company);
     assert!(matches!(&effects[..], [Effect::ShowText(title, _)] if title.contains("press")), "{effects:?}");

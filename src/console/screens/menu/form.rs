@@ -14,7 +14,7 @@ use crate::notation::dollars;
 use crate::session::{Configuration, DEFAULT_SCENARIO, Mode, NewRun};
 
 /// Fields of a new run.
-pub(super) struct Form {
+pub(super) struct RunForm {
     /// Names and descriptions of the scenarios.
     scenarios: Vec<(String, String)>,
     scenario: usize,
@@ -47,15 +47,15 @@ const VALUES: u16 = 17;
 /// Width of a field that is typed into.
 const FIELD: u16 = 18;
 
-impl Form {
-    pub(super) fn new(configuration: &Configuration) -> Form {
+impl RunForm {
+    pub(super) fn new(configuration: &Configuration) -> RunForm {
         let told = |name: &String| {
             configuration.scenario(name).map_or_else(|error| error.to_string(), |own| own.description)
         };
         let scenarios: Vec<(String, String)> =
             configuration.scenarios().into_iter().map(|name| (name.clone(), told(&name))).collect();
         let scenario = scenarios.iter().position(|(name, _)| name == DEFAULT_SCENARIO).unwrap_or(0);
-        Form {
+        RunForm {
             scenarios,
             scenario,
             terms: None,

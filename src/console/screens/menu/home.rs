@@ -12,7 +12,7 @@ use crate::session::RunSummary;
 
 /// Choices of the first page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Choice {
+pub(super) enum HomeEntry {
     Continue,
     Tour,
     New,
@@ -27,35 +27,35 @@ const WIDE: u16 = 76;
 
 impl Menu {
     /// What the page offers; nothing while the runs are being looked for, for they decide what comes first.
-    pub(super) fn choices(&self) -> Vec<(Choice, &'static str, String)> {
+    pub(super) fn choices(&self) -> Vec<(HomeEntry, &'static str, String)> {
         let mut choices = Vec::new();
         if self.runs.is_none() {
             return choices;
         }
         let count = self.list().len();
         if let Some(run) = self.latest() {
-            choices.push((Choice::Continue, "Continue", short(run)));
+            choices.push((HomeEntry::Continue, "Continue", short(run)));
         }
-        let tour = (Choice::Tour, "Tour", "New here? The first two minutes".to_owned());
+        let tour = (HomeEntry::Tour, "Tour", "New here? The first two minutes".to_owned());
         let known = matches!(self.runs, Some(Ok(_)));
         let newcomer = known && count == 0;
         if newcomer {
             choices.push(tour.clone());
         }
-        choices.push((Choice::New, "New run", "500 days from one million dollars".to_owned()));
+        choices.push((HomeEntry::New, "New run", "500 days from one million dollars".to_owned()));
         if count > 0 {
             let text =
                 if count == 1 { "1 on this machine".to_owned() } else { format!("{count} on this machine") };
-            choices.push((Choice::Runs, "Runs", text));
+            choices.push((HomeEntry::Runs, "Runs", text));
         }
         if count > 1 {
-            choices.push((Choice::Compare, "Compare runs", "two or more side by side".to_owned()));
+            choices.push((HomeEntry::Compare, "Compare runs", "two or more side by side".to_owned()));
         }
-        choices.push((Choice::Paper, "Paper table", "published results, and yours".to_owned()));
+        choices.push((HomeEntry::Paper, "Paper table", "published results, and yours".to_owned()));
         if !newcomer {
             choices.push(tour);
         }
-        choices.push((Choice::Quit, "Quit", "everything confirmed is saved".to_owned()));
+        choices.push((HomeEntry::Quit, "Quit", "everything confirmed is saved".to_owned()));
         choices
     }
 

@@ -21,8 +21,8 @@ use crate::console::request::Request;
 use crate::console::theme::Role;
 use crate::console::widgets::Table;
 use crate::session::{Access, Configuration, RunPreview, RunSummary};
-use form::{Form, ROWS};
-use home::Choice;
+use form::{ROWS, RunForm};
+use home::HomeEntry;
 use runs::Asked;
 
 /// Rows of a page, to walk over.
@@ -33,11 +33,11 @@ type Previews = BTreeMap<String, Option<Result<RunPreview, String>>>;
 
 /// The start menu.
 pub struct Menu {
-    page: Page,
+    page: MenuPage,
     runs: Option<Result<Vec<RunSummary>, String>>,
     /// Place on a page that is a plain list.
     selected: usize,
-    form: Form,
+    form: RunForm,
     table: Table,
     /// Runs to be compared, in the order in which they were marked.
     marked: Vec<String>,
@@ -50,7 +50,7 @@ pub struct Menu {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Page {
+enum MenuPage {
     Home,
     NewRun,
     Runs,
@@ -62,10 +62,10 @@ impl Menu {
     /// The menu, before the runs are known.
     pub fn new(configuration: &Configuration) -> Menu {
         Menu {
-            page: Page::Home,
+            page: MenuPage::Home,
             runs: None,
             selected: 0,
-            form: Form::new(configuration),
+            form: RunForm::new(configuration),
             table: Table::new(runs::columns()),
             marked: Vec::new(),
             previews: Previews::new(),
@@ -79,7 +79,7 @@ impl Menu {
     pub fn take(&mut self, runs: Result<Vec<RunSummary>, String>) -> Vec<Effect> {
         let choice = self.chosen_choice();
         self.runs = Some(runs);
-        if self.page == Page::Home {
+        if self.page == MenuPage::Home {
             // The same choice, wherever it stands now.
             let same = self.choices().iter().position(|(own, ..)| Some(*own) == choice);
             self.selected = same.unwrap_or(0);
@@ -92,7 +92,7 @@ impl Menu {
         self.renew_table();
         let last = self.list().first().filter(|run| run.problem.is_none()).map(|run| run.id.clone());
         let mut effects: Vec<Effect> = last.and_then(|id| self.read(&id)).into_iter().collect();
-        if self.page == Page::Runs {
+        if self.page == MenuPage::Runs {
             effects.extend(self.read_chosen());
         }
         for action in std::mem::take(&mut self.early) {
@@ -101,7 +101,7 @@ impl Menu {
         effects
     }
 
-    fn chosen_choice(&self) -> Option<Choice> {
+    fn chosen_choice(&self) -> Option<HomeEntry> {
         self.choices().get(self.selected).map(|choice| choice.0)
     }
 
@@ -141,10 +141,10 @@ impl Menu {
     /// Last place of a page that is a plain list.
     fn last(&self) -> usize {
         let rows = match self.page {
-            Page::Home => self.choices().len(),
-            Page::NewRun => ROWS.len(),
-            Page::Paper => paper::ranked(self.list()).len(),
-            Page::Runs | Page::Compare => 1,
+            MenuPage::Home => self.choices().len(),
+            MenuPage::NewRun => ROWS.len(),
+            MenuPage::Paper => paper::ranked(self.list()).len(),
+            MenuPage::Runs | MenuPage::Compare => 1,
         };
         rows.saturating_sub(1)
     }
@@ -153,10 +153,10 @@ impl Menu {
     pub fn scopes(&self) -> Vec<Scope> {
         match self.page {
             _ if self.asked.is_some() => vec![Scope::Dialog],
-            Page::Runs if self.table.is_typing() => vec![Scope::Field],
-            Page::NewRun if self.form.is_typing() => vec![Scope::Field],
-            Page::NewRun | Page::Compare | Page::Paper => vec![Scope::List],
-            Page::Home | Page::Runs => vec![Scope::Menu, Scope::List],
+            MenuPage::Runs if self.table.is_typing() => vec![Scope::Field],
+            MenuPage::NewRun if self.form.is_typing() => vec![Scope::Field],
+            MenuPage::NewRun | MenuPage::Compare | MenuPage::Paper => vec![Scope::List],
+            MenuPage::Home | MenuPage::Runs => vec![Scope::Menu, Scope::List],
         }
     }
 
@@ -164,12 +164,12 @@ impl Menu {
     pub fn hints(&self) -> Vec<Action> {
         match self.page {
             _ if self.asked.is_some() => vec![Action::Confirm, Action::Cancel],
-            Page::Home if self.latest().is_none() => vec![Action::Open, Action::NewRun, Action::Quit],
-            Page::Home => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],
-            Page::NewRun if self.form.is_typing() => vec![Action::Commit, Action::Discard],
-            Page::NewRun => vec![Action::Open, Action::Left, Action::Right, Action::Close],
-            Page::Runs if self.table.is_typing() => vec![Action::Commit, Action::Discard],
-            Page::Runs => vec![
+            MenuPage::Home if self.latest().is_none() => vec![Action::Open, Action::NewRun, Action::Quit],
+            MenuPage::Home => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],
+            MenuPage::NewRun if self.form.is_typing() => vec![Action::Commit, Action::Discard],
+            MenuPage::NewRun => vec![Action::Open, Action::Left, Action::Right, Action::Close],
+            MenuPage::Runs if self.table.is_typing() => vec![Action::Commit, Action::Discard],
+            MenuPage::Runs => vec![
                 Action::Open,
                 Action::ReplayRun,
                 Action::MarkRun,
@@ -180,19 +180,19 @@ impl Menu {
                 Action::Filter,
                 Action::Sort,
             ],
-            Page::Compare | Page::Paper => vec![Action::Close, Action::Quit],
+            MenuPage::Compare | MenuPage::Paper => vec![Action::Close, Action::Quit],
         }
     }
 
     fn place(&mut self) -> &mut usize {
         match self.page {
-            Page::NewRun => &mut self.form.at,
+            MenuPage::NewRun => &mut self.form.at,
             _ => &mut self.selected,
         }
     }
 
     fn go_home(&mut self) {
-        (self.page, self.selected) = (Page::Home, 0);
+        (self.page, self.selected) = (MenuPage::Home, 0);
     }
 
     /// Does an action.
@@ -202,18 +202,18 @@ impl Menu {
         }
         match (action, self.page) {
             (Action::NewRun, _) => self.open_form(),
-            (_, Page::Home) if self.runs.is_none() => self.early.push(action),
+            (_, MenuPage::Home) if self.runs.is_none() => self.early.push(action),
             (Action::ContinueRun, _) => return self.open_latest(),
-            (Action::ReplayRun, Page::Home) => return self.replay(self.list().first()),
-            (_, Page::Runs) => return self.act_on_runs(action),
-            (Action::Close | Action::Discard, Page::Compare) => self.page = Page::Runs,
+            (Action::ReplayRun, MenuPage::Home) => return self.replay(self.list().first()),
+            (_, MenuPage::Runs) => return self.act_on_runs(action),
+            (Action::Close | Action::Discard, MenuPage::Compare) => self.page = MenuPage::Runs,
             (Action::Close | Action::Discard, _) => self.go_home(),
-            (Action::Left | Action::Right, Page::NewRun) => {
+            (Action::Left | Action::Right, MenuPage::NewRun) => {
                 self.form.turn(action == Action::Right);
                 self.form.read_terms(&self.configuration);
             }
-            (Action::Open | Action::Commit, Page::NewRun) => return self.form.enter(),
-            (Action::Open, Page::Home) => return self.choose(),
+            (Action::Open | Action::Commit, MenuPage::NewRun) => return self.form.enter(),
+            (Action::Open, MenuPage::Home) => return self.choose(),
             _ => self.walk(action),
         }
         Vec::new()
@@ -236,8 +236,8 @@ impl Menu {
 
     fn open_form(&mut self) {
         self.early.clear();
-        self.page = Page::NewRun;
-        self.form = Form::new(&self.configuration);
+        self.page = MenuPage::NewRun;
+        self.form = RunForm::new(&self.configuration);
         self.form.read_terms(&self.configuration);
     }
 
@@ -250,32 +250,32 @@ impl Menu {
 
     fn choose(&mut self) -> Vec<Effect> {
         match self.chosen_choice() {
-            Some(Choice::Continue) => return self.open_latest(),
-            Some(Choice::Tour) => return vec![Effect::StartTour],
-            Some(Choice::New) => self.open_form(),
-            Some(Choice::Runs) => return self.open_runs(),
-            Some(Choice::Compare) => {
+            Some(HomeEntry::Continue) => return self.open_latest(),
+            Some(HomeEntry::Tour) => return vec![Effect::StartTour],
+            Some(HomeEntry::New) => self.open_form(),
+            Some(HomeEntry::Runs) => return self.open_runs(),
+            Some(HomeEntry::Compare) => {
                 let mut effects = self.open_runs();
                 effects.push(Effect::Say("mark two or more, then compare".to_owned()));
                 return effects;
             }
-            Some(Choice::Paper) => (self.page, self.selected) = (Page::Paper, 0),
-            Some(Choice::Quit) => return vec![Effect::Do(Action::Quit)],
+            Some(HomeEntry::Paper) => (self.page, self.selected) = (MenuPage::Paper, 0),
+            Some(HomeEntry::Quit) => return vec![Effect::Do(Action::Quit)],
             None => {}
         }
         Vec::new()
     }
 
     fn open_runs(&mut self) -> Vec<Effect> {
-        self.page = Page::Runs;
+        self.page = MenuPage::Runs;
         self.read_chosen()
     }
 
     /// Takes a typed key.
     pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         match self.page {
-            Page::NewRun => self.form.key(key),
-            Page::Runs if self.table.is_typing() => self.table.edit_filter(|field| {
+            MenuPage::NewRun => self.form.key(key),
+            MenuPage::Runs if self.table.is_typing() => self.table.edit_filter(|field| {
                 field.key(key);
             }),
             _ if key.code == KeyCode::Char('q') && self.asked.is_none() => {
@@ -289,8 +289,8 @@ impl Menu {
     /// Takes pasted text.
     pub fn paste(&mut self, text: &str) {
         match self.page {
-            Page::NewRun => self.form.paste(text),
-            Page::Runs => self.table.edit_filter(|field| field.insert(text.trim())),
+            MenuPage::NewRun => self.form.paste(text),
+            MenuPage::Runs => self.table.edit_filter(|field| field.insert(text.trim())),
             _ => {}
         }
     }
@@ -300,7 +300,7 @@ impl Menu {
         if self.asked.is_some() {
             return Vec::new();
         }
-        if self.page == Page::Runs {
+        if self.page == MenuPage::Runs {
             let before = self.table.selected();
             self.table.select_place(row);
             let again = before == self.table.selected();
@@ -309,7 +309,7 @@ impl Menu {
         let row = row.min(self.last());
         let again = *self.place() == row;
         *self.place() = row;
-        if again && !(self.page == Page::NewRun && row < ROWS.len() - 1) {
+        if again && !(self.page == MenuPage::NewRun && row < ROWS.len() - 1) {
             self.act(Action::Open)
         } else {
             Vec::new()
@@ -331,11 +331,11 @@ impl Menu {
             height: area.height.saturating_sub(4),
         };
         match self.page {
-            Page::Home => self.draw_home(canvas, body),
-            Page::NewRun => self.form.draw(canvas, body),
-            Page::Runs => self.draw_runs(canvas, body),
-            Page::Compare => self.draw_compare(canvas, body),
-            Page::Paper => self.draw_paper(canvas, body),
+            MenuPage::Home => self.draw_home(canvas, body),
+            MenuPage::NewRun => self.form.draw(canvas, body),
+            MenuPage::Runs => self.draw_runs(canvas, body),
+            MenuPage::Compare => self.draw_compare(canvas, body),
+            MenuPage::Paper => self.draw_paper(canvas, body),
         }
         self.draw_instead(canvas, body);
     }

@@ -148,7 +148,7 @@ impl Menu {
             return vec![Effect::Complain("mark two or more runs first".to_owned())];
         }
         let effects = self.read_marked();
-        self.page = super::Page::Compare;
+        self.page = super::MenuPage::Compare;
         effects
     }
 

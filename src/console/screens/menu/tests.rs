@@ -98,7 +98,7 @@ fn the_preview_of_a_run_is_asked_for_once() {
     let mut menu = Menu::new(&Configuration::shipped());
     let effects = menu.take(Ok(vec![summary("aaaa0001"), summary("bbbb0002")]));
     assert!(matches!(&effects[..], [Effect::Request(Request::PreviewRun(id))] if id == "aaaa0001"));
-    menu.page = Page::Runs;
+    menu.page = MenuPage::Runs;
     assert!(menu.read_chosen().is_empty());
     assert!(
         matches!(&menu.act(Action::Down)[..], [Effect::Request(Request::PreviewRun(id))] if id == "bbbb0002")
@@ -129,9 +129,9 @@ fn a_key_that_comes_before_the_runs_are_known_means_what_is_shown_then() {
     let (_, effects) = hurried(&[Action::Open], Vec::new());
     assert!(matches!(effects[..], [Effect::StartTour]));
     let (menu, _) = hurried(&[Action::Down, Action::Open], vec![summary("aaaa0001")]);
-    assert!(menu.page == Page::NewRun);
+    assert!(menu.page == MenuPage::NewRun);
     let (menu, effects) = hurried(&[Action::Open, Action::NewRun], vec![summary("aaaa0001")]);
-    assert!(menu.page == Page::NewRun && effects.len() == 1, "what came last counts");
+    assert!(menu.page == MenuPage::NewRun && effects.len() == 1, "what came last counts");
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn a_new_list_leaves_the_choice_where_it_was() {
 #[test]
 fn runs_are_given_up_and_deleted_only_after_a_question() {
     let mut menu = three();
-    menu.page = Page::Runs;
+    menu.page = MenuPage::Runs;
     for (action, words) in [(Action::EndRun, "Giving up"), (Action::DeleteRun, "Deleting")] {
         assert!(menu.act(action).is_empty());
         let screen = shown(&menu, 80, 23).replace("\n", " ");
@@ -170,7 +170,7 @@ fn runs_are_given_up_and_deleted_only_after_a_question() {
 #[test]
 fn marked_runs_are_compared() {
     let mut menu = three();
-    menu.page = Page::Runs;
+    menu.page = MenuPage::Runs;
     assert!(matches!(&menu.act(Action::CompareRuns)[..], [Effect::Complain(_)]));
     menu.act(Action::MarkRun);
     menu.act(Action::MarkRun);
@@ -185,13 +185,13 @@ fn marked_runs_are_compared() {
         }
     }
     menu.act(Action::Close);
-    assert!(menu.page == Page::Runs);
+    assert!(menu.page == MenuPage::Runs);
 }
 
 #[test]
 fn the_list_is_filtered_and_sorted() {
     let mut menu = three();
-    menu.page = Page::Runs;
+    menu.page = MenuPage::Runs;
     menu.act(Action::Filter);
     assert_eq!(menu.scopes(), [Scope::Field]);
     type_text(&mut menu, "finished q");
@@ -202,7 +202,7 @@ fn the_list_is_filtered_and_sorted() {
     assert_eq!(menu.chosen().map(|run| run.id.as_str()), Some("bbbb0002"));
     menu.act(Action::Close);
     menu.act(Action::Close);
-    assert!(menu.page == Page::Home);
+    assert!(menu.page == MenuPage::Home);
 }
 
 #[test]
@@ -267,7 +267,7 @@ fn modes_without_anything_to_them_are_not_offered() {
 #[test]
 fn the_paper_table_shows_both_kinds_of_results() {
     let mut menu = three();
-    menu.page = Page::Paper;
+    menu.page = MenuPage::Paper;
     let screen = shown(&menu, 120, 39);
     for part in
         ["Rule-based baseline", "$15,756,408", "You · bbbb0002", "sandbox · seed 42", "upper bound $2.20B"]
@@ -283,7 +283,7 @@ fn the_paper_table_shows_both_kinds_of_results() {
 fn every_page_is_drawn_in_every_window() {
     for mut menu in [menu(Vec::new()), three(), Menu::new(&Configuration::shipped())] {
         menu.marked = menu.list().iter().map(|run| run.id.clone()).collect();
-        for page in [Page::Home, Page::NewRun, Page::Runs, Page::Compare, Page::Paper] {
+        for page in [MenuPage::Home, MenuPage::NewRun, MenuPage::Runs, MenuPage::Compare, MenuPage::Paper] {
             menu.page = page;
             for width in (0..130).step_by(13) {
                 for height in (0..40).step_by(3) {
@@ -311,7 +311,7 @@ fn a_run_is_played_again_from_the_list_and_from_the_first_page() {
         assert_eq!(id, wanted);
     };
     replays(menu.act(Action::ReplayRun), "aaaa0001");
-    menu.page = Page::Runs;
+    menu.page = MenuPage::Runs;
     menu.act(Action::Down);
     replays(menu.act(Action::ReplayRun), "bbbb0002");
 }
@@ -323,7 +323,7 @@ fn a_run_that_does_not_open_is_offered_another_way_after_a_question() {
         (Instead::Watch("aaaa0001".to_owned()), "Watch it from here"),
         (Instead::Rescue("aaaa0001".to_owned()), "as a branch?"),
     ] {
-        for page in [Page::Home, Page::Runs] {
+        for page in [MenuPage::Home, MenuPage::Runs] {
             let mut menu = three();
             menu.page = page;
             menu.refused(long.clone(), Some(instead.clone()));

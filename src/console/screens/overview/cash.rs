@@ -17,9 +17,9 @@ use crate::console::widgets::{Axis, Line, Side, Unit, chart, fan};
 use crate::notation::dollars;
 
 /// The curve.
-pub struct CashPane;
+pub struct CashCurvePane;
 
-impl Pane<Overview> for CashPane {
+impl Pane<Overview> for CashCurvePane {
     fn hints(&self, _: &Overview) -> Vec<Action> {
         vec![Action::Open]
     }

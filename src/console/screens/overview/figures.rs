@@ -21,11 +21,11 @@ pub struct Metric {
     /// Whether more of it is better.
     pub more_is_better: bool,
     /// Where its rows are.
-    source: Source,
+    source: RowsSource,
 }
 
 /// Where the rows behind a figure are.
-enum Source {
+enum RowsSource {
     /// All of the ledger up to the end of a week.
     Cash,
     /// In the ledger, under a condition.
@@ -48,7 +48,7 @@ const fn metric(
     read: fn(&WeekFigures) -> f64,
     write: fn(f64) -> String,
     more_is_better: bool,
-    source: Source,
+    source: RowsSource,
 ) -> Metric {
     Metric { name, term, read, write, more_is_better, source }
 }
@@ -72,15 +72,15 @@ const DEALS: &str = "c.customer_type = 'large' AND s.status IN ('subscribed', 'c
 
 /// All figures, in their order on the screen.
 pub static METRICS: [Metric; 22] = [
-    metric("cash at week's end", "cash", |week| week.cash, dollars, true, Source::Cash),
-    metric("recurring revenue", "mrr", |week| week.recurring_revenue, dollars, true, Source::Active("TRUE")),
+    metric("cash at week's end", "cash", |week| week.cash, dollars, true, RowsSource::Cash),
+    metric("recurring revenue", "mrr", |week| week.recurring_revenue, dollars, true, RowsSource::Active("TRUE")),
     metric(
         "payments",
         "payments",
         |week| week.payments,
         dollars,
         true,
-        Source::Ledger("category = 'subscription_payment'"),
+        RowsSource::Ledger("category = 'subscription_payment'"),
     ),
     metric(
         "running costs",
@@ -88,7 +88,7 @@ pub static METRICS: [Metric; 22] = [
         |week| week.costs,
         dollars,
         false,
-        Source::Ledger("category IN ('compute', 'capacity', 'operations', 'development', 'advertising')"),
+        RowsSource::Ledger("category IN ('compute', 'capacity', 'operations', 'development', 'advertising')"),
     ),
     metric(
         "subscribers",
@@ -96,7 +96,7 @@ pub static METRICS: [Metric; 22] = [
         |week| f64::from(week.individual_subscribers),
         whole,
         true,
-        Source::Active(SMALL),
+        RowsSource::Active(SMALL),
     ),
     metric(
         "individual leads",
@@ -104,7 +104,7 @@ pub static METRICS: [Metric; 22] = [
         |week| f64::from(week.new_individual_leads),
         whole,
         true,
-        Source::Customers("c.created_day", SMALL),
+        RowsSource::Customers("c.created_day", SMALL),
     ),
     metric(
         "new subscribers",
@@ -112,7 +112,7 @@ pub static METRICS: [Metric; 22] = [
         |week| f64::from(week.new_individual_subscribers),
         whole,
         true,
-        Source::Customers("c.created_day", SIGNED),
+        RowsSource::Customers("c.created_day", SIGNED),
     ),
     metric(
         "conversion",
@@ -120,7 +120,7 @@ pub static METRICS: [Metric; 22] = [
         WeekFigures::conversion,
         share_or_none,
         true,
-        Source::Customers("c.created_day", SMALL),
+        RowsSource::Customers("c.created_day", SMALL),
     ),
     metric(
         "cancellations",
@@ -128,17 +128,17 @@ pub static METRICS: [Metric; 22] = [
         |week| f64::from(week.cancellations),
         whole,
         false,
-        Source::Customers("s.end_day", LEFT),
+        RowsSource::Customers("s.end_day", LEFT),
     ),
-    metric("upgrades", "upgrade", |week| f64::from(week.upgrades), whole, true, Source::None),
-    metric("downgrades", "upgrade", |week| f64::from(week.downgrades), whole, false, Source::None),
+    metric("upgrades", "upgrade", |week| f64::from(week.upgrades), whole, true, RowsSource::None),
+    metric("downgrades", "upgrade", |week| f64::from(week.downgrades), whole, false, RowsSource::None),
     metric(
         "seats",
         "seats",
         |week| f64::from(week.enterprise_seats),
         whole,
         true,
-        Source::Active("c.customer_type = 'large'"),
+        RowsSource::Active("c.customer_type = 'large'"),
     ),
     metric(
         "enterprise leads",
@@ -146,7 +146,7 @@ pub static METRICS: [Metric; 22] = [
         |week| f64::from(week.new_enterprise_leads),
         whole,
         true,
-        Source::Leads,
+        RowsSource::Leads,
     ),
     metric(
         "new seats",
@@ -154,16 +154,16 @@ pub static METRICS: [Metric; 22] = [
         |week| f64::from(week.new_enterprise_seats),
         whole,
         true,
-        Source::Customers("s.start_day", DEALS),
+        RowsSource::Customers("s.start_day", DEALS),
     ),
-    metric("seats lost", "churn", |week| f64::from(week.seats_lost), whole, false, Source::None),
+    metric("seats lost", "churn", |week| f64::from(week.seats_lost), whole, false, RowsSource::None),
     metric(
         "usage, units",
         "usage",
         |week| week.usage as f64,
         whole,
         true,
-        Source::Service("total_usage_units"),
+        RowsSource::Service("total_usage_units"),
     ),
     metric(
         "overload, peak",
@@ -171,7 +171,7 @@ pub static METRICS: [Metric; 22] = [
         |week| week.overload_peak,
         none_or_percent,
         false,
-        Source::Service("max(0.0, 1.0 * total_usage_units / capacity_units - 1) AS overload"),
+        RowsSource::Service("max(0.0, 1.0 * total_usage_units / capacity_units - 1) AS overload"),
     ),
     metric(
         "outage, minutes",
@@ -179,19 +179,19 @@ pub static METRICS: [Metric; 22] = [
         |week| f64::from(week.downtime_minutes),
         whole,
         false,
-        Source::Service("downtime_minutes"),
+        RowsSource::Service("downtime_minutes"),
     ),
-    metric("latency, peak ms", "latency", |week| week.p95_ms_peak, whole, false, Source::Service("p95_ms")),
+    metric("latency, peak ms", "latency", |week| week.p95_ms_peak, whole, false, RowsSource::Service("p95_ms")),
     metric(
         "error rate, peak",
         "error-rate",
         |week| week.error_rate_peak,
         |value| percent(value, 2),
         false,
-        Source::Service("error_rate"),
+        RowsSource::Service("error_rate"),
     ),
-    metric("open issues", "issue", |week| f64::from(week.open_issues), whole, false, Source::None),
-    metric("companies lost", "churn", |week| f64::from(week.companies_lost), whole, false, Source::None),
+    metric("open issues", "issue", |week| f64::from(week.open_issues), whole, false, RowsSource::None),
+    metric("companies lost", "churn", |week| f64::from(week.companies_lost), whole, false, RowsSource::None),
 ];
 
 /// Columns of the table; those that can be left out come last.
@@ -218,7 +218,7 @@ pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
     let trend = company.trend(12, metric.read);
     let now = trend.last().copied();
     // Cash is the one figure that there was before the first week.
-    let opening = matches!(metric.source, Source::Cash).then_some(company.seen.starting_cash);
+    let opening = matches!(metric.source, RowsSource::Cash).then_some(company.seen.starting_cash);
     let before = trend.len().checked_sub(2).map(|at| trend[at]).or(opening.filter(|_| now.is_some()));
     let cell = |value: Option<f64>| match value {
         Some(value) => Cell::number(value, (metric.write)(value)),
@@ -265,38 +265,38 @@ pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
 }
 
 /// The rows of some weeks; those that hold only now are left out for other weeks.
-fn statement(source: &Source, weeks: (u32, u32), now: bool) -> Option<String> {
+fn statement(source: &RowsSource, weeks: (u32, u32), now: bool) -> Option<String> {
     let (from, to) = ((7 * weeks.0).saturating_sub(6), 7 * weeks.1);
     let between = |day: &str| format!("{day} BETWEEN {from} AND {to}");
     Some(match source {
-        Source::Cash => format!(
+        RowsSource::Cash => format!(
             "SELECT {WEEK_OF_ENTRY} AS week, category, sum(amount) AS amount\nFROM ledger\nWHERE {}\nGROUP BY 1, 2\n\
              ORDER BY 1 DESC, 3 DESC",
             entries_of_weeks(0, weeks.1)
         ),
-        Source::Ledger(condition) => format!(
+        RowsSource::Ledger(condition) => format!(
             "SELECT day, category, amount, note\nFROM ledger\nWHERE {} AND {condition}\nORDER BY id",
             entries_of_weeks(weeks.0, weeks.1)
         ),
-        Source::Active(condition) if now => format!(
+        RowsSource::Active(condition) if now => format!(
             "SELECT s.customer_id, c.group_id, s.plan, s.seat_count, s.effective_price,\n    \
              s.effective_price * s.seat_count AS amount, s.start_day\nFROM subscriptions s\n\
              CROSS JOIN customers c\nWHERE s.status = 'subscribed' AND c.customer_id = s.customer_id AND {condition}"
         ),
-        Source::Customers(day, condition) => format!(
+        RowsSource::Customers(day, condition) => format!(
             "SELECT c.customer_id, c.group_id, c.acquisition_source, c.created_day, s.plan, s.status, s.seat_count,\n    \
              s.effective_price, s.start_day, s.end_day\nFROM customers c\n\
              JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE {} AND {condition}",
             between(day)
         ),
-        Source::Service(column) => {
+        RowsSource::Service(column) => {
             format!("SELECT day, {column}\nFROM service_day\nWHERE {}\nORDER BY day", between("day"))
         }
-        Source::Leads => format!(
+        RowsSource::Leads => format!(
             "SELECT customer_id, day, seat_count\nFROM enterprise_turns\n\
              WHERE thread_type = 'new_lead' AND turn_number = 0 AND {}",
             between("day")
         ),
-        Source::Active(_) | Source::None => return None,
+        RowsSource::Active(_) | RowsSource::None => return None,
     })
 }

@@ -15,7 +15,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
 use self::figures::METRICS;
-use self::news::Item;
+use self::news::NewsItem;
 use super::panes::{Pane, Paned, draw_pane};
 use super::product::model::{Day, projects, service};
 use super::{Look, ScreenState};
@@ -52,9 +52,9 @@ pub struct Overview {
     quality: Table,
     days: Vec<Day>,
     /// What is new: the readings tell a part of it.
-    notices: Vec<Item>,
-    research: Vec<Item>,
-    news: Vec<Item>,
+    notices: Vec<NewsItem>,
+    research: Vec<NewsItem>,
+    news: Vec<NewsItem>,
     /// The item that is selected.
     item: usize,
 }
@@ -115,7 +115,7 @@ impl Paned for Overview {
             OverviewPane::Needs => &needs::NeedsPane,
             OverviewPane::Week => &week::WeekPane,
             OverviewPane::Quality => &quality::QualityPane,
-            OverviewPane::Cash => &cash::CashPane,
+            OverviewPane::Cash => &cash::CashCurvePane,
             OverviewPane::News => &news::NewsPane,
         }
     }

@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::Overview;
-use super::rows::{self, Row, walk};
+use super::rows::{self, LinkedRow, walk};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
@@ -60,8 +60,8 @@ impl Pane<Overview> for NeedsPane {
     }
 }
 
-fn rows_of(company: &Company) -> Vec<Row> {
-    company.needs.iter().map(|need| Row::to(screen_of(need), need.in_words(), need.urgent)).collect()
+fn rows_of(company: &Company) -> Vec<LinkedRow> {
+    company.needs.iter().map(|need| LinkedRow::to(screen_of(need), need.in_words(), need.urgent)).collect()
 }
 
 /// Height of the needs with their border, at most so much.

@@ -3,12 +3,12 @@
 use ratatui::layout::Rect;
 
 use super::Overview;
-use super::rows::{self, Row, walk};
+use super::rows::{self, LinkedRow, walk};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
-use crate::console::posts::Kind as Author;
+use crate::console::posts::PostKind as Author;
 use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::product::model::Project;
 use crate::console::screens::{Figure, Look, ScreenId};
@@ -31,7 +31,7 @@ impl Pane<Overview> for NewsPane {
 
     fn act(&self, overview: &mut Overview, action: Action, _: &Look<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            return overview.news.get(overview.item).map(Item::way).into_iter().collect();
+            return overview.news.get(overview.item).map(NewsItem::way).into_iter().collect();
         }
         walk(&mut overview.item, overview.news.len(), action);
         Vec::new()
@@ -51,15 +51,15 @@ impl Pane<Overview> for NewsPane {
         if overview.news.is_empty() {
             canvas.text(seat.area, "nothing", Role::Dim);
         }
-        let row = |item: &Item| Row::to(item.screen(), item.text.clone(), false);
-        let rows: Vec<Row> = overview.news.iter().map(row).collect();
+        let row = |item: &NewsItem| LinkedRow::to(item.screen(), item.text.clone(), false);
+        let rows: Vec<LinkedRow> = overview.news.iter().map(row).collect();
         rows::draw(canvas, seat, &rows, overview.item);
     }
 }
 
 /// What an item is about; items stand in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum NewsKind {
     /// An R&D project was finished.
     Research,
     /// A study was finished or a group found.
@@ -74,20 +74,20 @@ pub enum Kind {
 
 /// Something new.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Item {
+pub struct NewsItem {
     /// What it is about.
-    pub kind: Kind,
+    pub kind: NewsKind,
     /// Words.
     pub text: String,
 }
 
-impl Item {
+impl NewsItem {
     /// Where more of it stands.
     pub fn screen(&self) -> ScreenId {
         match self.kind {
-            Kind::Research => ScreenId::Product,
-            Kind::Study | Kind::Economy => ScreenId::Market,
-            Kind::Posts | Kind::Press => ScreenId::Social,
+            NewsKind::Research => ScreenId::Product,
+            NewsKind::Study | NewsKind::Economy => ScreenId::Market,
+            NewsKind::Posts | NewsKind::Press => ScreenId::Social,
         }
     }
 
@@ -99,15 +99,15 @@ impl Item {
     /// The figure it speaks of.
     pub fn figure(&self, day: u32) -> Figure {
         let (term, sql) = match self.kind {
-            Kind::Research => {
+            NewsKind::Research => {
                 ("research-project", "SELECT *\nFROM research_projects\nORDER BY started_day DESC".to_owned())
             }
-            Kind::Study => {
+            NewsKind::Study => {
                 ("info-level", "SELECT *\nFROM group_info_levels\nWHERE info_level > 0".to_owned())
             }
-            Kind::Economy => ("pmi", "SELECT *\nFROM macroeconomic_conditions\nORDER BY day DESC".to_owned()),
-            Kind::Posts | Kind::Press => (
-                if self.kind == Kind::Press { "press" } else { "post" },
+            NewsKind::Economy => ("pmi", "SELECT *\nFROM macroeconomic_conditions\nORDER BY day DESC".to_owned()),
+            NewsKind::Posts | NewsKind::Press => (
+                if self.kind == NewsKind::Press { "press" } else { "post" },
                 format!(
                     "SELECT post_id, day, content\nFROM social_media_posts\nWHERE day BETWEEN {} AND {day}\nORDER BY post_id DESC",
                     day.saturating_sub(6)
@@ -119,32 +119,32 @@ impl Item {
 }
 
 /// What the notices of a week say, the newest first.
-pub fn of_notices(rows: &Rows) -> Vec<Item> {
+pub fn of_notices(rows: &Rows) -> Vec<NewsItem> {
     let mut items = Vec::new();
     for row in &rows.rows {
         let kind = match text_at(row, 1) {
-            "macro_economic_update" => Kind::Economy,
-            "market_discovery" | "group_research_complete" => Kind::Study,
-            "social_media" => Kind::Posts,
+            "macro_economic_update" => NewsKind::Economy,
+            "market_discovery" | "group_research_complete" => NewsKind::Study,
+            "social_media" => NewsKind::Posts,
             _ => continue,
         };
-        items.push(Item { kind, text: text_at(row, 2).trim_end_matches('.').to_owned() });
+        items.push(NewsItem { kind, text: text_at(row, 2).trim_end_matches('.').to_owned() });
     }
     items
 }
 
 /// R&D that was finished in the last week, with what it adds.
-pub fn of_research(projects: &[Project], day: u32) -> Vec<Item> {
+pub fn of_research(projects: &[Project], day: u32) -> Vec<NewsItem> {
     let ended = |project: &&Project| project.done && project.expected + 7 > day && project.expected <= day;
-    let words = |project: &Project| Item {
-        kind: Kind::Research,
+    let words = |project: &Project| NewsItem {
+        kind: NewsKind::Research,
         text: format!("R&D {} done: {:+.4} quality for every group", project.id, project.boost),
     };
     projects.iter().filter(ended).map(words).collect()
 }
 
 /// What people and the press wrote in the last week.
-pub fn of_posts(company: &Company) -> Vec<Item> {
+pub fn of_posts(company: &Company) -> Vec<NewsItem> {
     let day = company.seen.day;
     // Posts of the last week, and of the four before it; the newest stand first.
     let (mut own, mut before, mut press) = (0u32, 0u32, 0u32);
@@ -169,11 +169,11 @@ pub fn of_posts(company: &Company) -> Vec<Item> {
     let mut items = Vec::new();
     if own > 0 {
         let noun = if own == 1 { "post" } else { "posts" };
-        items.push(Item { kind: Kind::Posts, text: format!("{own} new {noun} about us{compared}") });
+        items.push(NewsItem { kind: NewsKind::Posts, text: format!("{own} new {noun} about us{compared}") });
     }
     if press > 0 {
         let noun = if press == 1 { "news item" } else { "news items" };
-        items.push(Item { kind: Kind::Press, text: format!("{press} {noun} on rivals and the economy") });
+        items.push(NewsItem { kind: NewsKind::Press, text: format!("{press} {noun} on rivals and the economy") });
     }
     items
 }

@@ -23,16 +23,16 @@ pub fn walk(selected: &mut usize, rows: usize, action: Action) {
 }
 
 /// A row of words that leads to a screen.
-pub struct Row {
+pub struct LinkedRow {
     text: String,
     urgent: bool,
     way: String,
 }
 
-impl Row {
+impl LinkedRow {
     /// A row with where it leads.
-    pub fn to(screen: ScreenId, text: String, urgent: bool) -> Row {
-        Row { text, urgent, way: format!("→ {}", screen.action().entry().title) }
+    pub fn to(screen: ScreenId, text: String, urgent: bool) -> LinkedRow {
+        LinkedRow { text, urgent, way: format!("→ {}", screen.action().entry().title) }
     }
 
     /// The words in lines: whole, beside the name of the screen in the first one.
@@ -43,7 +43,7 @@ impl Row {
 }
 
 /// Draws rows from the first on with which the selected one is seen whole.
-pub fn draw(canvas: &mut Canvas<'_>, seat: Seat, rows: &[Row], selected: usize) {
+pub fn draw(canvas: &mut Canvas<'_>, seat: Seat, rows: &[LinkedRow], selected: usize) {
     let area = seat.area;
     let all: Vec<Vec<String>> = rows.iter().map(|row| row.lines(area.width)).collect();
     let mut from = 0;
@@ -63,7 +63,7 @@ pub fn draw(canvas: &mut Canvas<'_>, seat: Seat, rows: &[Row], selected: usize) 
     }
 }
 
-fn draw_row(canvas: &mut Canvas<'_>, area: Rect, row: &Row, lines: &[String], selected: bool) {
+fn draw_row(canvas: &mut Canvas<'_>, area: Rect, row: &LinkedRow, lines: &[String], selected: bool) {
     let role = match (selected, row.urgent) {
         (true, _) => Role::Selection,
         (false, true) => Role::Warning,

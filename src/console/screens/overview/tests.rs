@@ -4,7 +4,7 @@ use crate::console::screens::{Screen, ScreenId};
 use crate::console::test_kit::{act, courted, drawn, played, shown, sweep};
 use crate::report::needs::{Place, Problem};
 use crate::session::{Cell as Value, Session};
-use news::Kind;
+use news::NewsKind;
 
 fn sum_of(session: &mut Session, sql: &str, column: &str) -> f64 {
     let rows = session.query(&format!("SELECT {column} FROM ({sql})")).expect("an answer");
@@ -114,8 +114,8 @@ fn what_is_selected_is_explained_by_a_term_or_a_tool() {
     let day = company.seen.day;
     let needs = company.needs.iter().map(|need| needs::figure_of(need, day).term);
     let metrics = METRICS.iter().map(|metric| metric.term);
-    let kinds = [Kind::Research, Kind::Study, Kind::Economy, Kind::Posts, Kind::Press];
-    let news = kinds.map(|kind| news::Item { kind, text: String::new() }.figure(day).term);
+    let kinds = [NewsKind::Research, NewsKind::Study, NewsKind::Economy, NewsKind::Posts, NewsKind::Press];
+    let news = kinds.map(|kind| news::NewsItem { kind, text: String::new() }.figure(day).term);
     for term in needs.chain(metrics).chain(news) {
         let kind = crate::glossary::subject(term).map(|subject| subject.kind());
         assert!(matches!(kind, Some("term" | "tool")), "{term}: {kind:?}");
@@ -197,7 +197,7 @@ fn posts_are_compared_with_the_weeks_there_were() {
     {
         let company = Company::of(&played(weeks));
         let by_people = |post: &&std::sync::Arc<crate::console::posts::Post>| {
-            post.kind != crate::console::posts::Kind::Press
+            post.kind != crate::console::posts::PostKind::Press
         };
         let of = |week: u32| {
             company.posts.iter().filter(by_people).filter(|post| post.day.div_ceil(7) == week).count()
@@ -205,7 +205,7 @@ fn posts_are_compared_with_the_weeks_there_were() {
         let last = weeks as u32;
         let before: Vec<f64> = (last.saturating_sub(4).max(1)..last).map(|week| of(week) as f64).collect();
         let usual = crate::notation::grouped(before.iter().sum::<f64>() / before.len().max(1) as f64, 0);
-        let told = news::of_posts(&company).into_iter().find(|item| item.kind == Kind::Posts).expect("posts");
+        let told = news::of_posts(&company).into_iter().find(|item| item.kind == NewsKind::Posts).expect("posts");
         assert!(told.text.starts_with(&format!("{} new post", of(last))), "{}", told.text);
         let compared = told.text.split_once('(').map_or("", |(_, compared)| compared);
         assert!(

@@ -3,7 +3,7 @@
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::model::{Day, Rung, last_week};
-use super::part::{Part, tier};
+use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::company::Company;
@@ -50,7 +50,7 @@ fn share(units: f64, of: f64) -> String {
 /// The ladder, and the history of usage beside or below it where there is room.
 pub struct Capacity;
 
-impl Part for Capacity {
+impl ProductPart for Capacity {
     fn name(&self) -> ProductPane {
         ProductPane::Capacity
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use ratatui::layout::Rect;
 
 use super::model::Ages;
-use super::part::{Part, cell};
+use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::company::Company;
@@ -40,7 +40,7 @@ impl Issues {
     }
 }
 
-impl Part for Issues {
+impl ProductPart for Issues {
     fn name(&self) -> ProductPane {
         ProductPane::Issues
     }

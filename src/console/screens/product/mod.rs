@@ -16,8 +16,8 @@ use std::collections::BTreeMap;
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use self::model::{Ages, Day, Offer, PlanFacts, Project, Rung, Sales};
-use self::part::Part;
+use self::model::{Ages, Day, ProjectOffer, PlanFacts, Project, Rung, Sales};
+use self::part::ProductPart;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenState};
 use crate::console::canvas::{Canvas, Click, rows_of};
@@ -56,7 +56,7 @@ impl ProductPane {
         }
     }
 
-    fn part(self) -> &'static dyn Part {
+    fn part(self) -> &'static dyn ProductPart {
         match self {
             ProductPane::Quality => &quality::Quality,
             ProductPane::Plans => &plans::Plans,
@@ -83,7 +83,7 @@ pub struct Product {
     /// Plan of the selected figure.
     column: usize,
     projects: Vec<Project>,
-    offers: Vec<Offer>,
+    offers: Vec<ProjectOffer>,
     spent: research::Spent,
     /// The ladder was pointed at the tier in force.
     placed: bool,

@@ -220,7 +220,7 @@ pub fn projects(rows: &Rows) -> Vec<Project> {
 
 /// A kind of R&D project that can be started.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Offer {
+pub struct ProjectOffer {
     /// Tier.
     pub tier: u32,
     /// Name.
@@ -236,8 +236,8 @@ pub struct Offer {
 }
 
 /// The kinds of R&D projects.
-pub fn offers(company: &Company) -> Vec<Offer> {
-    let offer = |tier: &ResearchTierFacts| Offer {
+pub fn offers(company: &Company) -> Vec<ProjectOffer> {
+    let offer = |tier: &ResearchTierFacts| ProjectOffer {
         tier: u32::from(tier.tier),
         name: tier.name.clone(),
         cost: f64::from(tier.cost),

@@ -12,7 +12,7 @@ use crate::console::screens::{Figure, Look};
 use crate::tools::ToolId;
 
 /// One of the panes.
-pub trait Part: Pane<Product> {
+pub trait ProductPart: Pane<Product> {
     /// Which.
     fn name(&self) -> ProductPane;
 
@@ -47,7 +47,7 @@ pub trait Part: Pane<Product> {
     fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company);
 }
 
-impl<P: Part> Pane<Product> for P {
+impl<P: ProductPart> Pane<Product> for P {
     fn hints(&self, _: &Product) -> Vec<Action> {
         vec![Action::FocusNext, Action::Open]
     }

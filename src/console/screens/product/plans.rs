@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::model::PlanFacts;
-use super::part::{Part, cell};
+use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click, rows_of};
@@ -22,7 +22,7 @@ use crate::world::identifiers::Plan;
 /// The plans as columns; a row leads to the tool that sets it.
 pub struct Plans;
 
-impl Part for Plans {
+impl ProductPart for Plans {
     fn name(&self) -> ProductPane {
         ProductPane::Plans
     }
@@ -97,14 +97,14 @@ impl Part for Plans {
 }
 
 /// A figure of a plan: name, how it is written.
-type Row = (&'static str, fn(&PlanFacts) -> String);
+type PlanFigure = (&'static str, fn(&PlanFacts) -> String);
 
 fn or_none(value: Option<f64>, write: impl Fn(f64) -> String) -> String {
     value.map_or("–".to_owned(), write)
 }
 
 /// Figures of the plans, in the order of what is looked at first.
-static FIGURES: [Row; 11] = [
+static FIGURES: [PlanFigure; 11] = [
     ("model tier", |plan| format!("T{}", plan.tier)),
     ("price a month", |plan| cents(plan.price)),
     ("quota a day", |plan| compact(plan.quota)),

@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::part::{Part, cell};
+use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::company::Company;
@@ -17,7 +17,7 @@ use crate::tools::ToolId;
 /// The components of quality, one group in a row.
 pub struct Quality;
 
-impl Part for Quality {
+impl ProductPart for Quality {
     fn name(&self) -> ProductPane {
         ProductPane::Quality
     }

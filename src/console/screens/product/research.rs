@@ -3,7 +3,7 @@
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::model::Project;
-use super::part::{Part, tier};
+use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
 use crate::console::canvas::{Align, Canvas, Click, fit, rows_of};
 use crate::console::company::Company;
@@ -41,7 +41,7 @@ fn summary(projects: &[Project]) -> String {
 /// The projects, and what can be started.
 pub struct Research;
 
-impl Part for Research {
+impl ProductPart for Research {
     fn name(&self) -> ProductPane {
         ProductPane::Research
     }

@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::model::Day;
-use super::part::Part;
+use super::part::ProductPart;
 use super::{Product, ProductPane};
 use crate::console::canvas::{Align, Canvas, rows_of};
 use crate::console::company::Company;
@@ -19,7 +19,7 @@ use crate::notation::{grouped, percent};
 /// The measures of the service.
 pub struct Service;
 
-impl Part for Service {
+impl ProductPart for Service {
     fn name(&self) -> ProductPane {
         ProductPane::Service
     }

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use crate::console::posts::{Kind, Post};
+pub use crate::console::posts::{PostKind, Post};
 use crate::session::Rows;
 use crate::session::{number_at, text_at};
 
@@ -14,7 +14,7 @@ pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
         let answers = number_at(row, 3) as u32;
         let comments: Vec<u64> = serde_json::from_str(text_at(row, 5)).unwrap_or_default();
         Arc::new(Post {
-            kind: Kind::Own,
+            kind: PostKind::Own,
             number: number_at(row, 0) as u32,
             day: number_at(row, 1) as u32,
             author: "NovaMind".to_owned(),
@@ -31,7 +31,7 @@ pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Filter {
     /// Of these writers only.
-    pub kind: Option<Kind>,
+    pub kind: Option<PostKind>,
     /// Of this week only.
     pub week: Option<u32>,
     /// Of one thread only: our post, and the one that it answers.
@@ -55,8 +55,8 @@ impl Filter {
     /// The next kind, after the last one all.
     pub fn next_kind(&mut self) {
         self.kind = match self.kind {
-            None => Kind::ALL.first().copied(),
-            Some(kind) => Kind::ALL.iter().copied().find(|own| *own > kind),
+            None => PostKind::ALL.first().copied(),
+            Some(kind) => PostKind::ALL.iter().copied().find(|own| *own > kind),
         };
     }
 
@@ -83,9 +83,9 @@ impl Filter {
 /// Whether a post belongs to the thread of one of ours.
 fn belongs(post: &Post, (own, answered): (u32, Option<u32>)) -> bool {
     match post.kind {
-        Kind::Own => post.number == own,
-        Kind::Comments => post.answers == Some(own),
-        Kind::Customers | Kind::Press => Some(post.number) == answered,
+        PostKind::Own => post.number == own,
+        PostKind::Comments => post.answers == Some(own),
+        PostKind::Customers | PostKind::Press => Some(post.number) == answered,
     }
 }
 
@@ -94,14 +94,14 @@ pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
     let days: BTreeMap<u32, u32> = own.iter().map(|post| (post.number, post.day)).collect();
     let place = |post: &Arc<Post>| {
         let thread = match post.kind {
-            Kind::Own => Some(post.number),
-            Kind::Comments => post.answers.filter(|own| days.contains_key(own)),
+            PostKind::Own => Some(post.number),
+            PostKind::Comments => post.answers.filter(|own| days.contains_key(own)),
             _ => None,
         };
         let day = thread.and_then(|own| days.get(&own).copied()).unwrap_or(post.day);
         // Within a day our thread stands first: its head, then the comments in the order they came.
         let within = match (thread, post.kind) {
-            (Some(own), Kind::Own) => (0, Reverse(own), 0),
+            (Some(own), PostKind::Own) => (0, Reverse(own), 0),
             (Some(own), _) => (0, Reverse(own), post.number),
             (None, _) => (1, Reverse(post.number), 0),
         };
@@ -113,7 +113,7 @@ pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
 }
 
 /// Posts of others by week, from the first week to the last.
-pub fn by_week(posts: &[Arc<Post>], last: u32, takes: impl Fn(Kind) -> bool) -> Vec<(f64, f64)> {
+pub fn by_week(posts: &[Arc<Post>], last: u32, takes: impl Fn(PostKind) -> bool) -> Vec<(f64, f64)> {
     let count = |week: u32| posts.iter().filter(|post| takes(post.kind) && post.week() == week).count();
     (1..=last).map(|week| (f64::from(week), count(week) as f64)).collect()
 }
@@ -122,7 +122,7 @@ pub fn by_week(posts: &[Arc<Post>], last: u32, takes: impl Fn(Kind) -> bool) -> 
 mod tests {
     use super::*;
 
-    fn post(kind: Kind, number: u32, day: u32, answers: Option<u32>) -> Arc<Post> {
+    fn post(kind: PostKind, number: u32, day: u32, answers: Option<u32>) -> Arc<Post> {
         let (author, text) = ("Ann · S1".to_owned(), format!("Words {number}"));
         Arc::new(Post { kind, number, day, author, text, answers, views: 0, comments: 0 })
     }
@@ -130,25 +130,25 @@ mod tests {
     #[test]
     fn comments_stand_under_the_post_they_answer() {
         let others = [
-            post(Kind::Comments, 9, 15, Some(1)),
-            post(Kind::Comments, 8, 15, Some(1)),
-            post(Kind::Press, 7, 14, None),
-            post(Kind::Customers, 6, 21, None),
-            post(Kind::Comments, 5, 8, Some(99)),
+            post(PostKind::Comments, 9, 15, Some(1)),
+            post(PostKind::Comments, 8, 15, Some(1)),
+            post(PostKind::Press, 7, 14, None),
+            post(PostKind::Customers, 6, 21, None),
+            post(PostKind::Comments, 5, 8, Some(99)),
         ];
-        let own = [post(Kind::Own, 2, 21, None), post(Kind::Own, 1, 14, Some(3))];
-        let order: Vec<(Kind, u32)> =
+        let own = [post(PostKind::Own, 2, 21, None), post(PostKind::Own, 1, 14, Some(3))];
+        let order: Vec<(PostKind, u32)> =
             threads(&others, &own).iter().map(|post| (post.kind, post.number)).collect();
-        let (own, comment) = (Kind::Own, Kind::Comments);
+        let (own, comment) = (PostKind::Own, PostKind::Comments);
         assert_eq!(
             order,
             [
                 (own, 2),
-                (Kind::Customers, 6),
+                (PostKind::Customers, 6),
                 (own, 1),
                 (comment, 8),
                 (comment, 9),
-                (Kind::Press, 7),
+                (PostKind::Press, 7),
                 (comment, 5)
             ]
         );
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn filters_join_kind_week_and_text() {
-        let own = post(Kind::Customers, 6, 21, None);
+        let own = post(PostKind::Customers, 6, 21, None);
         let mut filter = Filter::default();
         assert!(filter.takes(&own) && filter.words().is_empty());
         filter.earlier_week(4);
@@ -177,12 +177,12 @@ mod tests {
     fn a_thread_is_our_post_its_comments_and_what_it_answers() {
         let filter = Filter { thread: Some((2, Some(6))), ..Filter::default() };
         for (kind, number, answers, belongs) in [
-            (Kind::Own, 2, Some(6), true),
-            (Kind::Own, 6, None, false),
-            (Kind::Comments, 9, Some(2), true),
-            (Kind::Comments, 2, Some(1), false),
-            (Kind::Customers, 6, None, true),
-            (Kind::Press, 2, None, false),
+            (PostKind::Own, 2, Some(6), true),
+            (PostKind::Own, 6, None, false),
+            (PostKind::Comments, 9, Some(2), true),
+            (PostKind::Comments, 2, Some(1), false),
+            (PostKind::Customers, 6, None, true),
+            (PostKind::Press, 2, None, false),
         ] {
             assert_eq!(filter.takes(&post(kind, number, 7, answers)), belongs, "{kind:?} {number}");
         }
@@ -191,8 +191,8 @@ mod tests {
 
     #[test]
     fn weeks_without_posts_count_as_none() {
-        let posts = [post(Kind::Press, 1, 1, None), post(Kind::Press, 2, 15, None)];
+        let posts = [post(PostKind::Press, 1, 1, None), post(PostKind::Press, 2, 15, None)];
         assert_eq!(by_week(&posts, 3, |_| true), [(1.0, 1.0), (2.0, 0.0), (3.0, 1.0)]);
-        assert_eq!(by_week(&posts, 1, |kind| kind == Kind::Own), [(1.0, 0.0)]);
+        assert_eq!(by_week(&posts, 1, |kind| kind == PostKind::Own), [(1.0, 0.0)]);
     }
 }

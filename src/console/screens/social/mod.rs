@@ -14,7 +14,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::{Value, json};
 use strum::VariantArray;
 
-use self::feed::{Filter, Kind, Post};
+use self::feed::{Filter, PostKind, Post};
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Figure, Look, ScreenState};
 use crate::console::action::Action;
@@ -91,7 +91,7 @@ impl Social {
     }
 
     /// Shows what the filter lets through, staying at a post if it is still there.
-    fn show_filtered(&mut self, kept: Option<(Kind, u32)>) {
+    fn show_filtered(&mut self, kept: Option<(PostKind, u32)>) {
         self.shown = (0..self.all.len()).filter(|at| self.filter.takes(&self.all[*at])).collect();
         let is_kept = |at: &usize| Some((self.all[*at].kind, self.all[*at].number)) == kept;
         // At the newest post one stays at the newest post.
@@ -111,9 +111,9 @@ impl Social {
     /// A post with all that is known of it, and the comments on it.
     fn read(&self, post: &Post) -> Effect {
         let mut parts = vec![post.text.clone()];
-        if post.kind == Kind::Own {
+        if post.kind == PostKind::Own {
             let of =
-                |comment: &&Arc<Post>| comment.kind == Kind::Comments && comment.answers == Some(post.number);
+                |comment: &&Arc<Post>| comment.kind == PostKind::Comments && comment.answers == Some(post.number);
             let comments = self.all.iter().filter(of);
             parts.extend(comments.map(|comment| format!("↳ {}\n  {}", comment.head(), comment.text)));
         } else if let Some(own) = self.own.iter().find(|own| post.answers == Some(own.number)) {
@@ -130,8 +130,8 @@ impl Social {
     /// Our post in whose thread a post stands: itself, the one it comments, or the one that answers it.
     fn thread_of(&self, post: &Post) -> Option<u32> {
         match post.kind {
-            Kind::Own => Some(post.number),
-            Kind::Comments => post.answers.filter(|own| self.own.iter().any(|post| post.number == *own)),
+            PostKind::Own => Some(post.number),
+            PostKind::Comments => post.answers.filter(|own| self.own.iter().any(|post| post.number == *own)),
             _ => self.own.iter().find(|own| own.answers == Some(post.number)).map(|own| own.number),
         }
     }
@@ -159,7 +159,7 @@ impl Social {
     }
 
     fn reply(&mut self) -> Vec<Effect> {
-        let answerable = self.post().filter(|post| post.kind != Kind::Own).map(|post| post.number);
+        let answerable = self.post().filter(|post| post.kind != PostKind::Own).map(|post| post.number);
         match answerable.filter(|_| self.focus == SocialPane::Feed) {
             Some(number) => {
                 self.write(Some(number));
@@ -347,8 +347,8 @@ impl Social {
     /// How much is written by week.
     fn draw_weeks(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let last = self.last_week();
-        let people = feed::by_week(&self.others, last, |kind| kind == Kind::Customers);
-        let press = feed::by_week(&self.others, last, |kind| kind == Kind::Press);
+        let people = feed::by_week(&self.others, last, |kind| kind == PostKind::Customers);
+        let press = feed::by_week(&self.others, last, |kind| kind == PostKind::Press);
         let now = |points: &[(f64, f64)]| points.last().map_or(0.0, |point| point.1);
         let note = format!("customers {} · press {}", now(&people), now(&press));
         let inside = canvas.pane(area, "Posts by week", &note, false);
@@ -365,7 +365,7 @@ impl Social {
 fn figure_of(post: &Post) -> Figure {
     let number = post.number;
     let (title, term, sql) = match post.kind {
-        Kind::Own => (
+        PostKind::Own => (
             format!("views of our post {number}"),
             "views",
             format!(
@@ -375,7 +375,7 @@ fn figure_of(post: &Post) -> Figure {
         ),
         kind => (
             format!("post #{number}"),
-            if kind == Kind::Press { "press" } else { "post" },
+            if kind == PostKind::Press { "press" } else { "post" },
             format!("SELECT * FROM social_media_posts WHERE post_id = {number}"),
         ),
     };

@@ -43,7 +43,7 @@ fn the_feed_holds_what_the_tools_and_the_database_tell() {
     assert!(total > 10, "{total}");
     assert_eq!(screen.all.len() as u64, total + 1);
     assert!(screen.own[0].views > 0 && screen.own[0].day == 21);
-    let comments = screen.others.iter().filter(|post| post.kind == Kind::Comments).count();
+    let comments = screen.others.iter().filter(|post| post.kind == PostKind::Comments).count();
     assert_eq!(comments as u32, screen.own[0].comments);
     let rows = session.query("SELECT count(*) FROM social_media_posts").expect("rows");
     assert_eq!(crate::session::number_at(&rows.rows[0], 0) as u64, total);
@@ -77,7 +77,7 @@ fn filters_narrow_the_feed_and_esc_ends_them() {
     let mut screen: Social = shown(&mut session, &company);
     let all = screen.shown.len();
     act(&mut screen, Action::NextKind, &company);
-    assert!(screen.shown.len() < all && screen.post().is_some_and(|post| post.kind == Kind::Customers));
+    assert!(screen.shown.len() < all && screen.post().is_some_and(|post| post.kind == PostKind::Customers));
     act(&mut screen, Action::EarlierWeek, &company);
     assert!(screen.shown.iter().all(|at| screen.all[*at].week() == 5));
     let text = drawn(&screen, &company, 120, 37);

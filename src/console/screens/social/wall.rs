@@ -2,14 +2,14 @@
 
 use unicode_width::UnicodeWidthStr;
 
-use super::feed::{Kind, Post};
+use super::feed::{PostKind, Post};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::screens::panes::Seat;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 
 /// A row of the feed: text, meaning, and the place of its post.
-struct Row {
+struct FeedRow {
     text: String,
     role: Role,
     place: Option<usize>,
@@ -46,11 +46,11 @@ pub fn draw(canvas: &mut Canvas<'_>, seat: Seat, posts: &[&Post], selected: usiz
 }
 
 /// Rows of the window around the selected post; posts far from it are never wrapped.
-fn rows_around(posts: &[&Post], selected: usize, width: usize, height: usize) -> Vec<Row> {
+fn rows_around(posts: &[&Post], selected: usize, width: usize, height: usize) -> Vec<FeedRow> {
     let Some(last) = posts.len().checked_sub(1) else { return Vec::new() };
     let selected = selected.min(last);
     // Above the selected post up to half of the window, and more where the list ends below.
-    let mut blocks: Vec<Vec<Row>> = vec![rows_of_post(posts, selected, width)];
+    let mut blocks: Vec<Vec<FeedRow>> = vec![rows_of_post(posts, selected, width)];
     let mut below = blocks[0].len();
     let mut next = selected + 1;
     let mut rest = Vec::new();
@@ -74,31 +74,31 @@ fn rows_around(posts: &[&Post], selected: usize, width: usize, height: usize) ->
     blocks.into_iter().chain(rest).flatten().take(height).collect()
 }
 
-fn rows_of_post(posts: &[&Post], place: usize, width: usize) -> Vec<Row> {
+fn rows_of_post(posts: &[&Post], place: usize, width: usize) -> Vec<FeedRow> {
     let post = posts[place];
     let before = place.checked_sub(1).map(|before| posts[before]);
     let mut rows = Vec::new();
-    let comment = post.kind == Kind::Comments;
+    let comment = post.kind == PostKind::Comments;
     let same_thread = |before: &Post| match before.kind {
-        Kind::Own => Some(before.number) == post.answers,
-        Kind::Comments => before.answers == post.answers,
+        PostKind::Own => Some(before.number) == post.answers,
+        PostKind::Comments => before.answers == post.answers,
         _ => false,
     };
     let follows_its_thread = comment && before.is_some_and(same_thread);
     if before.is_none_or(|before| before.day != post.day && !follows_its_thread) {
         let words = format!("── day {} · week {} ", post.day, post.week());
         let line = "─".repeat(width.saturating_sub(words.width()));
-        rows.push(Row { text: words + &line, role: Role::Header, place: None });
+        rows.push(FeedRow { text: words + &line, role: Role::Header, place: None });
     }
     let (indent, mark) = if comment { ("    ", "  ↳ ") } else { ("  ", "") };
     let role = match post.kind {
-        Kind::Own => Role::Strong,
-        Kind::Press => Role::Title,
-        Kind::Customers | Kind::Comments => Role::Dim,
+        PostKind::Own => Role::Strong,
+        PostKind::Press => Role::Title,
+        PostKind::Customers | PostKind::Comments => Role::Dim,
     };
-    rows.push(Row { text: format!("{mark}{}", post.head()), role, place: Some(place) });
+    rows.push(FeedRow { text: format!("{mark}{}", post.head()), role, place: Some(place) });
     let lines = wrapped(&post.text, width.saturating_sub(indent.len()));
-    let text = |line: String| Row { text: format!("{indent}{line}"), role: Role::Text, place: Some(place) };
+    let text = |line: String| FeedRow { text: format!("{indent}{line}"), role: Role::Text, place: Some(place) };
     rows.extend(lines.into_iter().map(text));
     rows
 }
@@ -109,7 +109,7 @@ mod tests {
 
     fn post(number: u32) -> Post {
         Post {
-            kind: Kind::Customers,
+            kind: PostKind::Customers,
             number,
             day: number * 7,
             author: "Ann · S1".to_owned(),

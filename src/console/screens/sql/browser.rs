@@ -24,12 +24,12 @@ pub struct Browser {
 
 /// A row of the tree: a table, or one of its columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Entry {
+pub struct BrowserRow {
     table: usize,
     column: Option<usize>,
 }
 
-impl Entry {
+impl BrowserRow {
     /// The table.
     pub fn table(self) -> &'static Table {
         &tables()[self.table]
@@ -48,7 +48,7 @@ impl Entry {
 
 impl Browser {
     /// Rows as shown.
-    fn entries(&self) -> Vec<Entry> {
+    fn entries(&self) -> Vec<BrowserRow> {
         let wanted = self.filter.to_lowercase();
         let holds = |name: &str| wanted.is_empty() || name.to_lowercase().contains(&wanted);
         let mut entries = Vec::new();
@@ -57,15 +57,15 @@ impl Browser {
             let columns = (0..table.columns.len()).filter(|own| self.open.contains(&at) || found(*own));
             let columns: Vec<usize> = columns.collect();
             if holds(&table.name) || !columns.is_empty() {
-                entries.push(Entry { table: at, column: None });
-                entries.extend(columns.into_iter().map(|own| Entry { table: at, column: Some(own) }));
+                entries.push(BrowserRow { table: at, column: None });
+                entries.extend(columns.into_iter().map(|own| BrowserRow { table: at, column: Some(own) }));
             }
         }
         entries
     }
 
     /// What is selected.
-    pub fn selected(&self) -> Option<Entry> {
+    pub fn selected(&self) -> Option<BrowserRow> {
         self.entries().get(self.selected).copied()
     }
 
@@ -105,7 +105,7 @@ impl Browser {
             self.open.insert(entry.table);
         } else {
             self.open.remove(&entry.table);
-            let head = Entry { table: entry.table, column: None };
+            let head = BrowserRow { table: entry.table, column: None };
             self.selected = self.entries().iter().position(|own| *own == head).unwrap_or(0);
         }
     }
@@ -170,7 +170,7 @@ impl Browser {
         }
     }
 
-    fn draw_entry(&self, canvas: &mut Canvas<'_>, row: Rect, entry: Entry, selected: Option<bool>) {
+    fn draw_entry(&self, canvas: &mut Canvas<'_>, row: Rect, entry: BrowserRow, selected: Option<bool>) {
         let over = selected.map(|focused| if focused { Role::Selection } else { Role::SelectionIdle });
         if let Some(role) = over {
             canvas.clear(row, role);
@@ -221,9 +221,9 @@ mod tests {
         browser.act(Action::Right, 5);
         assert_eq!(browser.entries().len(), 19 + tables()[0].columns.len());
         browser.act(Action::Down, 5);
-        assert_eq!(browser.selected().map(Entry::name), Some("customer_id"));
+        assert_eq!(browser.selected().map(BrowserRow::name), Some("customer_id"));
         browser.act(Action::Left, 5);
-        assert_eq!((browser.entries().len(), browser.selected().map(Entry::name)), (19, Some("customers")));
+        assert_eq!((browser.entries().len(), browser.selected().map(BrowserRow::name)), (19, Some("customers")));
     }
 
     #[test]
@@ -232,7 +232,7 @@ mod tests {
         browser.act(Action::Last, 5);
         browser.act(Action::Filter, 5);
         browser.edit_filter(&mut |field| field.insert("amount"));
-        let names: Vec<&str> = browser.entries().into_iter().map(Entry::name).collect();
+        let names: Vec<&str> = browser.entries().into_iter().map(BrowserRow::name).collect();
         assert!(names.contains(&"ledger") && names.contains(&"amount"), "{names:?}");
         assert!(browser.selected().is_some());
         browser.act(Action::Discard, 5);

@@ -1,6 +1,6 @@
 //! What could be typed next: columns of the tables that a statement names, tables, keywords, functions.
 
-use super::lexer::{FUNCTIONS, KEYWORDS, Kind, Token, is_word, statement_at, tokens};
+use super::lexer::{FUNCTIONS, KEYWORDS, LexemeKind, Token, is_word, statement_at, tokens};
 use crate::database::catalogue::{Column, Table};
 use crate::database::{table, tables};
 
@@ -28,7 +28,7 @@ pub struct Completion {
 const MOST: usize = 40;
 
 /// A table of a statement under the name it has there.
-struct Source {
+struct NamedTable {
     name: String,
     table: &'static Table,
 }
@@ -43,8 +43,8 @@ pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
     let pieces = tokens(statement);
     let inside = |token: &&Token| token.place.start < place && place <= token.place.end;
     let here = pieces.iter().find(inside);
-    let open_comment = |token: &Token| token.kind == Kind::Comment;
-    if here.is_some_and(|token| matches!(token.kind, Kind::Text | Kind::Number) || open_comment(token)) {
+    let open_comment = |token: &Token| token.kind == LexemeKind::Comment;
+    if here.is_some_and(|token| matches!(token.kind, LexemeKind::Text | LexemeKind::Number) || open_comment(token)) {
         return None;
     }
     let before = &statement[..place];
@@ -82,15 +82,15 @@ fn of_table(table: &Table) -> Candidate {
 }
 
 /// Columns of the table that has a name in the statement, or in the database.
-fn of_source(name: &str, sources: &[Source]) -> Option<Vec<Candidate>> {
+fn of_source(name: &str, sources: &[NamedTable]) -> Option<Vec<Candidate>> {
     let own = sources.iter().find(|source| source.name.eq_ignore_ascii_case(name)).map(|source| source.table);
     let meant = own.or_else(|| table(name))?;
     Some(meant.columns.iter().map(|column| of_column(meant, column)).collect())
 }
 
 /// Everything that a word without a point before it can be.
-fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[Source]) -> Vec<Candidate> {
-    let said = |token: &&Token| token.kind != Kind::Comment && token.place.end <= word_start;
+fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[NamedTable]) -> Vec<Candidate> {
+    let said = |token: &&Token| token.kind != LexemeKind::Comment && token.place.end <= word_start;
     let last = pieces.iter().rev().find(said).map(|token| sql[token.place.clone()].to_uppercase());
     let wants_table = last.is_some_and(|word| word == "FROM" || word == "JOIN");
     let names = own_names(sql, pieces)
@@ -119,7 +119,7 @@ fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[Sour
 
 /// Whether the person writes keywords in small letters.
 fn writes_small(sql: &str, pieces: &[Token]) -> bool {
-    let mut keywords = pieces.iter().filter(|token| token.kind == Kind::Keyword);
+    let mut keywords = pieces.iter().filter(|token| token.kind == LexemeKind::Keyword);
     keywords.any(|token| sql[token.place.clone()].chars().all(char::is_lowercase))
 }
 
@@ -141,9 +141,9 @@ fn matching(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
 }
 
 /// Tables that a statement names, each with its alias if it has one.
-fn sources(sql: &str, pieces: &[Token]) -> Vec<Source> {
+fn sources(sql: &str, pieces: &[Token]) -> Vec<NamedTable> {
     let text = |at: usize| pieces.get(at).map_or("", |token| &sql[token.place.clone()]);
-    let is_name = |at: usize| pieces.get(at).is_some_and(|token| token.kind == Kind::Name);
+    let is_name = |at: usize| pieces.get(at).is_some_and(|token| token.kind == LexemeKind::Name);
     let mut found = Vec::new();
     for at in (0..pieces.len()).filter(|at| is_name(*at)) {
         let Some(table) = table(text(at).trim_matches(['"', '`', '[', ']'])) else { continue };
@@ -153,7 +153,7 @@ fn sources(sql: &str, pieces: &[Token]) -> Vec<Source> {
         };
         // Without AS a second table name cannot be told from a forgotten comma.
         let name = if is_name(alias) { text(alias) } else { table.name.as_str() };
-        found.push(Source { name: name.to_owned(), table });
+        found.push(NamedTable { name: name.to_owned(), table });
     }
     found
 }
@@ -162,7 +162,7 @@ fn sources(sql: &str, pieces: &[Token]) -> Vec<Source> {
 fn own_names(sql: &str, pieces: &[Token]) -> Vec<String> {
     let text = |token: &Token| sql[token.place.clone()].to_owned();
     let names = pieces.windows(3).filter(|three| {
-        three[0].kind == Kind::Name && text(&three[1]).eq_ignore_ascii_case("as") && text(&three[2]) == "("
+        three[0].kind == LexemeKind::Name && text(&three[1]).eq_ignore_ascii_case("as") && text(&three[2]) == "("
     });
     names.map(|three| text(&three[0])).collect()
 }

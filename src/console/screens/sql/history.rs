@@ -1,6 +1,6 @@
 //! Statements asked before and texts that were replaced in the editor, the newest first, to choose from.
 
-use super::picker::{Item, Picker, in_a_line};
+use super::picker::{ListedQuery, Picker, in_a_line};
 use crate::session::library::{Head, body};
 
 /// Statements of this screen.
@@ -37,11 +37,11 @@ impl History {
 
     /// The list; `earlier` are statements of the run before, the newest last. None without any.
     pub fn picker(&self, earlier: &[String]) -> Option<Picker> {
-        let mut items: Vec<Item> = Vec::new();
+        let mut items: Vec<ListedQuery> = Vec::new();
         let own = self.kept.iter().rev().map(|kept| (kept.sql.as_str(), kept.draft));
         for (sql, draft) in own.chain(earlier.iter().rev().map(|sql| (sql.as_str(), false))) {
             if items.iter().all(|item| item.sql != sql) {
-                items.push(Item {
+                items.push(ListedQuery {
                     tag: if draft { "draft" } else { "" },
                     title: title(sql),
                     what: String::new(),
@@ -64,7 +64,7 @@ fn title(sql: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::picker::Choice;
+    use super::super::picker::PickedQuery;
     use super::*;
     use crate::console::action::Action;
 
@@ -72,7 +72,7 @@ mod tests {
         let Some(mut picker) = history.picker(earlier) else { return Vec::new() };
         let mut all = Vec::new();
         loop {
-            let Choice::Statement(sql) = picker.act(Action::Commit) else { return all };
+            let PickedQuery::Statement(sql) = picker.act(Action::Commit) else { return all };
             if all.contains(&sql) {
                 return all;
             }

@@ -7,7 +7,7 @@ use crate::console::theme::Role;
 
 /// What a piece is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum LexemeKind {
     /// A word of the language.
     Keyword,
     /// A name, plain or quoted.
@@ -22,15 +22,15 @@ pub enum Kind {
     Sign,
 }
 
-impl Kind {
+impl LexemeKind {
     /// How it is drawn.
     pub fn role(self) -> Role {
         match self {
-            Kind::Keyword => Role::Keyword,
-            Kind::Name | Kind::Sign => Role::Text,
-            Kind::Text => Role::SqlText,
-            Kind::Number => Role::Number,
-            Kind::Comment => Role::Comment,
+            LexemeKind::Keyword => Role::Keyword,
+            LexemeKind::Name | LexemeKind::Sign => Role::Text,
+            LexemeKind::Text => Role::SqlText,
+            LexemeKind::Number => Role::Number,
+            LexemeKind::Comment => Role::Comment,
         }
     }
 }
@@ -39,7 +39,7 @@ impl Kind {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Token {
     /// What it is.
-    pub kind: Kind,
+    pub kind: LexemeKind,
     /// Where it stands.
     pub place: Range<usize>,
 }
@@ -166,21 +166,21 @@ pub fn tokens(sql: &str) -> Vec<Token> {
                 at += blank.len_utf8();
                 continue;
             }
-            '-' if rest.starts_with("--") => (Kind::Comment, rest.find('\n').unwrap_or(rest.len())),
+            '-' if rest.starts_with("--") => (LexemeKind::Comment, rest.find('\n').unwrap_or(rest.len())),
             '/' if rest.starts_with("/*") => {
-                (Kind::Comment, rest[2..].find("*/").map_or(rest.len(), |end| end + 4))
+                (LexemeKind::Comment, rest[2..].find("*/").map_or(rest.len(), |end| end + 4))
             }
-            '\'' => (Kind::Text, quoted(rest, '\'')),
-            '"' | '`' => (Kind::Name, quoted(rest, first)),
-            '[' => (Kind::Name, rest.find(']').map_or(rest.len(), |end| end + 1)),
-            digit if digit.is_ascii_digit() => (Kind::Number, number(rest)),
-            '.' if rest[1..].starts_with(|next: char| next.is_ascii_digit()) => (Kind::Number, number(rest)),
+            '\'' => (LexemeKind::Text, quoted(rest, '\'')),
+            '"' | '`' => (LexemeKind::Name, quoted(rest, first)),
+            '[' => (LexemeKind::Name, rest.find(']').map_or(rest.len(), |end| end + 1)),
+            digit if digit.is_ascii_digit() => (LexemeKind::Number, number(rest)),
+            '.' if rest[1..].starts_with(|next: char| next.is_ascii_digit()) => (LexemeKind::Number, number(rest)),
             letter if is_word(letter) => {
                 let end = rest.find(|next| !is_word(next)).unwrap_or(rest.len());
                 let known = KEYWORDS.iter().any(|word| word.eq_ignore_ascii_case(&rest[..end]));
-                (if known { Kind::Keyword } else { Kind::Name }, end)
+                (if known { LexemeKind::Keyword } else { LexemeKind::Name }, end)
             }
-            other => (Kind::Sign, other.len_utf8()),
+            other => (LexemeKind::Sign, other.len_utf8()),
         };
         found.push(Token { kind, place: at..at + length });
         at += length;
@@ -217,11 +217,11 @@ fn number(rest: &str) -> usize {
 /// all of them. A place behind the last semicolon belongs to the statement before it if nothing follows.
 pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
     let pieces = tokens(sql);
-    let ends = pieces.iter().filter(|token| token.kind == Kind::Sign && &sql[token.place.clone()] == ";");
+    let ends = pieces.iter().filter(|token| token.kind == LexemeKind::Sign && &sql[token.place.clone()] == ";");
     let mut from = 0;
     let mut all: Vec<Range<usize>> = Vec::new();
     for end in ends.map(|token| token.place.start).chain([sql.len()]) {
-        let says = |token: &&Token| token.kind != Kind::Comment && (from..end).contains(&token.place.start);
+        let says = |token: &&Token| token.kind != LexemeKind::Comment && (from..end).contains(&token.place.start);
         if pieces.iter().filter(says).count() > 0 {
             all.push(from..end);
         }
@@ -238,13 +238,13 @@ pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
 mod tests {
     use super::*;
 
-    fn kinds(sql: &str) -> Vec<(Kind, &str)> {
+    fn kinds(sql: &str) -> Vec<(LexemeKind, &str)> {
         tokens(sql).into_iter().map(|token| (token.kind, &sql[token.place])).collect()
     }
 
     #[test]
     fn pieces_are_told_apart() {
-        use Kind::{Comment, Keyword, Name, Number, Sign, Text};
+        use LexemeKind::{Comment, Keyword, Name, Number, Sign, Text};
         assert_eq!(
             kinds("select s.plan, 'it''s' -- why\nFROM \"a b\" WHERE x>=1.5e-3"),
             [

@@ -3,7 +3,7 @@
 use crossterm::event::KeyEvent;
 
 use super::Sql;
-use super::picker::{Choice, Item, Picker};
+use super::picker::{PickedQuery, ListedQuery, Picker};
 use super::saving::Saving;
 use super::takeout::TakeOut;
 use crate::console::action::{Action, Scope};
@@ -183,7 +183,7 @@ impl Sql {
 
     pub(super) fn find_named(&mut self) {
         self.editor.hide_completion();
-        let item = |query: &NamedQuery| Item {
+        let item = |query: &NamedQuery| ListedQuery {
             tag: if query.own { "own" } else { "" },
             title: query.title.clone(),
             what: query.what.clone(),
@@ -212,13 +212,13 @@ impl Sql {
     }
 
     /// An earlier statement is put into the editor; a named query is run too.
-    fn choose(&mut self, choice: Choice) -> Vec<Effect> {
+    fn choose(&mut self, choice: PickedQuery) -> Vec<Effect> {
         let named = matches!(self.over, Some(Over::Library(_)));
         match choice {
-            Choice::None => {}
-            Choice::Closed => self.over = None,
-            Choice::Statement(sql) if named => return self.edit_and_run(&sql),
-            Choice::Statement(sql) => self.edit(&sql),
+            PickedQuery::None => {}
+            PickedQuery::Closed => self.over = None,
+            PickedQuery::Statement(sql) if named => return self.edit_and_run(&sql),
+            PickedQuery::Statement(sql) => self.edit(&sql),
         }
         Vec::new()
     }

@@ -19,7 +19,7 @@ const BESIDE: u16 = 110;
 
 /// Something to choose.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Item {
+pub struct ListedQuery {
     /// Where it comes from, in a word; empty for most.
     pub tag: &'static str,
     /// What is listed and searched first.
@@ -37,7 +37,7 @@ pub struct Picker {
     title: &'static str,
     /// What enter does, for the lower border.
     enter: &'static str,
-    items: Vec<Item>,
+    items: Vec<ListedQuery>,
     /// What is searched besides the title: explanation and statement in one line.
     texts: Vec<String>,
     field: Field,
@@ -47,7 +47,7 @@ pub struct Picker {
 
 /// What came of an action.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Choice {
+pub enum PickedQuery {
     /// Nothing yet.
     None,
     /// The list is left without a choice.
@@ -63,8 +63,8 @@ pub fn in_a_line(text: &str) -> String {
 
 impl Picker {
     /// A list under a title; `enter` says what follows from a choice.
-    pub fn new(title: &'static str, enter: &'static str, items: Vec<Item>) -> Picker {
-        let text = |item: &Item| format!("{} {}", item.what, in_a_line(&item.preview));
+    pub fn new(title: &'static str, enter: &'static str, items: Vec<ListedQuery>) -> Picker {
+        let text = |item: &ListedQuery| format!("{} {}", item.what, in_a_line(&item.preview));
         let texts = items.iter().map(text).collect();
         let mut picker =
             Picker { title, enter, items, texts, field: Field::default(), found: Vec::new(), selected: 0 };
@@ -90,25 +90,25 @@ impl Picker {
         self.selected = if self.selected + 1 < self.found.len() { self.selected + 1 } else { 0 };
     }
 
-    fn chosen(&self) -> Option<&Item> {
+    fn chosen(&self) -> Option<&ListedQuery> {
         self.found.get(self.selected).map(|(at, _)| &self.items[*at])
     }
 
     /// Walks and chooses.
-    pub fn act(&mut self, action: Action) -> Choice {
+    pub fn act(&mut self, action: Action) -> PickedQuery {
         let last = self.found.len().saturating_sub(1);
         match action {
             Action::Commit => {
-                return self.chosen().map_or(Choice::None, |item| Choice::Statement(item.sql.clone()));
+                return self.chosen().map_or(PickedQuery::None, |item| PickedQuery::Statement(item.sql.clone()));
             }
-            Action::Discard => return Choice::Closed,
+            Action::Discard => return PickedQuery::Closed,
             Action::CommitDown | Action::CommitNext | Action::Down => {
                 self.selected = (self.selected + 1).min(last);
             }
             Action::CommitPrevious | Action::Up => self.selected = self.selected.saturating_sub(1),
             _ => {}
         }
-        Choice::None
+        PickedQuery::None
     }
 
     /// Takes a key that is typed; pages are walked.
@@ -123,7 +123,7 @@ impl Picker {
     }
 
     /// A row was clicked.
-    pub fn click(&mut self, row: usize) -> Choice {
+    pub fn click(&mut self, row: usize) -> PickedQuery {
         self.selected = row.min(self.found.len().saturating_sub(1));
         self.act(Action::Commit)
     }
@@ -243,8 +243,8 @@ mod tests {
     use super::*;
     use crossterm::event::KeyModifiers;
 
-    fn item(title: &str, sql: &str) -> Item {
-        Item {
+    fn item(title: &str, sql: &str) -> ListedQuery {
+        ListedQuery {
             tag: "",
             title: title.to_owned(),
             what: String::new(),
@@ -264,12 +264,12 @@ mod tests {
         let all =
             vec![item("first", "SELECT 1"), item("second", "SELECT day FROM ledger"), item("third", "x")];
         let mut picker = Picker::new("All", "takes", all);
-        assert_eq!(picker.act(Action::Commit), Choice::Statement("SELECT 1".to_owned()));
+        assert_eq!(picker.act(Action::Commit), PickedQuery::Statement("SELECT 1".to_owned()));
         typed(&mut picker, "ledger");
-        assert_eq!(picker.act(Action::Commit), Choice::Statement("SELECT day FROM ledger".to_owned()));
+        assert_eq!(picker.act(Action::Commit), PickedQuery::Statement("SELECT day FROM ledger".to_owned()));
         typed(&mut picker, "zzz");
-        assert_eq!(picker.act(Action::Commit), Choice::None);
-        assert_eq!(picker.act(Action::Discard), Choice::Closed);
+        assert_eq!(picker.act(Action::Commit), PickedQuery::None);
+        assert_eq!(picker.act(Action::Discard), PickedQuery::Closed);
     }
 
     #[test]
@@ -285,7 +285,7 @@ mod tests {
 
     #[test]
     fn the_list_is_walked_by_one_by_page_and_round() {
-        let all: Vec<Item> = (0..12).map(|at| item(&format!("q{at}"), &at.to_string())).collect();
+        let all: Vec<ListedQuery> = (0..12).map(|at| item(&format!("q{at}"), &at.to_string())).collect();
         let mut picker = Picker::new("All", "takes", all);
         picker.act(Action::CommitPrevious);
         picker.key(&KeyEvent::new(KeyCode::PageDown, KeyModifiers::NONE), 5);
@@ -296,6 +296,6 @@ mod tests {
         }
         assert_eq!(picker.selected, 0);
         picker.key(&KeyEvent::new(KeyCode::PageUp, KeyModifiers::NONE), 5);
-        assert_eq!(picker.click(99), Choice::Statement("11".to_owned()));
+        assert_eq!(picker.click(99), PickedQuery::Statement("11".to_owned()));
     }
 }

@@ -20,7 +20,7 @@ const MOST: usize = 6;
 
 /// What is drawn.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Plot {
+pub struct PlottedColumns {
     kind: ChartKind,
     /// Column along which it is drawn; the rows themselves without one.
     x: Option<usize>,
@@ -41,26 +41,26 @@ fn value(rows: &Rows, row: usize, column: usize) -> Option<f64> {
     }
 }
 
-impl Plot {
+impl PlottedColumns {
     /// The chart that a statement proposes, or the likeliest one. None without a column of numbers.
-    pub fn of(rows: &Rows, proposed: Option<&ChartLine>) -> Option<Plot> {
-        proposed.and_then(|line| Plot::proposed(rows, line)).or_else(|| Plot::likeliest(rows))
+    pub fn of(rows: &Rows, proposed: Option<&ChartLine>) -> Option<PlottedColumns> {
+        proposed.and_then(|line| PlottedColumns::proposed(rows, line)).or_else(|| PlottedColumns::likeliest(rows))
     }
 
-    fn proposed(rows: &Rows, line: &ChartLine) -> Option<Plot> {
+    fn proposed(rows: &Rows, line: &ChartLine) -> Option<PlottedColumns> {
         let place = |name: &String| rows.columns.iter().position(|column| column == name);
         let x = place(&line.x)?;
         let ys: Vec<usize> = line.ys.iter().filter_map(place).filter(|at| is_numeric(rows, *at)).collect();
-        (!ys.is_empty()).then_some(Plot { kind: line.kind, x: Some(x), ys })
+        (!ys.is_empty()).then_some(PlottedColumns { kind: line.kind, x: Some(x), ys })
     }
 
-    fn likeliest(rows: &Rows) -> Option<Plot> {
+    fn likeliest(rows: &Rows) -> Option<PlottedColumns> {
         let numbers = numeric(rows);
         let words = (0..rows.columns.len()).find(|at| !numbers.contains(at));
         let x = words.or_else(|| numbers.first().copied().filter(|_| numbers.len() > 1));
         let y = numbers.into_iter().find(|at| Some(*at) != x)?;
         let kind = if words.is_none() && rows.rows.len() > 2 { ChartKind::Line } else { ChartKind::Bar };
-        Some(Plot { kind, x, ys: vec![y] })
+        Some(PlottedColumns { kind, x, ys: vec![y] })
     }
 
     /// Another column along which it is drawn.
@@ -334,26 +334,26 @@ mod tests {
     #[test]
     fn words_are_x_and_the_first_number_is_y_unless_the_statement_says_more() {
         let rows = leads();
-        let plot = Plot::of(&rows, None).expect("a chart");
-        assert_eq!(plot, Plot { kind: ChartKind::Bar, x: Some(0), ys: vec![1] });
-        let plot = Plot::of(&rows, proposed("line leads spend").as_ref()).expect("a chart");
-        assert_eq!(plot, Plot { kind: ChartKind::Line, x: Some(1), ys: vec![2] });
-        let plot = Plot::of(&rows, proposed("line nothing spend").as_ref()).expect("a chart");
+        let plot = PlottedColumns::of(&rows, None).expect("a chart");
+        assert_eq!(plot, PlottedColumns { kind: ChartKind::Bar, x: Some(0), ys: vec![1] });
+        let plot = PlottedColumns::of(&rows, proposed("line leads spend").as_ref()).expect("a chart");
+        assert_eq!(plot, PlottedColumns { kind: ChartKind::Line, x: Some(1), ys: vec![2] });
+        let plot = PlottedColumns::of(&rows, proposed("line nothing spend").as_ref()).expect("a chart");
         assert_eq!(plot.x, Some(0), "a column that is not there: the likeliest chart");
         let days =
             result(&["day", "cash"], (0..3).map(|at| vec![Cell::Integer(at), Cell::Real(1.0)]).collect());
-        let plot = Plot::of(&days, None).expect("a chart");
-        assert_eq!(plot, Plot { kind: ChartKind::Line, x: Some(0), ys: vec![1] });
+        let plot = PlottedColumns::of(&days, None).expect("a chart");
+        assert_eq!(plot, PlottedColumns { kind: ChartKind::Line, x: Some(0), ys: vec![1] });
         let single = result(&["n"], vec![vec![Cell::Integer(1)]]);
-        assert_eq!(Plot::of(&single, None).map(|plot| plot.x), Some(None));
-        assert_eq!(Plot::of(&result(&["t"], vec![vec![Cell::Text("x".to_owned())]]), None), None);
-        assert_eq!(Plot::of(&result(&["t"], Vec::new()), None), None);
+        assert_eq!(PlottedColumns::of(&single, None).map(|plot| plot.x), Some(None));
+        assert_eq!(PlottedColumns::of(&result(&["t"], vec![vec![Cell::Text("x".to_owned())]]), None), None);
+        assert_eq!(PlottedColumns::of(&result(&["t"], Vec::new()), None), None);
     }
 
     #[test]
     fn columns_are_walked_in_a_circle_and_series_are_added() {
         let rows = leads();
-        let mut plot = Plot::of(&rows, None).expect("a chart");
+        let mut plot = PlottedColumns::of(&rows, None).expect("a chart");
         plot.next_y(&rows);
         assert_eq!(plot.ys, [2]);
         plot.next_y(&rows);
@@ -378,7 +378,7 @@ mod tests {
     fn the_words_say_least_most_and_what_became_of_it() {
         let rows = leads();
         let table = shown(&rows);
-        let mut plot = Plot::of(&rows, None).expect("a chart");
+        let mut plot = PlottedColumns::of(&rows, None).expect("a chart");
         assert_eq!(plot.summary(&rows, &table, 1), "leads: min -3 (b) · max 8 (c) · total 10 · average 3.33");
         plot.other_kind();
         assert_eq!(
@@ -402,7 +402,7 @@ mod tests {
             &["day", "cash"],
             pairs.into_iter().map(|(day, cash)| vec![Cell::Integer(day), Cell::Real(cash)]).collect(),
         );
-        let plot = Plot::of(&rows, None).expect("a chart");
+        let plot = PlottedColumns::of(&rows, None).expect("a chart");
         assert_eq!(plot.order(&rows, &shown(&rows)), [1, 2, 0]);
         assert!(plot.summary(&rows, &shown(&rows), 1).ends_with("last 30 · change ▲ 20"));
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use super::plot::Plot;
+use super::plot::PlottedColumns;
 use super::{takeout, values};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, rows_of};
@@ -37,7 +37,7 @@ pub struct Results {
     /// How the statement wants its result to be drawn.
     proposed: Option<ChartLine>,
     /// The chart, while it is shown instead of the rows.
-    plot: Option<Plot>,
+    plot: Option<PlottedColumns>,
 }
 
 /// What to try first.
@@ -125,7 +125,7 @@ impl Results {
     }
 
     fn open_chart(&mut self) -> Vec<Effect> {
-        self.plot = self.rows().and_then(|rows| Plot::of(rows, self.proposed.as_ref()));
+        self.plot = self.rows().and_then(|rows| PlottedColumns::of(rows, self.proposed.as_ref()));
         match (&self.plot, self.rows()) {
             (Some(_), _) => Vec::new(),
             (None, Some(_)) => {

@@ -21,7 +21,7 @@ pub struct Saving {
 }
 
 /// What stands at a name.
-enum Place {
+enum NameTaken {
     /// It cannot be a name.
     Wrong,
     /// Nothing.
@@ -39,24 +39,24 @@ impl Saving {
         Saving { field: Field::to_replace(title), sql, warned: None }
     }
 
-    fn place(&self, library: &Library) -> Place {
-        let Some(name) = file_name(self.field.text()) else { return Place::Wrong };
+    fn place(&self, library: &Library) -> NameTaken {
+        let Some(name) = file_name(self.field.text()) else { return NameTaken::Wrong };
         match library.find(&name) {
-            None => Place::Free(name),
-            Some(query) if query.own => Place::Own(name),
-            Some(_) => Place::Shipped(name),
+            None => NameTaken::Free(name),
+            Some(query) if query.own => NameTaken::Own(name),
+            Some(_) => NameTaken::Shipped(name),
         }
     }
 
     /// What taking the name asks for; nothing as long as the person has to think again.
     pub fn commit(&mut self, library: &Library) -> Option<Effect> {
         let name = match self.place(library) {
-            Place::Wrong => return None,
-            Place::Own(name) | Place::Shipped(name) if self.warned.as_ref() != Some(&name) => {
+            NameTaken::Wrong => return None,
+            NameTaken::Own(name) | NameTaken::Shipped(name) if self.warned.as_ref() != Some(&name) => {
                 self.warned = Some(name);
                 return None;
             }
-            Place::Free(name) | Place::Own(name) | Place::Shipped(name) => name,
+            NameTaken::Free(name) | NameTaken::Own(name) | NameTaken::Shipped(name) => name,
         };
         let title = self.field.text().trim().to_owned();
         Some(Effect::SaveQuery { name, title, sql: self.sql.clone() })
@@ -65,21 +65,21 @@ impl Saving {
     fn remark(&self, library: &Library) -> (String, Role) {
         let again = |name: &str| self.warned.as_deref() == Some(name);
         match self.place(library) {
-            Place::Wrong if self.field.is_empty() => {
+            NameTaken::Wrong if self.field.is_empty() => {
                 ("Type a name; the statement at the cursor is saved under it.".to_owned(), Role::Dim)
             }
-            Place::Wrong => {
+            NameTaken::Wrong => {
                 ("A name is made of letters, digits, blanks, - and _; at most 60.".to_owned(), Role::Warning)
             }
-            Place::Free(name) => (format!("Becomes queries/{name}.sql in your configuration."), Role::Dim),
-            Place::Own(name) if again(&name) => {
+            NameTaken::Free(name) => (format!("Becomes queries/{name}.sql in your configuration."), Role::Dim),
+            NameTaken::Own(name) if again(&name) => {
                 (format!("! {name} already exists: enter again replaces it."), Role::Warning)
             }
-            Place::Own(name) => (format!("{name} already exists; enter asks again."), Role::Warning),
-            Place::Shipped(name) if again(&name) => {
+            NameTaken::Own(name) => (format!("{name} already exists; enter asks again."), Role::Warning),
+            NameTaken::Shipped(name) if again(&name) => {
                 (format!("! {name} is a built-in query: enter again overrides it."), Role::Warning)
             }
-            Place::Shipped(name) => (format!("{name} is a built-in query; enter asks again."), Role::Warning),
+            NameTaken::Shipped(name) => (format!("{name} is a built-in query; enter asks again."), Role::Warning),
         }
     }
 

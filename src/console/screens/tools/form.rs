@@ -4,7 +4,7 @@ use crossterm::event::KeyEvent;
 use serde_json::Value;
 
 use super::earlier;
-use super::sheet::{Place, Sheet};
+use super::sheet::{CellPlace, Sheet};
 use crate::console::action::Action;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
@@ -22,7 +22,7 @@ pub struct Form {
     /// Values.
     pub sheet: Sheet,
     /// The cell that has the focus.
-    pub at: Place,
+    pub at: CellPlace,
     /// The cell is being typed into; what it held before.
     pub typing: Option<Option<Field>>,
     /// A customer number is being typed, to add a row to a block.
@@ -41,7 +41,7 @@ impl Form {
         Form {
             spec,
             sheet: Sheet::of(spec, company),
-            at: Place::default(),
+            at: CellPlace::default(),
             typing: None,
             adding: None,
             preview: None,
@@ -205,7 +205,7 @@ impl Form {
             if !self.sheet.add_customer(block, field.text()) {
                 return vec![Effect::Complain("a customer number is expected, for instance 17".to_owned())];
             }
-            self.at = Place { block, row: self.sheet.blocks[block].rows.len() - 1, column: 0 };
+            self.at = CellPlace { block, row: self.sheet.blocks[block].rows.len() - 1, column: 0 };
             self.edit();
             return Vec::new();
         }
@@ -257,7 +257,7 @@ impl Form {
         for block in blocks {
             let rows = if block == self.at.block { self.at.row..below } else { 0..1 };
             for row in rows {
-                if let Some(slot) = self.sheet.slot_mut(Place { block, row, column: self.at.column }) {
+                if let Some(slot) = self.sheet.slot_mut(CellPlace { block, row, column: self.at.column }) {
                     slot.draft = Some(Field::of(text.clone()));
                 }
             }
@@ -315,7 +315,7 @@ impl Form {
             _ => line,
         };
         let (block, row, cells) = lines[to];
-        self.at = Place { block, row, column: self.at.column.min(cells - 1) };
+        self.at = CellPlace { block, row, column: self.at.column.min(cells - 1) };
     }
 
     /// Takes a key that is typed into a cell.

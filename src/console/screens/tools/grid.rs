@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 
 use super::form::Form;
 use super::outcome::Leads;
-use super::sheet::{Block, Place, Slot};
+use super::sheet::{Block, CellPlace, Slot};
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::text::number;
 use crate::console::theme::Role;
@@ -174,7 +174,7 @@ fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: 
     let shown = columns_shown(form, at, row.width);
     let many = block.columns.len() > 1;
     for (place, column) in shown.clone().enumerate() {
-        let own = Place { block: at, row: index, column };
+        let own = CellPlace { block: at, row: index, column };
         let area = cell_area(block, row, if many { place } else { 1 });
         draw_cell(form, own, canvas, area, here && column == form.at.column);
     }
@@ -200,7 +200,7 @@ fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: 
 
 /// A line of text takes the whole row.
 fn draw_text(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: bool) {
-    let place = Place { block: at, row: 0, column: 0 };
+    let place = CellPlace { block: at, row: 0, column: 0 };
     let Some(slot) = form.sheet.slot(place) else { return };
     if let Some(count) = form.sheet.places().position(|own| own == place) {
         canvas.click(row, Click::Row(1, count));
@@ -218,7 +218,7 @@ fn draw_text(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: b
     canvas.text(row, if text.is_empty() { "·" } else { &text }, role);
 }
 
-fn draw_cell(form: &Form, place: Place, canvas: &mut Canvas<'_>, area: Rect, here: bool) {
+fn draw_cell(form: &Form, place: CellPlace, canvas: &mut Canvas<'_>, area: Rect, here: bool) {
     let Some(slot) = form.sheet.slot(place) else { return };
     let block = &form.sheet.blocks[place.block];
     if let Some(count) = form.sheet.places().position(|own| own == place) {
@@ -254,7 +254,7 @@ fn draw_cell(form: &Form, place: Place, canvas: &mut Canvas<'_>, area: Rect, her
     canvas.aligned(area, &format!("{shown}{mark}"), role, Align::Right);
 }
 
-fn is_wrong(form: &Form, block: &Block, slot: &Slot, place: Place) -> bool {
+fn is_wrong(form: &Form, block: &Block, slot: &Slot, place: CellPlace) -> bool {
     let outside = match slot.value() {
         Err(()) => true,
         Ok(Some(value)) if slot.is_changed() => {

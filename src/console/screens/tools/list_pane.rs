@@ -15,9 +15,9 @@ use crate::console::widgets::table::first_row;
 use crate::tools::{Module, Spec};
 
 /// The tools by module.
-pub struct ListPane;
+pub struct ToolListPane;
 
-impl Pane<Tools> for ListPane {
+impl Pane<Tools> for ToolListPane {
     fn scopes(&self, tools: &Tools) -> Vec<Scope> {
         if tools.typing.is_some() { vec![Scope::Field] } else { vec![Scope::List] }
     }
@@ -110,13 +110,13 @@ impl Pane<Tools> for ListPane {
         if seat.focused {
             canvas.page = list.height.max(1);
         }
-        let is_here = |line: &Line| matches!(line, Line::Tool(place, _) if *place == tools.selected);
+        let is_here = |line: &ListLine| matches!(line, ListLine::Tool(place, _) if *place == tools.selected);
         let selected = lines.iter().position(is_here).unwrap_or(0);
         let from = first_row(selected, list.height as usize, lines.len());
         for (row, line) in rows_of(list).zip(lines.into_iter().skip(from)) {
             match line {
-                Line::Module(module) => canvas.text(row, module.id(), Role::Header),
-                Line::Tool(place, spec) => {
+                ListLine::Module(module) => canvas.text(row, module.id(), Role::Header),
+                ListLine::Tool(place, spec) => {
                     draw_tool(tools, canvas, row, spec, (place == tools.selected).then_some(seat.focused));
                     canvas.click(row, Click::Row(seat.number, place));
                 }
@@ -131,19 +131,19 @@ impl Pane<Tools> for ListPane {
 }
 
 /// A line of the list: the head of a module, or a tool with its place.
-enum Line {
+enum ListLine {
     Module(Module),
     Tool(usize, &'static Spec),
 }
 
-fn lines_of(tools: &Tools) -> Vec<Line> {
+fn lines_of(tools: &Tools) -> Vec<ListLine> {
     let shown = tools.shown();
     let mut lines = Vec::new();
     for module in Module::ALL {
         let own = shown.iter().enumerate().filter(|(_, spec)| spec.module == module);
-        let own: Vec<Line> = own.map(|(at, spec)| Line::Tool(at, spec)).collect();
+        let own: Vec<ListLine> = own.map(|(at, spec)| ListLine::Tool(at, spec)).collect();
         if !own.is_empty() {
-            lines.push(Line::Module(module));
+            lines.push(ListLine::Module(module));
             lines.extend(own);
         }
     }

@@ -89,7 +89,7 @@ impl Tools {
             self.selected = place;
             self.focus = ToolsPane::Form;
             if let Some(form) = self.form(company) {
-                form.at = sheet::Place::default();
+                form.at = sheet::CellPlace::default();
             }
         }
     }
@@ -228,7 +228,7 @@ impl Paned for Tools {
 
     fn pane(name: ToolsPane) -> &'static dyn Pane<Tools> {
         match name {
-            ToolsPane::List => &list_pane::ListPane,
+            ToolsPane::List => &list_pane::ToolListPane,
             ToolsPane::Form => &form_pane::FormPane,
         }
     }

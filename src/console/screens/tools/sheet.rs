@@ -161,12 +161,12 @@ impl Block {
     }
 
     /// The value of a line of text: JSON where a list or object is asked for.
-    fn text_value(&self) -> Result<Option<Value>, Place> {
+    fn text_value(&self) -> Result<Option<Value>, CellPlace> {
         let text = self.slots[0][0].text();
         match self.argument.kind {
             _ if text.trim().is_empty() => Ok(None),
             ArgumentKind::Text => Ok(Some(text.into())),
-            _ => serde_json::from_str(&text).map(Some).map_err(|_| Place::default()),
+            _ => serde_json::from_str(&text).map(Some).map_err(|_| CellPlace::default()),
         }
     }
 
@@ -180,9 +180,9 @@ impl Block {
     }
 
     /// The value that would be sent.
-    fn value(&self) -> Result<Option<Value>, Place> {
+    fn value(&self) -> Result<Option<Value>, CellPlace> {
         let number = |row: usize, column: usize| {
-            self.slots[row][column].value().map_err(|()| Place { block: 0, row, column })
+            self.slots[row][column].value().map_err(|()| CellPlace { block: 0, row, column })
         };
         if self.is_text() {
             return self.text_value();
@@ -216,7 +216,7 @@ impl Block {
 
 /// A cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Place {
+pub struct CellPlace {
     /// Block.
     pub block: usize,
     /// Row in the block.
@@ -272,7 +272,7 @@ impl Sheet {
 
     /// Types arguments into their cells; cells they do not name stay as they are.
     pub fn fill(&mut self, arguments: &Value) {
-        let places: Vec<Place> = self.places().collect();
+        let places: Vec<CellPlace> = self.places().collect();
         for place in places {
             let path = self.blocks[place.block].path(place.row, place.column);
             let found = path.split('.').try_fold(arguments, |value, name| value.get(name));
@@ -293,11 +293,11 @@ impl Sheet {
     ///
     /// # Errors
     /// The first cell that is no number, or no JSON where that is asked for.
-    pub fn arguments(&self) -> Result<Value, Place> {
+    pub fn arguments(&self) -> Result<Value, CellPlace> {
         let mut arguments = Map::new();
         for (at, block) in self.blocks.iter().enumerate() {
             if block.argument.required || block.is_changed() {
-                let value = block.value().map_err(|place| Place { block: at, ..place })?;
+                let value = block.value().map_err(|place| CellPlace { block: at, ..place })?;
                 if let Some(value) = value {
                     arguments.insert(block.argument.name.to_owned(), value);
                 }
@@ -307,33 +307,33 @@ impl Sheet {
     }
 
     /// The cell that a refusal names.
-    pub fn place_of(&self, path: &str) -> Option<Place> {
+    pub fn place_of(&self, path: &str) -> Option<CellPlace> {
         self.places().find(|place| self.blocks[place.block].path(place.row, place.column) == path)
     }
 
     /// The first cell whose path has this name in it.
-    pub fn place_for(&self, name: &str) -> Option<Place> {
-        let is_for = |place: &Place| {
+    pub fn place_for(&self, name: &str) -> Option<CellPlace> {
+        let is_for = |place: &CellPlace| {
             self.blocks[place.block].path(place.row, place.column).split('.').any(|own| own == name)
         };
         self.places().find(is_for)
     }
 
     /// All cells in reading order.
-    pub fn places(&self) -> impl Iterator<Item = Place> + '_ {
+    pub fn places(&self) -> impl Iterator<Item = CellPlace> + '_ {
         self.blocks.iter().enumerate().flat_map(|(block, own)| {
             (0..own.rows.len())
-                .flat_map(move |row| (0..own.columns.len()).map(move |column| Place { block, row, column }))
+                .flat_map(move |row| (0..own.columns.len()).map(move |column| CellPlace { block, row, column }))
         })
     }
 
     /// A cell.
-    pub fn slot(&self, place: Place) -> Option<&Slot> {
+    pub fn slot(&self, place: CellPlace) -> Option<&Slot> {
         self.blocks.get(place.block)?.slots.get(place.row)?.get(place.column)
     }
 
     /// A cell, to change it.
-    pub fn slot_mut(&mut self, place: Place) -> Option<&mut Slot> {
+    pub fn slot_mut(&mut self, place: CellPlace) -> Option<&mut Slot> {
         self.blocks.get_mut(place.block)?.slots.get_mut(place.row)?.get_mut(place.column)
     }
 
@@ -378,7 +378,7 @@ mod tests {
         fill(&mut prices, "C", "$1,055.50");
         assert_eq!(prices.arguments(), Ok(json!({"A": 12, "C": 1055.5})));
         fill(&mut prices, "B", "many");
-        assert_eq!(prices.arguments(), Err(Place { block: 1, row: 0, column: 0 }));
+        assert_eq!(prices.arguments(), Err(CellPlace { block: 1, row: 0, column: 0 }));
     }
 
     #[test]
@@ -413,7 +413,7 @@ mod tests {
         let renewed = deals.renewed(&company());
         assert!(renewed.is_changed() && renewed.arguments() == deals.arguments());
         fill(&mut deals, "deals", "[[7, ");
-        assert_eq!(deals.arguments(), Err(Place::default()));
+        assert_eq!(deals.arguments(), Err(CellPlace::default()));
         assert!(deals.blocks[0].expected().contains("JSON"));
         // What has a screen of its own is not typed here.
         assert!(sheet("query").blocks.is_empty() && sheet("next_week").blocks.is_empty());

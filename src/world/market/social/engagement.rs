@@ -2,7 +2,7 @@
 
 use super::sentiment::Sentiment;
 use crate::world::canonical::canonical;
-use crate::world::params::{Params, Social};
+use crate::world::params::{Params, SocialParams};
 use crate::world::random::Stream;
 
 canonical! { Engagement { likes, shares, virality } }
@@ -34,7 +34,7 @@ pub struct EngagementDraws {
 }
 
 /// Engagement of a customer's post.
-pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, law: &Social) -> Engagement {
+pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, law: &SocialParams) -> Engagement {
     let factor = match sentiment {
         Sentiment::Negative => law.virality_negative_base + draws.factor,
         Sentiment::Positive => law.virality_positive_base + law.virality_positive_range * draws.factor,

@@ -7,7 +7,7 @@ use crate::world::context::DayContext;
 use crate::world::customers::columns::Block;
 use crate::world::events::{Cause, Opinion, Theme, Troubles};
 use crate::world::identifiers::Group;
-use crate::world::params::Social;
+use crate::world::params::SocialParams;
 use crate::world::product::quality::{
     quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty,
 };
@@ -142,7 +142,7 @@ impl Scene<'_> {
 }
 
 /// Why somebody writes: the first trouble, else a change of mood, else nothing in particular.
-pub fn cause(troubles: Troubles, change: f64, law: &Social) -> Cause {
+pub fn cause(troubles: Troubles, change: f64, law: &SocialParams) -> Cause {
     match troubles {
         Troubles { overload: true, .. } => Cause::Overload,
         Troubles { outage: true, .. } => Cause::Outage,

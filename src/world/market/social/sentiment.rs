@@ -1,7 +1,7 @@
 //! The tone of a customer's post (docs/mechanics/market/social/sentiment.md).
 
 use crate::world::canonical::canonical_codes;
-use crate::world::params::{SentimentChances, Social};
+use crate::world::params::{SentimentChances, SocialParams};
 
 canonical_codes! { Sentiment { Positive, Neutral, Negative } }
 
@@ -18,7 +18,7 @@ pub enum Sentiment {
 }
 
 /// Chances of a sentiment at a satisfaction.
-pub fn sentiment_chances(satisfaction: f64, law: &Social) -> &SentimentChances {
+pub fn sentiment_chances(satisfaction: f64, law: &SocialParams) -> &SentimentChances {
     match satisfaction {
         s if s >= law.sentiment_band_very_positive_min => &law.sentiment.very_positive,
         s if s >= law.sentiment_band_positive_min => &law.sentiment.positive,
@@ -29,7 +29,7 @@ pub fn sentiment_chances(satisfaction: f64, law: &Social) -> &SentimentChances {
 }
 
 /// Sentiment of a post from a uniform draw.
-pub fn sentiment(satisfaction: f64, u: f64, law: &Social) -> Sentiment {
+pub fn sentiment(satisfaction: f64, u: f64, law: &SocialParams) -> Sentiment {
     let chances = sentiment_chances(satisfaction, law);
     if u < chances.positive {
         Sentiment::Positive

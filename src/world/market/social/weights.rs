@@ -1,7 +1,7 @@
 //! How loudly somebody is heard: the weights behind the posts of a day
 //! (docs/mechanics/market/social/crowd.md#weights).
 
-use crate::world::params::Social;
+use crate::world::params::SocialParams;
 
 /// What weighs in a subscriber's chance to be heard today.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +24,7 @@ pub struct Loudness {
 
 /// Weight of a subscriber.
 #[inline]
-pub fn post_weight(voice: &Loudness, law: &Social) -> f64 {
+pub fn post_weight(voice: &Loudness, law: &SocialParams) -> f64 {
     let s = voice.satisfaction;
     let mut weight = 1.0 + law.weight_abs_satisfaction_coef * s.abs();
     if s < 0.0 {
@@ -49,18 +49,18 @@ pub fn post_weight(voice: &Loudness, law: &Social) -> f64 {
 }
 
 /// Weight of an individual who cancelled today.
-pub fn cancelled_weight(satisfaction: f64, seats: f64, law: &Social) -> f64 {
+pub fn cancelled_weight(satisfaction: f64, seats: f64, law: &SocialParams) -> f64 {
     let bad = satisfaction.min(0.0).abs();
     finite(law.churn_weight_base * seats * (1.0 + law.churn_weight_negative_satisfaction_coef * bad), law)
 }
 
 /// Weight of a company that was lost today.
-pub fn lost_company_weight(seats: f64, law: &Social) -> f64 {
+pub fn lost_company_weight(seats: f64, law: &SocialParams) -> f64 {
     finite(law.enterprise_churn_weight_base * seats.max(1.0), law)
 }
 
 #[inline]
-fn finite(weight: f64, law: &Social) -> f64 {
+fn finite(weight: f64, law: &SocialParams) -> f64 {
     if weight.is_finite() { weight } else { law.weight_nonfinite_replacement }
 }
 

@@ -14,20 +14,20 @@ use ratatui::buffer::Buffer;
 
 /// A console that is played by a test.
 pub struct Console {
-    rehearsal: Option<Headless>,
+    headless: Option<Headless>,
 }
 
 impl Deref for Console {
     type Target = Headless;
 
     fn deref(&self) -> &Headless {
-        self.rehearsal.as_ref().expect("it is there until it is dropped")
+        self.headless.as_ref().expect("it is there until it is dropped")
     }
 }
 
 impl DerefMut for Console {
     fn deref_mut(&mut self) -> &mut Headless {
-        self.rehearsal.as_mut().expect("it is there until it is dropped")
+        self.headless.as_mut().expect("it is there until it is dropped")
     }
 }
 
@@ -47,7 +47,7 @@ impl Console {
             runs: runs.to_owned(),
             again: "novamind --run latest".to_owned(),
         };
-        let mut console = Console { rehearsal: Some(Headless::new(settings, size)) };
+        let mut console = Console { headless: Some(Headless::new(settings, size)) };
         console.settle().expect("the menu");
         console
     }
@@ -114,8 +114,8 @@ impl Console {
 
 impl Drop for Console {
     fn drop(&mut self) {
-        if let Some(rehearsal) = self.rehearsal.take() {
-            rehearsal.finish();
+        if let Some(headless) = self.headless.take() {
+            headless.finish();
         }
     }
 }

@@ -9,6 +9,7 @@ mod looks;
 mod monkey;
 mod pictures;
 mod replay;
+mod roles;
 mod sizes;
 mod stories;
 #[path = "../support/mod.rs"]

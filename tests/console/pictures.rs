@@ -2,13 +2,11 @@
 //! week 60. The pictures lie in `snapshots/`, with the checklist they were looked at with; `cargo insta review` shows
 //! what a change does to them.
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use novamind::console::theme::Theme;
 use novamind::session::{Configuration, Goal, Mode};
 use ratatui::buffer::Buffer;
-use ratatui::style::Style;
 
 use super::company::led;
 use super::harness::Console;
@@ -40,7 +38,7 @@ const PLACES: [(&str, &str, &str); 15] = [
     ("next-week", "1 n enter 'because' enter f", "esc esc"),
 ];
 
-/// Every place of a run, as text and styles.
+/// Every place of a run, as letters.
 fn pictures(name: &str, policy: &str, seed: u64, until: u32) {
     let runs = tempfile::tempdir().expect("a folder");
     led(policy, seed, until, runs.path());
@@ -90,7 +88,6 @@ fn picture(console: &mut Console, place: &str, rich: bool, found: &mut Vec<Strin
                 writeln!(text, "{}×{}\n{own}", size.0, size.1).expect("text");
             }
             letters = Some(own);
-            writeln!(text, "{} {}×{}\n{}", theme, size.0, size.1, styles_of(&buffer)).expect("text");
         }
     }
     text
@@ -99,44 +96,6 @@ fn picture(console: &mut Console, place: &str, rich: bool, found: &mut Vec<Strin
 fn letters_of(buffer: &Buffer) -> String {
     let row = |y| (0..buffer.area.width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
     (0..buffer.area.height).map(|y| row(y).trim_end().to_owned() + "\n").collect()
-}
-
-/// Styles of the cells, run by run, and what the letters stand for: `80a` are eighty cells of the style a.
-fn styles_of(buffer: &Buffer) -> String {
-    let mut names: BTreeMap<String, String> = BTreeMap::new();
-    let mut text = String::new();
-    for y in 0..buffer.area.height {
-        let styles: Vec<String> = (0..buffer.area.width).map(|x| described(buffer[(x, y)].style())).collect();
-        for same in styles.chunk_by(|left, right| left == right) {
-            let next = names.len();
-            let name = names.entry(same[0].clone()).or_insert_with(|| letter(next));
-            write!(text, "{}{name} ", same.len()).expect("text");
-        }
-        text.truncate(text.trim_end().len());
-        text.push('\n');
-    }
-    let mut legend: Vec<(&String, &String)> = names.iter().map(|(style, name)| (name, style)).collect();
-    legend.sort_by_key(|(name, _)| (name.len(), (*name).clone()));
-    for (name, style) in legend {
-        writeln!(text, "{name} = {style}").expect("text");
-    }
-    text
-}
-
-/// a … z, then aa, ab …
-fn letter(number: usize) -> String {
-    let last = char::from(b'a' + (number % 26) as u8);
-    if number < 26 { last.to_string() } else { letter(number / 26 - 1) + &last.to_string() }
-}
-
-fn described(style: Style) -> String {
-    let colour = |colour: Option<ratatui::style::Color>| {
-        colour.map_or_else(|| "reset".to_owned(), |colour| colour.to_string().to_lowercase())
-    };
-    let modifiers = style.add_modifier.iter_names().map(|(name, _)| name.to_lowercase());
-    let looks: Vec<String> =
-        [colour(style.fg), format!("on {}", colour(style.bg))].into_iter().chain(modifiers).collect();
-    looks.join(" ")
 }
 
 #[test]

@@ -355,11 +355,26 @@ fn channels(params: &Params) -> Result<(), Problem> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Params;
+    use super::super::{Params, shipped_sources};
     use super::*;
 
     fn near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-9 * expected.abs().max(1.0), "{actual} instead of {expected}");
+    }
+
+    #[test]
+    fn every_range_is_that_of_a_parameter() {
+        let tables: Vec<Table> =
+            shipped_sources().iter().map(|source| source.text.parse().expect("a table")).collect();
+        for Range(key, ..) in RANGES {
+            let parts: Vec<&str> = key.split('.').collect();
+            // No number is in it: the first that the key names complains.
+            let nothing = Range(key, 1.0, 0.0);
+            let mut named = tables.iter().flatten().filter(|(name, _)| *name == parts[0]);
+            let found =
+                named.any(|(name, value)| check_value(value, &parts[1..], &nothing, name.clone()).is_err());
+            assert!(found, "no parameter is {key}");
+        }
     }
 
     #[test]

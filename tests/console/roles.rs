@@ -1,0 +1,50 @@
+//! What colours say: words stand in the role of what they mean, in every theme.
+
+use novamind::console::theme::{Role, Theme};
+use novamind::session::Configuration;
+
+use super::company::led;
+use super::harness::Console;
+
+/// Asserts that the first place of some words on the screen has a role.
+#[track_caller]
+fn assert_role(console: &mut Console, words: &str, role: Role) {
+    let buffer = console.draw();
+    let letters: Vec<char> = words.chars().collect();
+    let symbol = |x: u16, y: u16| buffer[(x, y)].symbol().chars().next().unwrap_or(' ');
+    let stands = |x: u16, y: u16| {
+        let room = usize::from(buffer.area.width - x) >= letters.len();
+        room && letters.iter().enumerate().all(|(at, letter)| symbol(x + at as u16, y) == *letter)
+    };
+    let mut places = (0..buffer.area.height).flat_map(|y| (0..buffer.area.width).map(move |x| (x, y)));
+    let (x, y) = places.find(|(x, y)| stands(*x, *y)).unwrap_or_else(|| panic!("{words} is not shown"));
+    let (style, expected) = (buffer[(x, y)].style(), console.app.theme.style(role));
+    let same = expected.fg.is_none_or(|colour| style.fg == Some(colour))
+        && expected.bg.is_none_or(|colour| style.bg == Some(colour))
+        && style.add_modifier.contains(expected.add_modifier);
+    assert!(same, "{}, {words}: {style:?}, not {expected:?}", console.app.theme.name);
+}
+
+#[test]
+fn words_stand_in_the_role_of_what_they_mean() {
+    let runs = tempfile::tempdir().expect("a folder");
+    led("crisis.toml", 42, 210, runs.path());
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    for theme in ["dark", "light", "high-contrast"] {
+        console.app.theme = Theme::find(theme, &Configuration::shipped()).expect("a theme");
+        console.press("7");
+        assert_role(&mut console, "7 Market", Role::TabHere);
+        assert_role(&mut console, "2 Cash", Role::Tab);
+        assert_role(&mut console, "▼", Role::Bad);
+        assert_role(&mut console, "Groups", Role::Title);
+        assert_role(&mut console, "next study", Role::Header);
+        assert_role(&mut console, "S1  ", Role::Selection);
+        assert_role(&mut console, "S2  ", Role::Text);
+        console.press("8 enter enter '7' enter");
+        assert_role(&mut console, "→", Role::Changed);
+        console.press("esc esc 9 e 'SELECT 12 AS x' esc");
+        assert_role(&mut console, "SELECT 12", Role::Keyword);
+        assert_role(&mut console, "12 AS x", Role::Number);
+        console.press("1");
+    }
+}

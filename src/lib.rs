@@ -56,4 +56,6 @@ pub mod session;
 pub(crate) mod shipped;
 pub mod tools;
 pub mod voice;
-pub mod world;
+
+#[doc(inline)]
+pub use novamind_world as world;

@@ -6,6 +6,8 @@ use std::borrow::Cow;
 
 use serde_json::{Number, Value, json};
 
+pub use crate::world::params::nearest;
+
 /// A number with thousands separators and fixed decimals, for instance `1,234,567.5`.
 pub fn grouped(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
@@ -129,17 +131,6 @@ pub fn plain_numbers(value: Value) -> Value {
         Value::Object(map) => map.into_iter().map(|(key, value)| (key, plain_numbers(value))).collect(),
         other => other,
     }
-}
-
-/// Up to three of the known names that look most like a name that does not exist, best first.
-pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let name = name.to_lowercase();
-    let mut scored: Vec<(usize, &str)> = known
-        .map(|candidate| (strsim::damerau_levenshtein(&name, &candidate.to_lowercase()), candidate))
-        .collect();
-    scored.retain(|(distance, candidate)| *distance <= candidate.len().max(name.len()) / 2);
-    scored.sort_by_key(|(distance, _)| *distance);
-    scored.into_iter().take(3).map(|(_, candidate)| candidate).collect()
 }
 
 /// Text as a terminal may get it: what would move the cursor, colour what follows or turn the direction of writing round

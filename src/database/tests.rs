@@ -8,7 +8,7 @@ use super::query::Limits;
 use super::{
     Cell, Entry, Location, Position, Projector, QueryConnection, QueryError, Rows, number_at, text_at,
 };
-use crate::world::day::{step_day, tests::policy_p};
+use crate::world::day::step_day;
 use crate::world::events::{
     EndCause, Facts, IssueOpened, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus,
 };
@@ -16,6 +16,7 @@ use crate::world::identifiers::{Group, Plan};
 use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::state::World;
+use crate::world::test_kit::policy_p;
 
 const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(20), steps: None };
 

@@ -414,9 +414,9 @@ fn set_capacity_tier() {
 
 /// A company with two leads (customers 2 and 3), a subscriber (4), an individual (5), a lost lead (6).
 fn with_companies() -> Company {
-    use crate::world::customers::columns::tests::subscriber;
     use crate::world::enterprise::Standing;
-    use crate::world::enterprise::test_kit::company_of;
+    use crate::world::test_kit::company_of;
+    use crate::world::test_kit::subscriber;
     let mut company = Company::new();
     let (e1, s1) = (Group::parse("E1").expect("a group"), Group::parse("S1").expect("a group"));
     let world = &mut company.world;

@@ -250,38 +250,39 @@ impl<T: Canonical> Canonical for ByChannel<T> {
 }
 
 /// Implements [`Canonical`] and [`Restore`] for a struct by naming all its fields; forgetting one does not compile.
+#[macro_export]
 macro_rules! canonical {
     ($($name:ident { $($field:ident),* $(,)? })*) => {$(
-        impl $crate::world::canonical::Canonical for $name {
-            fn feed(&self, hasher: &mut $crate::world::canonical::CanonicalHasher) {
+        impl $crate::canonical::Canonical for $name {
+            fn feed(&self, hasher: &mut $crate::canonical::CanonicalHasher) {
                 let $name { $($field),* } = self;
-                $($crate::world::canonical::Canonical::feed($field, hasher);)*
+                $($crate::canonical::Canonical::feed($field, hasher);)*
             }
         }
 
-        impl $crate::world::canonical::Restore for $name {
-            fn restore(reader: &mut $crate::world::canonical::CanonicalReader<'_>) -> Option<Self> {
-                $(let $field = $crate::world::canonical::Restore::restore(reader)?;)*
+        impl $crate::canonical::Restore for $name {
+            fn restore(reader: &mut $crate::canonical::CanonicalReader<'_>) -> Option<Self> {
+                $(let $field = $crate::canonical::Restore::restore(reader)?;)*
                 Some($name { $($field),* })
             }
         }
     )*};
 }
-pub(crate) use canonical;
+pub use canonical;
 
 /// Implements [`Canonical`] and [`Restore`] for plain enums by their number; naming all their values is checked.
 macro_rules! canonical_codes {
     ($($name:ident { $($value:ident),* $(,)? })*) => {$(
-        impl $crate::world::canonical::Canonical for $name {
-            fn feed(&self, hasher: &mut $crate::world::canonical::CanonicalHasher) {
+        impl $crate::canonical::Canonical for $name {
+            fn feed(&self, hasher: &mut $crate::canonical::CanonicalHasher) {
                 match self {
                     $($name::$value)|* => hasher.bytes(&[*self as u8]),
                 }
             }
         }
 
-        impl $crate::world::canonical::Restore for $name {
-            fn restore(reader: &mut $crate::world::canonical::CanonicalReader<'_>) -> Option<Self> {
+        impl $crate::canonical::Restore for $name {
+            fn restore(reader: &mut $crate::canonical::CanonicalReader<'_>) -> Option<Self> {
                 let code: u8 = reader.read()?;
                 [$($name::$value),*].into_iter().find(|value| *value as u8 == code)
             }

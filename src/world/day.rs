@@ -255,9 +255,8 @@ mod wiring_tests;
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::world::identifiers::Group;
-    use crate::world::morning::tests::morning;
-    use crate::world::quota::Quota;
+    use crate::morning::tests::morning;
+    use crate::test_kit::policy_p;
 
     fn run(cash: f64, days: u32, prepare: impl Fn(&mut World)) -> Vec<DayFigures> {
         let (params, streams) = (Params::shipped(), Streams::new(42));
@@ -314,19 +313,6 @@ pub(crate) mod tests {
         assert_eq!(booked["compute"].0, 7);
     }
 
-    pub(crate) fn policy_p(world: &mut World) {
-        let s1 = Group::at(0).expect("S1");
-        let core = &mut world.settings.core;
-        core.prices = ByPlan([9.0, 18.0, 40.0]);
-        core.tiers = ByPlan([1, 2, 3]);
-        core.quotas = ByPlan([60_000, 250_000, 1_200_000].map(Quota::from));
-        core.operations = 300.0;
-        core.development = 800.0;
-        let channel = crate::world::identifiers::Channel::SocialMedia;
-        world.settings.targeted_ads.targeted_spend.insert(channel, [(s1, 2000.0)].into_iter().collect());
-        world.settings.targeted_development.targeted_spend.insert(s1, 4000.0);
-    }
-
     #[test]
     fn cash_is_the_sum_of_the_ledger_and_counts_agree_with_the_columns() {
         let (params, streams) = (Params::shipped(), Streams::new(7));
@@ -342,7 +328,7 @@ pub(crate) mod tests {
             opened += facts
                 .openings
                 .iter()
-                .filter(|o| o.status == crate::world::events::SubscriptionStatus::Subscribed)
+                .filter(|o| o.status == crate::events::SubscriptionStatus::Subscribed)
                 .count();
             ended += facts.endings.iter().filter(|e| !e.group.is_enterprise()).count();
             assert!((figures.cash - ledger).abs() < 1e-6);
@@ -352,7 +338,7 @@ pub(crate) mod tests {
                     + facts
                         .openings
                         .iter()
-                        .filter(|o| o.status == crate::world::events::SubscriptionStatus::Subscribed)
+                        .filter(|o| o.status == crate::events::SubscriptionStatus::Subscribed)
                         .count()
                     - ended_today(&facts),
                 opened - ended

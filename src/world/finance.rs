@@ -76,8 +76,8 @@ pub fn pay_running_costs(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::identifiers::{ByPlan, Channel, Group};
-    use crate::world::morning::tests::morning;
+    use crate::identifiers::{ByPlan, Channel, Group};
+    use crate::morning::tests::morning;
 
     #[test]
     fn running_costs_are_booked_in_their_order_and_add_up() {

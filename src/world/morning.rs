@@ -40,8 +40,8 @@ impl Morning {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::world::params::Params;
-    use crate::world::settings::Settings;
+    use crate::params::Params;
+    use crate::settings::Settings;
 
     /// A morning with plain values; tests change what matters to them.
     pub(crate) fn morning(day: u32) -> Morning {

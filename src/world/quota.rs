@@ -56,7 +56,7 @@ impl Restore for Quota {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::canonical::{bytes_of, restored};
+    use crate::canonical::{bytes_of, restored};
 
     #[test]
     fn whole_quotas_have_the_bytes_of_whole_numbers_and_others_come_back_too() {

@@ -108,18 +108,18 @@ pub fn combined_hash(parts: &[PartHash]) -> blake3::Hash {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::canonical::{bytes_of, restored};
-    use crate::world::day::step_day;
-    use crate::world::identifiers::{Channel, Group, Plan};
-    use crate::world::random::Streams;
-    use crate::world::settings::PerGroup;
+    use crate::canonical::{bytes_of, restored};
+    use crate::day::step_day;
+    use crate::identifiers::{Channel, Group, Plan};
+    use crate::random::Streams;
+    use crate::settings::PerGroup;
 
     /// A company with customers, companies, threads, issues, research and a study.
     fn company() -> World {
         let (params, streams) = (Params::shipped(), Streams::new(5));
         let mut facts = Facts::default();
         let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
-        crate::world::day::tests::policy_p(&mut world);
+        crate::test_kit::policy_p(&mut world);
         world.settings.core.tiers.0 = [3, 4, 5];
         let companies = |spend: f64| PerGroup::from([(Group::parse("E1").expect("a group"), spend)]);
         world.settings.targeted_ads.targeted_spend.insert(Channel::Linkedin, companies(5000.0));

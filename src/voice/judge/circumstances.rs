@@ -220,7 +220,7 @@ mod tests {
         let (params, streams) = (Params::shipped(), Streams::new(2));
         let mut facts = Facts::default();
         let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
-        crate::world::day::tests::policy_p(&mut world);
+        crate::world::test_kit::policy_p(&mut world);
         let (mut at_day, mut latencies) = (Vec::new(), Vec::new());
         for day in 1..=60 {
             match day {

@@ -2,7 +2,7 @@
 
 use indexmap::IndexMap;
 
-use crate::world::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
+use crate::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 
 /// Canonical bytes that are still to be read.
 pub struct CanonicalReader<'a> {

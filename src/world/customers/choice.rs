@@ -2,9 +2,9 @@
 //! interested at all (docs/mechanics/customers/choice.md).
 
 use super::curve::{Curve, required_quality};
-use crate::world::identifiers::{ByPlan, Plan};
-use crate::world::params::Params;
-use crate::world::product::quality::quota_factor;
+use crate::identifiers::{ByPlan, Plan};
+use crate::params::Params;
+use crate::product::quality::quota_factor;
 
 /// What is on offer to a lead of one group today, before its own demand and discount.
 #[derive(Debug, Clone, Copy)]
@@ -75,7 +75,7 @@ pub fn passes_gate(offers: &ByPlan<Offer>, demand: f64, curve: &Curve, params: &
 mod tests {
     use super::super::curve::tests::X;
     use super::*;
-    use crate::world::product::quality::delivered_quality;
+    use crate::product::quality::delivered_quality;
 
     fn offers(
         shared: f64,

@@ -5,8 +5,8 @@
 //! its fixed place of the block's stream, so nobody's fate shifts another's
 //! (docs/mechanics/randomness.md#blocks).
 
-use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
-use crate::world::identifiers::Plan;
+use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
+use crate::identifiers::Plan;
 
 use super::curve::Curve;
 
@@ -242,40 +242,8 @@ pub fn sums<const COLUMNS: usize>(columns: [&[f64]; COLUMNS]) -> [f64; COLUMNS] 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::test_kit::subscriber;
     use proptest::prelude::*;
-
-    /// A subscriber with plain values; tests change what matters to them.
-    pub(crate) fn subscriber(n: u32) -> Subscriber {
-        Subscriber {
-            n,
-            customer: n + 1,
-            subscription: n,
-            plan: Plan::A,
-            billing_day: 1,
-            billed_once: true,
-            start_day: 1,
-            steepness_left: 1.2,
-            steepness_right: 2.8,
-            c_max: 50.0,
-            q_min: 0.1,
-            q_max: 0.55,
-            usage_demand: 80.0,
-            ads_quality_sensitivity: 0.12,
-            ads_return_sensitivity: 0.08,
-            seats: 1.0,
-            listed_price: 12.0,
-            promotion: 0.0,
-            effective_price: 12.0,
-            effective_c_max: 50.0,
-            usage_rate: 80.0,
-            period_usage: 0,
-            satisfaction: 0.5,
-            relationship: 0.5,
-            open_issue_days: 0,
-            issue: 0,
-            required: 0.2,
-        }
-    }
 
     #[test]
     fn columns_are_added_up_in_their_order_whatever_their_lengths() {

@@ -1,7 +1,7 @@
 //! The participation curve: how much quality a customer requires at a price
 //! (docs/mechanics/customers/participation.md).
 
-use crate::world::params::{Params, Participation, RequiredQuality};
+use crate::params::{Params, Participation, RequiredQuality};
 
 /// A customer's willingness curve.
 #[derive(Debug, Clone, Copy, PartialEq)]

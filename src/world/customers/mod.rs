@@ -277,9 +277,9 @@ fn block_number(n: u32) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::columns::tests::subscriber;
     use super::*;
-    use crate::world::canonical::hash_of;
+    use crate::canonical::hash_of;
+    use crate::test_kit::subscriber;
 
     #[test]
     fn numbers_are_consecutive_over_groups_and_found_again() {

@@ -1,10 +1,10 @@
 //! Picks of a customer's profile: codes only; words are made when a row is written
 //! (docs/mechanics/customers/personas.md).
 
-use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
-use crate::world::random::Stream;
+use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
+use crate::identifiers::Group;
+use crate::params::Params;
+use crate::random::Stream;
 
 /// Positions in the word lists of the group's profile, in the order of the draws.
 ///

@@ -6,9 +6,9 @@
 
 use super::curve::Curve;
 use super::persona::PersonaPicks;
-use crate::world::identifiers::Group;
-use crate::world::params::{GroupParams, Params};
-use crate::world::random::{Part, Stream, Streams};
+use crate::identifiers::Group;
+use crate::params::{GroupParams, Params};
+use crate::random::{Part, Stream, Streams};
 
 /// Traits as drawn, before any drift.
 #[derive(Debug, Clone, Copy, PartialEq)]

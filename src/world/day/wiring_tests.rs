@@ -2,13 +2,13 @@
 //! economy to leads, budgets and seats; the calendar to leads and usage; and every figure to its own field.
 
 use super::*;
-use crate::world::customers::columns::Subscriber;
-use crate::world::customers::columns::tests::subscriber;
-use crate::world::events::{EndCause, SubscriptionEnded, SubscriptionStatus};
-use crate::world::identifiers::Channel;
-use crate::world::identifiers::Group;
-use crate::world::params::{MacroBeta, ServicePenalty};
-use crate::world::quota::Quota;
+use crate::customers::columns::Subscriber;
+use crate::events::{EndCause, SubscriptionEnded, SubscriptionStatus};
+use crate::identifiers::Channel;
+use crate::identifiers::Group;
+use crate::params::{MacroBeta, ServicePenalty};
+use crate::quota::Quota;
+use crate::test_kit::subscriber;
 
 /// Lopsided settings under which several groups come, stay, complain and leave.
 fn busy_settings(world: &mut World) {

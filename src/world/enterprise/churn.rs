@@ -2,13 +2,13 @@
 
 use super::company::moved_relationship;
 use super::{Standing, Step};
-use crate::world::customers::columns::Subscriber;
-use crate::world::events::{EndCause, SubscriptionEnded, SubscriptionStatus, ThreadKind};
-use crate::world::identifiers::Group;
-use crate::world::market::reputation::event_damage;
-use crate::world::params::Params;
-use crate::world::product::quality::{quota_demand, relationship_as_read, relationship_bonus};
-use crate::world::random::Part;
+use crate::customers::columns::Subscriber;
+use crate::events::{EndCause, SubscriptionEnded, SubscriptionStatus, ThreadKind};
+use crate::identifiers::Group;
+use crate::market::reputation::event_damage;
+use crate::params::Params;
+use crate::product::quality::{quota_demand, relationship_as_read, relationship_bonus};
+use crate::random::Part;
 
 /// A subscriber whose thread died today; companies like to talk about that.
 ///

@@ -1,13 +1,13 @@
 //! Companies that negotiate: what stays the same about them, and where they stand.
 
-use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical};
-use crate::world::customers::Customers;
-use crate::world::customers::columns::Subscriber;
-use crate::world::customers::persona::PersonaPicks;
-use crate::world::customers::traits::Negotiator;
-use crate::world::identifiers::Group;
-use crate::world::params::{EnterpriseParams as Sales, Params};
-use crate::world::random::{Part, Streams};
+use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical};
+use crate::customers::Customers;
+use crate::customers::columns::Subscriber;
+use crate::customers::persona::PersonaPicks;
+use crate::customers::traits::Negotiator;
+use crate::identifiers::Group;
+use crate::params::{EnterpriseParams as Sales, Params};
+use crate::random::{Part, Streams};
 
 /// A company that has asked for an offer and is not forgotten yet.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,10 +1,10 @@
 //! How a company judges offerings: take the best, name a price, or fall silent.
 
-use crate::world::customers::curve::{Curve, required_quality};
-use crate::world::events::Offering;
-use crate::world::identifiers::ByPlan;
-use crate::world::market::economy::round_to;
-use crate::world::params::Params;
+use crate::customers::curve::{Curve, required_quality};
+use crate::events::Offering;
+use crate::identifiers::ByPlan;
+use crate::market::economy::round_to;
+use crate::params::Params;
 
 /// What a company answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,10 +106,10 @@ impl Judge {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::world::identifiers::Plan;
+    use crate::identifiers::Plan;
 
     /// The reference company K of `docs/mechanics/enterprise/evaluation.md#check-values`.
-    pub(in crate::world::enterprise) const K: Curve =
+    pub(in crate::enterprise) const K: Curve =
         Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
 
     fn near(actual: f64, expected: f64) {

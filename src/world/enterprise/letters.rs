@@ -8,10 +8,10 @@ use std::collections::BTreeMap;
 use super::Enterprise;
 use super::company::moved_relationship;
 use super::thread::Thread;
-use crate::world::customers::Customers;
-use crate::world::events::{EndCause, Facts, Offering, Sender, ThreadKind, TurnContent};
-use crate::world::params::{EnterpriseParams as Sales, Params};
-use crate::world::random::{Part, Streams};
+use crate::customers::Customers;
+use crate::events::{EndCause, Facts, Offering, Sender, ThreadKind, TurnContent};
+use crate::params::{EnterpriseParams as Sales, Params};
+use crate::random::{Part, Streams};
 
 /// Offerings for one company.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,15 +3,15 @@
 use super::churn::Blame;
 use super::company::moved_relationship;
 use super::{Standing, Step};
-use crate::world::customers::columns::Subscriber;
-use crate::world::events::{
+use crate::customers::columns::Subscriber;
+use crate::events::{
     DealClosed, EndCause, Notice, Offering, Sender, SubscriptionEnded, SubscriptionStatus, TermsChanged,
     ThreadKind, TurnContent,
 };
-use crate::world::product::usage::usage_rate;
-use crate::world::random::Part;
-use crate::world::retention::refresh_required;
-use crate::world::retention::renewal::{ongoing_discount, terms};
+use crate::product::usage::usage_rate;
+use crate::random::Part;
+use crate::retention::refresh_required;
+use crate::retention::renewal::{ongoing_discount, terms};
 
 impl Step<'_> {
     /// A company takes an offering: the deal holds from today on.
@@ -108,7 +108,7 @@ impl Step<'_> {
         Some(terms(block, at))
     }
 
-    fn group_of(&self, customer: u32) -> crate::world::identifiers::Group {
+    fn group_of(&self, customer: u32) -> crate::identifiers::Group {
         self.enterprise.company(customer).expect("a company with a thread is not forgotten").group
     }
 

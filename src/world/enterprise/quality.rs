@@ -1,11 +1,11 @@
 //! Quality as companies perceive it: in a negotiation, and every day (`docs/mechanics/enterprise/quality.md`).
 
 use super::Negotiation;
-use crate::world::customers::columns::Subscriber;
-use crate::world::customers::curve::Curve;
-use crate::world::identifiers::{ByPlan, Group};
-use crate::world::params::ServicePenalty;
-use crate::world::product::quality::{
+use crate::customers::columns::Subscriber;
+use crate::customers::curve::Curve;
+use crate::identifiers::{ByPlan, Group};
+use crate::params::ServicePenalty;
+use crate::product::quality::{
     Experience, delivered_quality, perceived_quality, quota_demand, quota_factor, relationship_as_read,
     relationship_bonus,
 };

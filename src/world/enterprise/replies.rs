@@ -2,7 +2,7 @@
 
 use super::evaluation::{Answer, Judge};
 use super::{Live, Step};
-use crate::world::events::{Notice, Offering, Sender, ThreadKind, TurnContent};
+use crate::events::{Notice, Offering, Sender, ThreadKind, TurnContent};
 
 /// An answer that was decided and is still to be given.
 struct Due {

@@ -2,9 +2,9 @@
 
 use super::test_kit::Kit;
 use super::{EnterpriseDay, Standing};
-use crate::world::customers::columns::Subscriber;
-use crate::world::events::{EndCause, Notice, Offering, Sender, SubscriptionStatus, ThreadKind, TurnContent};
-use crate::world::identifiers::Plan;
+use crate::customers::columns::Subscriber;
+use crate::events::{EndCause, Notice, Offering, Sender, SubscriptionStatus, ThreadKind, TurnContent};
+use crate::identifiers::Plan;
 
 /// A lead of day 0 that answers after `delay` days and takes part in `turns` turns.
 fn lead(delay: f64, turns: u32) -> Kit {

@@ -2,42 +2,22 @@
 
 use super::evaluation::tests::K;
 use super::{Company, Enterprise, EnterpriseDay, Negotiation, Standing};
-use crate::world::context::tests::on_day;
-use crate::world::customers::Customers;
-use crate::world::customers::columns::Subscriber;
-use crate::world::customers::columns::tests::subscriber;
-use crate::world::customers::persona::PersonaPicks;
-use crate::world::customers::traits::Negotiator;
-use crate::world::events::Facts;
-use crate::world::events::ServiceDay;
-use crate::world::identifiers::{ByPlan, Group};
-use crate::world::market::drift::DriftTotals;
-use crate::world::market::reputation::ReputationBook;
-use crate::world::morning::Morning;
-use crate::world::morning::tests::morning;
-use crate::world::params::Params;
-use crate::world::product::Product;
-use crate::world::random::Streams;
-use crate::world::settings::Settings;
-
-/// A company with plain values.
-pub(crate) fn company_of(group: Group, n: u32, customer: u32, standing: Standing) -> Company {
-    Company {
-        customer,
-        group,
-        n,
-        subscription: customer - 1,
-        negotiator: Negotiator {
-            reply_delay_mean: 3.0,
-            reply_delay_std: 0.0,
-            initial_offer_factor: 0.75,
-            max_negotiation_turns: 6,
-        },
-        persona: PersonaPicks::default(),
-        contract_end_day: 0,
-        standing,
-    }
-}
+use crate::context::tests::on_day;
+use crate::customers::Customers;
+use crate::customers::columns::Subscriber;
+use crate::customers::traits::Negotiator;
+use crate::events::Facts;
+use crate::events::ServiceDay;
+use crate::identifiers::{ByPlan, Group};
+use crate::market::drift::DriftTotals;
+use crate::market::reputation::ReputationBook;
+use crate::morning::Morning;
+use crate::morning::tests::morning;
+use crate::params::Params;
+use crate::product::Product;
+use crate::random::Streams;
+use crate::settings::Settings;
+use crate::test_kit::{company_of, subscriber};
 
 /// Tiers 3, 4, 5, wide quotas, product quality 0.8 for everybody, nobody else in the world.
 pub(super) struct Kit {
@@ -129,7 +109,7 @@ impl Kit {
             billed_once: true,
             listed_price: 35.0,
             effective_price: 35.0,
-            plan: crate::world::identifiers::Plan::B,
+            plan: crate::identifiers::Plan::B,
             ..self.row()
         };
         change(&mut row);
@@ -161,13 +141,10 @@ impl Kit {
     }
 
     /// Sends one proposal to K on the day that just ran.
-    pub fn send(
-        &mut self,
-        offerings: &[(crate::world::identifiers::Plan, f64)],
-    ) -> Vec<super::letters::Letter> {
+    pub fn send(&mut self, offerings: &[(crate::identifiers::Plan, f64)]) -> Vec<super::letters::Letter> {
         let day = self.morning.day;
         let offerings =
-            offerings.iter().map(|&(plan, price)| crate::world::events::Offering { plan, price }).collect();
+            offerings.iter().map(|&(plan, price)| crate::events::Offering { plan, price }).collect();
         let proposals = [super::letters::Proposal { customer: 2, offerings }];
         let letters = self.enterprise.address(&proposals, day, &self.customers, &self.params, &self.streams);
         self.facts.begin(day);

@@ -1,8 +1,8 @@
 //! Threads: who said what when, which row is the last, and which row is alive.
 
-use crate::world::canonical::canonical;
-use crate::world::events::{Offering, Sender, ThreadKind};
-use crate::world::identifiers::Group;
+use crate::canonical::canonical;
+use crate::events::{Offering, Sender, ThreadKind};
+use crate::identifiers::Group;
 
 /// A negotiation with one company. Closed threads are forgotten; dead ones only once they stay silent.
 #[derive(Debug, Clone, PartialEq)]

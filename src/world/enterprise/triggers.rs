@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use super::evaluation::surplus;
 use super::{Negotiation, Step};
-use crate::world::customers::columns::Subscriber;
-use crate::world::events::{Notice, Sender, ThreadKind, TurnContent};
-use crate::world::identifiers::{Group, Plan};
-use crate::world::params::EnterpriseParams as Sales;
-use crate::world::random::Part;
+use crate::customers::columns::Subscriber;
+use crate::events::{Notice, Sender, ThreadKind, TurnContent};
+use crate::identifiers::{Group, Plan};
+use crate::params::EnterpriseParams as Sales;
+use crate::random::Part;
 
 /// A thread that a subscriber begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,7 +97,7 @@ mod tests {
     use super::super::evaluation::tests::K;
     use super::super::test_kit::Kit;
     use super::*;
-    use crate::world::identifiers::ByPlan;
+    use crate::identifiers::ByPlan;
 
     /// Quality and surplus of the plan a subscriber is on; K on day `day`.
     fn present(kit: &Kit, row: &Subscriber) -> (f64, f64) {

@@ -2,8 +2,8 @@
 
 use super::economy::Reading;
 use super::research::{Project, Study};
-use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical};
-use crate::world::identifiers::Group;
+use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical};
+use crate::identifiers::Group;
 
 canonical! {
     Reaction { post, views, mean, strongest }

@@ -1,8 +1,8 @@
 //! Customers: how they come, what they agree on, what they use, how they leave.
 
-use crate::world::canonical::{canonical, canonical_codes};
-use crate::world::customers::persona::PersonaPicks;
-use crate::world::identifiers::{Channel, Group, Plan};
+use crate::canonical::{canonical, canonical_codes};
+use crate::customers::persona::PersonaPicks;
+use crate::identifiers::{Channel, Group, Plan};
 
 canonical! {
     ChannelLeads { channel, group, leads, spend }

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::world::canonical::{canonical, canonical_codes};
-use crate::world::params::MacroEconomy;
+use crate::canonical::{canonical, canonical_codes};
+use crate::params::MacroEconomy;
 
 canonical! { Reading { measured_day, value, change, trend, phase } }
 canonical_codes! {

@@ -1,6 +1,6 @@
 //! Figures of a day.
 
-use crate::world::identifiers::{ByGroup, ByPlan};
+use crate::identifiers::{ByGroup, ByPlan};
 
 /// Figures of a day (`docs/mechanics/day.md#figures-of-a-day`).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

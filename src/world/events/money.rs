@@ -1,9 +1,7 @@
 //! Movements of cash.
 
 use super::research::Study;
-use crate::world::canonical::{
-    Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes,
-};
+use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes};
 
 canonical! {
     Payment { customer, amount }

@@ -1,14 +1,12 @@
 //! Social media: what is written in public. Codes and numbers only; `voice` finds the words.
 
 use super::economy::{Reading, Trend};
-use crate::world::canonical::{
-    Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes,
-};
-use crate::world::customers::persona::PersonaPicks;
-use crate::world::events::ThreadKind;
-use crate::world::identifiers::{Group, Plan};
-use crate::world::market::social::engagement::Engagement;
-use crate::world::market::social::sentiment::Sentiment;
+use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes};
+use crate::customers::persona::PersonaPicks;
+use crate::events::ThreadKind;
+use crate::identifiers::{Group, Plan};
+use crate::market::social::engagement::Engagement;
+use crate::market::social::sentiment::Sentiment;
 
 canonical! {
     Post { post, author, sentiment, engagement, matter }

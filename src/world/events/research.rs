@@ -1,7 +1,7 @@
 //! What was found out and developed: R&D projects, studies of groups, attempts to find one.
 
-use crate::world::canonical::canonical;
-use crate::world::identifiers::Group;
+use crate::canonical::canonical;
+use crate::identifiers::Group;
 
 /// One R&D project.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,8 @@
 //! Negotiations with companies.
 
-use crate::world::canonical::{
-    Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes,
-};
-use crate::world::customers::persona::PersonaPicks;
-use crate::world::identifiers::{Group, Plan};
+use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes};
+use crate::customers::persona::PersonaPicks;
+use crate::identifiers::{Group, Plan};
 
 canonical! {
     ThreadTurn { message, thread, customer, group, persona, kind, number, sender, seats, content }

@@ -3,22 +3,22 @@
 use rayon::prelude::*;
 
 use super::leads::{LeadContext, LeadFactors, lead_factors};
-use crate::world::context::DayContext;
-use crate::world::customers::choice::{Choice, Offer, accepts, choose_plan, passes_gate};
-use crate::world::customers::columns::Subscriber;
-use crate::world::customers::curve::Curve;
-use crate::world::customers::traits::{Traits, traits_from};
-use crate::world::customers::{ArrivalRun, Customers};
-use crate::world::enterprise::{Company, Enterprise, Standing};
-use crate::world::events::{Arrival, ChannelLeads, Facts, Source, SubscriptionOpened, SubscriptionStatus};
-use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
-use crate::world::market::Market;
-use crate::world::market::economy::Dimension;
-use crate::world::params::{DriftCounted, Params, ServicePenalty};
-use crate::world::product::quality::quota_demand;
-use crate::world::random::{Part, Stream, Word};
-use crate::world::retention::renewal::ongoing_discount;
-use crate::world::retention::required_of;
+use crate::context::DayContext;
+use crate::customers::choice::{Choice, Offer, accepts, choose_plan, passes_gate};
+use crate::customers::columns::Subscriber;
+use crate::customers::curve::Curve;
+use crate::customers::traits::{Traits, traits_from};
+use crate::customers::{ArrivalRun, Customers};
+use crate::enterprise::{Company, Enterprise, Standing};
+use crate::events::{Arrival, ChannelLeads, Facts, Source, SubscriptionOpened, SubscriptionStatus};
+use crate::identifiers::{ByGroup, ByPlan, Group, Plan};
+use crate::market::Market;
+use crate::market::economy::Dimension;
+use crate::params::{DriftCounted, Params, ServicePenalty};
+use crate::product::quality::quota_demand;
+use crate::random::{Part, Stream, Word};
+use crate::retention::renewal::ongoing_discount;
+use crate::retention::required_of;
 
 /// What came of the leads of a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -208,7 +208,7 @@ fn record_arrivals(came: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCounts, fa
 /// in the order in which the player listed them.
 fn record_channels(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], facts: &mut Facts) {
     let &Arrivals { day: &DayContext { settings, .. }, market } = arrivals;
-    for channel in crate::world::identifiers::Channel::ALL {
+    for channel in crate::identifiers::Channel::ALL {
         let Some(groups) = settings.targeted_ads.targeted_spend.get(&channel) else { continue };
         for (&group, &spend) in groups {
             if spend > 0.0 && market.is_known(group) && market.yields[channel][group] > 0.0 {

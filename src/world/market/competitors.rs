@@ -1,13 +1,13 @@
 //! Competitor events: rivals raise everyone's expectations, and copy what we improved (docs/mechanics/market/competitors.md).
 
 use super::drift::DriftTotals;
-use crate::world::canonical::canonical;
-use crate::world::events::Severity;
-use crate::world::identifiers::Group;
-use crate::world::params::{Competitor, Params};
-use crate::world::product::Product;
-use crate::world::random::{Part, Stream, Streams};
-use crate::world::series::GivenEvent;
+use crate::canonical::canonical;
+use crate::events::Severity;
+use crate::identifiers::Group;
+use crate::params::{Competitor, Params};
+use crate::product::Product;
+use crate::random::{Part, Stream, Streams};
+use crate::series::GivenEvent;
 
 /// One competitor event.
 #[derive(Debug, Clone, Copy, PartialEq)]

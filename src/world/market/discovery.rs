@@ -2,10 +2,10 @@
 
 use super::Market;
 use super::drift::DriftTotals;
-use crate::world::events::{Attempt, Snapshot};
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
-use crate::world::random::{Part, Stream, Streams};
+use crate::events::{Attempt, Snapshot};
+use crate::identifiers::Group;
+use crate::params::Params;
+use crate::random::{Part, Stream, Streams};
 
 /// The outcome of an attempt: found with a fixed chance, and then any of the undiscovered ones alike.
 pub fn draw_attempt(undiscovered: &[Group], chance: f64, stream: &mut Stream) -> Option<Group> {

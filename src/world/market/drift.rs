@@ -1,10 +1,10 @@
 //! Preference drift: expectations and budgets move, for groups and for each subscriber (docs/mechanics/market/drift.md).
 
-use crate::world::canonical::canonical;
-use crate::world::customers::Customers;
-use crate::world::customers::columns::Block;
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::params::{Drift, IndividualDrift, Params};
+use crate::canonical::canonical;
+use crate::customers::Customers;
+use crate::customers::columns::Block;
+use crate::identifiers::{ByGroup, Group};
+use crate::params::{Drift, IndividualDrift, Params};
 
 /// How much expectations and budgets have moved since day 0.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -106,11 +106,11 @@ fn drift_block(block: &mut Block, rates: &IndividualDrift, seat_multiplier: f64,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::customers::columns::Subscriber;
-    use crate::world::customers::columns::tests::subscriber;
-    use crate::world::customers::curve::Curve;
-    use crate::world::market::economy::Dimension;
-    use crate::world::market::economy::tests::economy_at;
+    use crate::customers::columns::Subscriber;
+    use crate::customers::curve::Curve;
+    use crate::market::economy::Dimension;
+    use crate::market::economy::tests::economy_at;
+    use crate::test_kit::subscriber;
 
     fn near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 6e-9, "{actual} instead of {expected}");

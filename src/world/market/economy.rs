@@ -1,10 +1,10 @@
 //! The economy: a hidden index, its delayed publications, and what it does to groups (docs/mechanics/market/economy.md).
 
-use crate::world::canonical::canonical;
-use crate::world::events::{Facts, Notice, Phase, Reading, Trend};
-use crate::world::identifiers::Group;
-use crate::world::params::{MacroEconomy, Params};
-use crate::world::random::{Part, Streams};
+use crate::canonical::canonical;
+use crate::events::{Facts, Notice, Phase, Reading, Trend};
+use crate::identifiers::Group;
+use crate::params::{MacroEconomy, Params};
+use crate::random::{Part, Streams};
 
 /// The state of the economy.
 #[derive(Debug, Clone, PartialEq)]

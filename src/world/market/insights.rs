@@ -5,10 +5,10 @@ use super::Market;
 use super::drift::DriftTotals;
 use super::economy::round_to;
 use super::leads::market_cap;
-use crate::world::events::Snapshot;
-use crate::world::identifiers::Group;
-use crate::world::params::{GroupParams, Params};
-use crate::world::random::{Part, Streams};
+use crate::events::Snapshot;
+use crate::identifiers::Group;
+use crate::params::{GroupParams, Params};
+use crate::random::{Part, Streams};
 
 impl Snapshot {
     /// The group on a day, with the drift of the whole group and without that of single customers.

@@ -4,11 +4,11 @@ use super::Market;
 use super::economy::Dimension;
 use super::social::own::social_multiplier;
 use super::surges::surge_factor;
-use crate::world::canonical::canonical;
-use crate::world::events::Source;
-use crate::world::identifiers::{ByChannel, ByGroup, Channel, Group};
-use crate::world::params::{Leads, Params};
-use crate::world::settings::TargetedAds;
+use crate::canonical::canonical;
+use crate::events::Source;
+use crate::identifiers::{ByChannel, ByGroup, Channel, Group};
+use crate::params::{Leads, Params};
+use crate::settings::TargetedAds;
 
 /// The factors of a group's expected leads today; hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -131,8 +131,8 @@ pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::market::social::own::OwnPost;
-    use crate::world::market::surges::Surge;
+    use crate::market::social::own::OwnPost;
+    use crate::market::surges::Surge;
     use indexmap::IndexMap;
 
     fn group(id: &str) -> Group {

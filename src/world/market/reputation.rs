@@ -1,9 +1,9 @@
 //! Reputation: what subscribers say, how it spreads, and what a departure costs (docs/mechanics/market/reputation.md).
 
-use crate::world::canonical::canonical;
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::params::{Params, Reputation};
-use crate::world::retention::satisfaction::Mood;
+use crate::canonical::canonical;
+use crate::identifiers::{ByGroup, Group};
+use crate::params::{Params, Reputation};
+use crate::retention::satisfaction::Mood;
 
 /// Reputation by group, 0.001..=1 after the first write.
 #[derive(Debug, Clone, PartialEq)]

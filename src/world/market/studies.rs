@@ -1,9 +1,9 @@
 //! Group research: studies that are paid at once and finish some days later (docs/mechanics/market/discovery.md).
 
 use super::Market;
-use crate::world::events::{Facts, Notice, Snapshot, Study};
-use crate::world::identifiers::Group;
-use crate::world::params::{GroupResearch, Params};
+use crate::events::{Facts, Notice, Snapshot, Study};
+use crate::identifiers::Group;
+use crate::params::{GroupResearch, Params};
 
 /// Level a study aims at when none is named: the present one, at least the lowest there is.
 pub fn default_target(level: u8, law: &GroupResearch) -> u8 {

@@ -1,8 +1,8 @@
 //! Demand surges: silent rushes of leads (docs/mechanics/market/surges.md).
 
-use crate::world::canonical::canonical;
-use crate::world::params::{DemandSurge, Params, SurgeStart};
-use crate::world::random::{Part, Streams};
+use crate::canonical::canonical;
+use crate::params::{DemandSurge, Params, SurgeStart};
+use crate::random::{Part, Streams};
 
 /// One demand surge.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! Channel yields wander: once a month every channel brings a little more or less (docs/mechanics/market/leads.md).
 
-use crate::world::identifiers::{ByChannel, ByGroup, Channel, Group};
-use crate::world::params::{Leads, Params};
-use crate::world::random::{Part, Streams};
+use crate::identifiers::{ByChannel, ByGroup, Channel, Group};
+use crate::params::{Leads, Params};
+use crate::random::{Part, Streams};
 
 /// Yield after a month; `z` is a standard normal draw. A yield of 0 stays 0.
 pub fn varied_yield(value: f64, z: f64, law: &Leads) -> f64 {

@@ -144,7 +144,7 @@ pub fn override_table(below: &mut Table, above: Table) -> Result<(), (String, St
             }
             (Some(slot), value) => *slot = value,
             (None, _) => {
-                let near = crate::notation::nearest(&key, below.keys().map(String::as_str));
+                let near = super::nearest(&key, below.keys().map(String::as_str));
                 let help = if near.is_empty() {
                     String::new()
                 } else {

@@ -1,12 +1,12 @@
 //! In-app advertising: what it earns (`docs/mechanics/product/ads.md`). What it costs in quality is in `quality`.
 
 use super::quality::ads_effect;
-use crate::world::customers::Customers;
-use crate::world::customers::columns::Block;
-use crate::world::events::{AdsRevenueRow, Facts};
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::params::Params;
-use crate::world::settings::AdsStrength;
+use crate::customers::Customers;
+use crate::customers::columns::Block;
+use crate::events::{AdsRevenueRow, Facts};
+use crate::identifiers::{ByGroup, Group};
+use crate::params::Params;
+use crate::settings::AdsStrength;
 
 /// Effective strength for customers of a group without a level of their own, and with one.
 #[derive(Debug, Clone)]
@@ -89,9 +89,9 @@ fn earn_block(group: Group, block: &Block, load: &AdLoad<'_>) -> (f64, Vec<AdsRe
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::customers::columns::Subscriber;
-    use crate::world::customers::columns::tests::subscriber;
-    use crate::world::settings::{PerCustomer, PerGroup};
+    use crate::customers::columns::Subscriber;
+    use crate::settings::{PerCustomer, PerGroup};
+    use crate::test_kit::subscriber;
 
     fn near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-9, "{actual} instead of {expected}");

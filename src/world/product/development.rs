@@ -1,9 +1,9 @@
 //! Development (`docs/mechanics/product/development.md`).
 
 use super::Product;
-use crate::world::params::{Development, Params};
-use crate::world::random::{Part, Streams};
-use crate::world::settings::Settings;
+use crate::params::{Development, Params};
+use crate::random::{Part, Streams};
+use crate::settings::Settings;
 
 /// Shared quality gained by a day of development: 0.0045 ln(1 + spend / 5000).
 pub fn development_gain(spend: f64, development: &Development) -> f64 {
@@ -37,7 +37,7 @@ pub fn improve(day: u32, product: &mut Product, settings: &Settings, params: &Pa
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::identifiers::Group;
+    use crate::identifiers::Group;
 
     #[test]
     fn gains_grow_with_the_logarithm_of_spending() {

@@ -1,6 +1,6 @@
 //! Delivered and perceived quality, one function per term (`docs/mechanics/product/quality.md`).
 
-use crate::world::params::{Ads, Params, PerceivedQuality, Quality, UsageQuota};
+use crate::params::{Ads, Params, PerceivedQuality, Quality, UsageQuota};
 
 /// Quality delivered to a group on a plan: (base + shared + group bonus) times the model's multiplier.
 #[inline]

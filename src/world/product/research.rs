@@ -1,9 +1,9 @@
 //! R&D projects (`docs/mechanics/product/research.md`).
 
 use super::Product;
-use crate::world::events::{Facts, Notice, Project, ResearchChange};
-use crate::world::params::{Development, Params, ResearchTier};
-use crate::world::random::{Part, Streams};
+use crate::events::{Facts, Notice, Project, ResearchChange};
+use crate::params::{Development, Params, ResearchTier};
+use crate::random::{Part, Streams};
 
 /// Duration in days from a standard normal draw: whole days, at least 30.
 pub fn project_duration(tier: &ResearchTier, z: f64, development: &Development) -> u32 {

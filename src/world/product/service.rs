@@ -1,9 +1,9 @@
 //! Service health of the day (`docs/mechanics/product/service.md`).
 
-use crate::world::events::{Facts, ServiceDay};
-use crate::world::morning::Morning;
-use crate::world::params::{Operations, Params};
-use crate::world::random::{Part, Stream, Streams};
+use crate::events::{Facts, ServiceDay};
+use crate::morning::Morning;
+use crate::params::{Operations, Params};
+use crate::random::{Part, Stream, Streams};
 
 /// Usage above capacity: max(0, usage / capacity - 1).
 pub fn overload(usage: u64, capacity_units: f64, operations: &Operations) -> f64 {

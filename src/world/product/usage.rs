@@ -1,11 +1,11 @@
 //! Usage of the day (`docs/mechanics/product/usage.md`).
 
-use crate::world::customers::Customers;
-use crate::world::customers::columns::Block;
-use crate::world::events::{Facts, UsageRows};
-use crate::world::identifiers::{ByGroup, ByPlan, Plan};
-use crate::world::morning::Morning;
-use crate::world::params::{CustomerGeneration, Params, UsageQuota};
+use crate::customers::Customers;
+use crate::customers::columns::Block;
+use crate::events::{Facts, UsageRows};
+use crate::identifiers::{ByGroup, ByPlan, Plan};
+use crate::morning::Morning;
+use crate::params::{CustomerGeneration, Params, UsageQuota};
 
 /// Units used today.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -7,14 +7,14 @@ use std::collections::BTreeSet;
 
 use super::renewal::{ongoing_discount, terms};
 use super::{due_today, refresh_required, remembered_budget};
-use crate::world::context::DayContext;
-use crate::world::customers::Customers;
-use crate::world::customers::columns::Block;
-use crate::world::events::{Facts, Payment, TermsChanged};
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
-use crate::world::product::usage::usage_rate;
-use crate::world::random::{Part, Word};
+use crate::context::DayContext;
+use crate::customers::Customers;
+use crate::customers::columns::Block;
+use crate::events::{Facts, Payment, TermsChanged};
+use crate::identifiers::Group;
+use crate::params::Params;
+use crate::product::usage::usage_rate;
+use crate::random::{Part, Word};
 
 /// The price a bill is based on: a cut reaches everybody and is stored, a rise never reaches a stored price;
 /// negotiated prices stay.
@@ -125,14 +125,14 @@ fn start_period(block: &mut Block, at: usize, rate: Word, params: &Params) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::context::tests::on_day;
-    use crate::world::customers::columns::Subscriber;
-    use crate::world::customers::columns::tests::subscriber;
-    use crate::world::events::ServiceDay;
-    use crate::world::identifiers::{ByPlan, Plan};
-    use crate::world::morning::tests::morning;
-    use crate::world::random::Streams;
-    use crate::world::settings::Settings;
+    use crate::context::tests::on_day;
+    use crate::customers::columns::Subscriber;
+    use crate::events::ServiceDay;
+    use crate::identifiers::{ByPlan, Plan};
+    use crate::morning::tests::morning;
+    use crate::random::Streams;
+    use crate::settings::Settings;
+    use crate::test_kit::subscriber;
 
     fn billed(id: &str, row: Subscriber, list: f64, ongoing: f64) -> (f64, Subscriber) {
         let (params, streams) = (Params::shipped(), Streams::new(1));

@@ -2,20 +2,20 @@
 //! (`docs/mechanics/retention/issues.md`).
 //!
 //! Everything is decided from the values of the start of the day, so the calls are read before satisfaction
-//! moves and settled after it: block by block in the rounds of [`crate::world::day`]; in between the money of the day
+//! moves and settled after it: block by block in the rounds of [`crate::day`]; in between the money of the day
 //! is shared out.
 
 use super::support_budget::Resolution;
-use crate::world::canonical::canonical;
-use crate::world::context::DayContext;
-use crate::world::customers::Customers;
-use crate::world::customers::columns::{BLOCK, Block, place_in_block};
-use crate::world::events::{Facts, IssueOpened};
-use crate::world::identifiers::Group;
-use crate::world::params::{Issues, Params, Quality};
-use crate::world::product::quality::relationship_as_read;
-use crate::world::random::{Part, word_below};
-use crate::world::settings::Settings;
+use crate::canonical::canonical;
+use crate::context::DayContext;
+use crate::customers::Customers;
+use crate::customers::columns::{BLOCK, Block, place_in_block};
+use crate::events::{Facts, IssueOpened};
+use crate::identifiers::Group;
+use crate::params::{Issues, Params, Quality};
+use crate::product::quality::relationship_as_read;
+use crate::random::{Part, word_below};
+use crate::settings::Settings;
 
 /// Chance of a new issue today, from the satisfaction of the start of the day and whole seats.
 #[inline]
@@ -222,12 +222,12 @@ fn open_new(block: &mut Block, own: &IssueBatch, params: &Params) -> Vec<IssueOp
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::context::tests::on_day;
-    use crate::world::customers::columns::tests::subscriber;
-    use crate::world::events::ServiceDay;
-    use crate::world::morning::tests::morning;
-    use crate::world::params::Params;
-    use crate::world::random::Streams;
+    use crate::context::tests::on_day;
+    use crate::events::ServiceDay;
+    use crate::morning::tests::morning;
+    use crate::params::Params;
+    use crate::random::Streams;
+    use crate::test_kit::subscriber;
 
     fn near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-12, "{actual} instead of {expected}");
@@ -292,11 +292,7 @@ mod tests {
     fn company_with_issues(count: u32) -> Customers {
         let mut customers = Customers::default();
         for n in 1..=count {
-            let row = crate::world::customers::columns::Subscriber {
-                open_issue_days: 1,
-                issue: n,
-                ..subscriber(n)
-            };
+            let row = crate::customers::columns::Subscriber { open_issue_days: 1, issue: n, ..subscriber(n) };
             customers.groups[Group::at(0).expect("S1")].activate(row);
         }
         customers

@@ -1,20 +1,20 @@
 //! What individuals decide on their billing day: stay, switch, or leave (`docs/mechanics/retention/renewal.md`).
 
-use crate::world::context::DayContext;
-use crate::world::customers::columns::{BLOCK, Block};
-use crate::world::customers::curve::{Curve, required_quality};
-use crate::world::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
-use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
-use crate::world::market::reputation::{ReputationBook, cancel_damage};
-use crate::world::market::social::crowd::GaveUp;
-use crate::world::morning::Morning;
-use crate::world::params::{DriftCounted, InvoluntaryChurn, Params, ServicePenalty};
-use crate::world::product::quality::{
+use crate::context::DayContext;
+use crate::customers::columns::{BLOCK, Block};
+use crate::customers::curve::{Curve, required_quality};
+use crate::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
+use crate::identifiers::{ByGroup, ByPlan, Group, Plan};
+use crate::market::reputation::{ReputationBook, cancel_damage};
+use crate::market::social::crowd::GaveUp;
+use crate::morning::Morning;
+use crate::params::{DriftCounted, InvoluntaryChurn, Params, ServicePenalty};
+use crate::product::quality::{
     Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus,
 };
-use crate::world::random::{Part, Streams, Word, word_below};
-use crate::world::retention::due_today;
-use crate::world::settings::Settings;
+use crate::random::{Part, Streams, Word, word_below};
+use crate::retention::due_today;
+use crate::settings::Settings;
 
 /// Monthly rate of involuntary churn from a standard normal draw; 0 where a group has none.
 pub fn involuntary_rate(mean: f64, std: f64, z: f64, law: &InvoluntaryChurn) -> f64 {
@@ -303,17 +303,17 @@ pub fn terms(block: &Block, at: usize) -> TermsChanged {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::context::tests::on_day;
-    use crate::world::customers::Customers;
-    use crate::world::customers::columns::Subscriber;
-    use crate::world::customers::columns::tests::subscriber;
-    use crate::world::events::ServiceDay;
-    use crate::world::morning::Morning;
-    use crate::world::morning::tests::morning;
-    use crate::world::params::Params;
-    use crate::world::random::Streams;
-    use crate::world::settings::AdsStrength;
-    use crate::world::settings::Settings;
+    use crate::context::tests::on_day;
+    use crate::customers::Customers;
+    use crate::customers::columns::Subscriber;
+    use crate::events::ServiceDay;
+    use crate::morning::Morning;
+    use crate::morning::tests::morning;
+    use crate::params::Params;
+    use crate::random::Streams;
+    use crate::settings::AdsStrength;
+    use crate::settings::Settings;
+    use crate::test_kit::subscriber;
 
     fn group() -> Group {
         Group::at(0).expect("S1")

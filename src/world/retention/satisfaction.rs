@@ -2,11 +2,11 @@
 
 use std::ops::{AddAssign, Range};
 
-use crate::world::context::DayContext;
-use crate::world::customers::columns::Block;
-use crate::world::identifiers::{ByGroup, ByPlan, Group};
-use crate::world::market::reputation::contribution;
-use crate::world::product::quality::{
+use crate::context::DayContext;
+use crate::customers::columns::Block;
+use crate::identifiers::{ByGroup, ByPlan, Group};
+use crate::market::reputation::contribution;
+use crate::product::quality::{
     Experience, perceived_quality, quota_demand, quota_factor, relationship_as_read, relationship_bonus,
     service_penalty,
 };
@@ -133,18 +133,18 @@ pub fn update(group: Group, block: &mut Block, day: &DayContext<'_>) -> Mood {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::context::tests::on_day;
-    use crate::world::customers::columns::Subscriber;
-    use crate::world::customers::columns::tests::subscriber;
-    use crate::world::events::ServiceDay;
-    use crate::world::identifiers::Plan;
-    use crate::world::morning::Morning;
-    use crate::world::morning::tests::morning;
-    use crate::world::params::Params;
-    use crate::world::random::Streams;
-    use crate::world::retention::{refresh_required, remembered_budget};
-    use crate::world::settings::Settings;
-    use crate::world::settings::{AdsStrength, PerCustomer, PerGroup};
+    use crate::context::tests::on_day;
+    use crate::customers::columns::Subscriber;
+    use crate::events::ServiceDay;
+    use crate::identifiers::Plan;
+    use crate::morning::Morning;
+    use crate::morning::tests::morning;
+    use crate::params::Params;
+    use crate::random::Streams;
+    use crate::retention::{refresh_required, remembered_budget};
+    use crate::settings::Settings;
+    use crate::settings::{AdsStrength, PerCustomer, PerGroup};
+    use crate::test_kit::subscriber;
 
     fn group() -> Group {
         Group::at(0).expect("S1")

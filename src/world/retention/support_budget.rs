@@ -2,12 +2,12 @@
 //! (`docs/mechanics/retention/issues.md#pools`).
 
 use super::issues::{IssueBatch, mean_resolved};
-use crate::world::customers::Customers;
-use crate::world::customers::columns::Block;
-use crate::world::identifiers::{ByGroup, Group, Plan};
-use crate::world::params::Params;
-use crate::world::random::{Part, Streams};
-use crate::world::settings::Settings;
+use crate::customers::Customers;
+use crate::customers::columns::Block;
+use crate::identifiers::{ByGroup, Group, Plan};
+use crate::params::Params;
+use crate::random::{Part, Streams};
+use crate::settings::Settings;
 
 /// A pool of open issues that shares one amount of money.
 #[derive(Debug, Clone, Copy)]

@@ -1,17 +1,17 @@
 //! A world that replays the recorded series arrives at the figures that were measured with it.
 
 use super::*;
-use crate::world::day::step_day;
-use crate::world::events::Facts;
-use crate::world::events::Reading;
-use crate::world::market::Market;
-use crate::world::market::competitors::sampled_boost;
-use crate::world::market::economy::Dimension;
-use crate::world::market::surges::surge_factor;
-use crate::world::params::{ParameterSource, SurgeStart, shipped_sources};
-use crate::world::random::Streams;
-use crate::world::retention::renewal::involuntary_rate_of;
-use crate::world::state::World;
+use crate::day::step_day;
+use crate::events::Facts;
+use crate::events::Reading;
+use crate::market::Market;
+use crate::market::competitors::sampled_boost;
+use crate::market::economy::Dimension;
+use crate::market::surges::surge_factor;
+use crate::params::{ParameterSource, SurgeStart, shipped_sources};
+use crate::random::Streams;
+use crate::retention::renewal::involuntary_rate_of;
+use crate::state::World;
 
 fn replaying() -> Params {
     let scenario = include_str!("../../../configs/scenarios/reference-seed42.toml");

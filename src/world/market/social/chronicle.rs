@@ -1,12 +1,12 @@
 //! What the public remembers of the company: a short record of every day, which a judge of its posts may consult
 //! (docs/mechanics/market/social/chronicle.md).
 
-use crate::world::canonical::canonical;
-use crate::world::events::ServiceDay;
-use crate::world::identifiers::{ByGroup, ByPlan, Group};
-use crate::world::product::Product;
-use crate::world::quota::Quota;
-use crate::world::settings::Settings;
+use crate::canonical::canonical;
+use crate::events::ServiceDay;
+use crate::identifiers::{ByGroup, ByPlan, Group};
+use crate::product::Product;
+use crate::quota::Quota;
+use crate::settings::Settings;
 
 /// Days that are remembered besides today.
 pub const MEMORY_DAYS: usize = 28;
@@ -108,7 +108,7 @@ impl Chronicle {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::params::Params;
+    use crate::params::Params;
 
     #[test]
     fn four_weeks_are_remembered() {

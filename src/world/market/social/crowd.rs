@@ -9,14 +9,14 @@ use super::engagement::draw_engagement;
 use super::opinions::Scene;
 use super::sentiment::{Sentiment, sentiment};
 use super::weights::{cancelled_weight, lost_company_weight, post_weight};
-use crate::world::customers::Customers;
-use crate::world::customers::columns::Block;
-use crate::world::customers::traits::draw_traits;
-use crate::world::enterprise::churn::{Blame, CompanyLost};
-use crate::world::events::{Cause, Facts, Matter, Opinion, PostAuthor, Theme, Troubles};
-use crate::world::identifiers::{Group, Plan};
-use crate::world::params::{CustomerPosts, Params};
-use crate::world::random::{Part, Stream, Streams};
+use crate::customers::Customers;
+use crate::customers::columns::Block;
+use crate::customers::traits::draw_traits;
+use crate::enterprise::churn::{Blame, CompanyLost};
+use crate::events::{Cause, Facts, Matter, Opinion, PostAuthor, Theme, Troubles};
+use crate::identifiers::{Group, Plan};
+use crate::params::{CustomerPosts, Params};
+use crate::random::{Part, Stream, Streams};
 
 /// An individual who gave up today because no plan was acceptable.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -224,12 +224,12 @@ pub fn author_of(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::context::tests::on_day;
-    use crate::world::customers::columns::Subscriber;
-    use crate::world::customers::columns::tests::subscriber;
-    use crate::world::events::{Post, ServiceDay, ThreadKind};
-    use crate::world::morning::tests::morning;
-    use crate::world::settings::Settings;
+    use crate::context::tests::on_day;
+    use crate::customers::columns::Subscriber;
+    use crate::events::{Post, ServiceDay, ThreadKind};
+    use crate::morning::tests::morning;
+    use crate::settings::Settings;
+    use crate::test_kit::subscriber;
 
     fn group() -> Group {
         Group::parse("S1").expect("a group")

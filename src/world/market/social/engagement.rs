@@ -1,9 +1,9 @@
 //! How far a customer's post carries (docs/mechanics/market/social/engagement.md).
 
 use super::sentiment::Sentiment;
-use crate::world::canonical::canonical;
-use crate::world::params::{Params, SocialParams};
-use crate::world::random::Stream;
+use crate::canonical::canonical;
+use crate::params::{Params, SocialParams};
+use crate::random::Stream;
 
 canonical! { Engagement { likes, shares, virality } }
 
@@ -117,8 +117,7 @@ mod tests {
     #[test]
     fn means_of_engagement_are_those_of_the_release() {
         let params = Params::shipped();
-        let mut stream =
-            crate::world::random::Streams::new(5).open(crate::world::random::Part::CustomerPosts, [1]);
+        let mut stream = crate::random::Streams::new(5).open(crate::random::Part::CustomerPosts, [1]);
         for (sentiment, id, likes, shares) in [
             (Sentiment::Positive, "S1", 65.9, Some(18.2)),
             (Sentiment::Neutral, "S1", 39.3, Some(10.7)),

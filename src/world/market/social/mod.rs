@@ -14,9 +14,9 @@ pub mod reach;
 pub mod sentiment;
 pub mod weights;
 
-use crate::world::canonical::canonical;
-use crate::world::events::{Facts, Matter, Post, PostAuthor};
-use crate::world::settings::Settings;
+use crate::canonical::canonical;
+use crate::events::{Facts, Matter, Post, PostAuthor};
+use crate::settings::Settings;
 use chronicle::Chronicle;
 use engagement::Engagement;
 use own::OwnPost;

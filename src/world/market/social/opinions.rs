@@ -3,12 +3,12 @@
 
 use super::chronicle::Chronicle;
 use super::weights::Loudness;
-use crate::world::context::DayContext;
-use crate::world::customers::columns::Block;
-use crate::world::events::{Cause, Opinion, Theme, Troubles};
-use crate::world::identifiers::Group;
-use crate::world::params::SocialParams;
-use crate::world::product::quality::{
+use crate::context::DayContext;
+use crate::customers::columns::Block;
+use crate::events::{Cause, Opinion, Theme, Troubles};
+use crate::identifiers::Group;
+use crate::params::SocialParams;
+use crate::product::quality::{
     quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty,
 };
 
@@ -170,7 +170,7 @@ pub fn theme(worths: &[(Theme, f64)], u: f64) -> Theme {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::params::Params;
+    use crate::params::Params;
 
     #[test]
     fn troubles_come_before_moods_and_overload_before_all() {

@@ -1,8 +1,8 @@
 //! The player's posts, and what reactions to them do to leads (docs/mechanics/market/social/own.md).
 
-use crate::world::canonical::canonical;
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::params::CeoPosts;
+use crate::canonical::canonical;
+use crate::identifiers::{ByGroup, Group};
+use crate::params::CeoPosts;
 
 /// A post of the player.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +54,7 @@ pub fn social_multiplier(group: Group, day: u32, posts: &[OwnPost], law: &CeoPos
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::params::Params;
+    use crate::params::Params;
 
     fn multiplier(posts: &[(u32, f64)], day: u32) -> f64 {
         let group = Group::at(0).expect("S1");

@@ -3,11 +3,11 @@
 use super::Social;
 use super::engagement::Engagement;
 use super::sentiment::Sentiment;
-use crate::world::events::{Facts, Matter, Reading, Severity, Trend};
-use crate::world::market::competitors::{Event, severity};
-use crate::world::market::economy::Economy;
-use crate::world::params::{Competitor, MacroEconomy, Params};
-use crate::world::random::{Part, Stream, Streams};
+use crate::events::{Facts, Matter, Reading, Severity, Trend};
+use crate::market::competitors::{Event, severity};
+use crate::market::economy::Economy;
+use crate::params::{Competitor, MacroEconomy, Params};
+use crate::random::{Part, Stream, Streams};
 
 /// The event the press writes about: the oldest one that is not over.
 pub fn topic<'a>(day: u32, events: &'a [Event], law: &Competitor) -> Option<&'a Event> {
@@ -124,7 +124,7 @@ pub fn write_about_the_economy(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::settings::Settings;
+    use crate::settings::Settings;
 
     fn event(day: u32, boost: f64) -> Event {
         Event { day, boost, sampled: boost, u: 0.0, by_feedback: false }
@@ -165,7 +165,7 @@ mod tests {
         for day in 1..=500 {
             let mut facts = Facts::default();
             facts.begin(day);
-            crate::world::market::economy::step(day, &mut economy, &params, &streams, &mut facts);
+            crate::market::economy::step(day, &mut economy, &params, &streams, &mut facts);
             write_about_the_economy(day, &economy, &mut social, &params, &streams, &mut facts);
             let published =
                 facts.posts.iter().filter(|post| matches!(post.matter, Matter::Reading(_))).count();
@@ -194,7 +194,7 @@ mod tests {
             let mut social = Social::opening(&Settings::opening(&params));
             let mut economy = Economy::opening(&params);
             for day in 1..=60 {
-                crate::world::market::economy::step(day, &mut economy, &params, &streams, &mut facts);
+                crate::market::economy::step(day, &mut economy, &params, &streams, &mut facts);
                 write_about_the_economy(day, &economy, &mut social, &params, &streams, &mut facts);
             }
             count += f64::from(social.next_post - 1);

@@ -4,12 +4,12 @@
 use super::crowd::author_of;
 use super::engagement::Engagement;
 use super::sentiment::Sentiment;
-use crate::world::customers::Customers;
-use crate::world::events::{Facts, Matter, Notice, OwnPostSeen, PostAuthor, Reaction};
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::params::{CeoPosts, Params};
-use crate::world::random::{Part, Stream, Streams};
-use crate::world::state::World;
+use crate::customers::Customers;
+use crate::events::{Facts, Matter, Notice, OwnPostSeen, PostAuthor, Reaction};
+use crate::identifiers::{ByGroup, Group};
+use crate::params::{CeoPosts, Params};
+use crate::random::{Part, Stream, Streams};
+use crate::state::World;
 
 /// How the groups take a post of the player.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,7 +118,7 @@ fn reaction(verdict: &Verdict, views: u64, law: &CeoPosts) -> Reaction {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::market::social::own::OwnPost;
+    use crate::market::social::own::OwnPost;
 
     fn group(id: &str) -> Group {
         Group::parse(id).expect("a group")

@@ -1,7 +1,7 @@
 //! The tone of a customer's post (docs/mechanics/market/social/sentiment.md).
 
-use crate::world::canonical::canonical_codes;
-use crate::world::params::{SentimentChances, SocialParams};
+use crate::canonical::canonical_codes;
+use crate::params::{SentimentChances, SocialParams};
 
 canonical_codes! { Sentiment { Positive, Neutral, Negative } }
 
@@ -43,7 +43,7 @@ pub fn sentiment(satisfaction: f64, u: f64, law: &SocialParams) -> Sentiment {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::params::Params;
+    use crate::params::Params;
 
     #[test]
     fn sentiment_follows_the_bands() {

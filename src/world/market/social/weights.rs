@@ -1,7 +1,7 @@
 //! How loudly somebody is heard: the weights behind the posts of a day
 //! (docs/mechanics/market/social/crowd.md#weights).
 
-use crate::world::params::SocialParams;
+use crate::params::SocialParams;
 
 /// What weighs in a subscriber's chance to be heard today.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,7 +67,7 @@ fn finite(weight: f64, law: &SocialParams) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::params::Params;
+    use crate::params::Params;
 
     const PLAIN: Loudness = Loudness {
         satisfaction: 0.0,

@@ -17,7 +17,8 @@ fn assert_role(console: &mut Console, words: &str, role: Role) {
         room && letters.iter().enumerate().all(|(at, letter)| symbol(x + at as u16, y) == *letter)
     };
     let mut places = (0..buffer.area.height).flat_map(|y| (0..buffer.area.width).map(move |x| (x, y)));
-    let (x, y) = places.find(|(x, y)| stands(*x, *y)).unwrap_or_else(|| panic!("{words} is not shown"));
+    let place = places.find(|(x, y)| stands(*x, *y));
+    let Some((x, y)) = place else { panic!("{words} is not shown:\n{}", console.screen()) };
     let (style, expected) = (buffer[(x, y)].style(), console.app.theme.style(role));
     let same = expected.fg.is_none_or(|colour| style.fg == Some(colour))
         && expected.bg.is_none_or(|colour| style.bg == Some(colour))
@@ -42,7 +43,7 @@ fn words_stand_in_the_role_of_what_they_mean() {
         assert_role(&mut console, "S2  ", Role::Text);
         console.press("8 enter enter '7' enter");
         assert_role(&mut console, "→", Role::Changed);
-        console.press("esc esc 9 e 'SELECT 12 AS x' esc");
+        console.press("esc esc 9 esc i 'SELECT' _ '12' _ 'AS' _ 'x' esc");
         assert_role(&mut console, "SELECT 12", Role::Keyword);
         assert_role(&mut console, "12 AS x", Role::Number);
         console.press("1");

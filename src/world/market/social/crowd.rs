@@ -223,6 +223,8 @@ pub fn author_of(
 
 #[cfg(test)]
 mod tests {
+    use std::sync::LazyLock;
+
     use super::*;
     use crate::context::tests::on_day;
     use crate::customers::columns::Subscriber;
@@ -237,24 +239,25 @@ mod tests {
 
     /// The posts of a seventh day on which these subscribers are there and these have left.
     fn posts(rows: &[Subscriber], gave_up: &[GaveUp], lost: &[CompanyLost], seed: u64) -> Vec<Post> {
-        let (params, streams) = (Params::shipped(), Streams::new(seed));
-        let settings = Settings::opening(&params);
+        static PARAMS: LazyLock<Params> = LazyLock::new(Params::shipped);
+        let (params, streams) = (&*PARAMS, Streams::new(seed));
+        let settings = Settings::opening(params);
         let mut social = Social::opening(&settings);
         let mut customers = Customers::default();
         rows.iter().for_each(|row| customers.groups[group()].activate(*row));
         let day = morning(70);
         let chronicle = social.chronicle.clone();
         let quiet = ServiceDay::quiet();
-        let mut crowd = on_day(&day, &settings, &quiet, (&params, &streams), |day| {
+        let mut crowd = on_day(&day, &settings, &quiet, (params, &streams), |day| {
             let scene = Scene { day, chronicle: &chronicle };
             let moods = |block: &Block| block.satisfaction.clone();
             let voices = customers.survey(|group, block| hear(group, block, moods(block), &scene));
             listen(voices, &customers, &scene, &streams)
         });
-        crowd.join(gave_up, lost, &params);
+        crowd.join(gave_up, lost, params);
         let mut facts = Facts::default();
         facts.begin(70);
-        crowd.publish(&mut social, &params, &streams, &mut facts);
+        crowd.publish(&mut social, params, &streams, &mut facts);
         facts.posts
     }
 

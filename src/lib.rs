@@ -13,6 +13,8 @@
 //! | 2 | [`tools`], [`database`], [`voice`] | the catalogue of tools; the observable company in SQLite and its guarded queries; words for facts, and the judge of the player's posts |
 //! | 1 | [`world`] | the simulator: pure, deterministic, no files, no clock, no SQL, no prose |
 //!
+//! The simulator is a package of its own; the others are modules of this one.
+//!
 //! `notation` writes and reads numbers for all of them, `shipped` holds scenarios, themes and policies. Arrows point down only; houses on one floor never import each
 //! other; the upper floors use nothing of `world` but plain identifiers, except `lab`, which works on debug runs and
 //! reads the x-ray. `tests/tidy` holds this true.

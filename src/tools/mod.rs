@@ -3,7 +3,7 @@
 //! A tool is data ([`Spec`]), its typed arguments and its typed answer, and three small functions: what its arguments are
 //! now ([`Tool::current`]), what the JSON of a call says ([`Tool::read`]), and what the call would do and say
 //! ([`Tool::plan`], pure, so it also previews). JSON is read once and written once. Who knows a tool only by its name
-//! takes it from the [`catalogue`] as [`AnyTool`]. Adding a tool touches one file and the list in [`catalogue`].
+//! takes it from the `catalogue` as [`AnyTool`]. Adding a tool touches one file and the list in `catalogue`.
 
 mod arguments;
 pub(crate) mod bounds;

@@ -16,9 +16,9 @@ struct Source {
 impl Source {
     fn read(path: PathBuf) -> Source {
         let text = fs::read_to_string(&path).expect("a source file");
-        let lines =
-            text.lines().take_while(|line| *line != "#[cfg(test)]" || !followed_by_tests(&text, line));
-        Source { lines: lines.map(str::to_owned).collect(), path }
+        let lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        let tests = lines.windows(2).position(|pair| pair[0] == "#[cfg(test)]" && pair[1] == "mod tests {");
+        Source { lines: lines[..tests.unwrap_or(lines.len())].to_vec(), path }
     }
 
     /// Lines that are no comment, with their numbers.
@@ -47,10 +47,6 @@ impl Source {
     }
 }
 
-fn followed_by_tests(text: &str, line: &str) -> bool {
-    text.contains(&format!("{line}\nmod tests {{"))
-}
-
 /// The folder of the package: cargo tells it where the test is built and where it runs.
 fn root() -> PathBuf {
     std::env::var_os("CARGO_MANIFEST_DIR").map_or(PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from)
@@ -72,6 +68,10 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
 
 fn sources() -> Vec<Source> {
     files(&root().join("src"), "rs").into_iter().map(Source::read).filter(|file| !file.is_tests()).collect()
+}
+
+fn files_of_tests() -> Vec<Source> {
+    files(&root().join("tests"), "rs").into_iter().map(Source::read).collect()
 }
 
 #[track_caller]
@@ -111,6 +111,34 @@ fn a_type_name_means_one_thing_in_its_house() {
     let twice = places.iter().filter(|(_, places)| places.len() > 1);
     let complaints: Vec<String> =
         twice.map(|((house, name), places)| format!("{name} in {house}: {}", places.join(", "))).collect();
+    assert_none(&complaints);
+}
+
+/// The compiler finds what nobody uses, but not what another package could.
+#[test]
+fn what_is_public_is_used() {
+    let files = sources();
+    let stories = files_of_tests();
+    let mut uses: BTreeMap<&str, usize> = BTreeMap::new();
+    let lines = files.iter().chain(&stories).flat_map(Source::code);
+    for word in
+        lines.flat_map(|(_, line)| line.split(|letter: char| !letter.is_alphanumeric() && letter != '_'))
+    {
+        *uses.entry(word).or_default() += 1;
+    }
+    let kinds = ["fn ", "struct ", "enum ", "const ", "static ", "trait ", "type "];
+    let mut complaints = Vec::new();
+    for file in &files {
+        for (number, line) in file.code() {
+            let for_tests = number > 1 && file.lines[number - 2].trim() == "#[cfg(test)]";
+            let item = line.trim_start().strip_prefix("pub ").filter(|_| !for_tests);
+            let name = item.and_then(|item| kinds.iter().find_map(|kind| item.strip_prefix(kind)));
+            let name = name.and_then(|name| name.split(|it: char| !it.is_alphanumeric() && it != '_').next());
+            if name.is_some_and(|name| uses.get(name) == Some(&1)) {
+                complaints.push(format!("{}:{number}: {line}", file.path.display()));
+            }
+        }
+    }
     assert_none(&complaints);
 }
 

@@ -38,11 +38,6 @@ impl Session {
         branch_of(folder, &self.manifest, before(&trajectory, day), mode)
     }
 
-    /// Whether the run can be branched now.
-    pub fn can_branch(&self) -> bool {
-        self.folder.is_some() && (self.manifest.mode != Mode::Baseline || self.history.ended.is_some())
-    }
-
     /// Whether the run was given up.
     pub fn is_abandoned(&self) -> bool {
         self.history.ended == Some(Ended::Abandoned)

@@ -1,7 +1,7 @@
 //! The documents: links lead somewhere, values are those of the parameters in force, and every parameter, test and file
 //! that is named is there.
 //!
-//! `NOVAMIND_WRITE_DOCUMENTS=1 cargo test --test tidy documents` writes the values and tables anew.
+//! `NOVAMIND_WRITE_DOCUMENTS=1 cargo test documents` writes the values and tables anew.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -356,7 +356,7 @@ mod tests {
         let group = Group::parse("S2").expect("a group");
         let ads_row = AdsRevenueRow { customer: 2, group, strength: 0.5, revenue: 0.25 };
         let ads = vec![Arc::new(PackedDay::pack(3, &AdsRun::runs_of(&[ads_row])))];
-        let store = BlockStore { usage: Arc::new(usage), ads: Arc::new(ads) };
+        let store = BlockStore { usage: Arc::new(usage), ads: Arc::new(ads), ..BlockStore::default() };
         let connection = Connection::open_in_memory().expect("memory");
         seen.see(store);
         register(&connection, seen).expect("modules");

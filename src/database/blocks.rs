@@ -3,6 +3,7 @@
 use std::sync::{Arc, RwLock};
 
 use super::by_customer::Indexes;
+use super::notices::Inbox;
 use crate::world::events::{AdsRevenueRow, UsageRows};
 use crate::world::identifiers::Group;
 
@@ -137,6 +138,7 @@ pub(super) struct AdsRow {
 pub(super) struct BlockStore {
     pub usage: Arc<Vec<Arc<PackedDay>>>,
     pub ads: Arc<Vec<Arc<PackedDay>>>,
+    pub inbox: Inbox,
 }
 
 /// The store that the writer fills and queries read.
@@ -194,12 +196,21 @@ impl AdsRun {
 pub(super) struct Packer(Vec<u8>);
 
 impl Packer {
-    fn number(&mut self, mut value: u64) {
+    pub fn number(&mut self, mut value: u64) {
         while value >= 0x80 {
             self.0.push(value as u8 | 0x80);
             value >>= 7;
         }
         self.0.push(value as u8);
+    }
+
+    pub fn bytes(&mut self, bytes: &[u8]) {
+        self.0.extend_from_slice(bytes);
+    }
+
+    /// What was written.
+    pub fn finish(self) -> Vec<u8> {
+        self.0
     }
 
     fn float(&mut self, value: f64) {
@@ -220,8 +231,27 @@ impl Packer {
 /// Reads what a [`Packer`] wrote.
 pub(super) struct Unpacker<'a>(&'a [u8]);
 
-impl Unpacker<'_> {
-    fn number(&mut self) -> Option<u64> {
+impl<'a> Unpacker<'a> {
+    pub fn of(bytes: &'a [u8]) -> Unpacker<'a> {
+        Unpacker(bytes)
+    }
+
+    /// What is left to read.
+    pub fn rest(&self) -> &'a [u8] {
+        self.0
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (bytes, rest) = self.0.split_at_checked(count)?;
+        self.0 = rest;
+        Some(bytes)
+    }
+
+    pub fn number(&mut self) -> Option<u64> {
         let (mut value, mut shift) = (0u64, 0u32);
         loop {
             let (&byte, rest) = self.0.split_first()?;
@@ -234,7 +264,7 @@ impl Unpacker<'_> {
         }
     }
 
-    fn small(&mut self) -> Option<u32> {
+    pub fn small(&mut self) -> Option<u32> {
         u32::try_from(self.number()?).ok()
     }
 

@@ -80,7 +80,7 @@ pub(super) fn is_hidden_table(name: &str) -> bool {
 }
 
 /// Tables inside the database, and whether a visible table is made of them row by row.
-const INSIDES: [(&str, bool); 9] = [
+const INSIDES: [(&str, bool); 11] = [
     ("customer_rows", true),
     ("subscription_rows", true),
     ("ledger_rows", true),
@@ -90,6 +90,8 @@ const INSIDES: [(&str, bool); 9] = [
     ("issue_clock", false),
     ("usage_blocks", false),
     ("ads_blocks", false),
+    ("notice_blocks", false),
+    ("repeated_losses", false),
 ];
 
 /// Functions that reach beyond the database.

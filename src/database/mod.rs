@@ -17,6 +17,8 @@ mod help;
 mod interrupt;
 mod location;
 mod memory;
+mod notice_table;
+mod notices;
 mod plain_copy;
 mod plan;
 mod projector;

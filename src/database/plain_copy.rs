@@ -8,19 +8,29 @@ use rusqlite::backup::Backup;
 use rusqlite::{Connection, Transaction, params};
 
 use super::blocks::{AdsRun, BlockStore};
+use super::notices::{Inbox, Place, TYPES};
 use super::projector::{ProjectionError, Projector};
 use crate::world::events::UsageRows;
 
-/// The two tables that the program serves itself, as ordinary ones. A row per day and customer.
+/// The tables that the program serves itself, as ordinary ones; of losses that repeat, only the days and the losses.
 const TABLES: &str = "CREATE TABLE daily_usage (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, usage_units INTEGER NOT NULL);
 CREATE TABLE ads_revenue (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, group_id TEXT NOT NULL,
-    ads_strength REAL NOT NULL, revenue REAL NOT NULL);";
+    ads_strength REAL NOT NULL, revenue REAL NOT NULL);
+CREATE TABLE notice_rows (notification_id INTEGER PRIMARY KEY, day INTEGER NOT NULL, type TEXT NOT NULL, message TEXT NOT NULL);
+CREATE TABLE repeating_days (day INTEGER PRIMARY KEY, first_number INTEGER NOT NULL, losses INTEGER NOT NULL);
+CREATE TABLE repeating_losses (number INTEGER PRIMARY KEY, message TEXT NOT NULL);
+CREATE VIEW notifications AS
+SELECT notification_id, day, type, message FROM notice_rows
+UNION ALL
+SELECT first_number + number, day, 'lead_lost', message FROM repeating_days JOIN repeating_losses ON number < losses;";
 
 /// What questions about one customer need.
 const INDEXES: &str = "CREATE INDEX daily_usage_by_customer ON daily_usage (customer_id, day);
 CREATE INDEX ads_revenue_by_customer ON ads_revenue (customer_id, day);
 DROP TABLE usage_blocks;
-DROP TABLE ads_blocks;";
+DROP TABLE ads_blocks;
+DROP TABLE notice_blocks;
+DROP TABLE repeated_losses;";
 
 /// Pages that are copied at a time.
 const PAGES: i32 = 4096;
@@ -48,6 +58,7 @@ fn copy(source: &Connection, store: &BlockStore, file: &Path) -> rusqlite::Resul
     transaction.execute_batch(TABLES)?;
     copy_usage(&transaction, store)?;
     copy_ads(&transaction, store)?;
+    copy_inbox(&transaction, &store.inbox)?;
     transaction.execute_batch(INDEXES)?;
     transaction.commit()?;
     copy.execute_batch("VACUUM")?;
@@ -80,6 +91,26 @@ fn copy_ads(transaction: &Transaction<'_>, store: &BlockStore) -> rusqlite::Resu
                 ])?;
             }
         }
+    }
+    Ok(())
+}
+
+fn copy_inbox(transaction: &Transaction<'_>, inbox: &Inbox) -> rusqlite::Result<()> {
+    let mut own = transaction.prepare("INSERT INTO notice_rows VALUES (?1, ?2, ?3, ?4)")?;
+    let mut repeating = transaction.prepare("INSERT INTO repeating_days VALUES (?1, ?2, ?3)")?;
+    for day in inbox.days.iter() {
+        let number = |place: u64| (day.first + place) as i64;
+        for place in 0..day.len() {
+            if let Place::Own(at) = day.at(place) {
+                let notice_type = TYPES[usize::from(day.type_at(at))];
+                own.execute(params![number(place), day.day, notice_type, day.text_at(at)])?;
+            }
+        }
+        repeating.execute(params![day.day, number(u64::from(day.before)), day.repeats])?;
+    }
+    let mut losses = transaction.prepare("INSERT INTO repeating_losses VALUES (?1, ?2)")?;
+    for (number, loss) in (0u32..).zip(inbox.losses.iter()) {
+        losses.execute(params![number, loss.words()])?;
     }
     Ok(())
 }

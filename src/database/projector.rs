@@ -10,9 +10,10 @@ use rusqlite::{Connection, OptionalExtension};
 
 use super::blocks::{AdsRun, BlockStore, PackedDay, Run, SharedStore};
 use super::location::Location;
+use super::notices::{Inbox, NoticeDay, RepeatedLoss};
 use super::query::QueryConnection;
 use super::rows::{Entry, LAYOUT, RowWriter, create};
-use crate::world::events::{Facts, UsageRows};
+use crate::world::events::{Facts, LossCause, UsageRows};
 use crate::world::params::Params;
 
 /// Entries that may wait before the simulation has to; a bound on memory.
@@ -406,6 +407,7 @@ fn load_store(connection: &Connection) -> Option<BlockStore> {
     Some(BlockStore {
         usage: Arc::new(load::<UsageRows>(connection, "usage_blocks")?),
         ads: Arc::new(load::<AdsRun>(connection, "ads_blocks")?),
+        inbox: load_inbox(connection)?,
     })
 }
 
@@ -426,6 +428,25 @@ fn load<R: Run>(connection: &Connection, table: &str) -> Option<Vec<Arc<PackedDa
     let rows = statement.query_map([], |row| Ok((row.get::<_, u32>(0)?, row.get::<_, Vec<u8>>(1)?))).ok()?;
     rows.map(|row| row.ok().and_then(|(day, packed)| PackedDay::read::<R>(day, packed)).map(Arc::new))
         .collect()
+}
+
+fn load_inbox(connection: &Connection) -> Option<Inbox> {
+    let mut statement = connection.prepare("SELECT day, packed FROM notice_blocks ORDER BY day").ok()?;
+    let days = statement.query_map([], |row| Ok((row.get::<_, u32>(0)?, row.get::<_, Vec<u8>>(1)?))).ok()?;
+    let day = |row: rusqlite::Result<(u32, Vec<u8>)>| {
+        let (day, packed) = row.ok()?;
+        NoticeDay::read(day, &packed).map(Arc::new)
+    };
+    let days: Vec<_> = days.map(day).collect::<Option<_>>()?;
+    let sql = "SELECT customer_id, message_day, cause FROM repeated_losses ORDER BY number";
+    let mut statement = connection.prepare(sql).ok()?;
+    let loss = |row: &rusqlite::Row<'_>| {
+        let cause = if row.get(2)? { LossCause::Unanswered } else { LossCause::Silence };
+        Ok(RepeatedLoss { customer: row.get(0)?, message_day: row.get(1)?, cause })
+    };
+    let losses: Vec<_> = statement.query_map([], loss).ok()?.collect::<Result<_, _>>().ok()?;
+    let sound = days.iter().all(|day| day.repeats as usize <= losses.len());
+    sound.then(|| Inbox { days: Arc::new(days), losses: Arc::new(losses) })
 }
 
 fn make_anew(location: &Location, owner: u32, params: &Params) -> rusqlite::Result<Connection> {

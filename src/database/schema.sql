@@ -1,5 +1,5 @@
 -- The observable company. What is stored as codes comes back as words through ordinary views, so that the file
--- opens in any SQLite tool; the two block tables (daily_usage, ads_revenue) are served by the program.
+-- opens in any SQLite tool; the block tables (daily_usage, ads_revenue, notifications) are served by the program.
 --
 -- What follows from a row alone is a generated column of it: it takes no room, has its declared type, and the engine can
 -- join by it. It is worked out for every row that is written, so a costly one that nobody joins by is worked out where it
@@ -275,11 +275,13 @@ CREATE TABLE enterprise_turns (
 CREATE INDEX enterprise_turns_by_thread ON enterprise_turns (thread_id);
 CREATE INDEX enterprise_turns_by_customer ON enterprise_turns (customer_id);
 
-CREATE TABLE notifications (
-    notification_id INTEGER PRIMARY KEY,
-    day INTEGER NOT NULL,
-    type TEXT NOT NULL,
-    message TEXT NOT NULL
+-- Days of notifications, packed, without the losses that repeat every day from a day on; their number is their place.
+CREATE TABLE notice_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
+CREATE TABLE repeated_losses (
+    number INTEGER PRIMARY KEY,
+    customer_id INTEGER NOT NULL,
+    message_day INTEGER NOT NULL,
+    cause INTEGER NOT NULL
 );
 
 CREATE TABLE research_projects (
@@ -347,7 +349,6 @@ INSERT INTO sqlite_stat1 (tbl, idx, stat) VALUES
     ('predictions', 'sqlite_autoindex_predictions_1', '290 4 1 1'),
     ('enterprise_turns', 'enterprise_turns_by_thread', '5000 4'),
     ('enterprise_turns', 'enterprise_turns_by_customer', '5000 5'),
-    ('notifications', NULL, '5000'),
     ('research_projects', 'sqlite_autoindex_research_projects_1', '20 1'),
     ('macroeconomic_conditions', NULL, '16'),
     ('ad_channel_leads', NULL, '5000'),

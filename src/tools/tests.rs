@@ -489,7 +489,7 @@ fn send_enterprise_deal() {
 
 /// Offerings of the newest turn of a customer's open thread.
 fn offered(company: &Company, customer: u32) -> Vec<(&'static str, f64)> {
-    let thread = company.world.enterprise.open_thread_of(customer).expect("an open thread");
+    let thread = company.world.enterprise.open_threads().newest(customer).expect("an open thread");
     thread.offerings().iter().map(|offering| (offering.plan.id(), offering.price)).collect()
 }
 
@@ -531,7 +531,7 @@ fn one_bad_deal_does_not_stop_the_others() {
     assert_eq!(offered(&company, 3), [("B", 7.5)]);
     let data = company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
     assert_eq!(data["results"][0]["success"], true);
-    let thread = company.world.enterprise.open_thread_of(4).expect("a renegotiation");
+    let thread = company.world.enterprise.open_threads().newest(4).expect("a renegotiation");
     assert_eq!((thread.kind.id(), thread.last().number), ("renegotiation", 0));
 }
 

@@ -28,12 +28,11 @@ pub fn notice(notice: &Notice, party: Option<Party>) -> String {
     let who = party.map_or("A company".to_owned(), |party| party.words());
     match notice {
         Notice::EnterpriseLead => format!("{who} asks for an offer. It waits seven days for an answer."),
-        Notice::LeadLostByTimeout { days } if party.is_some() => {
+        Notice::LeadLostByTimeout { days } => {
             format!("{who} got no answer for {days} days. The lead is lost.")
         }
-        Notice::LeadLostByTimeout { days } => {
-            format!("A lead that was lost earlier is reported again, {days} days after its last message.")
-        }
+        // The database words it, where it is one fact for all its days.
+        Notice::LeadLossRepeated { .. } => String::new(),
         Notice::LeadSilent => format!("{who} declines and answers no more. The lead is lost."),
         Notice::CounterOffer { customer } => format!("Customer {customer} answers with a price of its own."),
         Notice::ChurnThreat { customer } => format!(
@@ -141,8 +140,6 @@ mod tests {
         );
         let unanswered = notice(&Notice::LeadLostByTimeout { days: 7 }, party);
         assert_eq!(unanswered, "Customer 4711 (E2, 1,094 seats) got no answer for 7 days. The lead is lost.");
-        let again = notice(&Notice::LeadLostByTimeout { days: 16 }, None);
-        assert!(again.contains("reported again, 16 days"), "{again}");
         assert!(notice(&Notice::LeadSilent, party).starts_with("Customer 4711 (E2, 1,094 seats) declines"));
         assert!(!notice(&Notice::LeadSilent, None).contains(char::is_numeric));
     }

@@ -8,7 +8,7 @@ use crate::world::params::Params;
 
 /// Number of the layout of the database. A file with another one is made anew: raise it with every change of
 /// `schema.sql` or of what is written into its tables.
-pub(in crate::database) const LAYOUT: u32 = 3;
+pub(in crate::database) const LAYOUT: u32 = 4;
 
 /// Creates the tables, the words, and row 1 of `customers`: the market observer.
 pub(in crate::database) fn create(connection: &mut Connection, params: &Params) -> rusqlite::Result<()> {

@@ -4,7 +4,7 @@ use rusqlite::{Transaction, params};
 
 use super::{Entry, ForecastRow};
 use crate::notation::spaced_json;
-use crate::world::events::{Facts, Notice, ResearchChange};
+use crate::world::events::{Facts, ResearchChange};
 use crate::world::identifiers::{Group, Plan};
 use crate::world::settings::SettingsChange;
 
@@ -55,19 +55,6 @@ pub(super) fn channel_leads(transaction: &Transaction<'_>, facts: &Facts) -> rus
     )?;
     for pair in &facts.channel_leads {
         insert.execute(params![facts.day, pair.channel.id(), pair.group.id(), pair.leads, pair.spend])?;
-    }
-    Ok(())
-}
-
-pub(super) fn notices(
-    transaction: &Transaction<'_>,
-    facts: &Facts,
-    words: &[String],
-) -> rusqlite::Result<()> {
-    let mut insert =
-        transaction.prepare_cached("INSERT INTO notifications (day, type, message) VALUES (?1, ?2, ?3)")?;
-    for (notice, words) in facts.notices.iter().zip(words) {
-        insert.execute(params![facts.day, Notice::kind(notice), words])?;
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 mod create;
 mod direct;
 mod many;
+mod notices;
 mod posts;
 mod threads;
 
@@ -22,6 +23,7 @@ use crate::world::events::{
 use crate::world::identifiers::{Group, Plan};
 use crate::world::params::Params;
 use many::{NOTHING, insert_rows, or_nothing, real, text, whole};
+use notices::NoticeWriter;
 
 /// What is to be written: the facts of a day or a call, and the words that belong to them.
 #[derive(Debug, Clone, Default)]
@@ -107,11 +109,13 @@ pub(super) struct RowWriter {
     new_usage: Vec<Arc<PackedDay>>,
     new_ads: Vec<Arc<PackedDay>>,
     keep_usage_from: Option<u32>,
+    notices: NoticeWriter,
 }
 
 impl RowWriter {
     /// A writer for a database that has its tables; `issue_clock` is the stored one.
     pub fn new(params: Arc<Params>, store: SharedStore, issue_clock: u32) -> RowWriter {
+        let inbox = store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).inbox.clone();
         RowWriter {
             params,
             store,
@@ -125,6 +129,7 @@ impl RowWriter {
             new_usage: Vec::new(),
             new_ads: Vec::new(),
             keep_usage_from: None,
+            notices: NoticeWriter::continuing(inbox),
         }
     }
 
@@ -158,7 +163,7 @@ impl RowWriter {
         self.ads(transaction, facts)?;
         posts::posts(transaction, facts, &entry.posts)?;
         posts::own_posts(transaction, facts)?;
-        direct::notices(transaction, facts, &entry.notices)?;
+        self.notices.write(entry);
         direct::settings(transaction, entry)?;
         direct::forecasts(transaction, &entry.forecasts)?;
         direct::discovery(transaction, facts)
@@ -351,6 +356,7 @@ impl RowWriter {
     /// Writes what was kept back. The store follows with [`RowWriter::publish`], once the commit succeeded.
     pub fn flush(&mut self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         self.flush_subscriptions(transaction)?;
+        self.notices.flush(transaction)?;
         let rows = std::mem::take(&mut self.new_issues).into_iter().map(|(issue, row)| {
             let (day, aged_to) = row.resolved.unzip();
             [
@@ -424,7 +430,8 @@ impl RowWriter {
 
     /// Puts the new days into the store and takes the old ones out.
     pub fn publish(&mut self) {
-        if self.new_usage.is_empty() && self.new_ads.is_empty() {
+        let inbox = self.notices.publish();
+        if inbox.is_none() && self.new_usage.is_empty() && self.new_ads.is_empty() {
             return;
         }
         let mut store = self.store.write().unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -438,6 +445,9 @@ impl RowWriter {
             let mut ads = store.ads.to_vec();
             ads.append(&mut self.new_ads);
             store.ads = Arc::new(ads);
+        }
+        if let Some(inbox) = inbox {
+            store.inbox = inbox;
         }
     }
 }

@@ -51,7 +51,9 @@ impl Day<'_> {
         let count = |fits: fn(&Notice) -> bool| {
             Some(self.xray.notices().iter().filter(|notice| fits(notice)).count() as f64)
         };
-        let timeout = count(|notice| matches!(notice, Notice::LeadLostByTimeout { .. }));
+        let timeout = count(|notice| {
+            matches!(notice, Notice::LeadLostByTimeout { .. } | Notice::LeadLossRepeated { .. })
+        });
         let silent = count(|notice| matches!(notice, Notice::LeadSilent));
         for (kind, value) in [
             ("large_customer_message", count(|notice| notice.kind() == "large_customer_message")),

@@ -5,7 +5,8 @@ use crate::voice::{self, notices::Party};
 use crate::world::events::{EndCause, Notice, SubscriptionStatus};
 
 impl Session {
-    /// Texts of the notices of the last day, or of the last call.
+    /// Texts of the notices of the last day, or of the last call; empty ones for losses that are only repeated: the
+    /// database keeps those as one fact.
     pub(in crate::session) fn notice_texts(&self) -> Vec<String> {
         let mut parties = Parties::of(self);
         self.simulation
@@ -30,14 +31,11 @@ struct Parties {
     silent: std::vec::IntoIter<Party>,
     unanswered: std::vec::IntoIter<Party>,
     agreed: std::vec::IntoIter<Party>,
-    /// Days after which an unanswered lead is lost; later notices repeat an earlier loss.
-    patience: u32,
 }
 
 impl Parties {
     fn of(session: &Session) -> Parties {
         let (facts, world) = (&session.simulation.facts, session.world());
-        let patience = session.params().enterprise.agent_response_timeout_days;
         let notices = |fits: &dyn Fn(&Notice) -> bool| facts.notices.iter().filter(|own| fits(own)).count();
         // A list that is not one to one with its notices names nobody.
         let only = |parties: Vec<Party>, count: usize| {
@@ -65,14 +63,12 @@ impl Parties {
                 Some(Party { customer: deal.customer, group: group(deal.customer)?, seats: deal.seats })
             })
             .collect();
-        let first =
-            |notice: &Notice| matches!(notice, Notice::LeadLostByTimeout { days } if *days == patience);
+        let first = |notice: &Notice| matches!(notice, Notice::LeadLostByTimeout { .. });
         Parties {
             asking: only(asking, notices(&|own| *own == Notice::EnterpriseLead)),
             silent: only(ended(EndCause::LeadSilent), notices(&|own| *own == Notice::LeadSilent)),
             unanswered: only(ended(EndCause::LeadTimeout), notices(&first)),
             agreed: only(agreed, notices(&|own| matches!(own, Notice::DealWon { .. }))),
-            patience,
         }
     }
 
@@ -81,7 +77,7 @@ impl Parties {
         match notice {
             Notice::EnterpriseLead => self.asking.next(),
             Notice::LeadSilent => self.silent.next(),
-            Notice::LeadLostByTimeout { days } if *days == self.patience => self.unanswered.next(),
+            Notice::LeadLostByTimeout { .. } => self.unanswered.next(),
             Notice::DealWon { .. } => self.agreed.next(),
             _ => None,
         }

@@ -82,7 +82,9 @@ impl History {
     ) {
         let Simulation { facts, params, world, .. } = simulation;
         self.cash_by_day.push(figures.cash);
-        self.notices.extend(notices.iter().map(|text| (figures.day, text.clone())));
+        let repeated = |notice: &Notice| matches!(notice, Notice::LeadLossRepeated { .. });
+        let told = facts.notices.iter().zip(notices).filter(|(notice, _)| !repeated(notice));
+        self.notices.extend(told.map(|(_, text)| (figures.day, text.clone())));
         groups::count(&mut self.running_groups, figures, facts, world);
         let week = &mut self.running_week;
         week.add(figures);

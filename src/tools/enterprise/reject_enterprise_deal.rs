@@ -62,10 +62,10 @@ impl Tool for RejectEnterpriseDeal {
 
     fn plan(&self, view: &View<'_>, given: Self::Args) -> Result<Planned<DealResults>, Refusal> {
         let mut threads = Vec::new();
+        let mut open = view.world().enterprise.open_threads();
         let mut end = |rejection: Rejection| {
             let number = u32::try_from(rejection.customer).ok();
-            let open = number.and_then(|customer| view.world().enterprise.rejectable(customer, &threads));
-            match (number, open) {
+            match (number, number.and_then(|customer| open.take_newest(customer))) {
                 (Some(customer), Some(thread)) => {
                     threads.push(thread.number);
                     Ok(customer)

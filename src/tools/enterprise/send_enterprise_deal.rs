@@ -6,6 +6,7 @@ use super::reading::{Unreadable, customer, elements, malformed, offerings};
 use super::{DealResults, Failure, Fate, RESULTS, results, unless_all_failed};
 use crate::world::command::Command;
 use crate::world::customers::FIRST_CUSTOMER;
+use crate::world::enterprise::OpenThreads;
 use crate::world::enterprise::letters::Proposal;
 use crate::world::events::Offering;
 
@@ -87,8 +88,9 @@ impl Tool for SendEnterpriseDeal {
 
     fn plan(&self, view: &View<'_>, given: Self::Args) -> Result<Planned<DealResults>, Refusal> {
         let mut proposals = Vec::new();
+        let open = view.world().enterprise.open_threads();
         let mut send = |deal: Deal| {
-            let proposal = reachable(deal, view)?;
+            let proposal = reachable(deal, view, &open)?;
             let customer = proposal.customer;
             proposals.push(proposal);
             Ok(customer)
@@ -116,14 +118,14 @@ fn deal(element: &Value, path: &str, view: &View<'_>) -> Result<Deal, Unreadable
 }
 
 /// The proposal, if the customer is a company in an open thread or with a subscription.
-fn reachable(deal: Deal, view: &View<'_>) -> Result<Proposal, Failure> {
+fn reachable(deal: Deal, view: &View<'_>, open: &OpenThreads<'_>) -> Result<Proposal, Failure> {
     let Deal { customer: given, offerings, field } = deal;
     let world = view.world();
     let failed = |code: &'static str, error: &str, message: String| {
         Failure::of(given, error, Refusal::at(field.clone(), code, message))
     };
     let number = u32::try_from(given).ok();
-    if let Some(customer) = number.filter(|customer| world.enterprise.open_thread_of(*customer).is_some()) {
+    if let Some(customer) = number.filter(|customer| open.newest(*customer).is_some()) {
         return Ok(Proposal { customer, offerings });
     }
     // The observer of the market stands in the table of customers too.

@@ -66,9 +66,10 @@ impl Enterprise {
         let mut next_thread = self.next_thread;
         let mut relationships: BTreeMap<u32, f64> = BTreeMap::new();
         let mut letters = Vec::new();
+        let open = self.open_threads();
         for proposal in proposals {
             let Some(company) = self.company(proposal.customer) else { continue };
-            let thread = self.open_thread_of(proposal.customer);
+            let thread = open.newest(proposal.customer);
             let (number, turn) = match thread {
                 Some(thread) => (thread.number, thread.last().number + 1),
                 None if company.is_subscriber() => {
@@ -141,12 +142,6 @@ impl Enterprise {
             }
         }
         self.forget(|thread| thread.closed);
-    }
-
-    /// The thread that a rejection of a customer would end, after these were ended.
-    pub fn rejectable(&self, customer: u32, ended: &[u32]) -> Option<&Thread> {
-        let open = self.threads.iter().filter(|thread| thread.customer == customer && thread.is_open());
-        open.filter(|thread| !ended.contains(&thread.number)).max_by_key(|thread| thread.last().message)
     }
 
     fn index_of(&self, number: u32) -> Option<usize> {

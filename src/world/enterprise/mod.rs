@@ -8,6 +8,7 @@ pub mod churn;
 mod company;
 mod evaluation;
 pub mod letters;
+mod open_threads;
 mod outcomes;
 mod quality;
 mod replies;
@@ -23,6 +24,7 @@ use std::collections::BTreeSet;
 
 pub use churn::CompanyLost;
 pub use company::{Company, Standing};
+pub use open_threads::OpenThreads;
 pub use thread::{Thread, Turn};
 
 use super::canonical::canonical;
@@ -124,10 +126,9 @@ impl Enterprise {
         self.position(customer).map(|at| &self.companies[at])
     }
 
-    /// The open thread of a company; if there are several, the one with the newest turn.
-    pub fn open_thread_of(&self, customer: u32) -> Option<&Thread> {
-        let open = self.threads.iter().filter(|thread| thread.customer == customer && thread.is_open());
-        open.max_by_key(|thread| thread.last().message)
+    /// The open threads, by company.
+    pub fn open_threads(&self) -> OpenThreads<'_> {
+        OpenThreads::among(&self.threads)
     }
 
     fn position(&self, customer: u32) -> Option<usize> {

@@ -5,8 +5,8 @@ use super::company::moved_relationship;
 use super::{Standing, Step};
 use crate::customers::columns::Subscriber;
 use crate::events::{
-    DealClosed, EndCause, Notice, Offering, Sender, SubscriptionEnded, SubscriptionStatus, TermsChanged,
-    ThreadKind, TurnContent,
+    DealClosed, EndCause, LossCause, Notice, Offering, Sender, SubscriptionEnded, SubscriptionStatus,
+    TermsChanged, ThreadKind, TurnContent,
 };
 use crate::product::usage::usage_rate;
 use crate::random::Part;
@@ -133,8 +133,16 @@ impl Step<'_> {
     /// The player did not answer for too long.
     pub(super) fn give_up(&mut self, thread: usize, days: u32) {
         let own = &mut self.enterprise.threads[thread];
-        own.last_mut().dead = true;
-        if own.kind == ThreadKind::NewLead {
+        let (customer, kind) = (own.customer, own.kind);
+        let died_before = std::mem::replace(&mut own.last_mut().dead, true);
+        if died_before && kind == ThreadKind::NewLead {
+            let cause = match own.last().sender {
+                Sender::Agent => LossCause::Silence,
+                Sender::Customer | Sender::System => LossCause::Unanswered,
+            };
+            let message_day = own.last().day;
+            self.facts.notices.push(Notice::LeadLossRepeated { days, customer, cause, message_day });
+        } else if kind == ThreadKind::NewLead {
             self.lose_lead(thread, EndCause::LeadTimeout);
             self.facts.notices.push(Notice::LeadLostByTimeout { days });
         } else {

@@ -3,7 +3,9 @@
 use super::test_kit::Kit;
 use super::{EnterpriseDay, Standing};
 use crate::customers::columns::Subscriber;
-use crate::events::{EndCause, Notice, Offering, Sender, SubscriptionStatus, ThreadKind, TurnContent};
+use crate::events::{
+    EndCause, LossCause, Notice, Offering, Sender, SubscriptionStatus, ThreadKind, TurnContent,
+};
 use crate::identifiers::Plan;
 
 /// A lead of day 0 that answers after `delay` days and takes part in `turns` turns.
@@ -80,11 +82,17 @@ fn silence_of_either_side_loses_a_lead() {
     for day in 8..=14 {
         kit.day(day);
         // The counter-offer of day 3 is the newest turn that did not die.
-        let expected = if day < 10 { vec![] } else { vec![Notice::LeadLostByTimeout { days: day - 3 }] };
+        let again = Notice::LeadLossRepeated {
+            days: day - 3,
+            customer: 2,
+            cause: LossCause::Silence,
+            message_day: 4,
+        };
+        let expected = if day < 10 { vec![] } else { vec![again] };
         assert_eq!(kit.facts.notices, expected, "day {day}");
         assert!(kit.facts.endings.is_empty() && kit.facts.turns.is_empty());
     }
-    assert!(kit.enterprise.open_thread_of(2).is_none());
+    assert!(kit.enterprise.open_threads().newest(2).is_none());
 }
 
 #[test]
@@ -116,11 +124,11 @@ fn a_threat_that_nobody_answers_loses_the_subscriber() {
     assert_eq!(turns(&kit), [(Sender::System, 0), (Sender::Customer, 1)]);
     assert_eq!(kit.facts.turns[1].content, TurnContent::Threat);
     assert_eq!(kit.facts.notices, [Notice::ChurnThreat { customer: 2 }]);
-    let thread = kit.enterprise.open_thread_of(2).expect("an open thread").number;
+    let thread = kit.enterprise.open_threads().newest(2).expect("an open thread").number;
     kit.facts.begin(4);
     kit.enterprise.reject(&[thread], 4, &mut kit.facts);
     assert_eq!(turns(&kit), [(Sender::Agent, 2)]);
-    assert!(kit.facts.endings.is_empty() && kit.enterprise.open_thread_of(2).is_none());
+    assert!(kit.facts.endings.is_empty() && kit.enterprise.open_threads().newest(2).is_none());
     // The next day it begins again, and this time nobody answers.
     let opened = kit.day(5);
     assert!(opened.suspended.is_empty(), "a thread suspends from the day after");
@@ -277,7 +285,7 @@ fn twice_the_same_open_thread_makes_two_turns_with_one_number() {
 fn a_rejected_lead_is_lost_for_good() {
     let mut kit = lead(3.0, 9);
     kit.facts.begin(0);
-    let thread = kit.enterprise.open_thread_of(2).expect("the lead's thread").number;
+    let thread = kit.enterprise.open_threads().newest(2).expect("the lead's thread").number;
     kit.enterprise.reject(&[thread, thread, 77], 0, &mut kit.facts);
     assert_eq!((turns(&kit), kit.facts.endings.len()), (vec![(Sender::Agent, 1)], 1));
     assert_eq!(kit.facts.endings[0].cause, EndCause::LeadRejected);

@@ -85,6 +85,17 @@ pub enum Notice {
         /// Days since its last turn.
         days: u32,
     },
+    /// A lead that was lost before is reported once more, as every day: its thread fires for ever.
+    LeadLossRepeated {
+        /// Days since the turn that the thread goes by.
+        days: u32,
+        /// The company.
+        customer: u32,
+        /// What it was lost by.
+        cause: LossCause,
+        /// Day of the message that got no answer.
+        message_day: u32,
+    },
     /// A company that asked for an offer fell silent.
     LeadSilent,
     /// A company names a price.
@@ -136,6 +147,15 @@ pub enum Notice {
     OwnPostSeen(Reaction),
 }
 
+/// What a lead was lost by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LossCause {
+    /// The company did not answer the player's offer.
+    Silence,
+    /// The player did not answer the company's message.
+    Unanswered,
+}
+
 /// How the public took a post of the player.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reaction {
@@ -157,7 +177,9 @@ impl Notice {
             | Notice::CounterOffer { .. }
             | Notice::ChurnThreat { .. }
             | Notice::PlanWish { .. } => "large_customer_message",
-            Notice::LeadLostByTimeout { .. } | Notice::LeadSilent => "lead_lost",
+            Notice::LeadLostByTimeout { .. } | Notice::LeadLossRepeated { .. } | Notice::LeadSilent => {
+                "lead_lost"
+            }
             Notice::DealWon { .. } => "deal_won",
             Notice::ResearchComplete { .. } => "research_complete",
             Notice::EconomyUpdate(_) => "macro_economic_update",
@@ -172,7 +194,10 @@ impl Canonical for Notice {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         match *self {
             Notice::EnterpriseLead => 0u8.feed(hasher),
-            Notice::LeadLostByTimeout { days } => (1u8, days).feed(hasher),
+            // Recorded runs do not tell one from the other.
+            Notice::LeadLostByTimeout { days } | Notice::LeadLossRepeated { days, .. } => {
+                (1u8, days).feed(hasher)
+            }
             Notice::ResearchComplete { tier, number } => (2u8, (tier, number)).feed(hasher),
             Notice::EconomyUpdate(reading) => (3u8, reading).feed(hasher),
             Notice::GroupFound { group, attempt } => (4u8, (group, attempt)).feed(hasher),

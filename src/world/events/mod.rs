@@ -13,7 +13,7 @@ mod posts;
 mod research;
 mod threads;
 
-pub use company::{Notice, Reaction, ResearchChange, ServiceDay};
+pub use company::{LossCause, Notice, Reaction, ResearchChange, ServiceDay};
 pub use customers::{
     AdsRevenueRow, Arrival, ChannelLeads, EndCause, IssueOpened, Source, SubscriptionEnded,
     SubscriptionOpened, SubscriptionStatus, TermsChanged, UsageRows,

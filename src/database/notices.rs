@@ -1,0 +1,328 @@
+//! The inbox as compact days: in memory for queries, as blobs in the file.
+//!
+//! A lead that was lost after its thread had two turns is reported again every day until the run ends: millions of rows
+//! for a large company. They are kept as one fact a lead, in the order in which they began, and a day knows how many of
+//! them it repeats.
+
+use std::sync::Arc;
+
+use super::blocks::{Packer, Unpacker};
+use crate::world::events::{LossCause, Notice};
+
+/// Types as the table writes them, in ascending order.
+pub(super) const TYPES: [&str; 8] = [
+    "deal_won",
+    "group_research_complete",
+    "large_customer_message",
+    "lead_lost",
+    "macro_economic_update",
+    "market_discovery",
+    "research_complete",
+    "social_media",
+];
+
+/// Place among [`TYPES`] of the type of losses.
+pub(super) const LEAD_LOST: u8 = 3;
+
+/// Place of a notice's type among [`TYPES`].
+pub(super) fn type_of(notice: &Notice) -> u8 {
+    TYPES.binary_search(&notice.kind()).map_or(LEAD_LOST, |at| at as u8)
+}
+
+/// A loss that is reported every day from some day on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct RepeatedLoss {
+    /// The company.
+    pub customer: u32,
+    /// Day of the message that got no answer.
+    pub message_day: u32,
+    /// Whose answer it was that did not come.
+    pub cause: LossCause,
+}
+
+impl RepeatedLoss {
+    /// The loss that a notice repeats.
+    pub fn of(notice: &Notice) -> Option<RepeatedLoss> {
+        let Notice::LeadLossRepeated { customer, cause, message_day, .. } = *notice else { return None };
+        Some(RepeatedLoss { customer, message_day, cause })
+    }
+
+    /// In words.
+    pub fn words(&self) -> String {
+        let RepeatedLoss { customer, message_day, .. } = self;
+        match self.cause {
+            LossCause::Silence => format!(
+                "Customer {customer} did not answer our offer of day {message_day}. The lead is lost; this \
+                 repeats daily."
+            ),
+            LossCause::Unanswered => format!(
+                "Customer {customer} got no answer to its message of day {message_day}. The lead is lost; this \
+                 repeats daily."
+            ),
+        }
+    }
+}
+
+/// The notices of one day.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct NoticeDay {
+    pub day: u32,
+    /// Number of the first notice.
+    pub first: u64,
+    /// Losses that are repeated: so many, from the first one that ever was.
+    pub repeats: u32,
+    /// Notices that stand before the repeated ones; those of later calls follow them.
+    pub before: u32,
+    types: Vec<u8>,
+    texts: Texts,
+}
+
+impl NoticeDay {
+    /// A day without notices.
+    pub fn of(day: u32, first: u64) -> NoticeDay {
+        NoticeDay { day, first, ..NoticeDay::default() }
+    }
+
+    /// Adds a notice.
+    pub fn push(&mut self, notice_type: u8, text: &str) {
+        self.types.push(notice_type);
+        self.texts.push(text);
+    }
+
+    /// The simulated day is complete: these losses are repeated on it.
+    pub fn repeat(&mut self, repeats: u32) {
+        (self.before, self.repeats) = (self.types.len() as u32, repeats);
+    }
+
+    /// Notices, the repeated ones too.
+    pub fn len(&self) -> u64 {
+        self.types.len() as u64 + u64::from(self.repeats)
+    }
+
+    /// What stands at a place, from 0.
+    pub fn at(&self, place: u64) -> Place {
+        let (before, repeats) = (u64::from(self.before), u64::from(self.repeats));
+        match place {
+            place if place < before => Place::Own(place as usize),
+            place if place < before + repeats => Place::Repeated((place - before) as usize),
+            place => Place::Own((place - repeats) as usize),
+        }
+    }
+
+    /// The first place from `place` on where a notice of a type stands.
+    pub fn next_of_type(&self, notice_type: u8, mut place: u64) -> Option<u64> {
+        while place < self.len() {
+            match self.at(place) {
+                Place::Repeated(_) if notice_type == LEAD_LOST => return Some(place),
+                Place::Repeated(_) => place = u64::from(self.before) + u64::from(self.repeats),
+                Place::Own(at) if self.types[at] == notice_type => return Some(place),
+                Place::Own(_) => place += 1,
+            }
+        }
+        None
+    }
+
+    /// Type of an own notice.
+    pub fn type_at(&self, at: usize) -> u8 {
+        self.types[at]
+    }
+
+    /// Text of an own notice.
+    pub fn text_at(&self, at: usize) -> String {
+        self.texts.get(at)
+    }
+
+    /// As it stands in the file.
+    pub fn bytes(&self) -> Vec<u8> {
+        let mut packer = Packer::default();
+        for number in [self.first, self.repeats.into(), self.before.into(), self.types.len() as u64] {
+            packer.number(number);
+        }
+        packer.bytes(&self.types);
+        self.texts.pack(&mut packer);
+        packer.finish()
+    }
+
+    /// A day as it was packed; none when the bytes are not those of a day.
+    pub fn read(day: u32, bytes: &[u8]) -> Option<NoticeDay> {
+        let mut unpacker = Unpacker::of(bytes);
+        let first = unpacker.number()?;
+        let (repeats, before) = (unpacker.small()?, unpacker.small()?);
+        let count = unpacker.small()?;
+        let types = unpacker.bytes(count as usize)?.to_vec();
+        let texts = Texts::unpack(&mut unpacker, count)?;
+        let sound = types.iter().all(|own| usize::from(*own) < TYPES.len()) && before <= count;
+        (sound && unpacker.is_empty()).then_some(NoticeDay { day, first, repeats, before, types, texts })
+    }
+}
+
+/// What stands at a place of a day.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// A notice of the day itself.
+    Own(usize),
+    /// A repeated loss.
+    Repeated(usize),
+}
+
+/// Texts that differ in their numbers: each is a pattern of the day and the numbers that fill it.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Texts {
+    /// Texts with a [`NUMBER`] for each of their numbers.
+    patterns: Vec<String>,
+    /// Where each text begins among the bytes.
+    begins: Vec<u32>,
+    /// Pattern and numbers of each text.
+    packed: Vec<u8>,
+}
+
+/// Stands for a number in a pattern; no text has it.
+const NUMBER: char = '\u{0}';
+/// Digits of a number at most: with the 1 before them they fit into 64 bits.
+const MOST_DIGITS: usize = 18;
+
+impl Texts {
+    fn push(&mut self, text: &str) {
+        let (pattern, numbers) = split(text);
+        let known = self.patterns.iter().position(|own| *own == pattern);
+        let at = known.unwrap_or_else(|| {
+            self.patterns.push(pattern);
+            self.patterns.len() - 1
+        });
+        self.begins.push(self.packed.len() as u32);
+        let mut packer = Packer::default();
+        packer.number(at as u64);
+        numbers.into_iter().for_each(|number| packer.number(number));
+        self.packed.extend(packer.finish());
+    }
+
+    fn get(&self, at: usize) -> String {
+        let mut unpacker = Unpacker::of(&self.packed[self.begins[at] as usize..]);
+        let pattern = unpacker.small().and_then(|at| self.patterns.get(at as usize));
+        let mut text = String::new();
+        for letter in pattern.map_or("", String::as_str).chars() {
+            match letter {
+                // The first digit is the 1 that keeps zeros.
+                NUMBER => text.push_str(&unpacker.number().unwrap_or(1).to_string()[1..]),
+                letter => text.push(letter),
+            }
+        }
+        text
+    }
+
+    fn pack(&self, packer: &mut Packer) {
+        packer.number(self.patterns.len() as u64);
+        for pattern in &self.patterns {
+            packer.number(pattern.len() as u64);
+            packer.bytes(pattern.as_bytes());
+        }
+        packer.bytes(&self.packed);
+    }
+
+    fn unpack(unpacker: &mut Unpacker<'_>, count: u32) -> Option<Texts> {
+        let mut patterns = Vec::new();
+        for _ in 0..unpacker.number()? {
+            let length = unpacker.small()?;
+            patterns.push(std::str::from_utf8(unpacker.bytes(length as usize)?).ok()?.to_owned());
+        }
+        let numbers: Vec<usize> = patterns.iter().map(|pattern| pattern.matches(NUMBER).count()).collect();
+        let (rest, mut begins) = (unpacker.rest(), Vec::new());
+        for _ in 0..count {
+            begins.push((rest.len() - unpacker.rest().len()) as u32);
+            for _ in 0..*numbers.get(unpacker.small()? as usize)? {
+                (unpacker.number()? > 0).then_some(())?;
+            }
+        }
+        let packed = rest[..rest.len() - unpacker.rest().len()].to_vec();
+        Some(Texts { patterns, begins, packed })
+    }
+}
+
+/// The pattern of a text and its numbers, each with a 1 before its digits.
+fn split(text: &str) -> (String, Vec<u64>) {
+    let (mut pattern, mut numbers, mut rest) = (String::new(), Vec::new(), text);
+    while let Some(letter) = rest.chars().next() {
+        let digits = rest.bytes().take(MOST_DIGITS).take_while(u8::is_ascii_digit).count();
+        match digits {
+            0 => {
+                pattern.extend(Some(letter).filter(|letter| *letter != NUMBER));
+                rest = &rest[letter.len_utf8()..];
+            }
+            digits => {
+                let value = rest[..digits].bytes().fold(1, |all, digit| all * 10 + u64::from(digit - b'0'));
+                numbers.push(value);
+                pattern.push(NUMBER);
+                rest = &rest[digits..];
+            }
+        }
+    }
+    (pattern, numbers)
+}
+
+/// Everything that stands in the inbox.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Inbox {
+    /// Days with notices, in their order.
+    pub days: Arc<Vec<Arc<NoticeDay>>>,
+    /// Losses that repeat, in the order in which they began to.
+    pub losses: Arc<Vec<RepeatedLoss>>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn texts_come_back_as_they_went(texts in proptest::collection::vec("[a-zé $.,0-9]{0,40}", 0..20), repeats in 0u32..9) {
+            let mut day = NoticeDay::of(7, 40);
+            texts.iter().for_each(|text| day.push(2, text));
+            day.repeat(repeats);
+            day.push(LEAD_LOST, "007 of 99999999999999999999");
+            let read = NoticeDay::read(7, &day.bytes());
+            prop_assert_eq!(read.as_ref(), Some(&day));
+            for (at, text) in texts.iter().enumerate() {
+                prop_assert_eq!(&day.text_at(at), text);
+            }
+            prop_assert_eq!(day.text_at(texts.len()), "007 of 99999999999999999999");
+            prop_assert_eq!(day.len(), texts.len() as u64 + u64::from(repeats) + 1);
+        }
+
+        #[test]
+        fn damaged_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..60)) {
+            if let Some(day) = NoticeDay::read(1, &bytes) {
+                (0..day.types.len()).for_each(|at| drop(day.text_at(at)));
+            }
+        }
+    }
+
+    #[test]
+    fn types_stand_in_ascending_order() {
+        assert!(TYPES.is_sorted());
+        assert_eq!(TYPES[usize::from(LEAD_LOST)], Notice::LeadSilent.kind());
+        assert_eq!(type_of(&Notice::EnterpriseLead), 2);
+    }
+
+    #[test]
+    fn repeated_losses_stand_between_the_day_and_its_calls() {
+        let mut day = NoticeDay::of(9, 1);
+        day.push(2, "a");
+        day.push(LEAD_LOST, "b");
+        day.repeat(2);
+        day.push(5, "c");
+        let places: Vec<Place> = (0..day.len()).map(|place| day.at(place)).collect();
+        assert_eq!(
+            places,
+            [Place::Own(0), Place::Own(1), Place::Repeated(0), Place::Repeated(1), Place::Own(2)]
+        );
+        let of_type = |own: u8| {
+            let next = |place: &u64| day.next_of_type(own, place + 1);
+            std::iter::successors(day.next_of_type(own, 0), next).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            (of_type(2), of_type(LEAD_LOST), of_type(5), of_type(0)),
+            (vec![0], vec![1, 2, 3], vec![4], vec![])
+        );
+    }
+}

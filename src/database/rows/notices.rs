@@ -1,0 +1,121 @@
+//! Notices of entries: days of the inbox, and losses that repeat from now on.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use rusqlite::{Transaction, params};
+
+use super::Entry;
+use crate::database::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss, type_of};
+use crate::world::events::{Facts, LossCause};
+
+/// Collects the inbox until the next commit.
+pub(super) struct NoticeWriter {
+    /// What was committed.
+    inbox: Inbox,
+    /// Companies whose loss is reported every day, by customer number.
+    repeated: Vec<bool>,
+    /// Days that were touched.
+    days: BTreeMap<u32, NoticeDay>,
+    /// Number of the next notice.
+    next: u64,
+    new_losses: Vec<RepeatedLoss>,
+}
+
+impl NoticeWriter {
+    /// A writer that continues an inbox.
+    pub fn continuing(inbox: Inbox) -> NoticeWriter {
+        let next = inbox.days.last().map_or(1, |day| day.first + day.len());
+        let mut writer =
+            NoticeWriter { inbox, repeated: Vec::new(), days: BTreeMap::new(), next, new_losses: Vec::new() };
+        for loss in writer.inbox.losses.clone().iter() {
+            writer.is_new(loss.customer);
+        }
+        writer
+    }
+
+    /// Adds the notices of an entry.
+    pub fn write(&mut self, entry: &Entry) {
+        let facts = &entry.facts;
+        let is_day = facts.service.is_some();
+        if facts.notices.is_empty() && !is_day {
+            return;
+        }
+        let repeats = self.repeats(facts);
+        let day = self.day(facts.day);
+        let before = day.len();
+        for (notice, words) in facts.notices.iter().zip(&entry.notices) {
+            match (RepeatedLoss::of(notice), repeats) {
+                (None, _) => day.push(type_of(notice), words),
+                (Some(_), Some(_)) => {}
+                (Some(loss), None) => day.push(LEAD_LOST, &loss.words()),
+            }
+        }
+        if is_day {
+            day.repeat(repeats.unwrap_or(0));
+        }
+        let added = day.len() - before;
+        self.next += added;
+    }
+
+    /// How many losses a day repeats, if it repeats all there are, as days do; the new ones are remembered.
+    fn repeats(&mut self, facts: &Facts) -> Option<u32> {
+        let mut today = 0;
+        for loss in facts.notices.iter().filter_map(RepeatedLoss::of) {
+            today += 1;
+            if self.is_new(loss.customer) {
+                self.new_losses.push(loss);
+            }
+        }
+        let known = self.inbox.losses.len() + self.new_losses.len();
+        (today == known).then_some(today as u32)
+    }
+
+    /// Whether no loss of a customer was repeated before.
+    fn is_new(&mut self, customer: u32) -> bool {
+        let at = customer as usize;
+        if self.repeated.len() <= at {
+            self.repeated.resize(at + 1, false);
+        }
+        !std::mem::replace(&mut self.repeated[at], true)
+    }
+
+    /// The day with this number: only the newest one can have been begun before.
+    fn day(&mut self, day: u32) -> &mut NoticeDay {
+        let begun = self.inbox.days.last().filter(|last| last.day == day);
+        let anew = || begun.map_or_else(|| NoticeDay::of(day, self.next), |last| NoticeDay::clone(last));
+        self.days.entry(day).or_insert_with(anew)
+    }
+
+    /// Writes the days that were touched, and the new losses.
+    pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
+        let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO notice_blocks VALUES (?1, ?2)")?;
+        for day in self.days.values().filter(|day| day.len() > 0) {
+            write.execute(params![day.day, day.bytes()])?;
+        }
+        let mut write = transaction.prepare_cached(
+            "INSERT INTO repeated_losses (customer_id, message_day, cause) VALUES (?1, ?2, ?3)",
+        )?;
+        for loss in &self.new_losses {
+            write.execute(params![loss.customer, loss.message_day, loss.cause == LossCause::Unanswered])?;
+        }
+        Ok(())
+    }
+
+    /// Everything written is part of the inbox now: it is returned if it changed.
+    pub fn publish(&mut self) -> Option<Inbox> {
+        if self.days.is_empty() && self.new_losses.is_empty() {
+            return None;
+        }
+        let days = std::mem::take(&mut self.days);
+        let first = days.keys().next().copied().unwrap_or(u32::MAX);
+        let mut all: Vec<Arc<NoticeDay>> =
+            self.inbox.days.iter().filter(|day| day.day < first).cloned().collect();
+        all.extend(days.into_values().filter(|day| day.len() > 0).map(Arc::new));
+        self.inbox.days = Arc::new(all);
+        if !self.new_losses.is_empty() {
+            Arc::make_mut(&mut self.inbox.losses).append(&mut self.new_losses);
+        }
+        Some(self.inbox.clone())
+    }
+}

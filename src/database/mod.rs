@@ -32,6 +32,7 @@ mod tests;
 pub use catalogue::{Column, Table, table, tables};
 pub use interrupt::{Interrupt, Ticket};
 pub use location::Location;
+pub use plain_copy::copy_for_other_programs;
 pub use projector::{
     Position, ProjectionError, Projector, file_digest, has_layout_of_now, is_consistent, owner_of,
     position_of, query_connection,

@@ -8,8 +8,9 @@ use rusqlite::backup::Backup;
 use rusqlite::{Connection, Transaction, params};
 
 use super::blocks::{AdsRun, BlockStore};
+use super::location::Location;
 use super::notices::{Inbox, Place, TYPES};
-use super::projector::{ProjectionError, Projector};
+use super::projector::{ProjectionError, Projector, load_store};
 use crate::world::events::UsageRows;
 
 /// The tables that the program serves itself, as ordinary ones; of losses that repeat, only the days and the losses.
@@ -46,6 +47,17 @@ impl Projector {
         let copied = self.location.open_reader().and_then(|source| copy(&source, &store, file));
         copied.map_err(|error| ProjectionError(format!("{}: {error}", file.display())))
     }
+}
+
+/// The same of a finished database at a location.
+///
+/// # Errors
+/// There is none that can be read, or the file cannot be made.
+pub fn copy_for_other_programs(location: &Location, file: &Path) -> Result<(), ProjectionError> {
+    let told = |problem: String| ProjectionError(format!("{}: {problem}", file.display()));
+    let source = location.open_reader().map_err(|error| told(error.to_string()))?;
+    let store = load_store(&source).ok_or_else(|| told("the database cannot be read".to_owned()))?;
+    copy(&source, &store, file).map_err(|error| told(error.to_string()))
 }
 
 fn copy(source: &Connection, store: &BlockStore, file: &Path) -> rusqlite::Result<()> {

@@ -403,7 +403,7 @@ pub fn owner_of(location: &Location) -> Option<u32> {
     (owner != 0).then_some(owner as u32)
 }
 
-fn load_store(connection: &Connection) -> Option<BlockStore> {
+pub(super) fn load_store(connection: &Connection) -> Option<BlockStore> {
     Some(BlockStore {
         usage: Arc::new(load::<UsageRows>(connection, "usage_blocks")?),
         ads: Arc::new(load::<AdsRun>(connection, "ads_blocks")?),

@@ -5,7 +5,6 @@ use std::time::Instant;
 use serde_json::{Map, Value};
 
 use super::this_week::Step;
-use crate::notation::cents;
 use crate::session::error::RunError;
 use crate::session::figures::changes::{Change, changes, daily_cost};
 use crate::session::figures::journal::JournalEntry;
@@ -17,8 +16,6 @@ use crate::tools::{
     find,
 };
 use crate::world::command::{Command, ResolvedCommand};
-use crate::world::enterprise::letters::Letter;
-use crate::world::events::Offering;
 use crate::world::settings::Settings;
 use crate::world::state::World;
 
@@ -175,7 +172,7 @@ impl Session {
             let (day, tool) = (self.simulation.world.day, spec.id);
             self.history.journal.push(JournalEntry::Call { seq, day, tool, args, reversal });
         }
-        self.history.this_week.done.extend(self.in_words(&resolved));
+        self.history.this_week.done.extend(self.simulation.irrevocable(&resolved));
         if matches!(resolved, ResolvedCommand::None | ResolvedCommand::ReadInsights(_)) {
             return;
         }
@@ -194,32 +191,7 @@ impl Session {
         self.after_call(settings);
     }
 
-    /// What cannot be taken back of a resolved, in words.
-    fn in_words(&self, resolved: &ResolvedCommand) -> Vec<String> {
-        match resolved {
-            ResolvedCommand::None | ResolvedCommand::Set(_) | ResolvedCommand::ReadInsights(_) => Vec::new(),
-            ResolvedCommand::Post(_) => vec!["post published".to_owned()],
-            ResolvedCommand::StartResearch(project, _) => {
-                vec![format!("R&D project {} started, done on day {}", project.id(), project.due_day)]
-            }
-            ResolvedCommand::ResearchMarket(attempt) => vec![match attempt.found {
-                Some(group) => format!("market research found group {group}"),
-                None => "market research found nothing".to_owned(),
-            }],
-            ResolvedCommand::ResearchGroup(study, _) => {
-                let (group, level, day) = (study.group, study.target, study.due_day);
-                vec![format!("study of {group} to level {level} ordered, done on day {day}")]
-            }
-            ResolvedCommand::SendDeals(letters) => letters.iter().map(letter_in_words).collect(),
-            ResolvedCommand::RejectDeals(threads) => {
-                let ended = self.simulation.world.enterprise.threads.iter();
-                let ended = ended.filter(|thread| threads.contains(&thread.number));
-                ended.map(|thread| format!("thread with customer {} ended", thread.customer)).collect()
-            }
-        }
-    }
-
-    /// What follows every applied resolved, live or replayed; with the settings family that it leaves.
+    /// What follows every applied command, live or replayed; with the settings family that it leaves.
     fn after_call(&mut self, settings: Option<Value>) {
         if let Some(last) = self.history.cash_by_day.last_mut() {
             *last = self.simulation.world.finance.cash;
@@ -342,12 +314,6 @@ impl Session {
         let record = Record::Call(Call { tool, args, outcome, via, took_ms: 0.0, reversal: None });
         let _ = self.record_call(&record, Durability::Written);
     }
-}
-
-fn letter_in_words(letter: &Letter) -> String {
-    let offer = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
-    let offers: Vec<String> = letter.offerings.iter().map(offer).collect();
-    format!("offered to customer {}: {}", letter.customer, offers.join(", "))
 }
 
 /// A refusal that says the disk did not take a line.

@@ -5,6 +5,7 @@ pub(in crate::session) mod advance;
 pub(in crate::session) mod facts_chain;
 pub(in crate::session) mod feed;
 pub(in crate::session) mod history;
+pub(in crate::session) mod irrevocable;
 pub(in crate::session) mod judging;
 pub(in crate::session) mod memo;
 pub(in crate::session) mod projection;

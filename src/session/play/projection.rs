@@ -3,7 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::database::{Entry, Position, ProjectionError, Projector, QueryConnection};
+use crate::database::{
+    Entry, Location, Position, ProjectionError, Projector, QueryConnection, copy_for_other_programs,
+    query_connection,
+};
 use crate::session::error::RunError;
 use crate::tools::Refusal;
 use crate::world::events::Facts;
@@ -13,6 +16,8 @@ use crate::world::events::Facts;
 #[derive(Default)]
 pub(in crate::session) struct Projection {
     projector: Option<Projector>,
+    /// The database of a run that has ended, as it stands on the disk: nothing is written any more.
+    finished: Option<Location>,
     /// For statements of this thread; opened with the first of them.
     connection: Option<QueryConnection>,
 }
@@ -20,7 +25,12 @@ pub(in crate::session) struct Projection {
 impl Projection {
     /// A projection with this writer, if it has one.
     pub(in crate::session) fn of(projector: Option<Projector>) -> Projection {
-        Projection { projector, connection: None }
+        Projection { projector, ..Projection::default() }
+    }
+
+    /// A projection of a run that has ended: statements go to the database on the disk.
+    pub(in crate::session) fn finished(location: Location) -> Projection {
+        Projection { finished: Some(location), ..Projection::default() }
     }
 
     /// Where entries go.
@@ -56,10 +66,12 @@ impl Projection {
 
     /// A connection of its own, for another thread.
     pub(in crate::session) fn open_connection(&self) -> Result<QueryConnection, Refusal> {
-        let Some(projector) = &self.projector else {
-            return Err(Refusal::new("sql_error", "this run is played without a database"));
+        let connection = match (&self.projector, &self.finished) {
+            (Some(projector), _) => projector.connection(),
+            (None, Some(location)) => query_connection(location).map(|(connection, _)| connection),
+            (None, None) => return Err(Refusal::new("sql_error", "this run is played without a database")),
         };
-        projector.connection().map_err(|error| Refusal::new("sql_error", error.to_string()))
+        connection.map_err(|error| Refusal::new("sql_error", error.to_string()))
     }
 
     /// The connection of this thread.
@@ -73,9 +85,10 @@ impl Projection {
 
     /// Writes the rows into a new file that any SQLite tool can open.
     pub(in crate::session) fn copy_to(&self, file: &Path) -> Result<(), RunError> {
-        match &self.projector {
-            Some(projector) => Ok(projector.copy_for_other_programs(file)?),
-            None => Err(RunError::NotPossible("this run is played without a database".to_owned())),
+        match (&self.projector, &self.finished) {
+            (Some(projector), _) => Ok(projector.copy_for_other_programs(file)?),
+            (None, Some(location)) => Ok(copy_for_other_programs(location, file)?),
+            (None, None) => Err(RunError::NotPossible("this run is played without a database".to_owned())),
         }
     }
 

@@ -72,6 +72,19 @@ impl Integrity {
         Some(file_digest(&folder.join("world.db")).as_deref() == Some(digest))
     }
 
+    /// The database of a run that has ended, if its file is the one that the end left and holds every line.
+    pub(in crate::session) fn finished_database(
+        &self,
+        folder: &Path,
+        trajectory: &Trajectory,
+    ) -> Option<Location> {
+        let last = trajectory.lines.last().filter(|line| matches!(line.record, Record::End(_)))?;
+        let position = self.database.as_ref()?;
+        let complete = position.seq == last.seq && position.line_hash == last.hash;
+        let own = location(folder);
+        (complete && has_layout_of_now(&own) && self.is_as_closed(folder) == Some(true)).then_some(own)
+    }
+
     /// Whether the database can be gone on with. After an orderly end its whole file is compared; after a crash
     /// its structure is.
     pub(in crate::session) fn vouch_for_database(&mut self, folder: &Path) -> bool {

@@ -44,7 +44,10 @@ impl Session {
         let trajectory = Trajectory::read(&path)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;
         integrity.check(&path, &trajectory)?;
-        let database = match projection {
+        let finished = (projection && access == Access::Read)
+            .then(|| integrity.finished_database(folder, &trajectory))
+            .flatten();
+        let database = match projection && finished.is_none() {
             false => None,
             true => {
                 let sound = access == Access::Write && integrity.vouch_for_database(folder);
@@ -57,6 +60,9 @@ impl Session {
         let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, snapshot);
         session.remarks.append(&mut integrity.remarks);
         session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
+        if let Some(location) = finished {
+            session.projection = Projection::finished(location);
+        }
         if let Some(lock) = lock {
             session.recorder = Some(Recorder::resume(&path, &trajectory, lock)?);
         }

@@ -1,8 +1,13 @@
 -- title: Notices by kind
 -- what: What the notices said, how often, and when last.
 -- chart: bar type notices
-SELECT type, count(*) AS notices, min(day) AS first_day, max(day) AS last_day,
-    sum(day > (SELECT max(day) FROM service_day) - 28) AS last_4_weeks
-FROM notifications
+WITH days AS MATERIALIZED (
+    SELECT type, day, count(*) AS notices
+    FROM notifications
+    GROUP BY type, day
+)
+SELECT type, sum(notices) AS notices, min(day) AS first_day, max(day) AS last_day,
+    sum(CASE WHEN day > (SELECT max(day) FROM service_day) - 28 THEN notices ELSE 0 END) AS last_4_weeks
+FROM days
 GROUP BY 1
 ORDER BY 2 DESC

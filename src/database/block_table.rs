@@ -1,4 +1,4 @@
-//! The tables `daily_usage` and `ads_revenue`: read-only virtual tables over the store of blocks, which skip
+//! The tables `daily_usage`, `ads_revenue` and `issues`: read-only virtual tables over the store of blocks, which skip
 //! days and customers that a query does not ask for.
 //!
 //! SQLite's interface to virtual tables is a pair of unsafe traits: their structs must start with the base
@@ -21,25 +21,46 @@ use rusqlite::vtab::{
 
 use super::blocks::{AdsRow, AdsRun, BlockStore, PackedDay, Run, Seen};
 use super::by_customer::{ByCustomer, Indexes};
+use super::issues::{self, IssueRow, IssueRun};
 use crate::world::events::UsageRows;
 use crate::world::identifiers::Group;
 
-/// Registers both tables on a connection.
+/// Registers the tables on a connection.
 pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::Result<()> {
     const USAGE: Module<'static, BlockTable<Usage>> = Module::eponymous_only_module();
     const ADS: Module<'static, BlockTable<Ads>> = Module::eponymous_only_module();
     connection.create_module(c"daily_usage", &USAGE, Some(seen.clone()))?;
-    connection.create_module(c"ads_revenue", &ADS, Some(seen.clone()))
+    const ISSUES: Module<'static, BlockTable<Issues>> = Module::eponymous_only_module();
+    connection.create_module(c"ads_revenue", &ADS, Some(seen.clone()))?;
+    connection.create_module(c"issues", &ISSUES, Some(seen.clone()))
 }
 
-/// What the two tables differ in. Columns 0 and 1 are always day and customer_id.
+/// What the tables differ in. Column 1 is always customer_id.
 trait BlockKind: Send + Sync + Sized + 'static {
     type Run: Run;
     const DECLARATION: &'static CStr;
+    /// Column of the day.
+    const DAY: c_int = 0;
+    /// Column of the number of a row, where there is one.
+    const NUMBER: Option<c_int> = None;
 
     fn days(store: &BlockStore) -> &[Arc<PackedDay>];
     fn indexes(seen: &Seen) -> &Indexes<Self::Run>;
-    fn column(row: RowOf<Self>, column: c_int, context: &mut Context) -> rusqlite::Result<()>;
+    /// Any other column of a row of a day.
+    fn column(
+        at: (&BlockStore, u32),
+        row: RowOf<Self>,
+        column: c_int,
+        context: &mut Context,
+    ) -> rusqlite::Result<()>;
+    /// Position of the day that may have the row with a number.
+    fn day_of(_store: &BlockStore, _number: f64) -> Option<usize> {
+        None
+    }
+    /// Number of a row, where it has one of its own.
+    fn number(_row: RowOf<Self>) -> Option<i64> {
+        None
+    }
 }
 
 /// What a row of a table holds besides day and customer.
@@ -68,7 +89,7 @@ impl BlockKind for Usage {
         &seen.usage
     }
 
-    fn column(units: u32, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
+    fn column(_: (&BlockStore, u32), units: u32, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
         context.set_result(units)
     }
 }
@@ -88,7 +109,12 @@ impl BlockKind for Ads {
         &seen.ads
     }
 
-    fn column(row: AdsRow, column: c_int, context: &mut Context) -> rusqlite::Result<()> {
+    fn column(
+        _: (&BlockStore, u32),
+        row: AdsRow,
+        column: c_int,
+        context: &mut Context,
+    ) -> rusqlite::Result<()> {
         match column {
             2 => context.set_result(row.group.map(Group::id)),
             3 => context.set_result(row.strength),
@@ -97,19 +123,61 @@ impl BlockKind for Ads {
     }
 }
 
-const DAY: c_int = 0;
+struct Issues;
+
+impl BlockKind for Issues {
+    type Run = IssueRun;
+    const DECLARATION: &'static CStr =
+        c"CREATE TABLE x(issue_id INTEGER, customer_id INTEGER, group_id TEXT, open_day INTEGER,
+        days_open INTEGER, status TEXT, resolved_day INTEGER, resolution_type TEXT)";
+    const DAY: c_int = issues::column::OPEN_DAY;
+    const NUMBER: Option<c_int> = Some(issues::column::ISSUE);
+
+    fn days(store: &BlockStore) -> &[Arc<PackedDay>] {
+        &store.issues
+    }
+
+    fn indexes(seen: &Seen) -> &Indexes<IssueRun> {
+        &seen.issues
+    }
+
+    fn column(
+        at: (&BlockStore, u32),
+        row: IssueRow,
+        column: c_int,
+        context: &mut Context,
+    ) -> rusqlite::Result<()> {
+        issues::show(at, row, column, context)
+    }
+
+    fn day_of(store: &BlockStore, number: f64) -> Option<usize> {
+        issues::day_of(&store.issues, number as u32)
+    }
+
+    fn number(row: IssueRow) -> Option<i64> {
+        Some(row.issue.into())
+    }
+}
+
 const CUSTOMER: c_int = 1;
+/// The number of a row, as SQLite names it.
+const ROW: c_int = -1;
+const _: () = assert!(issues::column::CUSTOMER == CUSTOMER);
 
 /// Constraints that the table handles itself, as one letter each in the index text.
-fn letter(column: c_int, operator: IndexConstraintOp) -> Option<char> {
+fn letter<K: BlockKind>(column: c_int, operator: IndexConstraintOp) -> Option<char> {
     use IndexConstraintOp::*;
-    match (column, operator) {
-        (DAY, SQLITE_INDEX_CONSTRAINT_EQ) => Some('='),
-        (DAY, SQLITE_INDEX_CONSTRAINT_GT) => Some('>'),
-        (DAY, SQLITE_INDEX_CONSTRAINT_GE) => Some('g'),
-        (DAY, SQLITE_INDEX_CONSTRAINT_LT) => Some('<'),
-        (DAY, SQLITE_INDEX_CONSTRAINT_LE) => Some('l'),
-        (CUSTOMER, SQLITE_INDEX_CONSTRAINT_EQ) => Some('c'),
+    match operator {
+        SQLITE_INDEX_CONSTRAINT_EQ if column == CUSTOMER => Some('c'),
+        SQLITE_INDEX_CONSTRAINT_EQ if K::NUMBER.is_some_and(|own| column == own || column == ROW) => {
+            Some('n')
+        }
+        _ if column != K::DAY => None,
+        SQLITE_INDEX_CONSTRAINT_EQ => Some('='),
+        SQLITE_INDEX_CONSTRAINT_GT => Some('>'),
+        SQLITE_INDEX_CONSTRAINT_GE => Some('g'),
+        SQLITE_INDEX_CONSTRAINT_LT => Some('<'),
+        SQLITE_INDEX_CONSTRAINT_LE => Some('l'),
         _ => None,
     }
 }
@@ -146,7 +214,9 @@ unsafe impl<'vtab, K: BlockKind> VTab<'vtab> for BlockTable<K> {
             .constraints()
             .enumerate()
             .filter(|(_, constraint)| constraint.is_usable())
-            .filter_map(|(at, constraint)| Some((at, letter(constraint.column(), constraint.operator())?)))
+            .filter_map(|(at, constraint)| {
+                Some((at, letter::<K>(constraint.column(), constraint.operator())?))
+            })
             .collect();
         for (argument, (at, _)) in (1..).zip(&handled) {
             // SQLite checks the constraint again: a value of another type (3.5, '7') is compared its own way.
@@ -154,12 +224,18 @@ unsafe impl<'vtab, K: BlockKind> VTab<'vtab> for BlockTable<K> {
         }
         let plan: String = handled.iter().map(|(_, letter)| letter).collect();
         let share = |letters: &[char], factor: f64| if plan.contains(letters) { factor } else { 1.0 };
-        let rows = 1e7 * share(&['='], 0.02) * share(&['>', 'g', '<', 'l'], 0.3) * share(&['c'], 1e-4);
+        let rows = 1e7
+            * share(&['='], 0.02)
+            * share(&['>', 'g', '<', 'l'], 0.3)
+            * share(&['c'], 1e-4)
+            * share(&['n'], 1e-6);
         info.set_estimated_cost(rows);
         info.set_estimated_rows(rows as i64);
         info.set_idx_str(&plan);
-        // Rows stand day by day.
-        let by_day = |order: OrderBy<'_>| order.column() == DAY && !order.is_order_by_desc();
+        // Rows stand day by day, and in the order of their numbers.
+        let by_day = |order: OrderBy<'_>| {
+            (order.column() == K::DAY || K::NUMBER == Some(order.column())) && !order.is_order_by_desc()
+        };
         let in_order = info.num_of_order_by() == 1 && info.order_bys().all(by_day);
         info.set_order_by_consumed(in_order);
         Ok(true)
@@ -271,6 +347,7 @@ impl<K: BlockKind> BlockCursor<'_, K> {
 unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
     fn filter(&mut self, _: c_int, plan: Option<&str>, values: &Filters<'_>) -> rusqlite::Result<()> {
         let (mut first_day, mut last_day) = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut only_day = None;
         (self.customer, self.found, self.run) = (None, None, None);
         for ((at, value), letter) in values.iter().enumerate().zip(plan.unwrap_or_default().chars()) {
             let number = match value.data_type() {
@@ -286,12 +363,17 @@ unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
                 '=' => (first_day, last_day) = (first_day.max(number), last_day.min(number)),
                 '>' | 'g' => first_day = first_day.max(number),
                 '<' | 'l' => last_day = last_day.min(number),
+                'n' => only_day = Some(K::day_of(&self.store, number)),
                 _ => self.customer = Some(number),
             }
         }
         let days = K::days(&self.store);
         let end = days.partition_point(|day| f64::from(day.day) <= last_day);
         self.days = days.partition_point(|day| f64::from(day.day) < first_day).min(end)..end;
+        if let Some(day) = only_day {
+            let day = day.filter(|day| self.days.contains(day));
+            self.days = day.map_or(0..0, |day| day..day + 1);
+        }
         if let Some(customer) = self.customer
             && let Some(index) = K::indexes(&self.seen).get(days, &self.days)
         {
@@ -324,14 +406,18 @@ unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
 
     fn column(&self, context: &mut Context, column: c_int) -> rusqlite::Result<()> {
         match column {
-            DAY => context.set_result(self.day()),
             CUSTOMER => context.set_result(self.customer()),
-            other => self.row().map_or(Ok(()), |row| K::column(row, other, context)),
+            day if day == K::DAY => context.set_result(self.day()),
+            other => {
+                let at = (&self.store, self.day().unwrap_or(0));
+                self.row().map_or(Ok(()), |row| K::column(at, row, other, context))
+            }
         }
     }
 
     fn rowid(&self) -> rusqlite::Result<i64> {
-        Ok(self.number().unwrap_or_default())
+        let own = self.row().and_then(K::number);
+        Ok(own.or_else(|| self.number()).unwrap_or_default())
     }
 }
 

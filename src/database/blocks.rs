@@ -3,6 +3,8 @@
 use std::sync::{Arc, RwLock};
 
 use super::by_customer::Indexes;
+use super::issues::IssueRun;
+use super::ledger::LedgerDay;
 use super::notices::Inbox;
 use crate::world::events::{AdsRevenueRow, UsageRows};
 use crate::world::identifiers::Group;
@@ -139,6 +141,10 @@ pub(super) struct BlockStore {
     pub usage: Arc<Vec<Arc<PackedDay>>>,
     pub ads: Arc<Vec<Arc<PackedDay>>>,
     pub inbox: Inbox,
+    pub issues: Arc<Vec<Arc<PackedDay>>>,
+    /// What the clock of issues showed after each day, from day 0 on.
+    pub issue_clock: Arc<Vec<u32>>,
+    pub ledger: Arc<Vec<Arc<LedgerDay>>>,
 }
 
 /// The store that the writer fills and queries read.
@@ -150,6 +156,7 @@ pub(super) struct Seen {
     store: RwLock<BlockStore>,
     pub usage: Indexes<UsageRows>,
     pub ads: Indexes<AdsRun>,
+    pub issues: Indexes<IssueRun>,
 }
 
 impl Seen {
@@ -158,6 +165,7 @@ impl Seen {
         *self.store.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = store;
         self.usage.clear();
         self.ads.clear();
+        self.issues.clear();
     }
 
     /// The store that is seen.
@@ -167,7 +175,7 @@ impl Seen {
 }
 
 /// Rows of a run at most: whoever looks for one of them unpacks all.
-const LONGEST_RUN: usize = 1024;
+pub(super) const LONGEST_RUN: usize = 1024;
 
 impl AdsRun {
     pub fn runs_of(rows: &[AdsRevenueRow]) -> Vec<AdsRun> {
@@ -213,12 +221,12 @@ impl Packer {
         self.0
     }
 
-    fn float(&mut self, value: f64) {
+    pub fn float(&mut self, value: f64) {
         self.0.extend_from_slice(&value.to_le_bytes());
     }
 
     /// Ascending numbers as their differences.
-    fn ascending(&mut self, values: &[u32]) {
+    pub fn ascending(&mut self, values: &[u32]) {
         self.number(values.len() as u64);
         let mut before = 0;
         for &value in values {
@@ -268,13 +276,13 @@ impl<'a> Unpacker<'a> {
         u32::try_from(self.number()?).ok()
     }
 
-    fn float(&mut self) -> Option<f64> {
+    pub fn float(&mut self) -> Option<f64> {
         let (bytes, rest) = self.0.split_first_chunk::<8>()?;
         self.0 = rest;
         Some(f64::from_le_bytes(*bytes))
     }
 
-    fn ascending(&mut self) -> Option<Vec<u32>> {
+    pub fn ascending(&mut self) -> Option<Vec<u32>> {
         let mut before = 0u32;
         (0..self.number()?)
             .map(|_| {

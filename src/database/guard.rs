@@ -83,8 +83,8 @@ pub(super) fn is_hidden_table(name: &str) -> bool {
 const INSIDES: [(&str, bool); 11] = [
     ("customer_rows", true),
     ("subscription_rows", true),
-    ("ledger_rows", true),
-    ("issue_rows", true),
+    ("ledger_blocks", false),
+    ("issue_blocks", false),
     ("words", false),
     ("projection", false),
     ("issue_clock", false),

@@ -4,9 +4,13 @@
 //! for a large company. They are kept as one fact a lead, in the order in which they began, and a day knows how many of
 //! them it repeats.
 
+use std::ffi::{CStr, c_int};
 use std::sync::Arc;
 
-use super::blocks::{Packer, Unpacker};
+use rusqlite::vtab::Context;
+
+use super::blocks::{BlockStore, Packer, Unpacker};
+use super::day_table::{DayKind, Kinds, PackedRows, RowAt};
 use crate::world::events::{LossCause, Notice};
 
 /// Types as the table writes them, in ascending order.
@@ -94,11 +98,6 @@ impl NoticeDay {
         (self.before, self.repeats) = (self.types.len() as u32, repeats);
     }
 
-    /// Notices, the repeated ones too.
-    pub fn len(&self) -> u64 {
-        self.types.len() as u64 + u64::from(self.repeats)
-    }
-
     /// What stands at a place, from 0.
     pub fn at(&self, place: u64) -> Place {
         let (before, repeats) = (u64::from(self.before), u64::from(self.repeats));
@@ -107,19 +106,6 @@ impl NoticeDay {
             place if place < before + repeats => Place::Repeated((place - before) as usize),
             place => Place::Own((place - repeats) as usize),
         }
-    }
-
-    /// The first place from `place` on where a notice of a type stands.
-    pub fn next_of_type(&self, notice_type: u8, mut place: u64) -> Option<u64> {
-        while place < self.len() {
-            match self.at(place) {
-                Place::Repeated(_) if notice_type == LEAD_LOST => return Some(place),
-                Place::Repeated(_) => place = u64::from(self.before) + u64::from(self.repeats),
-                Place::Own(at) if self.types[at] == notice_type => return Some(place),
-                Place::Own(_) => place += 1,
-            }
-        }
-        None
     }
 
     /// Type of an own notice.
@@ -153,6 +139,63 @@ impl NoticeDay {
         let texts = Texts::unpack(&mut unpacker, count)?;
         let sound = types.iter().all(|own| usize::from(*own) < TYPES.len()) && before <= count;
         (sound && unpacker.is_empty()).then_some(NoticeDay { day, first, repeats, before, types, texts })
+    }
+}
+
+impl PackedRows for NoticeDay {
+    fn day(&self) -> u32 {
+        self.day
+    }
+
+    fn first(&self) -> u64 {
+        self.first
+    }
+
+    fn len(&self) -> u64 {
+        self.types.len() as u64 + u64::from(self.repeats)
+    }
+
+    fn next_among(&self, kinds: Kinds, mut place: u64) -> Option<u64> {
+        while place < self.len() {
+            match self.at(place) {
+                Place::Repeated(_) if kinds & (1 << LEAD_LOST) != 0 => return Some(place),
+                Place::Repeated(_) => place = u64::from(self.before) + u64::from(self.repeats),
+                Place::Own(at) if kinds & (1 << self.types[at]) != 0 => return Some(place),
+                Place::Own(_) => place += 1,
+            }
+        }
+        None
+    }
+}
+
+/// The table `notifications`.
+pub(super) struct Notifications;
+
+impl DayKind for Notifications {
+    type Day = NoticeDay;
+    type Unpacked = ();
+    const DECLARATION: &'static CStr =
+        c"CREATE TABLE x(notification_id INTEGER, day INTEGER, type TEXT, message TEXT)";
+    const KINDS: &'static [&'static str] = &TYPES;
+
+    fn days(store: &BlockStore) -> &[Arc<NoticeDay>] {
+        &store.inbox.days
+    }
+
+    fn unpack(_: &NoticeDay, _: Kinds) {}
+
+    fn kind(day: &NoticeDay, place: u64) -> usize {
+        match day.at(place) {
+            Place::Own(at) => usize::from(day.type_at(at)),
+            Place::Repeated(_) => usize::from(LEAD_LOST),
+        }
+    }
+
+    fn column(row: &RowAt<'_, Self>, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
+        match row.day.at(row.place) {
+            Place::Own(at) => context.set_result(row.day.text_at(at)),
+            Place::Repeated(at) => context.set_result(row.store.inbox.losses[at].words()),
+        }
     }
 }
 
@@ -317,8 +360,8 @@ mod tests {
             [Place::Own(0), Place::Own(1), Place::Repeated(0), Place::Repeated(1), Place::Own(2)]
         );
         let of_type = |own: u8| {
-            let next = |place: &u64| day.next_of_type(own, place + 1);
-            std::iter::successors(day.next_of_type(own, 0), next).collect::<Vec<_>>()
+            let next = |place: &u64| day.next_among(1 << own, place + 1);
+            std::iter::successors(day.next_among(1 << own, 0), next).collect::<Vec<_>>()
         };
         assert_eq!(
             (of_type(2), of_type(LEAD_LOST), of_type(5), of_type(0)),

@@ -8,6 +8,8 @@ use rusqlite::backup::Backup;
 use rusqlite::{Connection, Transaction, params};
 
 use super::blocks::{AdsRun, BlockStore};
+use super::day_table::PackedRows;
+use super::issues::{IssueRun, days_open};
 use super::location::Location;
 use super::notices::{Inbox, Place, TYPES};
 use super::projector::{ProjectionError, Projector, load_store};
@@ -17,6 +19,10 @@ use crate::world::events::UsageRows;
 const TABLES: &str = "CREATE TABLE daily_usage (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, usage_units INTEGER NOT NULL);
 CREATE TABLE ads_revenue (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, group_id TEXT NOT NULL,
     ads_strength REAL NOT NULL, revenue REAL NOT NULL);
+CREATE TABLE ledger (id INTEGER PRIMARY KEY, day INTEGER NOT NULL, category TEXT NOT NULL, amount REAL NOT NULL, note TEXT);
+CREATE TABLE issues (issue_id INTEGER PRIMARY KEY, customer_id INTEGER NOT NULL, group_id TEXT NOT NULL,
+    open_day INTEGER NOT NULL, days_open INTEGER NOT NULL, status TEXT NOT NULL, resolved_day INTEGER,
+    resolution_type TEXT);
 CREATE TABLE notice_rows (notification_id INTEGER PRIMARY KEY, day INTEGER NOT NULL, type TEXT NOT NULL, message TEXT NOT NULL);
 CREATE TABLE repeating_days (day INTEGER PRIMARY KEY, first_number INTEGER NOT NULL, losses INTEGER NOT NULL);
 CREATE TABLE repeating_losses (number INTEGER PRIMARY KEY, message TEXT NOT NULL);
@@ -28,6 +34,11 @@ SELECT first_number + number, day, 'lead_lost', message FROM repeating_days JOIN
 /// What questions about one customer need.
 const INDEXES: &str = "CREATE INDEX daily_usage_by_customer ON daily_usage (customer_id, day);
 CREATE INDEX ads_revenue_by_customer ON ads_revenue (customer_id, day);
+CREATE INDEX issues_by_customer ON issues (customer_id);
+CREATE INDEX ledger_by_day ON ledger (day);
+DROP TABLE ledger_blocks;
+DROP TABLE issue_blocks;
+DROP TABLE issue_clock;
 DROP TABLE usage_blocks;
 DROP TABLE ads_blocks;
 DROP TABLE notice_blocks;
@@ -71,6 +82,8 @@ fn copy(source: &Connection, store: &BlockStore, file: &Path) -> rusqlite::Resul
     copy_usage(&transaction, store)?;
     copy_ads(&transaction, store)?;
     copy_inbox(&transaction, &store.inbox)?;
+    copy_ledger(&transaction, store)?;
+    copy_issues(&transaction, store)?;
     transaction.execute_batch(INDEXES)?;
     transaction.commit()?;
     copy.execute_batch("VACUUM")?;
@@ -123,6 +136,44 @@ fn copy_inbox(transaction: &Transaction<'_>, inbox: &Inbox) -> rusqlite::Result<
     let mut losses = transaction.prepare("INSERT INTO repeating_losses VALUES (?1, ?2)")?;
     for (number, loss) in (0u32..).zip(inbox.losses.iter()) {
         losses.execute(params![number, loss.words()])?;
+    }
+    Ok(())
+}
+
+fn copy_ledger(transaction: &Transaction<'_>, store: &BlockStore) -> rusqlite::Result<()> {
+    let mut insert = transaction.prepare("INSERT INTO ledger VALUES (?1, ?2, ?3, ?4, ?5)")?;
+    for day in store.ledger.iter() {
+        for (number, category, amount, note) in day.rows() {
+            insert.execute(params![number as i64, day.day(), category, amount, note])?;
+        }
+    }
+    Ok(())
+}
+
+fn copy_issues(transaction: &Transaction<'_>, store: &BlockStore) -> rusqlite::Result<()> {
+    let mut insert = transaction.prepare("INSERT INTO issues VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")?;
+    for day in store.issues.iter() {
+        for run in (0..day.len()).filter_map(|run| day.open::<IssueRun>(run)) {
+            for (at, customer) in run.customers.iter().enumerate() {
+                let solved = Some(run.solved[at]).filter(|day| *day > 0);
+                let (status, how) = match solved {
+                    Some(_) => ("resolved", Some("ops_resolved")),
+                    None => ("open", None),
+                };
+                let aged = days_open(&store.issue_clock, day.day, solved);
+                let issue = run.first + at as u32;
+                insert.execute(params![
+                    issue,
+                    customer,
+                    run.group.id(),
+                    day.day,
+                    aged,
+                    status,
+                    solved,
+                    how
+                ])?;
+            }
+        }
     }
     Ok(())
 }

@@ -87,7 +87,10 @@ mod tests {
                 "SEARCH issues USING INDEX issues_of_customers (customer_id=?)",
                 "SEARCH issues USING INDEX (customer_id=?)",
             ),
-            ("SCAN ledger_rows USING COVERING INDEX ledger_by_day", "SCAN ledger USING COVERING INDEX"),
+            (
+                "SCAN subscription_rows USING COVERING INDEX of_days",
+                "SCAN subscriptions USING COVERING INDEX",
+            ),
             (
                 "SEARCH mine USING INTEGER PRIMARY KEY (rowid>?)",
                 "SEARCH mine USING INTEGER PRIMARY KEY (rowid>?)",

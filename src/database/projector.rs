@@ -9,6 +9,8 @@ use std::thread::JoinHandle;
 use rusqlite::{Connection, OptionalExtension};
 
 use super::blocks::{AdsRun, BlockStore, PackedDay, Run, SharedStore};
+use super::issues::IssueRun;
+use super::ledger::LedgerDay;
 use super::location::Location;
 use super::notices::{Inbox, NoticeDay, RepeatedLoss};
 use super::query::QueryConnection;
@@ -102,9 +104,9 @@ impl Projector {
     ) -> Result<(Projector, Option<Position>), ProjectionError> {
         let store = SharedStore::default();
         let opened = open_existing(&location, &store, known);
-        let (mut connection, position, issue_clock) = match opened {
+        let (mut connection, position) = match opened {
             Some(opened) => opened,
-            None => (make_anew(&location, owner, &params).map_err(told)?, None, 0),
+            None => (make_anew(&location, owner, &params).map_err(told)?, None),
         };
         let gate = Arc::new(RwLock::new(()));
         let (jobs, queue) = sync_channel(QUEUE);
@@ -117,7 +119,7 @@ impl Projector {
         let thread = std::thread::Builder::new()
             .name("projection".to_owned())
             .spawn(move || {
-                let rows = RowWriter::new(params, writer_store, issue_clock);
+                let rows = RowWriter::new(params, writer_store);
                 let connection = &mut connection;
                 let readers_go_on = has_log(connection);
                 let (gate, spare, failed) = (writer_gate, writer_spare, writer_failed);
@@ -335,7 +337,7 @@ fn open_existing(
     location: &Location,
     store: &SharedStore,
     known: impl Fn(&Position) -> bool,
-) -> Option<(Connection, Option<Position>, u32)> {
+) -> Option<(Connection, Option<Position>)> {
     if !location.path()?.exists() {
         return None;
     }
@@ -344,10 +346,9 @@ fn open_existing(
     if !known(&position) || !is_laid_out_now(&connection) {
         return None;
     }
-    let issue_clock = connection.query_row("SELECT aged FROM issue_clock", [], |row| row.get(0)).ok()?;
     let loaded = load_store(&connection)?;
     *store.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = loaded;
-    Some((connection, Some(position), issue_clock))
+    Some((connection, Some(position)))
 }
 
 /// A connection on a database as it stands, without a writer, and the position it stands at.
@@ -408,6 +409,9 @@ pub(super) fn load_store(connection: &Connection) -> Option<BlockStore> {
         usage: Arc::new(load::<UsageRows>(connection, "usage_blocks")?),
         ads: Arc::new(load::<AdsRun>(connection, "ads_blocks")?),
         inbox: load_inbox(connection)?,
+        issues: Arc::new(load::<IssueRun>(connection, "issue_blocks")?),
+        issue_clock: Arc::new(load_clock(connection)?),
+        ledger: Arc::new(load_days(connection, "ledger_blocks", LedgerDay::read)?),
     })
 }
 
@@ -430,14 +434,26 @@ fn load<R: Run>(connection: &Connection, table: &str) -> Option<Vec<Arc<PackedDa
         .collect()
 }
 
+/// Packed days of a table; none where one is not whole.
+fn load_days<D>(
+    connection: &Connection,
+    table: &str,
+    read: impl Fn(u32, &[u8]) -> Option<D>,
+) -> Option<Vec<Arc<D>>> {
+    let mut statement = connection.prepare(&format!("SELECT day, packed FROM {table} ORDER BY day")).ok()?;
+    let rows = statement.query_map([], |row| Ok((row.get::<_, u32>(0)?, row.get::<_, Vec<u8>>(1)?))).ok()?;
+    rows.map(|row| row.ok().and_then(|(day, packed)| read(day, &packed)).map(Arc::new)).collect()
+}
+
+/// What the clock of issues showed after each day, from day 0 on.
+fn load_clock(connection: &Connection) -> Option<Vec<u32>> {
+    let mut statement = connection.prepare("SELECT aged FROM issue_clock ORDER BY day").ok()?;
+    let rows = statement.query_map([], |row| row.get(0)).ok()?;
+    rows.collect::<Result<_, _>>().ok()
+}
+
 fn load_inbox(connection: &Connection) -> Option<Inbox> {
-    let mut statement = connection.prepare("SELECT day, packed FROM notice_blocks ORDER BY day").ok()?;
-    let days = statement.query_map([], |row| Ok((row.get::<_, u32>(0)?, row.get::<_, Vec<u8>>(1)?))).ok()?;
-    let day = |row: rusqlite::Result<(u32, Vec<u8>)>| {
-        let (day, packed) = row.ok()?;
-        NoticeDay::read(day, &packed).map(Arc::new)
-    };
-    let days: Vec<_> = days.map(day).collect::<Option<_>>()?;
+    let days = load_days(connection, "notice_blocks", NoticeDay::read)?;
     let sql = "SELECT customer_id, message_day, cause FROM repeated_losses ORDER BY number";
     let mut statement = connection.prepare(sql).ok()?;
     let loss = |row: &rusqlite::Row<'_>| {

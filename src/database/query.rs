@@ -15,13 +15,13 @@ use rusqlite::types::ValueRef;
 
 use super::block_table;
 use super::blocks::{BlockStore, Seen, SharedStore};
+use super::day_table;
 use super::guard::{
     Guard, InnerViews, Objection, Objections, is_hidden_table, is_inside, is_of_engine, limit,
 };
 use super::help::{explain_error, hints};
 use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS, Ticket};
 use super::location::Location;
-use super::notice_table;
 use super::plan;
 use super::released::{Reading, Released, without_explain};
 use super::tokens::tokens;
@@ -140,13 +140,13 @@ impl QueryConnection {
         let mut connection = location.open_reader()?;
         let seen = Arc::new(Seen::default());
         block_table::register(&connection, &seen)?;
-        notice_table::register(&connection, &seen)?;
+        day_table::register(&connection, &seen)?;
         connection.pragma_update(None, "temp_store", "MEMORY")?;
         let guard = Guard::set_up(&connection)?;
         connection.pragma_update(None, "query_only", true)?;
         limit(&connection)?;
         // Virtual tables connect at their first use, which the authorizer would refuse.
-        for table in ["daily_usage", "ads_revenue", "notifications"] {
+        for table in ["daily_usage", "ads_revenue", "issues", "ledger", "notifications"] {
             connection.prepare(&format!("SELECT 1 FROM {table}"))?;
         }
         let (objections, views) = (guard.objections(), guard.views());

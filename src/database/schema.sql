@@ -1,5 +1,6 @@
 -- The observable company. What is stored as codes comes back as words through ordinary views, so that the file
--- opens in any SQLite tool; the block tables (daily_usage, ads_revenue, notifications) are served by the program.
+-- opens in any SQLite tool; large tables that are read far more than changed
+-- (daily_usage, ads_revenue, issues, ledger, notifications) are packed by day and served by the program.
 --
 -- What follows from a row alone is a generated column of it: it takes no room, has its declared type, and the engine can
 -- join by it. It is worked out for every row that is written, so a costly one that nobody joins by is worked out where it
@@ -133,62 +134,10 @@ SELECT
     billed_once AS first_billing_done
 FROM subscription_rows;
 
--- kind: the twelve categories; about: the customer of lead costs and payments; purpose: the note of everything else.
-CREATE TABLE ledger_rows (
-    id INTEGER PRIMARY KEY,
-    day INTEGER NOT NULL,
-    kind INTEGER NOT NULL,
-    amount REAL NOT NULL,
-    about INTEGER,
-    purpose TEXT,
-    category TEXT AS (CASE kind
-        WHEN 0 THEN 'initial_funding' WHEN 1 THEN 'lead_acquisition_cost' WHEN 2 THEN 'subscription_payment'
-        WHEN 3 THEN 'capacity' WHEN 4 THEN 'compute' WHEN 5 THEN 'operations' WHEN 6 THEN 'development'
-        WHEN 7 THEN 'advertising' WHEN 8 THEN 'ad_revenue' WHEN 9 THEN 'market_research'
-        WHEN 10 THEN 'group_research' ELSE 'research_project'
-    END),
-    note TEXT AS (CASE kind
-        WHEN 1 THEN 'Lead acquisition cost for customer ' || about
-        WHEN 2 THEN 'Subscription payment from customer ' || about
-        ELSE purpose
-    END)
-);
-
--- Rows come in the order of days, so they go to its end.
-CREATE INDEX ledger_by_day ON ledger_rows (day);
-
-CREATE VIEW ledger AS SELECT id, day, category, amount, note FROM ledger_rows;
-
--- An issue ages with the clock; aged_from and aged_to are its readings when the issue was opened and solved.
-CREATE TABLE issue_clock (
-    id INTEGER PRIMARY KEY CHECK (id = 1),
-    aged INTEGER NOT NULL
-);
-INSERT INTO issue_clock VALUES (1, 0);
-
-CREATE TABLE issue_rows (
-    issue_id INTEGER PRIMARY KEY,
-    customer_id INTEGER NOT NULL,
-    group_id TEXT NOT NULL,
-    open_day INTEGER NOT NULL,
-    aged_from INTEGER NOT NULL,
-    aged_to INTEGER,
-    resolved_day INTEGER,
-    status TEXT AS (CASE WHEN resolved_day IS NULL THEN 'open' ELSE 'resolved' END),
-    resolution_type TEXT AS (CASE WHEN resolved_day IS NULL THEN NULL ELSE 'ops_resolved' END)
-);
-
-CREATE VIEW issues AS
-SELECT
-    issue_id,
-    customer_id,
-    group_id,
-    open_day,
-    CAST(coalesce(aged_to, (SELECT aged FROM issue_clock)) - aged_from AS INTEGER) AS days_open,
-    status,
-    resolved_day,
-    resolution_type
-FROM issue_rows;
+-- Days of the ledger and of issues by their opening, packed; what the clock by which issues age showed after each day.
+CREATE TABLE ledger_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
+CREATE TABLE issue_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
+CREATE TABLE issue_clock (day INTEGER PRIMARY KEY, aged INTEGER NOT NULL);
 
 CREATE TABLE service_day (
     day INTEGER PRIMARY KEY,
@@ -339,8 +288,6 @@ INSERT INTO sqlite_stat1 (tbl, idx, stat) VALUES
     ('words', 'words', '1500 150 6 1'),
     ('customer_rows', NULL, '500000'),
     ('subscription_rows', NULL, '500000'),
-    ('ledger_rows', 'ledger_by_day', '1400000 2800'),
-    ('issue_rows', NULL, '1100000'),
     ('service_day', NULL, '500'),
     ('config_history', NULL, '50'),
     ('config_overrides', NULL, '100'),

@@ -359,13 +359,13 @@ fn a_query_plan_shows_the_way_and_nothing_of_the_inside() {
         all.rows.iter().map(|row| text_at(row, 3).to_owned()).collect()
     };
     assert_eq!(plan("SELECT * FROM customers"), ["SCAN customers"]);
-    let lookup = "SELECT customer_id, (SELECT count(*) FROM issues i WHERE i.customer_id = c.customer_id) FROM customers c";
+    let lookup = "SELECT customer_id, (SELECT count(*) FROM enterprise_turns t WHERE t.customer_id = c.customer_id) FROM customers c";
     let expected =
-        ["SCAN customers", "CORRELATED SCALAR SUBQUERY 1", "SEARCH i USING COVERING INDEX (customer_id=?)"];
+        ["SCAN customers", "CORRELATED SCALAR SUBQUERY 1", "SEARCH t USING COVERING INDEX (customer_id=?)"];
     assert_eq!(plan(lookup), expected);
     assert_eq!(
-        plan("SELECT * FROM main.ledger WHERE rowid = 5"),
-        ["SEARCH ledger USING INTEGER PRIMARY KEY (rowid=?)"]
+        plan("SELECT * FROM main.service_day WHERE rowid = 5"),
+        ["SEARCH service_day USING INTEGER PRIMARY KEY (rowid=?)"]
     );
     assert_eq!(plan("SELECT day FROM daily_usage u WHERE u.day = 3"), ["SCAN u"]);
     for table in super::tables() {
@@ -607,7 +607,7 @@ fn a_database_of_another_layout_is_made_anew() {
     drop(Company::open(location.clone()).weeks(1));
     assert!(super::has_layout_of_now(&location));
     let file = rusqlite::Connection::open(folder.path().join("world.db")).expect("a file");
-    file.execute_batch("DROP INDEX ledger_by_day; PRAGMA user_version = 0").expect("an older layout");
+    file.execute_batch("DROP INDEX enterprise_turns_by_thread; PRAGMA user_version = 0").expect("an older layout");
     drop(file);
     assert!(!super::has_layout_of_now(&location));
     assert!(super::query_connection(&location).is_err());

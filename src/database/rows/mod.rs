@@ -2,6 +2,8 @@
 
 mod create;
 mod direct;
+mod issues;
+mod ledger;
 mod many;
 mod notices;
 mod posts;
@@ -17,11 +19,12 @@ pub(super) use create::{LAYOUT, create};
 use super::blocks::{AdsRun, PackedDay, SharedStore};
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::events::{
-    Arrival, Category, Facts, LedgerNote, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus,
-    TermsChanged,
+    Arrival, Facts, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus, TermsChanged,
 };
-use crate::world::identifiers::{Group, Plan};
+use crate::world::identifiers::Plan;
 use crate::world::params::Params;
+use issues::IssueWriter;
+use ledger::LedgerWriter;
 use many::{NOTHING, insert_rows, or_nothing, real, text, whole};
 use notices::NoticeWriter;
 
@@ -86,50 +89,39 @@ struct DealRow {
     contract_end_day: u32,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct IssueRow {
-    customer: u32,
-    group: Group,
-    open_day: u32,
-    aged_from: u32,
-    resolved: Option<(u32, u32)>,
-}
-
 /// Collects what changes until the next commit, so that several changes of a row become one write.
 pub(super) struct RowWriter {
     params: Arc<Params>,
     store: SharedStore,
-    issue_clock: u32,
     new_subscriptions: BTreeMap<u32, SubscriptionRow>,
     deals: BTreeMap<u32, DealRow>,
     changed_terms: BTreeMap<u32, TermsChanged>,
     endings: BTreeMap<u32, SubscriptionEnded>,
-    new_issues: BTreeMap<u32, IssueRow>,
-    resolved_issues: BTreeMap<u32, (u32, u32)>,
     new_usage: Vec<Arc<PackedDay>>,
     new_ads: Vec<Arc<PackedDay>>,
     keep_usage_from: Option<u32>,
     notices: NoticeWriter,
+    issues: IssueWriter,
+    ledger: LedgerWriter,
 }
 
 impl RowWriter {
-    /// A writer for a database that has its tables; `issue_clock` is the stored one.
-    pub fn new(params: Arc<Params>, store: SharedStore, issue_clock: u32) -> RowWriter {
-        let inbox = store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).inbox.clone();
+    /// A writer for a database that has its tables, and whose days are in the store.
+    pub fn new(params: Arc<Params>, store: SharedStore) -> RowWriter {
+        let kept = store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
         RowWriter {
-            params,
             store,
-            issue_clock,
             new_subscriptions: BTreeMap::new(),
             deals: BTreeMap::new(),
             changed_terms: BTreeMap::new(),
             endings: BTreeMap::new(),
-            new_issues: BTreeMap::new(),
-            resolved_issues: BTreeMap::new(),
             new_usage: Vec::new(),
             new_ads: Vec::new(),
             keep_usage_from: None,
-            notices: NoticeWriter::continuing(inbox),
+            notices: NoticeWriter::continuing(kept.inbox.clone()),
+            issues: IssueWriter::continuing(&kept),
+            ledger: LedgerWriter::continuing(params.clone(), kept.ledger.clone()),
+            params,
         }
     }
 
@@ -153,13 +145,13 @@ impl RowWriter {
                     words
                 ])?;
         }
-        self.issues(facts);
+        self.issues.write(facts);
         self.departures(facts);
         threads::turns(transaction, entry)?;
         self.deals(transaction, facts)?;
         direct::channel_leads(transaction, facts)?;
         self.arrivals(transaction, entry)?;
-        self.ledger(transaction, facts)?;
+        self.ledger.write(facts);
         self.ads(transaction, facts)?;
         posts::posts(transaction, facts, &entry.posts)?;
         posts::own_posts(transaction, facts)?;
@@ -197,30 +189,6 @@ impl RowWriter {
             .execute(params![day.day, day.bytes()])?;
         self.new_ads.push(Arc::new(day));
         Ok(())
-    }
-
-    /// Solutions come before the clock ticks, new issues after it.
-    fn issues(&mut self, facts: &Facts) {
-        for &issue in &facts.issues_resolved {
-            let resolved = (facts.day, self.issue_clock);
-            match self.new_issues.get_mut(&issue) {
-                Some(row) => row.resolved = Some(resolved),
-                None => {
-                    self.resolved_issues.insert(issue, resolved);
-                }
-            }
-        }
-        self.issue_clock += u32::from(facts.issues_aged);
-        for opened in &facts.issues_opened {
-            let row = IssueRow {
-                customer: opened.customer,
-                group: opened.group,
-                open_day: facts.day,
-                aged_from: self.issue_clock,
-                resolved: None,
-            };
-            self.new_issues.insert(opened.issue, row);
-        }
     }
 
     fn departures(&mut self, facts: &Facts) {
@@ -306,77 +274,12 @@ impl RowWriter {
         factors.iter().position(|factor| arrival.c_max < factor * mean).unwrap_or(factors.len()) as u8
     }
 
-    /// Lead costs, payments, then everything else: the order that the ids of a day follow.
-    fn ledger(&self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-        const HEAD: &str = "INSERT INTO ledger_rows (day, kind, amount, about, purpose) VALUES";
-        let lead_cost = -self.params.leads.lead_acquisition_cost;
-        let leads =
-            facts.arrivals.iter().map(|arrival| (Category::LeadAcquisitionCost, lead_cost, arrival.customer));
-        let payments = facts
-            .payments
-            .iter()
-            .map(|payment| (Category::SubscriptionPayment, payment.amount, payment.customer));
-        let rows = leads.chain(payments).map(|(category, amount, about)| {
-            [whole(facts.day), whole(category as u8), real(amount), whole(about), NOTHING]
-        });
-        insert_rows(transaction, HEAD, rows)?;
-        let notes: Vec<String> =
-            facts.ledger.iter().map(|entry| self.note(entry.category, entry.note)).collect();
-        let rows = facts.ledger.iter().zip(&notes).map(|(entry, note)| {
-            [whole(facts.day), whole(entry.category as u8), real(entry.amount), NOTHING, text(note)]
-        });
-        insert_rows(transaction, HEAD, rows)
-    }
-
-    fn note(&self, category: Category, note: LedgerNote) -> String {
-        match (category, note) {
-            (_, LedgerNote::Subscribers(count)) => format!("In-app ad revenue ({count} subscribers)"),
-            (_, LedgerNote::Project(tier, number)) => {
-                format!("R&D Tier {tier}: {} (t{tier}_{number})", self.params.research(tier).name)
-            }
-            (_, LedgerNote::Study(study)) if study.is_refresh() => {
-                format!("Group research: {}, refresh at level {}", study.group, study.target)
-            }
-            (_, LedgerNote::Study(study)) => {
-                format!("Group research: {}, level {} to {}", study.group, study.before, study.target)
-            }
-            (Category::InitialFunding, _) => "Initial seed funding".to_owned(),
-            (Category::MarketResearch, _) => "Market research: search for an unknown group".to_owned(),
-            (Category::Capacity, _) => "Daily capacity cost".to_owned(),
-            (Category::Compute, _) => "Compute costs".to_owned(),
-            (Category::Operations, LedgerNote::Targeted) => "Targeted ops spend".to_owned(),
-            (Category::Operations, _) => "Daily operations spend".to_owned(),
-            (Category::Development, LedgerNote::Targeted) => "Targeted dev spend".to_owned(),
-            (Category::Development, _) => "Daily development spend".to_owned(),
-            (Category::Advertising, _) => "Targeted ad spend".to_owned(),
-            (other, _) => other.id().replace('_', " "),
-        }
-    }
-
     /// Writes what was kept back. The store follows with [`RowWriter::publish`], once the commit succeeded.
     pub fn flush(&mut self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         self.flush_subscriptions(transaction)?;
         self.notices.flush(transaction)?;
-        let rows = std::mem::take(&mut self.new_issues).into_iter().map(|(issue, row)| {
-            let (day, aged_to) = row.resolved.unzip();
-            [
-                whole(issue),
-                whole(row.customer),
-                text(row.group.id()),
-                whole(row.open_day),
-                whole(row.aged_from),
-                or_nothing(aged_to, whole),
-                or_nothing(day, whole),
-            ]
-        });
-        insert_rows(transaction, "INSERT INTO issue_rows VALUES", rows)?;
-        let mut resolve = transaction
-            .prepare_cached("UPDATE issue_rows SET resolved_day = ?2, aged_to = ?3 WHERE issue_id = ?1")?;
-        for (issue, (day, aged_to)) in std::mem::take(&mut self.resolved_issues) {
-            resolve.execute(params![issue, day, aged_to])?;
-        }
-        transaction.prepare_cached("UPDATE issue_clock SET aged = ?1")?.execute([self.issue_clock])?;
-        Ok(())
+        self.issues.flush(transaction)?;
+        self.ledger.flush(transaction)
     }
 
     fn flush_subscriptions(&mut self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
@@ -430,25 +333,27 @@ impl RowWriter {
 
     /// Puts the new days into the store and takes the old ones out.
     pub fn publish(&mut self) {
-        let inbox = self.notices.publish();
-        if inbox.is_none() && self.new_usage.is_empty() && self.new_ads.is_empty() {
-            return;
-        }
         let mut store = self.store.write().unwrap_or_else(|poisoned| poisoned.into_inner());
-        let mut usage = store.usage.to_vec();
-        usage.append(&mut self.new_usage);
-        if let Some(first) = self.keep_usage_from.take() {
-            usage.retain(|day| day.day >= first);
+        if !self.new_usage.is_empty() {
+            let mut usage = store.usage.to_vec();
+            usage.append(&mut self.new_usage);
+            if let Some(first) = self.keep_usage_from.take() {
+                usage.retain(|day| day.day >= first);
+            }
+            store.usage = Arc::new(usage);
         }
-        store.usage = Arc::new(usage);
         if !self.new_ads.is_empty() {
             let mut ads = store.ads.to_vec();
             ads.append(&mut self.new_ads);
             store.ads = Arc::new(ads);
         }
-        if let Some(inbox) = inbox {
+        if let Some(inbox) = self.notices.publish() {
             store.inbox = inbox;
         }
+        if let Some(ledger) = self.ledger.publish() {
+            store.ledger = ledger;
+        }
+        self.issues.publish(&mut store);
     }
 }
 

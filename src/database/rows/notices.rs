@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rusqlite::{Transaction, params};
 
 use super::Entry;
+use crate::database::day_table::PackedRows;
 use crate::database::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss, type_of};
 use crate::world::events::{Facts, LossCause};
 

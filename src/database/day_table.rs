@@ -1,0 +1,502 @@
+//! The tables `notifications` and `ledger`: read-only virtual tables over packed days, which skip days and kinds that a
+//! query does not ask for, and hand rows out in the order of kinds or days so that nothing needs sorting.
+//!
+//! SQLite's interface to virtual tables is a pair of unsafe traits: their structs must start with the base class.
+#![expect(unsafe_code, reason = "rusqlite's traits of virtual tables are unsafe; see the safety comments")]
+
+use std::borrow::Cow;
+use std::ffi::{CStr, c_int};
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use rusqlite::Connection;
+use rusqlite::ffi;
+use rusqlite::types::Type;
+use rusqlite::vtab::{
+    Context, Filters, IndexConstraintOp, IndexInfo, Module, VTab, VTabConfig, VTabConnection, VTabCursor,
+};
+
+use super::blocks::{BlockStore, Seen};
+use super::ledger::Ledger;
+use super::notices::Notifications;
+
+/// Registers both tables on a connection.
+pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::Result<()> {
+    const NOTICES: Module<'static, DayTable<Notifications>> = Module::eponymous_only_module();
+    const LEDGER: Module<'static, DayTable<Ledger>> = Module::eponymous_only_module();
+    connection.create_module(c"notifications", &NOTICES, Some(seen.clone()))?;
+    connection.create_module(c"ledger", &LEDGER, Some(seen.clone()))
+}
+
+/// Kinds as bits: those of a row's day that are asked for.
+pub(super) type Kinds = u32;
+
+/// A packed day: rows at places from 0, each of a kind.
+pub(super) trait PackedRows {
+    /// The day.
+    fn day(&self) -> u32;
+    /// Number of the first row; the others follow.
+    fn first(&self) -> u64;
+    /// Rows.
+    fn len(&self) -> u64;
+    /// The first place from `place` on whose kind is among these.
+    fn next_among(&self, kinds: Kinds, place: u64) -> Option<u64>;
+}
+
+/// What the two tables differ in. Columns 0 to 2 are always number, day and kind.
+pub(super) trait DayKind: Send + Sync + Sized + 'static {
+    type Day: PackedRows;
+    /// What a day is unpacked to before its rows are read.
+    type Unpacked: Default;
+    const DECLARATION: &'static CStr;
+    /// Kinds as the table writes them, in ascending order.
+    const KINDS: &'static [&'static str];
+
+    fn days(store: &BlockStore) -> &[Arc<Self::Day>];
+    fn unpack(day: &Self::Day, kinds: Kinds) -> Self::Unpacked;
+    /// Kind of the row at a place, by its position among all kinds.
+    fn kind(day: &Self::Day, place: u64) -> usize;
+    /// Any of the columns after the third.
+    fn column(row: &RowAt<'_, Self>, column: c_int, context: &mut Context) -> rusqlite::Result<()>;
+    /// Kinds that a comparison of a column after the third leaves; all where it says nothing about kinds.
+    fn kinds_where(_column: c_int, _comparison: Comparison, _value: f64) -> Kinds {
+        Kinds::MAX
+    }
+}
+
+/// A row as it is read.
+pub(super) struct RowAt<'a, K: DayKind> {
+    pub store: &'a BlockStore,
+    pub day: &'a K::Day,
+    pub unpacked: &'a K::Unpacked,
+    pub place: u64,
+}
+
+const NUMBER: c_int = 0;
+const DAY: c_int = 1;
+const KIND: c_int = 2;
+/// The number again, as SQLite names the row.
+const ROW: c_int = -1;
+
+/// A comparison of a column with a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Comparison {
+    Equal,
+    Greater,
+    AtLeast,
+    Less,
+    AtMost,
+}
+
+impl Comparison {
+    const ALL: [(Comparison, char); 5] = [
+        (Comparison::Equal, '='),
+        (Comparison::Greater, '>'),
+        (Comparison::AtLeast, 'g'),
+        (Comparison::Less, '<'),
+        (Comparison::AtMost, 'l'),
+    ];
+
+    fn of(operator: &IndexConstraintOp) -> Option<Comparison> {
+        Some(match operator {
+            IndexConstraintOp::SQLITE_INDEX_CONSTRAINT_EQ => Comparison::Equal,
+            IndexConstraintOp::SQLITE_INDEX_CONSTRAINT_GT => Comparison::Greater,
+            IndexConstraintOp::SQLITE_INDEX_CONSTRAINT_GE => Comparison::AtLeast,
+            IndexConstraintOp::SQLITE_INDEX_CONSTRAINT_LT => Comparison::Less,
+            IndexConstraintOp::SQLITE_INDEX_CONSTRAINT_LE => Comparison::AtMost,
+            _ => return None,
+        })
+    }
+}
+
+/// A constraint that the table handles itself: column and comparison.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Handled {
+    column: c_int,
+    comparison: Comparison,
+}
+
+impl Handled {
+    fn of(column: c_int, operator: &IndexConstraintOp) -> Option<Handled> {
+        let comparison = Comparison::of(operator)?;
+        let column = if column == ROW { NUMBER } else { column };
+        let useful = !matches!(column, NUMBER | KIND) || comparison == Comparison::Equal;
+        (useful && (0..10).contains(&column)).then_some(Handled { column, comparison })
+    }
+
+    /// As two letters of the index text.
+    fn text(self) -> String {
+        let letter = Comparison::ALL.iter().find(|(own, _)| *own == self.comparison);
+        format!("{}{}", self.column, letter.map_or('=', |(_, letter)| *letter))
+    }
+
+    fn read(pair: &[u8]) -> Option<Handled> {
+        let &[column, letter] = pair else { return None };
+        let comparison = Comparison::ALL.iter().find(|(_, own)| *own == char::from(letter))?.0;
+        Some(Handled { column: c_int::from(column.wrapping_sub(b'0')), comparison })
+    }
+}
+
+/// The order in which rows are handed out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Order {
+    /// As they are numbered, which is day by day.
+    Numbers,
+    /// Kind by kind, and day by day within one.
+    Kinds,
+    /// Day by day, and kind by kind within one.
+    DaysAndKinds,
+}
+
+impl Order {
+    /// The order that needs no sorting for a list of columns; none if there is no such order.
+    fn by(columns: &[c_int]) -> Option<Order> {
+        match columns {
+            [NUMBER | ROW, ..] | [DAY] | [DAY, NUMBER | ROW, ..] => Some(Order::Numbers),
+            [KIND] | [KIND, DAY] | [KIND, NUMBER | ROW, ..] | [KIND, DAY, NUMBER | ROW, ..] => {
+                Some(Order::Kinds)
+            }
+            [DAY, KIND] | [DAY, KIND, NUMBER | ROW, ..] => Some(Order::DaysAndKinds),
+            _ => None,
+        }
+    }
+}
+
+#[repr(C)]
+struct DayTable<K: DayKind> {
+    /// Base class; must be first.
+    base: ffi::sqlite3_vtab,
+    seen: Arc<Seen>,
+    kind: PhantomData<K>,
+}
+
+// SAFETY: the struct is `repr(C)` and starts with `sqlite3_vtab`, as the trait requires.
+unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
+    type Aux = Arc<Seen>;
+    type Cursor = DayCursor<'vtab, K>;
+
+    fn connect(
+        db: &mut VTabConnection,
+        seen: Option<&Arc<Seen>>,
+        _: &[u8],
+        _: &[u8],
+        _: &[u8],
+        _: &[&[u8]],
+    ) -> rusqlite::Result<(Cow<'static, CStr>, Self)> {
+        db.config(VTabConfig::Innocuous)?;
+        let seen = seen.cloned().unwrap_or_default();
+        let table = DayTable { base: ffi::sqlite3_vtab::default(), seen, kind: PhantomData };
+        Ok((Cow::Borrowed(K::DECLARATION), table))
+    }
+
+    fn best_index(&self, info: &mut IndexInfo) -> rusqlite::Result<bool> {
+        let usable = info.constraints().enumerate().filter(|(_, constraint)| constraint.is_usable());
+        let handled: Vec<(usize, Handled)> = usable
+            .filter_map(|(at, constraint)| {
+                Some((at, Handled::of(constraint.column(), &constraint.operator())?))
+            })
+            .collect();
+        for (argument, (at, _)) in (1..).zip(&handled) {
+            // SQLite checks the constraint again: a value of another type (3.5, '7') is compared its own way.
+            info.constraint_usage(*at).set_argv_index(argument);
+        }
+        let columns: Option<Vec<c_int>> =
+            info.order_bys().map(|order| (!order.is_order_by_desc()).then(|| order.column())).collect();
+        let order = columns.filter(|columns| !columns.is_empty()).and_then(|columns| Order::by(&columns));
+        info.set_order_by_consumed(order.is_some());
+        let share = |column: c_int, of_equal: f64, of_other: f64| {
+            let own = handled.iter().filter(|(_, own)| own.column == column);
+            own.map(|(_, own)| if own.comparison == Comparison::Equal { of_equal } else { of_other })
+                .fold(1.0, f64::min)
+        };
+        let rows = 1e6 * share(NUMBER, 1e-6, 1.0) * share(DAY, 0.002, 0.3) * share(KIND, 0.3, 1.0);
+        info.set_estimated_cost(rows);
+        info.set_estimated_rows(rows as i64);
+        info.set_idx_num(order.unwrap_or(Order::Numbers) as c_int);
+        info.set_idx_str(&handled.iter().map(|(_, own)| own.text()).collect::<String>());
+        Ok(true)
+    }
+
+    fn open(&mut self) -> rusqlite::Result<DayCursor<'_, K>> {
+        Ok(DayCursor {
+            base: ffi::sqlite3_vtab_cursor::default(),
+            store: self.seen.store(),
+            passes: Vec::new(),
+            pass: 0,
+            place: 0,
+            unpacked: None,
+            only: None,
+            table: PhantomData,
+        })
+    }
+}
+
+/// What is looked through at once.
+#[derive(Debug, Clone, Copy)]
+struct Pass {
+    /// Position among the days.
+    day: usize,
+    kinds: Kinds,
+}
+
+#[repr(C)]
+struct DayCursor<'vtab, K: DayKind> {
+    /// Base class; must be first.
+    base: ffi::sqlite3_vtab_cursor,
+    store: BlockStore,
+    passes: Vec<Pass>,
+    pass: usize,
+    place: u64,
+    /// The day of a pass, once a row of it was found.
+    unpacked: Option<(usize, K::Unpacked)>,
+    /// Only the row with this number.
+    only: Option<f64>,
+    table: PhantomData<&'vtab DayTable<K>>,
+}
+
+impl<K: DayKind> DayCursor<'_, K> {
+    fn day(&self) -> Option<&K::Day> {
+        self.passes.get(self.pass).map(|pass| &*K::days(&self.store)[pass.day])
+    }
+
+    /// Moves on to the first row at or after the place that may be asked for.
+    fn settle(&mut self) {
+        while let Some(pass) = self.passes.get(self.pass) {
+            let day = &K::days(&self.store)[pass.day];
+            let next = match self.only {
+                Some(number) => {
+                    let place = number - day.first() as f64;
+                    let is_here =
+                        place.fract() == 0.0 && place >= self.place as f64 && place < day.len() as f64;
+                    is_here.then_some(place as u64)
+                }
+                None => day.next_among(pass.kinds, self.place),
+            };
+            if let Some(next) = next {
+                self.place = next;
+                if self.unpacked.as_ref().is_none_or(|(own, _)| *own != self.pass) {
+                    self.unpacked = Some((self.pass, K::unpack(day, pass.kinds)));
+                }
+                return;
+            }
+            (self.pass, self.place) = (self.pass + 1, 0);
+        }
+    }
+
+    /// What is to be looked through: days between two, these kinds, in this order.
+    fn passes(&self, days: [f64; 2], kinds: Kinds, order: Order) -> Vec<Pass> {
+        let all = K::days(&self.store);
+        let end = all.partition_point(|day| f64::from(day.day()) <= days[1]);
+        let days = all.partition_point(|day| f64::from(day.day()) < days[0]).min(end)..end;
+        let single = || (0..K::KINDS.len()).map(|at| 1 << at).filter(move |bit| kinds & bit != 0);
+        match order {
+            // One row is looked for once, in whatever order.
+            _ if self.only.is_some() => days.map(|day| Pass { day, kinds }).collect(),
+            Order::Numbers => days.map(|day| Pass { day, kinds }).collect(),
+            Order::Kinds => {
+                single().flat_map(|kinds| days.clone().map(move |day| Pass { day, kinds })).collect()
+            }
+            Order::DaysAndKinds => {
+                days.flat_map(|day| single().map(move |kinds| Pass { day, kinds })).collect()
+            }
+        }
+    }
+}
+
+// SAFETY: the struct is `repr(C)` and starts with `sqlite3_vtab_cursor`, as the trait requires.
+unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
+    fn filter(
+        &mut self,
+        order_number: c_int,
+        plan: Option<&str>,
+        values: &Filters<'_>,
+    ) -> rusqlite::Result<()> {
+        let (mut days, mut kinds) = ([f64::NEG_INFINITY, f64::INFINITY], Kinds::MAX);
+        (self.only, self.unpacked) = (None, None);
+        let handled = plan.unwrap_or_default().as_bytes().chunks(2).filter_map(Handled::read);
+        for ((at, value), Handled { column, comparison }) in values.iter().enumerate().zip(handled) {
+            let number = match value.data_type() {
+                Type::Text if column == KIND => {
+                    let wanted: String = values.get(at)?;
+                    // A kind that does not exist has no rows.
+                    kinds &= K::KINDS.iter().position(|own| *own == wanted).map_or(0, |at| 1 << at);
+                    continue;
+                }
+                Type::Integer | Type::Real if column != KIND => values.get::<f64>(at)?,
+                // No number equals NULL; how texts compare is left to SQLite, which checks again.
+                Type::Null => f64::NAN,
+                _ => continue,
+            };
+            if number.is_nan() {
+                days[1] = f64::NEG_INFINITY;
+            }
+            match (column, comparison) {
+                (NUMBER, _) => self.only = Some(number),
+                (DAY, Comparison::Equal) => days = [days[0].max(number), days[1].min(number)],
+                (DAY, Comparison::Greater | Comparison::AtLeast) => days[0] = days[0].max(number),
+                (DAY, _) => days[1] = days[1].min(number),
+                _ => kinds &= K::kinds_where(column, comparison, number),
+            }
+        }
+        let order = [Order::Numbers, Order::Kinds, Order::DaysAndKinds];
+        let order = order.into_iter().find(|own| *own as c_int == order_number);
+        self.passes = self.passes(days, kinds, order.unwrap_or(Order::Numbers));
+        (self.pass, self.place) = (0, 0);
+        self.settle();
+        Ok(())
+    }
+
+    fn next(&mut self) -> rusqlite::Result<()> {
+        self.place += 1;
+        self.settle();
+        Ok(())
+    }
+
+    fn eof(&self) -> bool {
+        self.pass >= self.passes.len()
+    }
+
+    fn column(&self, context: &mut Context, column: c_int) -> rusqlite::Result<()> {
+        let (Some(day), Some((_, unpacked))) = (self.day(), &self.unpacked) else { return Ok(()) };
+        match column {
+            NUMBER => context.set_result((day.first() + self.place) as i64),
+            DAY => context.set_result(day.day()),
+            KIND => context.set_result(K::KINDS[K::kind(day, self.place)]),
+            other => {
+                let row = RowAt { store: &self.store, day, unpacked, place: self.place };
+                K::column(&row, other, context)
+            }
+        }
+    }
+
+    fn rowid(&self) -> rusqlite::Result<i64> {
+        Ok(self.day().map_or(0, |day| (day.first() + self.place) as i64))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss};
+    use super::*;
+    use crate::world::events::LossCause;
+
+    /// A connection to five days: notices of three types, losses that repeat from day 2 on, a call on day 3.
+    fn connection() -> Connection {
+        let losses =
+            (0..3).map(|at| RepeatedLoss { customer: 10 + at, message_day: 1, cause: LossCause::Silence });
+        let (mut days, mut first) = (Vec::new(), 1);
+        for number in 1..=5u32 {
+            let mut day = NoticeDay::of(number, first);
+            day.push(6, &format!("R&D of day {number}"));
+            day.push(LEAD_LOST, "lost");
+            day.push(0, "won");
+            day.repeat(number.saturating_sub(1).min(3));
+            if number == 3 {
+                day.push(5, "found");
+            }
+            first += day.len();
+            days.push(Arc::new(day));
+        }
+        let inbox = Inbox { days: Arc::new(days), losses: Arc::new(losses.collect()) };
+        let seen = Arc::new(Seen::default());
+        seen.see(BlockStore { inbox, ..BlockStore::default() });
+        let connection = Connection::open_in_memory().expect("memory");
+        register(&connection, &seen).expect("a module");
+        connection
+    }
+
+    #[test]
+    fn questions_are_answered_as_by_an_ordinary_table() {
+        let connection = connection();
+        connection
+            .execute_batch(
+                "CREATE TEMP TABLE plain(notification_id INTEGER PRIMARY KEY, day INTEGER, type TEXT, message TEXT);
+                 INSERT INTO plain SELECT * FROM notifications",
+            )
+            .expect("a copy");
+        let count: i64 =
+            connection.query_row("SELECT count(*) FROM plain", [], |row| row.get(0)).expect("rows");
+        assert_eq!(count, 15 + 1 + 2 + 3 + 3 + 1, "own notices, repeated ones of days 2 to 5, a call");
+        let conditions = [
+            "1",
+            "day = 3",
+            "day > 2",
+            "day >= 2 AND day < 4",
+            "day <= 1.5",
+            "day = '3'",
+            "day = NULL",
+            "type = 'lead_lost'",
+            "type = 'deal_won' AND day > 3",
+            "type = 'nothing'",
+            "type = 7",
+            "type IS NULL",
+            "notification_id = 9",
+            "rowid = 9",
+            "notification_id IN (1, 8, 200)",
+            "notification_id = 2.5",
+            "notification_id > 9",
+            "type IN ('lead_lost', 'market_discovery')",
+            "message LIKE '%our offer%'",
+        ];
+        let orders = [
+            "rowid",
+            "day",
+            "type, day, rowid",
+            "day, type, rowid",
+            "type, rowid",
+            "rowid DESC",
+            "day DESC, rowid",
+            "type DESC, day, rowid",
+        ];
+        for condition in conditions {
+            for order in orders {
+                let rows = |table: &str| -> Vec<(i64, i64, String, String)> {
+                    let unique = if order == "day" { "day, rowid" } else { order };
+                    let sql = format!("SELECT * FROM {table} WHERE {condition} ORDER BY {unique}");
+                    let mut statement = connection.prepare(&sql).expect("a statement");
+                    let rows = statement.query_map([], |row| row.try_into()).expect("rows");
+                    rows.collect::<Result<_, _>>().expect("a row")
+                };
+                assert_eq!(rows("notifications"), rows("plain"), "{condition}, {order}");
+            }
+            for key in ["type", "day", "day, type", "type, day"] {
+                let groups = |table: &str| -> Vec<(i64, i64)> {
+                    let sql = format!(
+                        "SELECT count(*), sum(notification_id) FROM {table} WHERE {condition} GROUP BY {key} ORDER BY {key}"
+                    );
+                    let mut statement = connection.prepare(&sql).expect("a statement");
+                    let rows = statement.query_map([], |row| row.try_into()).expect("rows");
+                    rows.collect::<Result<_, _>>().expect("a row")
+                };
+                assert_eq!(groups("notifications"), groups("plain"), "{condition}, {key}");
+            }
+        }
+    }
+
+    #[test]
+    fn counting_by_type_or_day_sorts_nothing() {
+        let connection = connection();
+        for key in ["type", "day", "day, type", "type, day"] {
+            let sql = format!("EXPLAIN QUERY PLAN SELECT {key}, count(*) FROM notifications GROUP BY {key}");
+            let mut statement = connection.prepare(&sql).expect("a statement");
+            let rows = statement.query_map([], |row| row.get::<_, String>(3)).expect("rows");
+            let plan: Vec<String> = rows.map(|row| row.expect("a row")).collect();
+            assert!(plan.len() == 1 && plan[0].starts_with("SCAN notifications"), "{plan:?}");
+        }
+    }
+
+    #[test]
+    fn a_repeated_loss_tells_its_reason() {
+        let sql = "SELECT message FROM notifications WHERE day = 2 AND message LIKE 'Customer%'";
+        let text: String = connection().query_row(sql, [], |row| row.get(0)).expect("a row");
+        assert_eq!(
+            text,
+            "Customer 10 did not answer our offer of day 1. The lead is lost; this repeats daily."
+        );
+    }
+
+    #[test]
+    fn nothing_can_be_written() {
+        assert!(connection().execute("DELETE FROM notifications", []).is_err());
+    }
+}

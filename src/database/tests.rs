@@ -607,7 +607,8 @@ fn a_database_of_another_layout_is_made_anew() {
     drop(Company::open(location.clone()).weeks(1));
     assert!(super::has_layout_of_now(&location));
     let file = rusqlite::Connection::open(folder.path().join("world.db")).expect("a file");
-    file.execute_batch("DROP INDEX enterprise_turns_by_thread; PRAGMA user_version = 0").expect("an older layout");
+    file.execute_batch("DROP INDEX enterprise_turns_by_thread; PRAGMA user_version = 0")
+        .expect("an older layout");
     drop(file);
     assert!(!super::has_layout_of_now(&location));
     assert!(super::query_connection(&location).is_err());

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rusqlite::{Transaction, params};
 
 use crate::database::blocks::{BlockStore, PackedDay};
-use crate::database::issues::{IssueRun, day_of};
+use crate::database::issues::IssueRun;
 use crate::world::events::Facts;
 
 /// Collects issues until the next commit.
@@ -17,20 +17,30 @@ pub(super) struct IssueWriter {
     clock: Vec<u32>,
     /// The first day whose clock is not written yet.
     clock_from: usize,
-    /// First issue and runs of days that were touched.
-    touched: BTreeMap<u32, (u32, Vec<IssueRun>)>,
+    /// First issue of each day on which some were opened, and the day.
+    firsts: Vec<(u32, u32)>,
+    /// Runs of days that were touched.
+    touched: BTreeMap<u32, Vec<IssueRun>>,
 }
 
 impl IssueWriter {
     /// A writer that continues what a store holds.
     pub fn continuing(store: &BlockStore) -> IssueWriter {
         let clock = store.issue_clock.to_vec();
-        IssueWriter { days: store.issues.clone(), clock_from: clock.len(), clock, touched: BTreeMap::new() }
+        let first = |day: &Arc<PackedDay>| Some((day.open::<IssueRun>(0)?.first, day.day));
+        IssueWriter {
+            days: store.issues.clone(),
+            clock_from: clock.len(),
+            clock,
+            firsts: store.issues.iter().filter_map(first).collect(),
+            touched: BTreeMap::new(),
+        }
     }
 
     /// Adds a day. Solutions come before the clock ticks, new issues after it.
     pub fn write(&mut self, facts: &Facts) {
-        let worked_on = facts.issues_aged || !facts.issues_opened.is_empty() || !facts.issues_resolved.is_empty();
+        let worked_on =
+            facts.issues_aged || !facts.issues_opened.is_empty() || !facts.issues_resolved.is_empty();
         if facts.service.is_none() && !worked_on {
             return;
         }
@@ -41,20 +51,16 @@ impl IssueWriter {
         self.clock.resize(facts.day as usize, before);
         self.clock.push(before + u32::from(facts.issues_aged));
         if let Some(first) = facts.issues_opened.first() {
-            let runs = IssueRun::runs_of(&facts.issues_opened);
-            self.touched.insert(facts.day, (first.issue, runs));
+            self.firsts.push((first.issue, facts.day));
+            self.touched.insert(facts.day, IssueRun::runs_of(&facts.issues_opened));
         }
     }
 
     fn solve(&mut self, issue: u32, day: u32) {
-        let among_touched =
-            self.touched.iter().rev().find(|(_, (first, _))| *first <= issue).map(|(day, _)| *day);
-        let committed = day_of(&self.days, issue).map(|at| &self.days[at]);
-        // The later of both is the day of the issue: an earlier one ends before it.
-        let opened = among_touched.max(committed.map(|day| day.day));
-        let Some(opened) = opened else { return };
-        let runs = self.touched.entry(opened).or_insert_with(|| unpacked(committed.map(|day| &**day)));
-        let runs = &mut runs.1;
+        let opened = self.firsts.partition_point(|(first, _)| *first <= issue).checked_sub(1);
+        let Some((_, opened)) = opened.map(|at| self.firsts[at]) else { return };
+        let days = &self.days;
+        let runs = self.touched.entry(opened).or_insert_with(|| unpacked(days, opened));
         let Some(run) = runs.partition_point(|run| run.first <= issue).checked_sub(1) else { return };
         let first = runs[run].first;
         if let Some(solved) = runs[run].solved.get_mut((issue - first) as usize) {
@@ -65,7 +71,7 @@ impl IssueWriter {
     /// Writes the days that were touched, and the clock.
     pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO issue_blocks VALUES (?1, ?2)")?;
-        for (day, (_, runs)) in &self.touched {
+        for (day, runs) in &self.touched {
             write.execute(params![day, PackedDay::pack(*day, runs).bytes()])?;
         }
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO issue_clock VALUES (?1, ?2)")?;
@@ -85,7 +91,7 @@ impl IssueWriter {
             return;
         }
         let mut days = self.days.to_vec();
-        for (day, (_, runs)) in std::mem::take(&mut self.touched) {
+        for (day, runs) in std::mem::take(&mut self.touched) {
             let packed = Arc::new(PackedDay::pack(day, &runs));
             match days.binary_search_by_key(&day, |day| day.day) {
                 Ok(at) => days[at] = packed,
@@ -97,8 +103,7 @@ impl IssueWriter {
     }
 }
 
-fn unpacked(day: Option<&PackedDay>) -> (u32, Vec<IssueRun>) {
-    let runs: Vec<IssueRun> =
-        day.map_or_else(Vec::new, |day| (0..day.len()).filter_map(|run| day.open(run)).collect());
-    (runs.first().map_or(u32::MAX, |run| run.first), runs)
+fn unpacked(days: &[Arc<PackedDay>], day: u32) -> Vec<IssueRun> {
+    let Ok(at) = days.binary_search_by_key(&day, |own| own.day) else { return Vec::new() };
+    (0..days[at].len()).filter_map(|run| days[at].open(run)).collect()
 }

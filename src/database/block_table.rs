@@ -21,6 +21,7 @@ use rusqlite::vtab::{
 
 use super::blocks::{AdsRow, AdsRun, BlockStore, PackedDay, Run, Seen};
 use super::by_customer::{ByCustomer, Indexes};
+use super::day_table::number_of;
 use super::issues::{self, IssueRow, IssueRun};
 use crate::world::events::UsageRows;
 use crate::world::identifiers::Group;
@@ -352,8 +353,9 @@ unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
         for ((at, value), letter) in values.iter().enumerate().zip(plan.unwrap_or_default().chars()) {
             let number = match value.data_type() {
                 Type::Integer | Type::Real => values.get::<f64>(at)?,
-                // No number equals NULL; how texts compare is left to SQLite, which checks again.
+                // Nothing equals NULL.
                 Type::Null => f64::NAN,
+                Type::Text => number_of(&values.get::<String>(at)?),
                 _ => continue,
             };
             if number.is_nan() {

@@ -3,6 +3,7 @@
 use std::sync::{Arc, RwLock};
 
 use super::by_customer::Indexes;
+use super::by_text::TextIndexes;
 use super::issues::IssueRun;
 use super::ledger::LedgerDay;
 use super::notices::Inbox;
@@ -157,6 +158,8 @@ pub(super) struct Seen {
     pub usage: Indexes<UsageRows>,
     pub ads: Indexes<AdsRun>,
     pub issues: Indexes<IssueRun>,
+    pub ledger_notes: TextIndexes,
+    pub notice_texts: TextIndexes,
 }
 
 impl Seen {
@@ -166,6 +169,8 @@ impl Seen {
         self.usage.clear();
         self.ads.clear();
         self.issues.clear();
+        self.ledger_notes.clear();
+        self.notice_texts.clear();
     }
 
     /// The store that is seen.

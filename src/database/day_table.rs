@@ -5,8 +5,10 @@
 #![expect(unsafe_code, reason = "rusqlite's traits of virtual tables are unsafe; see the safety comments")]
 
 use std::borrow::Cow;
+use std::cell::OnceCell;
 use std::ffi::{CStr, c_int};
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::sync::Arc;
 
 use rusqlite::Connection;
@@ -17,6 +19,7 @@ use rusqlite::vtab::{
 };
 
 use super::blocks::{BlockStore, Seen};
+use super::by_text::{ByText, TextIndexes, TextRow};
 use super::ledger::Ledger;
 use super::notices::Notifications;
 
@@ -56,8 +59,14 @@ pub(super) trait DayKind: Send + Sync + Sized + 'static {
     fn unpack(day: &Self::Day, kinds: Kinds) -> Self::Unpacked;
     /// Kind of the row at a place, by its position among all kinds.
     fn kind(day: &Self::Day, place: u64) -> usize;
-    /// Any of the columns after the third.
-    fn column(row: &RowAt<'_, Self>, column: c_int, context: &mut Context) -> rusqlite::Result<()>;
+    /// Column of the text, the last one.
+    const TEXT: c_int;
+    fn text<'a>(row: &RowAt<'a, Self>) -> Cow<'a, str>;
+    fn texts(seen: &Seen) -> &TextIndexes;
+    /// A column between the third and the last.
+    fn column(_: &RowAt<'_, Self>, _: c_int, _: &mut Context) -> rusqlite::Result<()> {
+        Ok(())
+    }
     /// Kinds that a comparison of a column after the third leaves; all where it says nothing about kinds.
     fn kinds_where(_column: c_int, _comparison: Comparison, _value: f64) -> Kinds {
         Kinds::MAX
@@ -117,10 +126,10 @@ struct Handled {
 }
 
 impl Handled {
-    fn of(column: c_int, operator: &IndexConstraintOp) -> Option<Handled> {
+    fn of(column: c_int, operator: &IndexConstraintOp, text: c_int) -> Option<Handled> {
         let comparison = Comparison::of(operator)?;
         let column = if column == ROW { NUMBER } else { column };
-        let useful = !matches!(column, NUMBER | KIND) || comparison == Comparison::Equal;
+        let useful = !(column == text || matches!(column, NUMBER | KIND)) || comparison == Comparison::Equal;
         (useful && (0..10).contains(&column)).then_some(Handled { column, comparison })
     }
 
@@ -191,14 +200,19 @@ unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
 
     fn best_index(&self, info: &mut IndexInfo) -> rusqlite::Result<bool> {
         let usable = info.constraints().enumerate().filter(|(_, constraint)| constraint.is_usable());
+        let is_text = |own: &Handled| own.column == KIND || own.column == K::TEXT;
         let handled: Vec<(usize, Handled)> = usable
             .filter_map(|(at, constraint)| {
-                Some((at, Handled::of(constraint.column(), &constraint.operator())?))
+                Some((at, Handled::of(constraint.column(), &constraint.operator(), K::TEXT)?))
             })
+            // Texts are found letter by letter, not as NOCASE compares them.
+            .filter(|(at, own)| !is_text(own) || info.collation(*at).is_ok_and(|own| own == "BINARY"))
             .collect();
-        for (argument, (at, _)) in (1..).zip(&handled) {
-            // SQLite checks the constraint again: a value of another type (3.5, '7') is compared its own way.
-            info.constraint_usage(*at).set_argv_index(argument);
+        for (argument, (at, own)) in (1..).zip(&handled) {
+            let mut usage = info.constraint_usage(*at);
+            usage.set_argv_index(argument);
+            // Which days and kinds equal a value is known for values of every type; the rest SQLite checks again.
+            usage.set_omit(own.comparison == Comparison::Equal && matches!(own.column, DAY | KIND));
         }
         let columns: Option<Vec<c_int>> =
             info.order_bys().map(|order| (!order.is_order_by_desc()).then(|| order.column())).collect();
@@ -209,7 +223,11 @@ unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
             own.map(|(_, own)| if own.comparison == Comparison::Equal { of_equal } else { of_other })
                 .fold(1.0, f64::min)
         };
-        let rows = 1e6 * share(NUMBER, 1e-6, 1.0) * share(DAY, 0.002, 0.3) * share(KIND, 0.3, 1.0);
+        let rows = 1e6
+            * share(NUMBER, 1e-6, 1.0)
+            * share(DAY, 0.002, 0.3)
+            * share(KIND, 0.3, 1.0)
+            * share(K::TEXT, 1e-5, 1.0);
         info.set_estimated_cost(rows);
         info.set_estimated_rows(rows as i64);
         info.set_idx_num(order.unwrap_or(Order::Numbers) as c_int);
@@ -221,11 +239,13 @@ unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
         Ok(DayCursor {
             base: ffi::sqlite3_vtab_cursor::default(),
             store: self.seen.store(),
+            seen: self.seen.clone(),
             passes: Vec::new(),
             pass: 0,
             place: 0,
-            unpacked: None,
+            unpacked: Vec::new(),
             only: None,
+            found: None,
             table: PhantomData,
         })
     }
@@ -239,18 +259,28 @@ struct Pass {
     kinds: Kinds,
 }
 
+impl Pass {
+    /// Whether the row at a place of its day is among its kinds.
+    fn has(self, day: &impl PackedRows, place: u64) -> bool {
+        day.next_among(self.kinds, place) == Some(place)
+    }
+}
+
 #[repr(C)]
 struct DayCursor<'vtab, K: DayKind> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab_cursor,
     store: BlockStore,
+    seen: Arc<Seen>,
     passes: Vec<Pass>,
     pass: usize,
     place: u64,
-    /// The day of a pass, once a row of it was found.
-    unpacked: Option<(usize, K::Unpacked)>,
+    /// What was packed of each day that was asked for; rows of an index are on any of them.
+    unpacked: Vec<OnceCell<K::Unpacked>>,
     /// Only the row with this number.
     only: Option<f64>,
+    /// Only these rows of an index, those that are still to come; positions of their days are those of the passes.
+    found: Option<(Arc<ByText>, Range<usize>)>,
     table: PhantomData<&'vtab DayTable<K>>,
 }
 
@@ -261,6 +291,15 @@ impl<K: DayKind> DayCursor<'_, K> {
 
     /// Moves on to the first row at or after the place that may be asked for.
     fn settle(&mut self) {
+        if let Some((index, rest)) = &mut self.found {
+            let rows = rest.map(|at| index.row(at)).map(|row| (row.day as usize, u64::from(row.place)));
+            let days = K::days(&self.store);
+            let next = rows
+                .filter(|(pass, place)| self.passes[*pass].has(&*days[self.passes[*pass].day], *place))
+                .next();
+            (self.pass, self.place) = next.unwrap_or((self.passes.len(), 0));
+            return;
+        }
         while let Some(pass) = self.passes.get(self.pass) {
             let day = &K::days(&self.store)[pass.day];
             let next = match self.only {
@@ -268,19 +307,41 @@ impl<K: DayKind> DayCursor<'_, K> {
                     let place = number - day.first() as f64;
                     let is_here =
                         place.fract() == 0.0 && place >= self.place as f64 && place < day.len() as f64;
-                    is_here.then_some(place as u64)
+                    is_here.then_some(place as u64).filter(|place| pass.has(&**day, *place))
                 }
                 None => day.next_among(pass.kinds, self.place),
             };
             if let Some(next) = next {
                 self.place = next;
-                if self.unpacked.as_ref().is_none_or(|(own, _)| *own != self.pass) {
-                    self.unpacked = Some((self.pass, K::unpack(day, pass.kinds)));
-                }
                 return;
+            }
+            if let Some(left) = self.unpacked.get_mut(pass.day) {
+                left.take();
             }
             (self.pass, self.place) = (self.pass + 1, 0);
         }
+    }
+
+    /// The row at a place of a day.
+    fn row_at(&self, day: usize, place: u64, kinds: Kinds) -> Option<RowAt<'_, K>> {
+        let of_day = &*K::days(&self.store)[day];
+        let unpacked = self.unpacked.get(day)?.get_or_init(|| K::unpack(of_day, kinds));
+        Some(RowAt { store: &self.store, day: of_day, unpacked, place })
+    }
+
+    /// Kinds that rows are read of.
+    fn kinds_of(&self, pass: &Pass) -> Kinds {
+        if self.found.is_some() { Kinds::MAX } else { pass.kinds }
+    }
+
+    /// Every row of some days with the hash of its text.
+    fn all_texts(&self, days: Range<usize>) -> Vec<TextRow> {
+        let rows = |day: usize| {
+            let row = move |place| self.row_at(day, place, Kinds::MAX).map(|row| (day, place, K::text(&row)));
+            (0..K::days(&self.store)[day].len()).filter_map(row)
+        };
+        let first = days.start;
+        days.flat_map(rows).map(|(day, place, text)| TextRow::of(&text, day - first, place)).collect()
     }
 
     /// What is to be looked through: days between two, these kinds, in this order.
@@ -312,7 +373,13 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
         values: &Filters<'_>,
     ) -> rusqlite::Result<()> {
         let (mut days, mut kinds) = ([f64::NEG_INFINITY, f64::INFINITY], Kinds::MAX);
-        (self.only, self.unpacked) = (None, None);
+        if self.found.is_none() {
+            // What a scan has unpacked may lack kinds that it was not asked for.
+            self.unpacked.clear();
+        }
+        (self.only, self.found) = (None, None);
+        self.unpacked.resize_with(K::days(&self.store).len(), OnceCell::new);
+        let mut wanted_text = None;
         let handled = plan.unwrap_or_default().as_bytes().chunks(2).filter_map(Handled::read);
         for ((at, value), Handled { column, comparison }) in values.iter().enumerate().zip(handled) {
             let number = match value.data_type() {
@@ -322,9 +389,18 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
                     kinds &= K::KINDS.iter().position(|own| *own == wanted).map_or(0, |at| 1 << at);
                     continue;
                 }
-                Type::Integer | Type::Real if column != KIND => values.get::<f64>(at)?,
-                // No number equals NULL; how texts compare is left to SQLite, which checks again.
+                Type::Text if column == K::TEXT => {
+                    wanted_text = Some(values.get::<String>(at)?);
+                    continue;
+                }
+                Type::Text if column != KIND => number_of(&values.get::<String>(at)?),
+                // Bytes are greater than every number.
+                Type::Blob if column != KIND && column != K::TEXT => f64::INFINITY,
+                Type::Integer | Type::Real if column != KIND && column != K::TEXT => values.get::<f64>(at)?,
+                // Nothing equals NULL.
                 Type::Null => f64::NAN,
+                // No kind is a number.
+                _ if column == KIND => f64::NAN,
                 _ => continue,
             };
             if number.is_nan() {
@@ -340,8 +416,18 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
         }
         let order = [Order::Numbers, Order::Kinds, Order::DaysAndKinds];
         let order = order.into_iter().find(|own| *own as c_int == order_number);
-        self.passes = self.passes(days, kinds, order.unwrap_or(Order::Numbers));
+        let order = order.unwrap_or(Order::Numbers);
+        self.passes = self.passes(days, kinds, order);
         (self.pass, self.place) = (0, 0);
+        if let (Some(text), Order::Numbers, Some(first)) = (wanted_text, order, self.passes.first()) {
+            let days = first.day..first.day + self.passes.len();
+            let rows = K::days(&self.store)[days.clone()].iter().map(|day| day.len()).sum();
+            let index = K::texts(&self.seen).get(&days, rows, || self.all_texts(days.clone()));
+            self.found = index.map(|index| {
+                let rows = index.rows_of(&text);
+                (index, rows)
+            });
+        }
         self.settle();
         Ok(())
     }
@@ -357,21 +443,29 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
     }
 
     fn column(&self, context: &mut Context, column: c_int) -> rusqlite::Result<()> {
-        let (Some(day), Some((_, unpacked))) = (self.day(), &self.unpacked) else { return Ok(()) };
+        let (Some(day), Some(pass)) = (self.day(), self.passes.get(self.pass)) else { return Ok(()) };
         match column {
             NUMBER => context.set_result((day.first() + self.place) as i64),
             DAY => context.set_result(day.day()),
             KIND => context.set_result(K::KINDS[K::kind(day, self.place)]),
-            other => {
-                let row = RowAt { store: &self.store, day, unpacked, place: self.place };
-                K::column(&row, other, context)
-            }
+            other => match self.row_at(pass.day, self.place, self.kinds_of(pass)) {
+                Some(row) if other == K::TEXT => context.set_result(&*K::text(&row)),
+                Some(row) => K::column(&row, other, context),
+                None => Ok(()),
+            },
         }
     }
 
     fn rowid(&self) -> rusqlite::Result<i64> {
         Ok(self.day().map_or(0, |day| (day.first() + self.place) as i64))
     }
+}
+
+/// What a column of numbers compares a text as: the number it looks like, or something greater than every number.
+pub(super) fn number_of(text: &str) -> f64 {
+    let text = text.trim_matches([' ', '\t', '\n', '\r', '\u{b}', '\u{c}']);
+    let is_number = text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte));
+    text.parse().ok().filter(|_| is_number).unwrap_or(f64::INFINITY)
 }
 
 #[cfg(test)]
@@ -437,6 +531,19 @@ mod tests {
             "notification_id > 9",
             "type IN ('lead_lost', 'market_discovery')",
             "message LIKE '%our offer%'",
+            "message = 'lost'",
+            "message = 'lost' AND type = 'deal_won'",
+            "message = 'LOST' COLLATE NOCASE",
+            "message = 7",
+            "type = 'LEAD_LOST' COLLATE NOCASE",
+            "type = x'00'",
+            "type = 'deal_won' AND rowid = 3",
+            "type = 'deal_won' AND rowid = 4",
+            "day = '3x'",
+            "day < 'x'",
+            "day > x'00'",
+            "day = x'00'",
+            "day >= ' 2 '",
         ];
         let orders = [
             "rowid",

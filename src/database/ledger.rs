@@ -1,13 +1,15 @@
 //! The ledger as compact days: most of its rows are costs of leads, which come in the order of their customers, and
 //! payments, which repeat few amounts.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ffi::{CStr, c_int};
 use std::sync::Arc;
 
 use rusqlite::vtab::Context;
 
-use super::blocks::{BlockStore, Packer, Unpacker};
+use super::blocks::{BlockStore, Packer, Seen, Unpacker};
+use super::by_text::TextIndexes;
 use super::day_table::{Comparison, DayKind, Kinds, PackedRows, RowAt};
 use crate::world::events::Category;
 
@@ -64,6 +66,8 @@ impl LedgerDay {
     /// A day without movements.
     pub fn of(day: u32, first: u64, lead_cost: f64) -> LedgerDay {
         let packed = Movements::default().packed();
+        // SQLite keeps no negative zero.
+        let lead_cost = lead_cost + 0.0;
         LedgerDay { day, first, lead_cost, packed, ..LedgerDay::default() }
     }
 
@@ -76,7 +80,7 @@ impl LedgerDay {
     /// Adds another movement.
     pub fn push(&mut self, category: Category, amount: f64, note: String) {
         let category = CATEGORIES.binary_search(&category.id()).unwrap_or_default() as u8;
-        self.others.push(OtherEntry { category, amount, note });
+        self.others.push(OtherEntry { category, amount: amount + 0.0, note });
     }
 
     /// As it stands in the file.
@@ -118,18 +122,18 @@ impl LedgerDay {
         (sound && unpacker.is_empty()).then_some(read)
     }
 
-    fn at(&self, place: u64) -> Entry<'_> {
+    fn at(&self, place: u64) -> Movement<'_> {
         let (leads, payments) = (u64::from(self.leads), u64::from(self.payments));
         match place {
-            place if place < leads => Entry::Lead(place as usize),
-            place if place < leads + payments => Entry::Payment((place - leads) as usize),
-            place => Entry::Other(&self.others[(place - leads - payments) as usize]),
+            place if place < leads => Movement::Lead(place as usize),
+            place if place < leads + payments => Movement::Payment((place - leads) as usize),
+            place => Movement::Other(&self.others[(place - leads - payments) as usize]),
         }
     }
 }
 
 /// What stands at a place of a day.
-enum Entry<'a> {
+enum Movement<'a> {
     Lead(usize),
     Payment(usize),
     Other(&'a OtherEntry),
@@ -213,7 +217,8 @@ impl DayKind for Ledger {
     type Day = LedgerDay;
     type Unpacked = Movements;
     const DECLARATION: &'static CStr =
-        c"CREATE TABLE x(id INTEGER, day INTEGER, category TEXT, amount REAL, note TEXT)";
+        c"CREATE TABLE x(id INTEGER NOT NULL, day INTEGER NOT NULL, category TEXT NOT NULL, amount REAL NOT NULL,
+        note TEXT)";
     const KINDS: &'static [&'static str] = &CATEGORIES;
 
     fn days(store: &BlockStore) -> &[Arc<LedgerDay>] {
@@ -229,22 +234,33 @@ impl DayKind for Ledger {
 
     fn kind(day: &LedgerDay, place: u64) -> usize {
         match day.at(place) {
-            Entry::Lead(_) => LEADS,
-            Entry::Payment(_) => PAYMENTS,
-            Entry::Other(own) => own.category.into(),
+            Movement::Lead(_) => LEADS,
+            Movement::Payment(_) => PAYMENTS,
+            Movement::Other(own) => own.category.into(),
         }
     }
 
-    fn column(row: &RowAt<'_, Self>, column: c_int, context: &mut Context) -> rusqlite::Result<()> {
+    const TEXT: c_int = 4;
+
+    fn text<'a>(row: &RowAt<'a, Self>) -> Cow<'a, str> {
         let Movements { leads, payments } = row.unpacked;
-        match (row.day.at(row.place), column) {
-            (Entry::Lead(_), AMOUNT) => context.set_result(row.day.lead_cost),
-            (Entry::Lead(at), _) => context.set_result(lead_note(leads[at])),
-            (Entry::Payment(at), AMOUNT) => context.set_result(payments[at].1),
-            (Entry::Payment(at), _) => context.set_result(payment_note(payments[at].0)),
-            (Entry::Other(own), AMOUNT) => context.set_result(own.amount),
-            (Entry::Other(own), _) => context.set_result(own.note.as_str()),
+        match row.day.at(row.place) {
+            Movement::Lead(at) => lead_note(leads[at]).into(),
+            Movement::Payment(at) => payment_note(payments[at].0).into(),
+            Movement::Other(own) => own.note.as_str().into(),
         }
+    }
+
+    fn texts(seen: &Seen) -> &TextIndexes {
+        &seen.ledger_notes
+    }
+
+    fn column(row: &RowAt<'_, Self>, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
+        context.set_result(match row.day.at(row.place) {
+            Movement::Lead(_) => row.day.lead_cost,
+            Movement::Payment(at) => row.unpacked.payments[at].1,
+            Movement::Other(own) => own.amount,
+        })
     }
 
     fn kinds_where(column: c_int, comparison: Comparison, value: f64) -> Kinds {
@@ -274,14 +290,14 @@ impl LedgerDay {
         (0..self.len()).map(move |place| {
             let number = self.first + place;
             match self.at(place) {
-                Entry::Lead(at) => {
+                Movement::Lead(at) => {
                     (number, CATEGORIES[LEADS], self.lead_cost, lead_note(movements.leads[at]))
                 }
-                Entry::Payment(at) => {
+                Movement::Payment(at) => {
                     let (customer, amount) = movements.payments[at];
                     (number, CATEGORIES[PAYMENTS], amount, payment_note(customer))
                 }
-                Entry::Other(own) => {
+                Movement::Other(own) => {
                     (number, CATEGORIES[usize::from(own.category)], own.amount, own.note.clone())
                 }
             }

@@ -12,6 +12,7 @@ pub(crate) mod text;
 mod block_table;
 mod blocks;
 mod by_customer;
+mod by_text;
 mod day_table;
 mod guard;
 mod help;

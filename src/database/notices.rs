@@ -4,12 +4,12 @@
 //! for a large company. They are kept as one fact a lead, in the order in which they began, and a day knows how many of
 //! them it repeats.
 
+use std::borrow::Cow;
 use std::ffi::{CStr, c_int};
 use std::sync::Arc;
 
-use rusqlite::vtab::Context;
-
-use super::blocks::{BlockStore, Packer, Unpacker};
+use super::blocks::{BlockStore, Packer, Seen, Unpacker};
+use super::by_text::TextIndexes;
 use super::day_table::{DayKind, Kinds, PackedRows, RowAt};
 use crate::world::events::{LossCause, Notice};
 
@@ -175,7 +175,8 @@ impl DayKind for Notifications {
     type Day = NoticeDay;
     type Unpacked = ();
     const DECLARATION: &'static CStr =
-        c"CREATE TABLE x(notification_id INTEGER, day INTEGER, type TEXT, message TEXT)";
+        c"CREATE TABLE x(notification_id INTEGER NOT NULL, day INTEGER NOT NULL, type TEXT NOT NULL,
+        message TEXT)";
     const KINDS: &'static [&'static str] = &TYPES;
 
     fn days(store: &BlockStore) -> &[Arc<NoticeDay>] {
@@ -191,11 +192,17 @@ impl DayKind for Notifications {
         }
     }
 
-    fn column(row: &RowAt<'_, Self>, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
+    const TEXT: c_int = 3;
+
+    fn text<'a>(row: &RowAt<'a, Self>) -> Cow<'a, str> {
         match row.day.at(row.place) {
-            Place::Own(at) => context.set_result(row.day.text_at(at)),
-            Place::Repeated(at) => context.set_result(row.store.inbox.losses[at].words()),
+            Place::Own(at) => row.day.text_at(at).into(),
+            Place::Repeated(at) => row.store.inbox.losses[at].words().into(),
         }
+    }
+
+    fn texts(seen: &Seen) -> &TextIndexes {
+        &seen.notice_texts
     }
 }
 

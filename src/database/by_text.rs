@@ -1,0 +1,118 @@
+//! Rows of packed days by their text, for statements that look up one text after the other: SQLite makes no index of its
+//! own for a virtual table.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::{Arc, Mutex};
+
+/// Bytes that the indexes of one statement may take together.
+const MOST_BYTES: usize = 256 << 20;
+/// Lookups in some days from which on an index of them is made: an index costs little more than two passes over them.
+const LOOKUPS: usize = 2;
+
+/// A row: position of its day in the store, place within the day.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct TextRow {
+    hash: u64,
+    pub day: u32,
+    pub place: u32,
+}
+
+impl TextRow {
+    pub fn of(text: &str, day: usize, place: u64) -> TextRow {
+        TextRow { hash: hash(text), day: day as u32, place: place as u32 }
+    }
+}
+
+/// Rows of some days, those of a text side by side in the order in which they stand. Other texts may be among them.
+pub(super) struct ByText(Vec<TextRow>);
+
+impl ByText {
+    fn of(mut rows: Vec<TextRow>) -> ByText {
+        rows.sort_unstable();
+        ByText(rows)
+    }
+
+    /// Where the rows stand that may have a text.
+    pub fn rows_of(&self, text: &str) -> Range<usize> {
+        let wanted = hash(text);
+        let first = self.0.partition_point(|row| row.hash < wanted);
+        first..first + self.0[first..].partition_point(|row| row.hash == wanted)
+    }
+
+    pub fn row(&self, at: usize) -> TextRow {
+        self.0[at]
+    }
+}
+
+/// FNV-1a: short texts that differ in their numbers.
+fn hash(text: &str) -> u64 {
+    text.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+}
+
+/// The indexes that the running statement has of one table, by the days they hold.
+#[derive(Default)]
+pub(super) struct TextIndexes(Mutex<BTreeMap<(usize, usize), TextLookups>>);
+
+#[derive(Default)]
+struct TextLookups {
+    count: usize,
+    rows: usize,
+    index: Option<Arc<ByText>>,
+}
+
+impl TextIndexes {
+    /// The index of some days with so many rows; none for the first lookups, and where it would take too much memory.
+    pub fn get(
+        &self,
+        days: &Range<usize>,
+        rows: u64,
+        make: impl FnOnce() -> Vec<TextRow>,
+    ) -> Option<Arc<ByText>> {
+        let mut all = self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let held: usize = all.values().map(|own| own.rows).sum();
+        let lookups = all.entry((days.start, days.end)).or_default();
+        lookups.count += 1;
+        let fits = (held as u64 + rows).saturating_mul(size_of::<TextRow>() as u64) <= MOST_BYTES as u64;
+        if lookups.index.is_none() && lookups.count > LOOKUPS && fits {
+            lookups.rows = rows as usize;
+            lookups.index = Some(Arc::new(ByText::of(make())));
+        }
+        lookups.index.clone()
+    }
+
+    /// Forgets all of them.
+    pub fn clear(&self) {
+        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_a_text_stand_in_their_order() {
+        let texts = [("b", 0, 1), ("a", 0, 0), ("b", 2, 0), ("a", 1, 7), ("c", 1, 8)];
+        let index =
+            ByText::of(texts.iter().map(|(text, day, place)| TextRow::of(text, *day, *place)).collect());
+        let found = |text: &str| -> Vec<(u32, u32)> {
+            index.rows_of(text).map(|at| index.row(at)).map(|row| (row.day, row.place)).collect()
+        };
+        assert_eq!((found("a"), found("b")), (vec![(0, 0), (1, 7)], vec![(0, 1), (2, 0)]));
+        assert!(found("d").is_empty());
+    }
+
+    #[test]
+    fn an_index_is_made_for_the_third_lookup_and_within_the_memory_allowed() {
+        let indexes = TextIndexes::default();
+        let get = |days: Range<usize>, rows: u64| {
+            indexes.get(&days, rows, || vec![TextRow::of("a", 0, 0)]).is_some()
+        };
+        assert_eq!([get(0..3, 1), get(0..3, 1), get(0..3, 1), get(0..4, 1)], [false, false, true, false]);
+        (0..3).for_each(|_| assert!(!get(0..9, 1 << 40)));
+        indexes.clear();
+        assert!(!get(0..3, 1));
+    }
+}

@@ -292,11 +292,12 @@ impl<K: DayKind> DayCursor<'_, K> {
     /// Moves on to the first row at or after the place that may be asked for.
     fn settle(&mut self) {
         if let Some((index, rest)) = &mut self.found {
-            let rows = rest.map(|at| index.row(at)).map(|row| (row.day as usize, u64::from(row.place)));
+            let mut rows = rest.map(|at| index.row(at)).map(|row| (row.day as usize, u64::from(row.place)));
             let days = K::days(&self.store);
-            let next = rows
-                .filter(|(pass, place)| self.passes[*pass].has(&*days[self.passes[*pass].day], *place))
-                .next();
+            let next = rows.find(|(pass, place)| {
+                let pass = self.passes[*pass];
+                pass.has(&*days[pass.day], *place)
+            });
             (self.pass, self.place) = next.unwrap_or((self.passes.len(), 0));
             return;
         }

@@ -8,17 +8,19 @@ use serde_json::{Map, Value};
 
 use super::posts::{self, Posts};
 use crate::report::WeekReport;
+use crate::report::fit::{Fit, fits};
 use crate::report::funnel::{Funnel, funnels};
+use crate::report::lead_costs::{PairCost, pair_costs};
 use crate::report::needs::{Need, needs};
 use crate::session::{
-    DeliveredQuality, ForecastScore, Forecasts, JournalEntry, Mode, Numbers, Observation, RunningStudy,
+    DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, Mode, Numbers, Observation, RunningStudy,
     Session, ToolLimits, WeekFigures,
 };
 use crate::tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,
     PriceList, ResearchProjects, ToolId,
 };
-use crate::world::identifiers::Group;
+use crate::world::identifiers::{ByGroup, Group};
 
 /// The company as a player may know it.
 #[derive(Debug, Clone)]
@@ -37,6 +39,12 @@ pub struct Company {
     pub week: Option<WeekReport>,
     /// The way of companies to a deal, by known group.
     pub funnels: Vec<Funnel>,
+    /// Every known group beside the plans.
+    pub fits: Vec<Fit>,
+    /// What leads cost, by channel and group.
+    pub lead_costs: Vec<PairCost>,
+    /// Figures of the groups for every week.
+    pub group_weeks: Arc<[ByGroup<GroupWeek>]>,
     /// What needs the person, the most urgent first.
     pub needs: Vec<Need>,
     /// What the last week put into the inbox: day and text.
@@ -96,6 +104,9 @@ impl Company {
             weeks: session.weeks().to_vec(),
             week: WeekReport::of_session(session),
             funnels: funnels(session),
+            fits: fits(session),
+            lead_costs: pair_costs(session.group_weeks()),
+            group_weeks: session.group_weeks().into(),
             needs: needs(session),
             notices: session.notices().to_vec(),
             quality: session.delivered_quality(),
@@ -127,6 +138,11 @@ impl Company {
     /// Whether the run is a baseline.
     pub fn is_baseline(&self) -> bool {
         self.seen.mode == Mode::Baseline
+    }
+
+    /// A known group beside the plans.
+    pub fn fit(&self, group: Group) -> Option<&Fit> {
+        self.fits.iter().find(|fit| fit.group == group)
     }
 
     /// A present argument of a tool as a number, 0 if it has none.

@@ -1,7 +1,7 @@
 //! The way of companies to a deal, by group: who came, who found a plan good enough to ask for an offer, who signed.
 
+use super::fit::{Beside, TruthRange};
 use super::words::{count, whole};
-use crate::notation::percent;
 use crate::session::{DeliveredQuality, Estimates, GroupWeek, Session};
 use crate::world::identifiers::{ByGroup, Group, Plan};
 
@@ -20,10 +20,14 @@ pub struct Funnel {
     pub turned_away_lately: u32,
     /// The plan that delivers most to the group, and how much.
     pub best: Option<(Plan, f64)>,
-    /// Its quota, and what the smallest company would use, units a day.
-    pub quota: (f64, f64),
-    /// Estimated floor of the group, and the largest relative error of the estimates.
-    pub floor: (f64, f64),
+    /// Its quota, units a day.
+    pub quota: f64,
+    /// What the smallest company would use, units a day.
+    pub usage: TruthRange,
+    /// Mean floor of the group.
+    pub floor: TruthRange,
+    /// Day that the floor is of.
+    pub as_of: u32,
 }
 
 /// Every known group of companies, in their fixed order.
@@ -58,8 +62,10 @@ fn funnel(
         signed: sum(|week| week.signed),
         turned_away_lately: sum_of(lately, |week| week.leads - week.asked),
         best,
-        quota: (best.map_or(0.0, |(plan, _)| quotas[plan.index()]), own.account_usage()),
-        floor: (own.floor, own.noise),
+        quota: best.map_or(0.0, |(plan, _)| quotas[plan.index()]),
+        usage: own.account_range().into(),
+        floor: TruthRange::behind(own.floor, own.noise),
+        as_of: own.as_of,
     }
 }
 
@@ -80,15 +86,13 @@ impl Funnel {
             whole(f64::from(self.signed))
         );
         if let Some((plan, delivered)) = self.best.filter(|_| self.turned_away_lately > 0) {
-            let ((quota, usage), (floor, noise)) = (self.quota, self.floor);
-            let error = percent(noise, 0);
-            text += &format!("; {plan} delivers {delivered:.4}, their floor is about {floor:.3} (±{error})");
-            if quota < usage {
+            let (floor, day) = (self.floor.quality(), self.as_of);
+            text += &format!("; {plan} delivers {delivered:.4}, their mean floor is {floor} (as of day {day})");
+            if self.usage.beside(self.quota) != Beside::Above {
                 text += &format!(
-                    ", and its quota of {} covers {} of the use of a small company, about {} (±{error})",
-                    whole(quota),
-                    percent(quota / usage, 0),
-                    whole(usage)
+                    ", and its quota of {} stands against {} units a day of the smallest companies",
+                    whole(self.quota),
+                    self.usage.units()
                 );
             }
         }
@@ -157,6 +161,6 @@ mod tests {
         let away = all.iter().find(|own| own.turned_away() > 0).expect("some");
         assert!(away.in_words().contains("found no plan good enough"), "{}", away.in_words());
         let lately = all.iter().find(|own| own.turned_away_lately > 0).expect("some, lately");
-        assert!(lately.in_words().contains(" delivers ") && lately.in_words().contains("floor is about"));
+        assert!(lately.in_words().contains(" delivers ") && lately.in_words().contains("floor is "));
     }
 }

@@ -6,10 +6,12 @@
 
 pub(crate) mod books;
 pub(crate) mod chapters;
+pub(crate) mod fit;
 pub(crate) mod funnel;
 pub(crate) mod highlights;
 pub(crate) mod html;
 pub(crate) mod logbook;
+pub(crate) mod lead_costs;
 mod markdown;
 pub(crate) mod measures;
 mod movement;

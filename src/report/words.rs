@@ -38,6 +38,14 @@ pub fn number(value: f64) -> String {
     grouped(value, if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 })
 }
 
+/// From the least to the greatest, rounded outward: `18 to 87`.
+pub fn range(least: f64, most: f64, decimals: usize) -> String {
+    let unit = (0..decimals).fold(1.0, |unit, _| unit * 10.0);
+    // What is a whole number of units but for the last bits is one.
+    let (least, most) = ((least * unit + 1e-9).floor() / unit, (most * unit - 1e-9).ceil() / unit);
+    format!("{} to {}", grouped(least, decimals), grouped(most, decimals))
+}
+
 /// A count with its noun: `1 week`, `3 weeks`.
 pub fn count(number: u32, noun: &str) -> String {
     let plural = match noun.strip_suffix("ny") {
@@ -83,6 +91,8 @@ mod tests {
             [tick(1_500_000.0), tick(200_000.0), tick(0.0), tick(120.0)],
             ["1.5M", "200k", "0", "120"]
         );
+        assert_eq!(range(30.3 / 1.65, 30.3 / 0.35, 0), "18 to 87");
+        assert_eq!(range(0.2, 0.4, 3), "0.200 to 0.400");
         assert_eq!(dollar_tick(-2_000_000.0), "-$2M");
         assert_eq!([number(12.0), number(0.25)], ["12", "0.25"]);
     }

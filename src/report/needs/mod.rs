@@ -4,6 +4,7 @@
 //! arguments are proposed, a thread, a group, the books. Where a proposal follows from a formula that the tools
 //! document, the need names its amount. In a baseline run nothing is proposed: its player gets no advice.
 
+mod advertising;
 mod money;
 mod people;
 mod selling;
@@ -18,7 +19,7 @@ use crate::session::{
     CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Mode, Observation, Session, ToolLimits,
     WeekFigures,
 };
-use crate::world::identifiers::{ByGroup, Group};
+use crate::world::identifiers::{ByGroup, Channel, Group};
 
 /// What is wrong. Of two needs with the same money at risk the one that stands first here comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -47,6 +48,8 @@ pub enum Problem {
     Churn(Group),
     /// Companies of a group find no plan good enough at any price.
     Unwanted(Group),
+    /// Leads of a group have become dear in a channel.
+    LeadCost(Channel, Group),
     /// Usage will soon be above capacity.
     Capacity,
 }
@@ -67,6 +70,7 @@ impl Problem {
             Problem::Backlog => "backlog",
             Problem::Churn(_) => "churn",
             Problem::Unwanted(_) => "unwanted",
+            Problem::LeadCost(..) => "lead_cost",
             Problem::Capacity => "capacity",
         }
     }
@@ -190,7 +194,8 @@ pub fn needs(session: &Session) -> Vec<Need> {
     found.extend(selling::nothing_on_sale(&situation));
     found.extend(selling::no_leads(&situation));
     found.extend(selling::no_sales(&situation));
-    found.extend(selling::unwanted(&situation));
+    found.extend(advertising::unwanted(&situation));
+    found.extend(advertising::lead_costs(&situation));
     found.extend(money::margin(&situation));
     found.extend(service::capacity(&situation));
     found.extend(service::outages(&situation));

@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::{AHEAD, MONTH, Need, Place, Problem, Situation, rounded_up};
 use crate::notation::{cents, json_number, percent};
+use crate::report::fit::TruthRange;
 use crate::report::words::{count, money, whole};
 use crate::session::ToolId;
 use crate::session::{DeliveredQuality, Estimates, GroupWeek};
@@ -13,8 +14,6 @@ use crate::world::identifiers::{Channel, Group, Plan};
 const ENOUGH_LEADS: u32 = 20;
 /// Share of the leads below which few sign.
 const FEW: f64 = 0.1;
-/// Companies of four weeks from which on it counts that none asks.
-const ENOUGH_COMPANIES: u32 = 3;
 /// Share of the estimated use that a quota must cover.
 const COVERED: f64 = 0.8;
 /// Dollars a day of a first try of a channel.
@@ -33,7 +32,7 @@ pub(super) fn nothing_on_sale(situation: &Situation<'_>) -> Option<Need> {
         return None;
     }
     let all = empty.len() == priced.len();
-    let most = situation.individuals().map(|own| (own.range(own.usage).1, own.group));
+    let most = situation.individuals().map(|own| (own.account_range().1, own.group));
     let (use_a_day, group) = most.max_by(|left, right| left.0.total_cmp(&right.0))?;
     let quota = rounded_up(use_a_day);
     let arguments: Map<String, Value> = Plan::ALL
@@ -74,11 +73,14 @@ fn no_price(situation: &Situation<'_>) -> Need {
         .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
         .collect();
     let told: Vec<String> =
-        budgets.iter().map(|own| format!("{} {}", own.group, money(own.budget))).collect();
+        budgets
+        .iter()
+        .map(|own| format!("{} {}", own.group, TruthRange::behind(own.budget, own.noise).money()))
+        .collect();
     Need {
         problem: Problem::NoPrice,
         text: "no plan has a price: nobody can subscribe".to_owned(),
-        proposal: Some(format!("estimated budgets a month: {}; the form proposes half", told.join(", "))),
+        proposal: Some(format!("budgets a month as far as known: {}; the form proposes half of the estimates", told.join(", "))),
         place: Place::Call(ToolId::SetPrices, Value::Object(prices)),
         at_risk: situation.commitments_ahead() + situation.revenue_ahead(),
         urgent: true,
@@ -136,7 +138,7 @@ fn within_reach(situation: &Situation<'_>, group: Group) -> f64 {
 
 /// What keeps the leads of a group from a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Missing {
+pub(super) enum Missing {
     Price,
     Quota,
     Quality,
@@ -180,7 +182,7 @@ fn no_sale(situation: &Situation<'_>, own: &Estimates, week: &GroupWeek) -> Opti
 }
 
 /// What is on offer to a group, beside what is known of it.
-struct Offers<'a> {
+pub(super) struct Offers<'a> {
     situation: &'a Situation<'a>,
     own: &'a Estimates,
     quality: &'a DeliveredQuality,
@@ -221,7 +223,7 @@ impl Offers<'_> {
         })
     }
 
-    fn missing(&self) -> Missing {
+    pub(super) fn missing(&self) -> Missing {
         match self.best() {
             None => Missing::Price,
             Some(plan) if self.covered(plan) < COVERED => Missing::Quota,
@@ -237,9 +239,10 @@ impl Offers<'_> {
     }
 
     /// What is missing in words, what would mend it, and where.
-    fn remedy(&self, missing: Missing) -> Option<(String, String, Place)> {
+    pub(super) fn remedy(&self, missing: Missing) -> Option<(String, String, Place)> {
         let (own, group) = (self.own, self.own.group);
-        let error = percent(own.noise, 0);
+        let floor = TruthRange::behind(own.floor, own.noise).quality();
+        let as_of = format!("as of day {}", own.as_of);
         match missing {
             Missing::Price => {
                 let least = own.range(own.budget).0;
@@ -248,17 +251,17 @@ impl Offers<'_> {
                     self.plans().min_by(|left, right| self.price(*left).total_cmp(&self.price(*right)))?;
                 Some((
                     format!(
-                        "price: the lowest, {} for {plan}, is above their budget of about {} (±{error})",
+                        "price: the lowest, {} for {plan}, against a mean budget of {} ({as_of})",
                         money(self.price(plan)),
-                        money(own.budget)
+                        TruthRange::behind(own.budget, own.noise).money()
                     ),
-                    format!("{} is within even the lowest budget of that estimate", money(price)),
+                    format!("{} is within even the lowest of that range", money(price)),
                     Place::Call(ToolId::SetPrices, json!({ plan.id(): json_number(price) })),
                 ))
             }
             Missing::Quota => {
                 let plan = self.best()?;
-                let quota = rounded_up(own.range(own.account_usage()).1);
+                let quota = rounded_up(own.account_range().1);
                 let quotas: Map<String, Value> = Plan::ALL
                     .into_iter()
                     .map(|of| {
@@ -268,13 +271,12 @@ impl Offers<'_> {
                     .collect();
                 Some((
                     format!(
-                        "quota: {} units a day on {plan} cover {} of the use{} of about {} (±{error})",
+                        "quota: {} units a day on {plan} against a mean use{} of {}",
                         whole(self.situation.settings.quotas[plan].units()),
-                        percent(self.covered(plan), 0),
-                        if group.is_enterprise() { " of a small company" } else { "" },
-                        whole(own.account_usage())
+                        if group.is_enterprise() { " of the smallest companies" } else { "" },
+                        TruthRange::from(own.account_range()).units()
                     ),
-                    format!("{} units a day cover even the largest use of that estimate", whole(quota)),
+                    format!("{} units a day cover even the largest of that range", whole(quota)),
                     Place::Call(ToolId::SetUsageQuotas, Value::Object(quotas)),
                 ))
             }
@@ -282,8 +284,7 @@ impl Offers<'_> {
                 let plan = self.best()?;
                 let delivered = self.quality.by_plan[plan];
                 let told = format!(
-                    "quality: the best for them, {delivered:.4} on {plan}, is below their floor of about {:.3} (±{error})",
-                    own.floor
+                    "quality: the best for them, {delivered:.4} on {plan}, against a mean floor of {floor} ({as_of})"
                 );
                 let (proposal, place) = better_quality(self.situation, group, plan, delivered, own.floor)?;
                 Some((told, proposal, place))
@@ -294,9 +295,8 @@ impl Offers<'_> {
                 let plan = self.best()?;
                 let delivered = self.quality.by_plan[plan];
                 let problem = format!(
-                    "{plan} delivers {delivered:.4} for {}; their floor of about {:.3} (±{error}) rises with the price",
-                    money(self.price(plan)),
-                    own.floor
+                    "{plan} delivers {delivered:.4} for {}; their mean floor, {floor} ({as_of}), rises with the price",
+                    money(self.price(plan))
                 );
                 let remedy = "only a lower price or a higher quality can win them";
                 Some(match better_model(self.situation, group, plan, delivered, delivered) {
@@ -366,63 +366,4 @@ fn better_quality(
         ),
         Place::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": { group.id(): DOLLARS } })),
     ))
-}
-
-/// Groups of companies that ads bring and none of which asks for an offer.
-pub(super) fn unwanted(situation: &Situation<'_>) -> Vec<Need> {
-    let recent = &situation.groups[situation.groups.len().saturating_sub(4)..];
-    let enterprises = situation.estimates.iter().filter(|own| own.group.is_enterprise());
-    let paid = enterprises.filter(|own| situation.ads_by_group[own.group] > 0.0);
-    let unwanted = paid.filter_map(|own| {
-        let came: u32 = recent.iter().map(|week| week[own.group].leads).sum();
-        let asked: u32 = recent.iter().map(|week| week[own.group].asked).sum();
-        if came < ENOUGH_COMPANIES || asked > 0 {
-            return None;
-        }
-        let offers = Offers { situation, own, quality: situation.quality(own.group)? };
-        let ads = situation.ads_by_group[own.group];
-        let text = format!(
-            "{}: {} came in {} and none asked for an offer, while ads for them cost {} a day",
-            own.group,
-            count(came, "company"),
-            count(recent.len() as u32, "week"),
-            money(ads)
-        );
-        // Nothing on sale now is known to fail them: what can be named is what the ads cost.
-        let (told, proposal, place) = match offers.missing() {
-            missing @ (Missing::Quota | Missing::Quality) => {
-                let (told, proposal, place) = offers.remedy(missing)?;
-                (format!("{text}; {told}"), Some(proposal), place)
-            }
-            Missing::Price | Missing::Balance => {
-                let saved = format!("without these ads {} a day stay in cash", money(ads));
-                (text, Some(saved), without_ads(situation, own.group))
-            }
-        };
-        Some(Need {
-            problem: Problem::Unwanted(own.group),
-            text: told,
-            proposal,
-            place,
-            at_risk: ads * AHEAD,
-            urgent: false,
-        })
-    });
-    unwanted.collect()
-}
-
-/// The form of advertising without the budgets of a group.
-fn without_ads(situation: &Situation<'_>, group: Group) -> Place {
-    let mut spend = situation.session.settings().targeted_ads.targeted_spend.clone();
-    spend.values_mut().for_each(|groups| {
-        groups.entry(group).and_modify(|dollars| *dollars = 0.0);
-    });
-    let spend: Map<String, Value> = spend
-        .iter()
-        .map(|(channel, groups)| {
-            let groups = groups.iter().map(|(group, dollars)| (group.id().to_owned(), json_number(*dollars)));
-            (channel.id().to_owned(), Value::Object(groups.collect()))
-        })
-        .collect();
-    Place::Call(ToolId::SetTargetedAdSpend, json!({ "targeted_spend": spend }))
 }

@@ -1,7 +1,9 @@
 //! What studies say of a group, as numbers: what get_group_insights answers, without its words.
 
+use crate::session::play::simulation::Simulation;
 use crate::session::state::Session;
 use crate::tools::GetGroupInsights;
+use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
 
 /// Estimates of a group. The truth at the time of the study lies within a relative error of each.
@@ -11,6 +13,8 @@ pub struct Estimates {
     pub group: Group,
     /// Level of knowledge, 1..=5.
     pub level: u8,
+    /// Day that budget, floor and size of the market are of: that of the last study, or on which the group was found.
+    pub as_of: u32,
     /// Largest relative error, 0..1.
     pub noise: f64,
     /// Mean budget, dollars a month, of companies per seat.
@@ -31,7 +35,31 @@ impl Estimates {
 
     /// Least and greatest truth behind an estimated value.
     pub fn range(&self, value: f64) -> (f64, f64) {
-        (value / (1.0 + self.noise), value / (1.0 - self.noise).max(f64::EPSILON))
+        truth_behind(value, self.noise)
+    }
+
+    /// Least and greatest units a day behind the estimates that the smallest account uses.
+    pub fn account_range(&self) -> (f64, f64) {
+        let ((least, most), (fewest, seats)) = (self.range(self.usage), self.range(self.seats.0));
+        // People have one seat, whatever the error.
+        if self.group.is_enterprise() { (least * fewest, most * seats) } else { (least, most) }
+    }
+}
+
+/// Least and greatest truth behind an estimate that is off by at most a share: it is the truth times 1 ± share.
+pub fn truth_behind(estimate: f64, share: f64) -> (f64, f64) {
+    let from = estimate / (1.0 + share);
+    let to = if share < 1.0 { estimate / (1.0 - share) } else { f64::INFINITY };
+    (from.min(to), from.max(to))
+}
+
+/// Least and greatest mean floor of a group behind its estimate; none while it is unknown.
+pub(super) fn floor_of(group: Group, simulation: &Simulation) -> Option<(f64, f64)> {
+    match simulation.resolve(Command::ReadInsights(group)) {
+        ResolvedCommand::ReadInsights(Some(insights)) => {
+            Some(truth_behind(insights.quality_floor, insights.noise))
+        }
+        _ => None,
     }
 }
 
@@ -46,6 +74,7 @@ impl Session {
             Some(Estimates {
                 group,
                 level,
+                as_of: self.simulation.world.market.knowledge[group].snapshot?.day,
                 noise: terms.level(level)?.noise,
                 budget: estimates.willingness_to_pay,
                 usage: estimates.usage_volume,
@@ -62,6 +91,19 @@ mod tests {
     use super::*;
     use crate::session::folder::configuration::Configuration;
     use crate::session::folder::create::{NewRun, Storage};
+
+    #[test]
+    fn the_truth_lies_inside_the_range_whatever_the_noise_was() {
+        for share in [0.65, 0.4, 0.05] {
+            for draw in [-1.0, -0.3, 0.0, 0.8, 1.0] {
+                let truth = 20.0;
+                let (from, to) = truth_behind(truth * (1.0 + share * draw), share);
+                assert!(from <= truth + 1e-9 && truth <= to + 1e-9, "{share} {draw}: {from} {to}");
+            }
+        }
+        assert_eq!(truth_behind(0.0, 0.4), (0.0, 0.0));
+        assert_eq!(truth_behind(14.0, 0.4), (10.0, 14.0 / 0.6));
+    }
 
     #[test]
     fn estimates_are_those_of_the_tool_and_their_range_holds_the_mean() {

@@ -2,16 +2,36 @@
 
 use std::collections::BTreeMap;
 
+use super::dashboard::delivered_quality;
+use super::estimates::floor_of;
+use crate::session::play::simulation::Simulation;
 use crate::world::canonical::canonical;
-use crate::world::events::{DayFigures, Facts, SubscriptionStatus};
-use crate::world::identifiers::{ByGroup, ByPlan, Group};
+use crate::world::events::{Arrival, DayFigures, Facts, SubscriptionStatus};
+use crate::world::identifiers::{ByChannel, ByGroup, ByPlan, Group};
 use crate::world::state::World;
+
+/// What advertising of a group through a channel brought.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PaidLeads {
+    /// Customers who came through it.
+    pub leads: u32,
+    /// Dollars spent on it.
+    pub spend: f64,
+    /// Individuals among the customers who were billed: they pay on the day they sign up.
+    pub billed: u32,
+}
+
+canonical! { PaidLeads { leads, spend, billed } }
 
 /// Figures of a group in a week.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GroupWeek {
     /// Customers who came.
     pub leads: u32,
+    /// Those of them who came by word of mouth; the others came through channels.
+    pub word_of_mouth: u32,
+    /// What advertising brought, by channel.
+    pub paid: ByChannel<PaidLeads>,
     /// Companies among them that opened a thread; the others found no plan good enough at any price.
     pub asked: u32,
     /// Individuals who signed up, or companies whose first deal was accepted.
@@ -28,11 +48,25 @@ pub struct GroupWeek {
     pub subscribers: ByPlan<u32>,
     /// What they pay at its end, dollars a month.
     pub revenue: ByPlan<f64>,
+    /// Quality delivered at its end; none while the group is unknown.
+    pub quality: Option<ByPlan<f64>>,
+    /// Least and greatest mean floor of the group behind the estimate at its end; none while the group is unknown.
+    pub floor: Option<(f64, f64)>,
 }
 
-canonical! { GroupWeek { leads, asked, signed, chosen, left, usage, last_usage, subscribers, revenue } }
+canonical! {
+    GroupWeek {
+        leads, word_of_mouth, paid, asked, signed, chosen, left, usage, last_usage, subscribers, revenue, quality,
+        floor,
+    }
+}
 
 impl GroupWeek {
+    /// Customers who came through channels.
+    pub fn paid_leads(&self) -> u32 {
+        self.leads - self.word_of_mouth
+    }
+
     /// Of the leads, those who signed; none without leads.
     pub fn conversion(&self) -> Option<f64> {
         (self.leads > 0).then(|| f64::from(self.signed) / f64::from(self.leads))
@@ -46,18 +80,28 @@ pub(in crate::session) fn count(
     facts: &Facts,
     world: &World,
 ) {
-    let came: BTreeMap<u32, Group> =
-        facts.arrivals.iter().map(|arrival| (arrival.customer, arrival.group)).collect();
-    for group in came.values() {
-        week[*group].leads += 1;
+    let came: BTreeMap<u32, &Arrival> =
+        facts.arrivals.iter().map(|arrival| (arrival.customer, arrival)).collect();
+    for arrival in came.values() {
+        let own = &mut week[arrival.group];
+        own.leads += 1;
+        own.word_of_mouth += u32::from(arrival.source.channel().is_none());
+    }
+    for pair in &facts.channel_leads {
+        let paid = &mut week[pair.group].paid[pair.channel];
+        paid.leads += pair.leads;
+        paid.spend += pair.spend;
     }
     for opening in &facts.openings {
-        let Some(group) = came.get(&opening.customer) else { continue };
-        let own = &mut week[*group];
+        let Some(arrival) = came.get(&opening.customer) else { continue };
+        let own = &mut week[arrival.group];
         match opening.status {
             SubscriptionStatus::Lead => own.asked += 1,
             SubscriptionStatus::Subscribed => {
                 own.signed += 1;
+                if let Some(channel) = arrival.source.channel() {
+                    own.paid[channel].billed += 1;
+                }
                 if let Some(plan) = opening.plan {
                     own.chosen[plan] += 1;
                 }
@@ -83,7 +127,12 @@ pub(in crate::session) fn count(
 }
 
 /// Settles what is counted at the end of a week.
-pub(in crate::session) fn settle(week: &mut ByGroup<GroupWeek>, world: &World) {
+pub(in crate::session) fn settle(week: &mut ByGroup<GroupWeek>, simulation: &Simulation) {
+    let world = &simulation.world;
+    for own in delivered_quality(world, &simulation.params) {
+        week[own.group].quality = Some(own.by_plan);
+        week[own.group].floor = floor_of(own.group, simulation);
+    }
     for (group, block) in world.customers.blocks().filter(|(group, _)| !group.is_enterprise()) {
         for (plan, price) in block.plan.iter().zip(&block.effective_price) {
             week[group].subscribers[*plan] += 1;

@@ -117,10 +117,11 @@ impl History {
     /// Ends the figures of the days that ran, and the week if it is complete.
     pub(in crate::session) fn settle(
         &mut self,
-        Simulation { params, world, .. }: &Simulation,
+        simulation: &Simulation,
         opening_cash: f64,
         open_issues: u32,
     ) -> WeekFigures {
+        let Simulation { params, world, .. } = simulation;
         let before = self.weeks.last().map_or(opening_cash, |week| week.cash);
         self.running_week.cash_change = world.finance.cash - before;
         self.running_week.open_issues = open_issues;
@@ -129,7 +130,7 @@ impl History {
             self.weeks.push(figures);
             self.running_week = WeekFigures::default();
             let mut groups = std::mem::take(&mut self.running_groups);
-            groups::settle(&mut groups, world);
+            groups::settle(&mut groups, simulation);
             self.group_weeks.push(groups);
         }
         self.decisions.push(Decisions {

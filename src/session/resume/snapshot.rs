@@ -32,7 +32,7 @@ use crate::tools::Notebook;
 use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
 use crate::world::params::Params;
 
-const TITLE: &[u8] = b"novamind snapshot 4\n";
+const TITLE: &[u8] = b"novamind snapshot 5\n";
 const DIGEST: usize = blake3::OUT_LEN;
 /// Name of the file in a run's folder.
 pub(in crate::session) const FILE: &str = "snapshot.bin";

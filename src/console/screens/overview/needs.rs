@@ -8,6 +8,7 @@ use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
+use crate::console::screens::customers::costs;
 use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::theme::Role;
@@ -129,6 +130,9 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
         Problem::NoLeads => ("lead", None),
         Problem::NoSales(group) => ("conversion", Some(leads_of(group.id()))),
         Problem::Unwanted(group) => ("delivered-quality", Some(leads_of(group.id()))),
+        Problem::LeadCost(channel, group) => {
+            ("cost-per-lead", Some(costs::statement(channel, group)))
+        }
         Problem::Margin => ("gross-margin", None),
         Problem::Overload | Problem::Capacity => {
             ("overload", Some(days("day, total_usage_units, capacity_units, capacity_tier")))

@@ -1,0 +1,355 @@
+//! Fit: what a group is known to want beside what the plans offer it. Studies give the means of a group within an error,
+//! so a figure of ours lies below, inside or above the range of the truth; what is missing is said as far as that goes.
+
+use super::words::{range, whole};
+use crate::notation::{cents, dollars, grouped, percent};
+use crate::session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, truth_behind};
+use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
+
+/// Weeks that are recent.
+const RECENT: usize = 4;
+
+/// Least and greatest truth behind an estimate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TruthRange {
+    /// Least.
+    pub least: f64,
+    /// Greatest.
+    pub most: f64,
+}
+
+/// Where a figure lies beside the range of a truth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beside {
+    /// Below all of it.
+    Below,
+    /// Inside: the truth can be on either side.
+    Inside,
+    /// Above all of it.
+    Above,
+}
+
+impl TruthRange {
+    /// Behind an estimate that is off by at most a share.
+    pub fn behind(estimate: f64, share: f64) -> TruthRange {
+        truth_behind(estimate, share).into()
+    }
+
+    /// Where a figure lies; at an end it lies inside.
+    pub fn beside(&self, figure: f64) -> Beside {
+        match figure {
+            figure if figure < self.least => Beside::Below,
+            figure if figure > self.most => Beside::Above,
+            _ => Beside::Inside,
+        }
+    }
+
+    /// As a quality: `0.181 to 0.858`.
+    pub fn quality(&self) -> String {
+        range(self.least, self.most, 3)
+    }
+
+    /// As dollars: `$18 to $87`.
+    pub fn money(&self) -> String {
+        format!("${} to ${}", grouped(self.least.floor(), 0), grouped(self.most.ceil(), 0))
+    }
+
+    /// As units: `180 to 841`.
+    pub fn units(&self) -> String {
+        range(self.least, self.most, 0)
+    }
+}
+
+impl From<(f64, f64)> for TruthRange {
+    fn from((least, most): (f64, f64)) -> TruthRange {
+        TruthRange { least, most }
+    }
+}
+
+/// What stands between a group and a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Concern {
+    /// The list price beside the budget.
+    Price,
+    /// Delivered quality beside the floor.
+    Quality,
+    /// The quota beside the use.
+    Quota,
+}
+
+impl Concern {
+    /// All of them, in the order in which they are told.
+    pub const ALL: [Concern; 3] = [Concern::Price, Concern::Quality, Concern::Quota];
+
+    /// Word for it.
+    pub fn id(self) -> &'static str {
+        match self {
+            Concern::Price => "price",
+            Concern::Quality => "quality",
+            Concern::Quota => "quota",
+        }
+    }
+}
+
+/// A plan as a group meets it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanFit {
+    /// Plan.
+    pub plan: Plan,
+    /// List price, dollars a month; 0 while it is not on sale.
+    pub list: f64,
+    /// What a lead compares with its budget: list price less the promotion for leads that every channel brings. Companies
+    /// negotiate theirs.
+    pub price: f64,
+    /// What a subscriber is billed: list price less the promotion in force.
+    pub billed: f64,
+    /// Delivered quality.
+    pub quality: f64,
+    /// Units a day and account.
+    pub quota: f64,
+}
+
+/// How leads of a group fared in some weeks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LeadFlow {
+    /// Customers who came.
+    pub leads: u32,
+    /// Those who came through channels.
+    pub paid: u32,
+    /// Those who came by word of mouth.
+    pub word_of_mouth: u32,
+    /// Individuals who signed up, and companies whose first deal was accepted.
+    pub signed: u32,
+}
+
+/// A known group beside the plans.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// Group.
+    pub group: Group,
+    /// Level of knowledge.
+    pub level: u8,
+    /// Largest relative error of its estimates.
+    pub noise: f64,
+    /// Day that floor and budget are of.
+    pub as_of: u32,
+    /// Days since.
+    pub age: u32,
+    /// Mean floor of the group: the least quality that is accepted, before it rises with the price.
+    pub floor: TruthRange,
+    /// Mean budget, dollars a month, of companies a seat.
+    pub budget: TruthRange,
+    /// Mean use of a customer, units a day; of companies that of the smallest.
+    pub usage: TruthRange,
+    /// The plans.
+    pub plans: ByPlan<PlanFit>,
+    /// The last week; none before the first.
+    pub last_week: Option<LeadFlow>,
+    /// The last four weeks.
+    pub recent: LeadFlow,
+}
+
+/// Every known group, in their fixed order.
+pub fn fits(session: &Session) -> Vec<Fit> {
+    let (quality, weeks) = (session.delivered_quality(), session.group_weeks());
+    let delivered = |group: Group| quality.iter().find(|own| own.group == group);
+    let of = |own: &Estimates| {
+        Some(fit(own, delivered(own.group)?, session.settings(), weeks, session.day()))
+    };
+    session.estimates().iter().filter_map(of).collect()
+}
+
+fn fit(
+    own: &Estimates,
+    quality: &DeliveredQuality,
+    settings: &Settings,
+    weeks: &[ByGroup<GroupWeek>],
+    day: u32,
+) -> Fit {
+    let recent = &weeks[weeks.len().saturating_sub(RECENT)..];
+    Fit {
+        group: own.group,
+        level: own.level,
+        noise: own.noise,
+        as_of: own.as_of,
+        age: day.saturating_sub(own.as_of),
+        floor: TruthRange::behind(own.floor, own.noise),
+        budget: TruthRange::behind(own.budget, own.noise),
+        usage: own.account_range().into(),
+        plans: ByPlan::from_fn(|plan| plan_fit(own.group, plan, quality.by_plan[plan], settings)),
+        last_week: weeks.last().map(|week| LeadFlow::of(&week[own.group])),
+        recent: recent.iter().map(|week| LeadFlow::of(&week[own.group])).fold(LeadFlow::default(), LeadFlow::plus),
+    }
+}
+
+fn plan_fit(group: Group, plan: Plan, quality: f64, settings: &Settings) -> PlanFit {
+    let list = settings.core.prices[plan];
+    let less = |promotion: f64| (list - promotion.max(0.0)).max(0.0);
+    let leads = if group.is_enterprise() { 0.0 } else { settings.lead_promotion.sum(group, None) };
+    PlanFit {
+        plan,
+        list,
+        price: less(leads),
+        // No customer has the number 0: what single ones have is left out.
+        billed: less(settings.promotion.sum(0, group, plan)),
+        quality,
+        quota: settings.core.quotas[plan].units(),
+    }
+}
+
+impl LeadFlow {
+    fn of(week: &GroupWeek) -> LeadFlow {
+        LeadFlow {
+            leads: week.leads,
+            paid: week.paid_leads(),
+            word_of_mouth: week.word_of_mouth,
+            signed: week.signed,
+        }
+    }
+
+    fn plus(self, other: LeadFlow) -> LeadFlow {
+        LeadFlow {
+            leads: self.leads + other.leads,
+            paid: self.paid + other.paid,
+            word_of_mouth: self.word_of_mouth + other.word_of_mouth,
+            signed: self.signed + other.signed,
+        }
+    }
+
+    /// Of the leads, those who signed; none without leads.
+    pub fn conversion(&self) -> Option<f64> {
+        (self.leads > 0).then(|| f64::from(self.signed) / f64::from(self.leads))
+    }
+
+    /// In words: `120 leads (80 paid, 40 by word of mouth), 12 signed (10.0%)`.
+    pub fn in_words(&self) -> String {
+        if self.leads == 0 {
+            let signed = if self.signed == 0 { String::new() } else { format!(", {} signed", self.signed) };
+            return format!("no leads{signed}");
+        }
+        let share = self.conversion().map_or(String::new(), |share| format!(" ({})", percent(share, 1)));
+        let number = |count: u32| whole(f64::from(count));
+        format!(
+            "{} ({} paid, {} by word of mouth), {} signed{share}",
+            super::words::count(self.leads, "lead"),
+            number(self.paid),
+            number(self.word_of_mouth),
+            number(self.signed)
+        )
+    }
+}
+
+impl Fit {
+    /// Where a plan stands in one concern; none where the group does not compare it: companies negotiate the price.
+    pub fn beside(&self, plan: Plan, concern: Concern) -> Option<Beside> {
+        let own = &self.plans[plan];
+        match concern {
+            Concern::Price if self.group.is_enterprise() => None,
+            Concern::Price => Some(self.budget.beside(own.price)),
+            Concern::Quality => Some(self.floor.beside(own.quality)),
+            Concern::Quota => Some(self.usage.beside(own.quota)),
+        }
+    }
+
+    /// How much is missing at least, whatever the truth is inside its range; none where nothing is certain.
+    pub fn missing(&self, plan: Plan, concern: Concern) -> Option<f64> {
+        let own = &self.plans[plan];
+        match (concern, self.beside(plan, concern)?) {
+            (Concern::Price, Beside::Above) => Some(own.price - self.budget.most),
+            (Concern::Quality, Beside::Below) => Some(self.floor.least - own.quality),
+            (Concern::Quota, Beside::Below) => Some(self.usage.least - own.quota),
+            _ => None,
+        }
+    }
+
+    /// What a plan lacks in words; a concern inside its range is named as open.
+    pub fn lacks(&self, plan: Plan) -> String {
+        let own = &self.plans[plan];
+        if own.list <= 0.0 {
+            return "has no price".to_owned();
+        }
+        let certain = |concern: &Concern| Some((*concern, self.missing(plan, *concern)?));
+        let missing: Vec<String> = Concern::ALL.iter().filter_map(certain).map(lack_in_words).collect();
+        let inside = |concern: &&Concern| self.beside(plan, **concern) == Some(Beside::Inside);
+        let open: Vec<&str> = Concern::ALL.iter().filter(inside).map(|concern| concern.id()).collect();
+        let open = if open.is_empty() { String::new() } else { format!("inside the range: {}", open.join(", ")) };
+        match (missing.is_empty(), open.is_empty()) {
+            (true, true) => "lacks nothing".to_owned(),
+            (true, false) => open,
+            (false, true) => format!("lacks {}", missing.join(", ")),
+            (false, false) => format!("lacks {}; {open}", missing.join(", ")),
+        }
+    }
+
+    /// The day its figures are of, and their age: `day 94 (12 days ago)`.
+    pub fn studied(&self) -> String {
+        let age = match self.age {
+            0 => "today".to_owned(),
+            1 => "1 day ago".to_owned(),
+            days => format!("{days} days ago"),
+        };
+        format!("day {} ({age})", self.as_of)
+    }
+
+    /// The whole of it in lines.
+    pub fn lines(&self) -> Vec<String> {
+        let company = self.group.is_enterprise();
+        let error = percent(self.noise, 0);
+        let mut lines = vec![
+            format!("{}: level {} (±{error}), floor and budget as of {}", self.group, self.level, self.studied()),
+            format!("  quality  floor {}; {}", self.floor.quality(), self.each(|own| format!("{:.4}", own.quality))),
+            format!(
+                "  price    budget {}{}; {}",
+                self.budget.money(),
+                if company { " a seat" } else { "" },
+                self.each(price_in_words)
+            ),
+            format!(
+                "  quota    use {} units a day{}; {}",
+                self.usage.units(),
+                if company { " of the smallest company" } else { "" },
+                self.each(|own| whole(own.quota))
+            ),
+        ];
+        match self.last_week {
+            Some(week) => {
+                lines.push(format!("  leads    last week {}", week.in_words()));
+                lines.push(format!("           last 4 weeks {}", self.recent.in_words()));
+            }
+            None => lines.push("  leads    no week has run".to_owned()),
+        }
+        lines.extend(Plan::ALL.map(|plan| format!("  {plan}        {}", self.lacks(plan))));
+        lines
+    }
+
+    fn each(&self, write: impl Fn(&PlanFit) -> String) -> String {
+        let plans: Vec<String> = self.plans.iter().map(|own| format!("{} {}", own.plan, write(own))).collect();
+        plans.join(", ")
+    }
+}
+
+fn lack_in_words((concern, amount): (Concern, f64)) -> String {
+    match concern {
+        Concern::Price => format!("price (at least {} too high)", if amount < 1.0 { cents(amount) } else { dollars(amount) }),
+        Concern::Quality => format!("quality (at least {amount:.4})"),
+        Concern::Quota => format!("quota (at least {} units a day)", whole(amount.ceil())),
+    }
+}
+
+/// The list price, and what promotions leave of it.
+fn price_in_words(own: &PlanFit) -> String {
+    let list = price(own.list);
+    let mut less = Vec::new();
+    if own.price < own.list {
+        less.push(format!("{} for leads", price(own.price)));
+    }
+    if own.billed < own.list {
+        less.push(format!("{} billed", price(own.billed)));
+    }
+    if less.is_empty() { list } else { format!("{list} ({})", less.join(", ")) }
+}
+
+/// A price with the decimals it has.
+fn price(value: f64) -> String {
+    if value.fract() == 0.0 { dollars(value) } else { cents(value) }
+}

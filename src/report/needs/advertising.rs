@@ -24,7 +24,7 @@ pub(super) fn unwanted(situation: &Situation<'_>) -> Vec<Need> {
         if came < ENOUGH_COMPANIES || asked > 0 {
             return None;
         }
-        let offers = Offers { situation, own, quality: situation.quality(own.group)? };
+        let offers = Offers::to(situation, own)?;
         let ads = situation.ads_by_group[own.group];
         let text = format!(
             "{}: {} came in {} and none asked for an offer, while ads for them cost {} a day",

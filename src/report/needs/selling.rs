@@ -160,8 +160,7 @@ pub(super) fn no_sales(situation: &Situation<'_>) -> Vec<Need> {
 }
 
 fn no_sale(situation: &Situation<'_>, own: &Estimates, week: &GroupWeek) -> Option<Need> {
-    let quality = situation.quality(own.group)?;
-    let offers = Offers { situation, own, quality };
+    let offers = Offers::to(situation, own)?;
     let missing = offers.missing();
     let signed = if week.signed == 0 { "none".to_owned() } else { whole(f64::from(week.signed)) };
     let share = percent(week.conversion()?, 1);
@@ -188,7 +187,12 @@ pub(super) struct Offers<'a> {
     quality: &'a DeliveredQuality,
 }
 
-impl Offers<'_> {
+impl<'a> Offers<'a> {
+    /// What is on offer to a group; none while nothing is delivered to it.
+    pub(super) fn to(situation: &'a Situation<'a>, own: &'a Estimates) -> Option<Offers<'a>> {
+        Some(Offers { situation, own, quality: situation.quality(own.group)? })
+    }
+
     /// Plans on sale.
     fn plans(&self) -> impl Iterator<Item = Plan> + '_ {
         Plan::ALL.into_iter().filter(|plan| self.price(*plan) > 0.0)

@@ -7,6 +7,7 @@ use crate::console::screens::market::model::{level_of, name_of};
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, spark};
 use crate::notation::{cents, compact, dollars, grouped, percent};
+use crate::session::truth_behind;
 use crate::world::identifiers::Group;
 
 /// What a column is about.
@@ -66,10 +67,12 @@ pub fn columns() -> Vec<Column> {
     COLUMNS.iter().map(column).collect()
 }
 
-/// Share of the market as its study estimates it: customers of the individual and companies of the others.
-fn of_market(group: Group, facts: &CustomerFacts, company: &Company) -> Option<f64> {
-    let market = company.insights.get(&group)?.estimates.market_cap;
-    (market > 0).then(|| facts.sum(|held| held.customers) / market as f64)
+/// Share of the market, least and most by its study: customers of the individual and companies of the others.
+fn of_market(group: Group, facts: &CustomerFacts, company: &Company) -> Option<(f64, f64)> {
+    let (market, noise) = (company.insights.get(&group)?.estimates.market_cap, company.fit(group)?.noise);
+    let (least, most) = truth_behind(market as f64, noise);
+    let customers = facts.sum(|held| held.customers);
+    (market > 0).then(|| (customers / most, customers / least))
 }
 
 /// The row of a group.
@@ -106,7 +109,12 @@ fn cell_of(what: What, group: Group, facts: &CustomerFacts, company: &Company, m
         }
         What::Customers => count(facts.sum(|held| held.customers)),
         What::Seats => optional(large.then(|| facts.sum(|held| held.seats)), &|seats| grouped(seats, 0)),
-        What::Market => optional(of_market(group, facts, company), &|share| percent(share, 1)),
+        What::Market => match of_market(group, facts, company) {
+            Some((least, most)) => {
+                Cell::number(most, format!("{:.1} to {}", least * 100.0, percent(most.min(1.0), 1)))
+            }
+            None => Cell::words("–").role(Role::Dim),
+        },
         What::Leads => count(flow.leads),
         What::New => new_cell(facts, week),
         // Companies sign weeks after they came: a share of this week's leads would mean nothing.

@@ -2,11 +2,14 @@
 
 mod cohorts;
 mod columns;
+pub mod costs;
 mod facts;
+mod fit;
 mod groups;
 mod heat;
 mod model;
 mod opened;
+mod quality;
 mod study;
 #[cfg(test)]
 mod tests;
@@ -38,8 +41,14 @@ pub enum CustomersPane {
     Groups,
     /// Leads of a thousand dollars by channel.
     Channels,
+    /// What leads and first bills cost by channel and group.
+    Costs,
     /// Where the open group leads.
     Ways,
+    /// What it wants beside what it is offered.
+    Fit,
+    /// The same over time: quality and floor.
+    Quality,
     /// What is known of it.
     Facts,
     /// Its weeks.
@@ -51,9 +60,11 @@ pub enum CustomersPane {
 }
 
 /// The panes while no group is open, and those of the open one.
-const LISTED: [CustomersPane; 2] = [CustomersPane::Groups, CustomersPane::Channels];
-const OPENED: [CustomersPane; 5] = [
+const LISTED: [CustomersPane; 3] = [CustomersPane::Groups, CustomersPane::Channels, CustomersPane::Costs];
+const OPENED: [CustomersPane; 7] = [
     CustomersPane::Ways,
+    CustomersPane::Fit,
+    CustomersPane::Quality,
     CustomersPane::Facts,
     CustomersPane::Weeks,
     CustomersPane::Cohorts,
@@ -67,6 +78,7 @@ pub struct Customers {
     focus: CustomersPane,
     market: MarketRows,
     table: Table,
+    costs: Table,
     place: heat::HeatPlace,
     cohorts: Cohorts,
     /// The group that is open, by its number among the known ones.
@@ -113,6 +125,7 @@ impl Customers {
             self.table = Table::new(Vec::new()).by_cell();
         }
         self.table.set(columns(), rows);
+        self.costs.set(costs::columns(), company.lead_costs.iter().map(costs::row_of).collect());
         let last = groups.len().saturating_sub(1);
         self.open = self.open.map(|open| open.min(last)).filter(|_| !groups.is_empty());
         self.place.group = self.place.group.min(last);
@@ -155,6 +168,9 @@ impl Paned for Customers {
         match name {
             CustomersPane::Groups => &groups::CustomerGroupsPane,
             CustomersPane::Channels => &heat::ChannelsPane,
+            CustomersPane::Costs => &costs::CostsPane,
+            CustomersPane::Fit => &fit::FitPane,
+            CustomersPane::Quality => &quality::QualityByWeekPane,
             CustomersPane::Ways => &ways::WaysPane,
             CustomersPane::Facts => &facts::FactsPane,
             CustomersPane::Weeks => &weeks::WeeksPane,
@@ -191,7 +207,17 @@ impl Paned for Customers {
             Layout::vertical([Constraint::Length(list), Constraint::Length(map), Constraint::Length(rest)])
                 .areas(area);
         draw_pane(self, CustomersPane::Groups, canvas, table, look);
-        draw_pane(self, CustomersPane::Channels, canvas, channels, look);
+        // Two halves where both fit; otherwise the one that has the focus.
+        if channels.width >= 150 {
+            let halves = [Constraint::Percentage(50), Constraint::Min(0)];
+            let [left, right] = Layout::horizontal(halves).areas(channels);
+            draw_pane(self, CustomersPane::Channels, canvas, left, look);
+            draw_pane(self, CustomersPane::Costs, canvas, right, look);
+        } else if self.focus == CustomersPane::Costs {
+            draw_pane(self, CustomersPane::Costs, canvas, channels, look);
+        } else {
+            draw_pane(self, CustomersPane::Channels, canvas, channels, look);
+        }
         if rest > 0 && self.table.selected().is_some() {
             opened::draw_preview(self, canvas, preview, look);
         }

@@ -2,10 +2,11 @@
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::cohorts::{self, CohortsPane};
+use super::cohorts;
 use super::facts::FactsPane;
+use super::fit::FitPane;
+use super::quality::QualityByWeekPane;
 use super::ways::CHOICES;
-use super::weeks::WeeksPane;
 use super::{Customers, CustomersPane};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;
@@ -28,6 +29,8 @@ pub struct Opened {
     pub flow: usize,
     /// The cell of the triangle.
     pub cohort: cohorts::CohortPlace,
+    /// First line of the fit.
+    pub fit_line: usize,
     /// First line of the study.
     pub line: usize,
 }
@@ -35,7 +38,8 @@ pub struct Opened {
 impl Default for Opened {
     fn default() -> Opened {
         let focus = CustomersPane::Ways;
-        Opened { focus, choice: 0, fact: 0, back: 0, flow: 0, cohort: cohorts::CohortPlace::default(), line: 0 }
+        let cohort = cohorts::CohortPlace::default();
+        Opened { focus, choice: 0, fact: 0, back: 0, flow: 0, cohort, fit_line: 0, line: 0 }
     }
 }
 
@@ -55,9 +59,12 @@ pub fn show_rows(figure: Option<Figure>) -> Vec<Effect> {
     figure.and_then(|figure| figure.sql).map(Effect::EditSql).into_iter().collect()
 }
 
+/// Rows that the fit of a group wants with its border.
+const FIT: u16 = 24;
+
 /// Lays out the panes of the open group.
 pub fn arrange(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-    use CustomersPane::{Cohorts, Facts, Study, Ways, Weeks};
+    use CustomersPane::{Cohorts, Facts, Fit, Quality, Study, Ways, Weeks};
     let mut draw = |area: Rect, pane: CustomersPane| draw_pane(customers, pane, canvas, area, look);
     let split = |area: Rect, first: u16| {
         Layout::vertical([Constraint::Length(first), Constraint::Min(0)]).areas::<2>(area)
@@ -67,27 +74,32 @@ pub fn arrange(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look:
     if area.width >= 150 && area.height >= 30 {
         let [left, middle, right] =
             columns([Constraint::Percentage(40), Constraint::Min(0), Constraint::Length(44)]);
-        let [above, below] = split(middle, (area.height / 2).min(20));
+        let [fit, weeks] = split(left, FIT.min(area.height / 2));
+        let [quality, rest] = split(middle, area.height / 3);
+        let [cohorts, study] = split(rest, rest.height / 2);
         let [facts, go] = split(right, area.height - ways);
-        for (area, pane) in [(left, Weeks), (above, Cohorts), (below, Study), (facts, Facts), (go, Ways)] {
+        for (area, pane) in [(fit, Fit), (weeks, Weeks), (quality, Quality), (cohorts, Cohorts)] {
+            draw(area, pane);
+        }
+        for (area, pane) in [(study, Study), (facts, Facts), (go, Ways)] {
             draw(area, pane);
         }
     } else if area.width >= 104 && area.height >= 30 {
         let [left, _, right] = columns([Constraint::Min(0), Constraint::Length(0), Constraint::Length(44)]);
-        let [above, below] = split(left, area.height * 3 / 5);
+        let [above, below] = split(left, FIT.min(area.height * 3 / 5));
         let [facts, go] = split(right, area.height - ways);
-        draw(above, Weeks);
-        draw(below, if focus == Study { Study } else { Cohorts });
+        draw(above, if focus == Weeks { Weeks } else { Fit });
+        draw(below, if matches!(focus, Study | Cohorts) { focus } else { Quality });
         draw(facts, Facts);
         draw(go, Ways);
-    } else if focus == Cohorts {
-        // The triangle needs the width.
-        draw(area, Cohorts);
+    } else if matches!(focus, Cohorts | Fit | Quality) {
+        // Triangle, bars and curves need the width.
+        draw(area, focus);
     } else {
         let [left, _, right] =
             columns([Constraint::Min(0), Constraint::Length(0), Constraint::Percentage(50)]);
         let [facts, go] = split(right, area.height.saturating_sub(ways));
-        draw(left, if focus == Study { Study } else { Weeks });
+        draw(left, if matches!(focus, Study | Weeks) { focus } else { Fit });
         draw(facts, Facts);
         draw(go, Ways);
     }
@@ -97,13 +109,13 @@ pub fn arrange(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look:
 pub fn draw_preview(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
     let middle = if area.width >= 150 { area.width * 3 / 10 } else { 0 };
     let right = Constraint::Length(46.min(area.width / 2));
-    let [curves, kept, side] =
+    let [fit, curves, side] =
         Layout::horizontal([Constraint::Min(0), Constraint::Length(middle), right]).areas(area);
     let clicks = canvas.clicks.len();
     let seat = |area: Rect| Seat { area, focused: false, number: 0 };
-    WeeksPane.show(customers, canvas, seat(curves), look);
+    FitPane.show(customers, canvas, seat(fit), look);
     if middle > 0 {
-        CohortsPane.show(customers, canvas, seat(kept), look);
+        QualityByWeekPane.show(customers, canvas, seat(curves), look);
     }
     FactsPane.show(customers, canvas, seat(side), look);
     canvas.clicks.truncate(clicks);

@@ -40,7 +40,7 @@ impl Pane<Customers> for StudyPane {
         customers.group(look.company).map_or_else(Border::default, |group| {
             let level = level_of(look.company, group);
             let noise = look.company.terms.level(level).map_or(0.0, |level| level.noise);
-            let note = format!("level {level} · ±{}", percent(noise, 0));
+            let note = format!("level {level} · ±{} · {}", percent(noise, 0), report::studied(look.company, group));
             Border { title: format!("Study of {group}"), note, ..Border::default() }
         })
     }

@@ -92,7 +92,7 @@ pub fn columns() -> Vec<Column> {
     let mut columns = vec![Column::words("group"), Column::words("name").at_most(20)];
     columns.extend(["level", "error"].map(Column::numbers));
     columns.push(Column::words("next study"));
-    columns.extend(["found", "studied"].map(Column::numbers));
+    columns.extend(["found", "figures of"].map(Column::numbers));
     columns
 }
 
@@ -113,8 +113,10 @@ pub fn row_of(group: Group, known: Known, company: &Company) -> Vec<Cell> {
         Some(0) if known.studied.is_none() => Cell::number(0.0, "start").role(Role::Dim),
         found => day(found),
     };
-    // The table gives the day on which a group was found as that of its last study, too.
-    let studied = known.studied.filter(|day| level > 1 || known.found != Some(*day));
+    let figures = match company.fit(group) {
+        Some(fit) => Cell::number(f64::from(fit.as_of), format!("day {} · {}d old", fit.as_of, fit.age)),
+        None => none(),
+    };
     let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
     let next = match study_of(company, group) {
         Some(study) => {
@@ -135,6 +137,6 @@ pub fn row_of(group: Group, known: Known, company: &Company) -> Vec<Cell> {
         Cell::number(noise, format!("±{}", percent(noise, 0))),
         next,
         found,
-        day(studied),
+        figures,
     ]
 }

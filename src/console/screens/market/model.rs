@@ -133,29 +133,9 @@ pub fn target_of(company: &Company, group: Group, chosen: Option<u8>) -> u8 {
     chosen.unwrap_or(now.saturating_add(1)).clamp(lowest, most)
 }
 
-/// Bounds of a true value whose estimate is off by at most a share: the estimate is the truth times 1 ± share.
-pub fn bounds(estimate: f64, share: f64) -> (f64, f64) {
-    let from = estimate / (1.0 + share);
-    let to = if share < 1.0 { estimate / (1.0 - share) } else { f64::INFINITY };
-    (from.min(to), from.max(to))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_truth_lies_inside_the_bounds_whatever_the_noise_was() {
-        for share in [0.65, 0.4, 0.05] {
-            for draw in [-1.0, -0.3, 0.0, 0.8, 1.0] {
-                let truth = 20.0;
-                let (from, to) = bounds(truth * (1.0 + share * draw), share);
-                assert!(from <= truth + 1e-9 && truth <= to + 1e-9, "{share} {draw}: {from} {to}");
-            }
-        }
-        assert_eq!(bounds(0.0, 0.4), (0.0, 0.0));
-        assert_eq!(bounds(14.0, 0.4), (10.0, 14.0 / 0.6));
-    }
 
     #[test]
     fn rows_that_miss_something_are_taken_for_what_they_say() {

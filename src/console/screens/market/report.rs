@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use super::model::{bounds, level_of, name_of, study_of, target_of};
+use super::model::{level_of, name_of, study_of, target_of};
 use super::{Market, MarketPane, knowledge_of};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Align, Canvas, rows_of};
@@ -14,6 +14,8 @@ use crate::console::screens::{Figure, Look};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, percent};
+use crate::report::fit::Fit;
+use crate::session::truth_behind;
 use crate::tools::{Estimates, Influence};
 use crate::world::identifiers::Group;
 
@@ -35,7 +37,7 @@ impl ReportLine {
     }
 }
 
-/// An estimate: where the insights hold it, the words for it, its unit, and how it is written.
+/// An estimate: where the insights hold it, the words for it, its unit, and how the ends of its range are written.
 type Estimate = (fn(&Estimates) -> Option<f64>, &'static str, &'static str, fn(f64) -> String);
 
 const ESTIMATES: [Estimate; 8] = [
@@ -70,38 +72,39 @@ fn share(value: f64) -> String {
 pub fn lines(company: &Company, group: Group) -> Vec<ReportLine> {
     let Some(insights) = company.insights.get(&group) else { return Vec::new() };
     let noise = company.terms.level(level_of(company, group)).map_or(0.0, |level| level.noise);
-    let mut lines = vec![ReportLine::head("estimate", "the truth is in")];
+    let mut lines = vec![ReportLine::head("mean of the group", "is between")];
     for (estimate, words, unit, write) in ESTIMATES {
         let Some(value) = estimate(&insights.estimates) else { continue };
-        let (from, to) = bounds(value, noise);
+        let (from, to) = truth_behind(value, noise);
         let unit = match (unit, group.is_enterprise()) {
             ("$/month", true) => "$/month a seat",
             ("units/day", true) => "units/day a seat",
             ("customers", true) => "companies",
             (unit, _) => unit,
         };
-        lines.push(ReportLine::of(
-            format!("{words:<21}{:>8} {unit}", write(value)),
-            format!("{} – {}", write(from), write(to)),
-        ));
+        let range = format!("{} to {}", write(from), write(to));
+        lines.push(ReportLine::of(format!("{words:<21}{unit}").trim_end().to_owned(), range));
     }
     if let Some(range) = insights.estimates.seat_range {
         let [least, most] = range.map(|seats| seats as f64);
-        let (from, to) = (bounds(least, noise).0, bounds(most, noise).1);
-        let seats = format!("{} – {}", figure(least), figure(most));
-        lines.push(ReportLine::of(
-            format!("{:<21}{seats:>8} seats", "size of a company"),
-            format!("{} – {}", figure(from), figure(to)),
-        ));
+        for (words, seats) in [("smallest company", least), ("largest company", most)] {
+            let (from, to) = truth_behind(seats, noise);
+            let range = format!("{} to {}", figure(from), figure(to));
+            lines.push(ReportLine::of(format!("{words:<21}seats"), range));
+        }
     }
     lines.push(ReportLine::head("word of mouth", "leads a day per 1,000 subscribers"));
-    influence(&mut lines, &insights.network_influence, &|rate| figure(rate * 1000.0));
+    influence(&mut lines, &insights.network_influence, noise, &|rate| figure(rate * 1000.0));
     lines.push(ReportLine::head("reputation", "weight of reputation"));
-    influence(&mut lines, &insights.reputation_influence, &exact);
+    influence(&mut lines, &insights.reputation_influence, noise, &exact);
     lines
 }
 
-fn influence(lines: &mut Vec<ReportLine>, influence: &Influence, write: &dyn Fn(f64) -> String) {
+fn influence(lines: &mut Vec<ReportLine>, influence: &Influence, noise: f64, write: &dyn Fn(f64) -> String) {
+    let range = |value: f64| {
+        let (from, to) = truth_behind(value, noise);
+        format!("{} to {}", write(from), write(to))
+    };
     for (all, words) in [(&influence.outgoing, "for"), (&influence.incoming, "from")] {
         let mut links: Vec<(&'static str, f64)> =
             all.iter().map(|(group, value)| (group.id(), *value)).collect();
@@ -109,8 +112,13 @@ fn influence(lines: &mut Vec<ReportLine>, influence: &Influence, write: &dyn Fn(
         if links.is_empty() {
             lines.push(ReportLine::of(format!("  {words} no known group"), String::new()));
         }
-        lines.extend(links.iter().map(|(id, value)| ReportLine::of(format!("  {words} {id}"), write(*value))));
+        lines.extend(links.iter().map(|(id, value)| ReportLine::of(format!("  {words} {id}"), range(*value))));
     }
+}
+
+/// The day that figures of a group are of, and their age.
+pub fn studied(company: &Company, group: Group) -> String {
+    company.fit(group).map_or(String::new(), Fit::studied)
 }
 
 /// What a study would cost and bring, or which one runs.
@@ -176,7 +184,7 @@ impl Pane<Market> for ReportPane {
         let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
         Border {
             title: format!("{group} · {}", name_of(company, group)),
-            note: format!("level {level} · ±{}", percent(noise, 0)),
+            note: format!("level {level} · ±{} · {}", percent(noise, 0), studied(company, group)),
             keys: look.hints(&[Action::StudyGroup, Action::LevelUp, Action::LevelDown]),
             keys_always: true,
         }

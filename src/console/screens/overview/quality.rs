@@ -14,9 +14,14 @@ use crate::console::text::number;
 use crate::console::theme::Role;
 use crate::console::widgets::chart::note_room;
 use crate::console::widgets::{Cell, Column, Table};
+use crate::report::fit::Beside;
 use crate::session::DeliveredQuality;
 use crate::tools::ToolId;
 use crate::world::identifiers::Plan;
+
+/// Columns of the floor and of the group's own bonus.
+const FLOOR: usize = 4;
+const BONUS: usize = 6;
 
 /// The table of the groups.
 pub struct QualityPane;
@@ -39,6 +44,11 @@ impl Pane<Overview> for QualityPane {
         let column = overview.quality.selected_column();
         let of = match column.checked_sub(1).and_then(|at| Plan::ALL.get(at)) {
             Some(plan) => format!("on plan {plan}"),
+            None if (FLOOR..BONUS).contains(&column) => {
+                let title = format!("floor of {group}");
+                let sql = format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'");
+                return Some(Figure { title, term: "fit", sql: Some(sql) });
+            }
             None => "from targeted development".to_owned(),
         };
         let title = format!("delivered quality of {group} {of}");
@@ -47,7 +57,8 @@ impl Pane<Overview> for QualityPane {
 
     fn act(&self, overview: &mut Overview, action: Action, look: &Look<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            return vec![Effect::Show(ScreenId::Product)];
+            let row = overview.quality.selected().and_then(|row| look.company.quality.get(row));
+            return row.map(|own| Effect::ShowGroup(ScreenId::Customers, own.group)).into_iter().collect();
         }
         overview.quality.act(action, look.page);
         Vec::new()
@@ -70,14 +81,28 @@ impl Pane<Overview> for QualityPane {
 pub fn table_of(company: &Company) -> (Vec<Column>, Vec<Vec<Cell>>) {
     let tier = |plan: &Plan| number(company.setting(ToolId::SetModelTiers, plan.id()));
     let plans = Plan::ALL.iter().map(|plan| Column::numbers(format!("{plan} tier {}", tier(plan))));
-    let columns = [Column::words("group")].into_iter().chain(plans).chain([Column::numbers("group's own")]);
+    let known = ["their floor", "as of"].map(Column::numbers);
+    let columns = [Column::words("group")].into_iter().chain(plans).chain(known);
+    let columns = columns.chain([Column::numbers("group's own")]);
     let row = |quality: &DeliveredQuality| {
         let bonus = match quality.group_bonus {
             bonus if bonus > 0.0 => Cell::number(bonus, format!("+{bonus:.4}")),
             _ => Cell::number(0.0, "–").role(Role::Dim),
         };
-        let plans = quality.by_plan.0.map(|value| Cell::number(value, format!("{value:.4}")));
-        [Cell::words(quality.group.id()).role(Role::Strong)].into_iter().chain(plans).chain([bonus]).collect()
+        let fit = company.fit(quality.group);
+        let plans = quality.by_plan.0.map(|value| {
+            let role = match fit.map(|fit| fit.floor.beside(value)) {
+                Some(Beside::Below) => Role::Bad,
+                Some(Beside::Above) => Role::Good,
+                _ => Role::Text,
+            };
+            Cell::number(value, format!("{value:.4}")).role(role)
+        });
+        let none = || Cell::words("–").role(Role::Dim);
+        let floor = fit.map_or_else(none, |fit| Cell::number(fit.floor.least, fit.floor.quality()));
+        let as_of = fit.map_or_else(none, |fit| Cell::number(f64::from(fit.as_of), format!("day {}", fit.as_of)));
+        let name = [Cell::words(quality.group.id()).role(Role::Strong)];
+        name.into_iter().chain(plans).chain([floor, as_of, bonus]).collect()
     };
     (columns.collect(), company.quality.iter().map(row).collect())
 }

@@ -13,8 +13,8 @@ use crate::report::funnel::{Funnel, funnels};
 use crate::report::lead_costs::{PairCost, pair_costs};
 use crate::report::needs::{Need, needs};
 use crate::session::{
-    DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, Mode, Numbers, Observation, RunningStudy,
-    Session, ToolLimits, WeekFigures,
+    DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, Mode, Numbers, Observation,
+    RunningStudy, Session, ToolLimits, WeekFigures,
 };
 use crate::tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,

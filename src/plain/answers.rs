@@ -43,8 +43,13 @@ impl Answer {
 
     /// An accepted tool call: its name and the fields of its data.
     pub fn call(command: &str, data: Value) -> Answer {
+        Answer::call_shown(command, data, None)
+    }
+
+    /// The same, where people are shown other fields than programs.
+    pub fn call_shown(command: &str, data: Value, shown: Option<Value>) -> Answer {
         let mut text = format!("ok {command}\n");
-        match &data {
+        match shown.as_ref().unwrap_or(&data) {
             Value::Object(fields) => fields.iter().for_each(|(name, value)| text += &field(name, value)),
             Value::Null => {}
             other => text += &format!("  {other}\n"),

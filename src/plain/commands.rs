@@ -1,5 +1,6 @@
 //! The commands of plain mode: what each line does, and what is answered (docs/interfaces/plain-mode.md#commands).
 
+mod groups;
 mod readings;
 mod report;
 mod words;
@@ -23,7 +24,7 @@ use crate::session::{Change, Library, Mode, Refusal, Session, Via, rows_as_json}
 use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 25] = [
+const COMMANDS: [(&str, &str); 27] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("queries", "queries [NAME]           the library of queries, or the result of one of them"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, run a week (also: next-week)"),
@@ -33,6 +34,14 @@ const COMMANDS: [(&str, &str); 25] = [
     (
         "needs",
         "needs                    what needs you, ranked by money at risk, with the call that addresses it",
+    ),
+    (
+        "fit",
+        "fit [GROUP]              what each group wants beside what the plans offer it, and what is missing",
+    ),
+    (
+        "leads",
+        "leads                    leads by group, paid and by word of mouth, and what a lead and a first bill cost",
     ),
     ("changes", "changes                  settings changed since the last week"),
     ("undo", "undo                     undo the last setting of this week"),
@@ -182,6 +191,8 @@ impl Interpreter {
             "inbox" => none(arguments).map(|()| self.inbox()),
             "changes" => none(arguments).map(|()| self.changes()),
             "needs" => none(arguments).map(|()| self.needs()),
+            "fit" => name(arguments).and_then(|name| self.fit(name, arguments)),
+            "leads" => none(arguments).map(|()| self.leads()),
             "undo" => none(arguments).map(|()| self.undo()),
             "redo" => none(arguments).map(|()| self.redo()),
             "vars" => none(arguments).map(|()| self.call_named(ToolId::GetVars, &json!({}))),
@@ -214,7 +225,10 @@ impl Interpreter {
 
     fn call_named(&mut self, tool: ToolId, arguments: &Value) -> Answer {
         match self.session.call(tool, arguments, Via::Plain) {
-            Ok(data) => Answer::call(tool.name(), data.to_json()),
+            Ok(data) => {
+                let shown = groups::with_ranges(&self.session, &data);
+                Answer::call_shown(tool.name(), data.to_json(), shown)
+            }
             Err(refusal) => Answer::refused(tool.name(), refusal),
         }
     }

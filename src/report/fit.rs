@@ -153,9 +153,8 @@ pub struct Fit {
 pub fn fits(session: &Session) -> Vec<Fit> {
     let (quality, weeks) = (session.delivered_quality(), session.group_weeks());
     let delivered = |group: Group| quality.iter().find(|own| own.group == group);
-    let of = |own: &Estimates| {
-        Some(fit(own, delivered(own.group)?, session.settings(), weeks, session.day()))
-    };
+    let of =
+        |own: &Estimates| Some(fit(own, delivered(own.group)?, session.settings(), weeks, session.day()));
     session.estimates().iter().filter_map(of).collect()
 }
 
@@ -178,7 +177,10 @@ fn fit(
         usage: own.account_range().into(),
         plans: ByPlan::from_fn(|plan| plan_fit(own.group, plan, quality.by_plan[plan], settings)),
         last_week: weeks.last().map(|week| LeadFlow::of(&week[own.group])),
-        recent: recent.iter().map(|week| LeadFlow::of(&week[own.group])).fold(LeadFlow::default(), LeadFlow::plus),
+        recent: recent
+            .iter()
+            .map(|week| LeadFlow::of(&week[own.group]))
+            .fold(LeadFlow::default(), LeadFlow::plus),
     }
 }
 
@@ -272,7 +274,8 @@ impl Fit {
         let missing: Vec<String> = Concern::ALL.iter().filter_map(certain).map(lack_in_words).collect();
         let inside = |concern: &&Concern| self.beside(plan, **concern) == Some(Beside::Inside);
         let open: Vec<&str> = Concern::ALL.iter().filter(inside).map(|concern| concern.id()).collect();
-        let open = if open.is_empty() { String::new() } else { format!("inside the range: {}", open.join(", ")) };
+        let open =
+            if open.is_empty() { String::new() } else { format!("inside the range: {}", open.join(", ")) };
         match (missing.is_empty(), open.is_empty()) {
             (true, true) => "lacks nothing".to_owned(),
             (true, false) => open,
@@ -296,8 +299,17 @@ impl Fit {
         let company = self.group.is_enterprise();
         let error = percent(self.noise, 0);
         let mut lines = vec![
-            format!("{}: level {} (±{error}), floor and budget as of {}", self.group, self.level, self.studied()),
-            format!("  quality  floor {}; {}", self.floor.quality(), self.each(|own| format!("{:.4}", own.quality))),
+            format!(
+                "{}: level {} (±{error}), floor and budget as of {}",
+                self.group,
+                self.level,
+                self.studied()
+            ),
+            format!(
+                "  quality  floor {}; {}",
+                self.floor.quality(),
+                self.each(|own| format!("{:.4}", own.quality))
+            ),
             format!(
                 "  price    budget {}{}; {}",
                 self.budget.money(),
@@ -323,14 +335,18 @@ impl Fit {
     }
 
     fn each(&self, write: impl Fn(&PlanFit) -> String) -> String {
-        let plans: Vec<String> = self.plans.iter().map(|own| format!("{} {}", own.plan, write(own))).collect();
+        let plans: Vec<String> =
+            self.plans.iter().map(|own| format!("{} {}", own.plan, write(own))).collect();
         plans.join(", ")
     }
 }
 
 fn lack_in_words((concern, amount): (Concern, f64)) -> String {
     match concern {
-        Concern::Price => format!("price (at least {} too high)", if amount < 1.0 { cents(amount) } else { dollars(amount) }),
+        Concern::Price => format!(
+            "price (at least {} too high)",
+            if amount < 1.0 { cents(amount) } else { dollars(amount) }
+        ),
         Concern::Quality => format!("quality (at least {amount:.4})"),
         Concern::Quota => format!("quota (at least {} units a day)", whole(amount.ceil())),
     }
@@ -352,4 +368,113 @@ fn price_in_words(own: &PlanFit) -> String {
 /// A price with the decimals it has.
 fn price(value: f64) -> String {
     if value.fract() == 0.0 { dollars(value) } else { cents(value) }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::report::lead_costs::{SPELL, pair_costs};
+    use crate::report::test_kit::played;
+    use crate::session::{Via, number_at};
+
+    fn number(session: &mut Session, sql: &str) -> f64 {
+        number_at(&session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows[0], 0)
+    }
+
+    #[test]
+    fn leads_are_split_and_priced_as_the_tables_have_them() {
+        let mut session = played(6);
+        let (all, costs) = (fits(&session), pair_costs(session.group_weeks()));
+        let mut by_mouth = 0;
+        for fit in &all {
+            let week = fit.last_week.expect("a week has run");
+            let of = |condition: &str| {
+                format!(
+                    "SELECT count(*) FROM customers WHERE group_id = '{}' AND created_day BETWEEN 36 AND 42 {condition}",
+                    fit.group
+                )
+            };
+            assert_eq!(f64::from(week.leads), number(&mut session, &of("")), "{}", fit.group);
+            let network = number(&mut session, &of("AND acquisition_source = 'network'"));
+            assert_eq!(f64::from(week.word_of_mouth), network, "{}", fit.group);
+            assert_eq!(week.paid + week.word_of_mouth, week.leads);
+            by_mouth += week.word_of_mouth;
+        }
+        assert!(by_mouth > 0 && !costs.is_empty());
+        for pair in &costs {
+            let (channel, group) = (pair.channel.id(), pair.group);
+            let from = 42 - 7 * SPELL;
+            let of = |what: &str| {
+                format!(
+                    "SELECT {what} FROM ad_channel_leads WHERE channel_id = '{channel}' AND group_id = '{group}' AND day > \
+                     {from}"
+                )
+            };
+            assert_eq!(f64::from(pair.recent.leads), number(&mut session, &of("sum(leads_generated)")));
+            assert_eq!(pair.recent.spend, number(&mut session, &of("sum(spend)")));
+            let bills = format!(
+                "SELECT count(*) FROM customers c JOIN subscriptions s USING (customer_id) WHERE s.first_billing_done = 1 \
+                 AND c.group_id = '{group}' AND c.acquisition_source = '{channel}' AND c.created_day > {from}"
+            );
+            assert_eq!(pair.recent.billed.map(f64::from), Some(number(&mut session, &bills)));
+        }
+    }
+
+    #[test]
+    fn what_is_missing_holds_for_every_truth_in_the_range() {
+        let mut session = played(0);
+        let quotas = json!({"A": 1, "B": 250_000, "C": 1_200_000});
+        for (tool, arguments) in [
+            ("set_prices", json!({"A": 12, "B": 25, "C": 900})),
+            ("set_usage_quotas", quotas),
+            ("set_lead_promotion", json!({"by_group": {"S1": 5}})),
+        ] {
+            session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        }
+        let all = fits(&session);
+        let fit = &all[0];
+        let [budget, usage, floor] = {
+            let own = session.params().group(fit.group);
+            [own.c_max_mean, own.usage_demand_mean, own.q_min_mean]
+        };
+        assert!(fit.budget.beside(budget) == Beside::Inside && fit.floor.beside(floor) == Beside::Inside);
+        assert_eq!((fit.as_of, fit.age, fit.plans[Plan::A].price), (0, 0, 7.0));
+        let over = fit.missing(Plan::C, Concern::Price).expect("above every budget");
+        assert!((over - (895.0 - fit.budget.most)).abs() < 1e-9 && over <= 895.0 - budget);
+        let short = fit.missing(Plan::A, Concern::Quota).expect("a unit is too little");
+        assert!(short <= usage - 1.0 && fit.missing(Plan::B, Concern::Quota).is_none());
+        let quality = fit.plans[Plan::A].quality;
+        if let Some(short) = fit.missing(Plan::A, Concern::Quality) {
+            assert!(short <= floor - quality, "{short}");
+        }
+        assert!(fit.lacks(Plan::A).contains("quota (at least "), "{}", fit.lacks(Plan::A));
+        assert!(fit.lacks(Plan::C).contains("price (at least $"), "{}", fit.lacks(Plan::C));
+        let enterprise = all.iter().find(|fit| fit.group.is_enterprise()).expect("E1");
+        assert_eq!(enterprise.beside(Plan::C, Concern::Price), None, "companies negotiate");
+        let text = fit.lines().join("\n");
+        for words in
+            ["floor and budget as of day 0 (today)", "budget $", "$12 ($7 for leads)", "no week has run"]
+        {
+            assert!(text.contains(words), "{words} in\n{text}");
+        }
+    }
+
+    #[test]
+    fn quality_and_floor_are_kept_week_by_week() {
+        let session = played(5);
+        let now = session.delivered_quality();
+        let (weeks, estimates) = (session.group_weeks(), session.estimates());
+        for own in &estimates {
+            let last = &weeks[weeks.len() - 1][own.group];
+            let quality =
+                now.iter().find(|quality| quality.group == own.group).map(|quality| quality.by_plan);
+            assert_eq!((last.quality, last.floor), (quality, Some(own.range(own.floor))), "{}", own.group);
+        }
+        let s1 = estimates[0].group;
+        assert!(weeks[0][s1].quality != weeks[4][s1].quality, "development moves it");
+        let unknown = Group::all().find(|group| estimates.iter().all(|own| own.group != *group));
+        assert_eq!(weeks[4][unknown.expect("unknown groups")].floor, None);
+    }
 }

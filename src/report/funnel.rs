@@ -87,7 +87,8 @@ impl Funnel {
         );
         if let Some((plan, delivered)) = self.best.filter(|_| self.turned_away_lately > 0) {
             let (floor, day) = (self.floor.quality(), self.as_of);
-            text += &format!("; {plan} delivers {delivered:.4}, their mean floor is {floor} (as of day {day})");
+            text +=
+                &format!("; {plan} delivers {delivered:.4}, their mean floor is {floor} (as of day {day})");
             if self.usage.beside(self.quota) != Beside::Above {
                 text += &format!(
                     ", and its quota of {} stands against {} units a day of the smallest companies",

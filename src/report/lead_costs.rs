@@ -100,14 +100,14 @@ pub fn pair_costs(weeks: &[ByGroup<GroupWeek>]) -> Vec<PairCost> {
 mod tests {
     use super::*;
 
-    fn pair() -> (Channel, Group) {
+    fn referrals() -> (Channel, Group) {
         (Channel::ReferralProgram, Group::parse("S3").expect("a group"))
     }
 
     fn weeks(all: &[(u32, f64, u32)]) -> Vec<ByGroup<GroupWeek>> {
         let week = |&(leads, spend, billed): &(u32, f64, u32)| {
             let mut week: ByGroup<GroupWeek> = ByGroup::default();
-            week[pair().1].paid[pair().0] = PaidLeads { leads, spend, billed };
+            week[referrals().1].paid[referrals().0] = PaidLeads { leads, spend, billed };
             week
         };
         all.iter().map(week).collect()
@@ -119,7 +119,10 @@ mod tests {
         let costs = pair_costs(&weeks(&dear.collect::<Vec<_>>()));
         let [pair] = costs.as_slice() else { panic!("{costs:?}") };
         let cheapest = pair.cheapest.expect("enough leads");
-        assert_eq!((pair.channel, pair.group, pair.recent.weeks, cheapest.weeks), (pair().0, pair().1, (7, 10), (3, 6)));
+        assert_eq!(
+            (pair.channel, pair.group, pair.recent.weeks, cheapest.weeks),
+            (referrals().0, referrals().1, (7, 10), (3, 6))
+        );
         assert_eq!((pair.recent.per_lead(), cheapest.per_lead()), (Some(120.0), Some(7.5)));
         assert_eq!((pair.recent.per_bill(), cheapest.per_bill()), (Some(600.0), Some(15.0)));
         assert_eq!(pair.rise(), Some(16.0));

@@ -72,15 +72,17 @@ fn no_price(situation: &Situation<'_>) -> Need {
         .enumerate()
         .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
         .collect();
-    let told: Vec<String> =
-        budgets
+    let told: Vec<String> = budgets
         .iter()
         .map(|own| format!("{} {}", own.group, TruthRange::behind(own.budget, own.noise).money()))
         .collect();
     Need {
         problem: Problem::NoPrice,
         text: "no plan has a price: nobody can subscribe".to_owned(),
-        proposal: Some(format!("budgets a month as far as known: {}; the form proposes half of the estimates", told.join(", "))),
+        proposal: Some(format!(
+            "budgets a month as far as known: {}; the form proposes half of the estimates",
+            told.join(", ")
+        )),
         place: Place::Call(ToolId::SetPrices, Value::Object(prices)),
         at_risk: situation.commitments_ahead() + situation.revenue_ahead(),
         urgent: true,

@@ -78,8 +78,11 @@ fn group(id: &str) -> Group {
 
 #[test]
 fn without_prices_nobody_can_subscribe() {
-    let need =
-        is_first(&company(3, 1e6, &[], 0), Problem::NoPrice, &["no plan has a price", "estimated budgets"]);
+    let need = is_first(
+        &company(3, 1e6, &[], 0),
+        Problem::NoPrice,
+        &["no plan has a price", "budgets a month as far as known: S1 $"],
+    );
     assert!(matches!(need.place, Place::Call(ToolId::SetPrices, _)));
 }
 
@@ -333,7 +336,7 @@ fn companies_that_no_plan_is_good_enough_for_are_found() {
     assert!(!found.is_empty(), "{:#?}", needs(&session));
     assert!(found.iter().all(|need| need.text.contains("none asked for an offer")), "{found:#?}");
     // All seats of a company share one quota.
-    assert!(found.iter().any(|need| need.text.contains("of the use of a small company")), "{found:#?}");
+    assert!(found.iter().any(|need| need.text.contains("mean use of the smallest companies")), "{found:#?}");
 }
 
 #[test]
@@ -383,6 +386,54 @@ fn companies_that_ask_for_nothing_although_the_plans_are_good_enough_cost_their_
     );
     let told = format!("without these ads {} a day stay in cash", crate::report::words::money(saved));
     assert!(need.in_words().contains(&told), "{}: {told}", need.in_words());
+}
+
+#[test]
+fn leads_that_become_dear_are_named_with_what_they_cost_before() {
+    // A market that holds few: its room is soon gone, and the same ads bring fewer.
+    let ads = json!({"targeted_spend": {"content_marketing": {"S1": 6_000}, "social_media": {"S2": 100}}});
+    let new = NewRun {
+        seed: Some(3),
+        cash: Some(9e6),
+        mode: Mode::Debug,
+        storage: Storage::Memory,
+        overrides: vec![("leads.saturation_base".to_owned(), "0.001".to_owned())],
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    for (tool, arguments) in but(&[("set_targeted_ad_spend", ads)]) {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+    let dear = |session: &Session| {
+        needs(session).into_iter().find(|need| matches!(need.problem, Problem::LeadCost(..)))
+    };
+    let week = (1..20).find(|_| {
+        play(&mut session, 1);
+        dear(&session).is_some()
+    });
+    let need = dear(&session).unwrap_or_else(|| panic!("{week:?}"));
+    let cost = |from: u32, upto: u32, session: &mut Session| {
+        let sql = format!(
+            "SELECT sum(spend) / sum(leads_generated) FROM ad_channel_leads WHERE channel_id = 'content_marketing' AND \
+             group_id = 'S1' AND (day + 6) / 7 BETWEEN {from} AND {upto}"
+        );
+        crate::session::number_at(&session.query(&sql).expect("rows").rows[0], 0)
+    };
+    let last = session.weeks().len() as u32;
+    let now = cost(last - 3, last, &mut session);
+    let before = (1..=last - 7).map(|from| cost(from, from + 3, &mut session)).fold(f64::INFINITY, f64::min);
+    assert!(now >= 2.0 * before, "{now} {before}");
+    let told = |each: f64| {
+        if each < 100.0 { crate::notation::cents(each) } else { crate::report::words::money(each) }
+    };
+    for words in ["content_marketing × S1: in the last 4 weeks", &told(now), &told(before), "a first bill"] {
+        assert!(need.text.contains(words), "{words} in {}", need.text);
+    }
+    let Place::Call(ToolId::SetTargetedAdSpend, arguments) = &need.place else { panic!("{need:?}") };
+    let spend = &arguments["targeted_spend"];
+    assert_eq!((&spend["content_marketing"]["S1"], &spend["social_media"]["S2"]), (&json!(0), &json!(100)));
+    let lost = 6_000.0 * 28.0 * (1.0 - before / now);
+    assert!((need.at_risk - lost).abs() < 1.0, "{} {lost}", need.at_risk);
 }
 
 #[test]

@@ -28,7 +28,7 @@ macro_rules! shipped {
     };
 }
 
-const SHIPPED: [(&str, &str); 42] = shipped![
+const SHIPPED: [(&str, &str); 44] = shipped![
     "cash-by-week",
     "ledger-by-category",
     "costs-by-week",
@@ -41,8 +41,10 @@ const SHIPPED: [(&str, &str); 42] = shipped![
     "in-app-ads",
     "growth-by-week",
     "acquisition-by-source",
+    "cost-per-first-bill",
     "cost-per-lead",
     "advertising-and-growth",
+    "leads-by-week-and-source",
     "lost-leads",
     "retention-by-cohort",
     "retention-by-plan",

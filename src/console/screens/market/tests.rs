@@ -101,7 +101,7 @@ fn the_report_tells_estimates_and_what_the_truth_can_be() {
         for words in ["budget", "usage", "quality floor", "market", "lock-in aversion", "word of mouth"] {
             assert!(text.contains(words), "{group} {words}: {text}");
         }
-        assert_eq!(text.contains("size of a company"), group.is_enterprise());
+        assert_eq!(text.contains("smallest company"), group.is_enterprise());
     }
 }
 

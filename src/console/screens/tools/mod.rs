@@ -27,8 +27,9 @@ use crate::console::effect::Effect;
 use crate::console::message::News;
 use crate::console::readings::Reading;
 use crate::console::widgets::Field;
+use crate::report::insights::{insights_as_ranges, overview_with_ages};
 use crate::session::{JournalEntry, Rows};
-use crate::tools::{CATALOGUE, Spec, ToolId};
+use crate::tools::{Answer, CATALOGUE, Spec, ToolId};
 use form::{Form, spaced};
 use outcome::Leads;
 
@@ -206,7 +207,7 @@ impl ScreenState for Tools {
                     {
                         form.at = place;
                     }
-                    form.answer = Some(answer.clone().map(|answer| answer.to_json()));
+                    form.answer = Some(answer.clone().map(|answer| for_people(&answer, look.company)));
                 }
             }
             _ => {}
@@ -216,6 +217,18 @@ impl ScreenState for Tools {
 
     fn holds_unsent_text(&self) -> bool {
         !self.unsent().is_empty()
+    }
+}
+
+/// An answer as people are shown it: estimates as ranges, with the day they are of.
+fn for_people(answer: &Answer, company: &Company) -> Value {
+    let told = answer.to_json();
+    match answer {
+        Answer::GetGroupInsights(insights) => {
+            company.fit(insights.group_id).map_or_else(|| told.clone(), |fit| insights_as_ranges(&told, fit))
+        }
+        Answer::GetMarketOverview(_) => overview_with_ages(&told, &company.fits),
+        _ => told,
     }
 }
 

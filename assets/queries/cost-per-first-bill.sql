@@ -1,0 +1,19 @@
+-- title: Cost per first bill by channel and group
+-- what: What a lead and a customer with a first bill cost through each pair of channel and group in the last twelve weeks.
+-- chart: bar channel_and_group dollars_per_first_bill
+WITH bills AS (
+    SELECT c.acquisition_source AS channel_id, c.group_id, count(*) AS first_bills
+    FROM customers c
+    CROSS JOIN subscriptions s
+    WHERE c.created_day > (SELECT max(day) FROM service_day) - 84 AND s.customer_id = c.customer_id
+        AND s.first_billing_done = 1
+    GROUP BY 1, 2
+)
+SELECT a.channel_id || ' ' || a.group_id AS channel_and_group, sum(a.leads_generated) AS leads, b.first_bills,
+    round(sum(a.spend)) AS spend, round(sum(a.spend) / nullif(sum(a.leads_generated), 0), 2) AS dollars_per_lead,
+    round(sum(a.spend) / b.first_bills, 2) AS dollars_per_first_bill
+FROM ad_channel_leads a
+LEFT JOIN bills b ON b.channel_id = a.channel_id AND b.group_id = a.group_id
+WHERE a.day > (SELECT max(day) FROM service_day) - 84
+GROUP BY a.channel_id, a.group_id
+ORDER BY dollars_per_first_bill IS NULL, dollars_per_first_bill

@@ -1,0 +1,67 @@
+//! Quality delivered to the open group by week, before the range of its floor as it was known then.
+
+use ratatui::layout::Rect;
+
+use super::Customers;
+use crate::console::action::Action;
+use crate::console::canvas::Canvas;
+use crate::console::company::Company;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::console::theme::Role;
+use crate::console::widgets::chart::Band;
+use crate::console::widgets::{Axis, Line, Plot, Side, Unit};
+use crate::world::identifiers::{Group, Plan};
+
+/// The quality of every plan, and the band of the floor.
+pub struct QualityByWeekPane;
+
+impl Pane<Customers> for QualityByWeekPane {
+    fn hints(&self, _: &Customers) -> Vec<Action> {
+        vec![Action::FocusNext, Action::Close]
+    }
+
+    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+        let title = format!("quality delivered to {} by week", customers.group(look.company)?);
+        Some(Figure { title, term: "delivered-quality", sql: None })
+    }
+
+    fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {
+        let fit = customers.group(look.company).and_then(|group| look.company.fit(group));
+        fit.map_or_else(Border::default, |fit| Border {
+            title: "Your quality and their floor".to_owned(),
+            note: format!("░ floor, now {}", fit.floor.quality()),
+            ..Border::default()
+        })
+    }
+
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let Some(group) = customers.group(look.company) else { return };
+        let names = ["A", "B", "C"];
+        let line = |plan: Plan| {
+            let points = quality_by_week(look.company, group, plan);
+            Line::through(points, Role::Series(plan.index())).named(names[plan.index()])
+        };
+        let lines = Plan::ALL.map(line);
+        let band = Band { ends: floor_by_week(look.company, group), name: "floor" };
+        let x = Axis { write: &|week| format!("wk {week:.0}"), holds: &[] };
+        let y = Side { unit: Unit::Number, holds: &[0.0] };
+        Plot { lines: &lines, band: Some(&band), mark: None, x: &x, y: &y }.draw(canvas, seat.area);
+    }
+}
+
+/// Delivered quality at the end of each week since the group is known.
+pub fn quality_by_week(company: &Company, group: Group, plan: Plan) -> Vec<(f64, f64)> {
+    let weeks = company.group_weeks.iter().enumerate();
+    weeks.filter_map(|(at, week)| Some(((at + 1) as f64, week[group].quality?[plan]))).collect()
+}
+
+/// Least and greatest floor at the end of each week since the group is known.
+pub fn floor_by_week(company: &Company, group: Group) -> Vec<(f64, f64, f64)> {
+    let weeks = company.group_weeks.iter().enumerate();
+    let end = |(at, week): (usize, &crate::world::identifiers::ByGroup<crate::session::GroupWeek>)| {
+        let (least, most) = week[group].floor?;
+        Some(((at + 1) as f64, least, most))
+    };
+    weeks.filter_map(end).collect()
+}

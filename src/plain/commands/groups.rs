@@ -1,0 +1,165 @@
+//! `fit [GROUP]` and `leads`: what groups want beside what they are offered, where their leads come from and what those
+//! cost. And the insights of a group, as ranges.
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::super::grammar::{Argument, Problem};
+use super::{Interpreter, problem};
+use crate::notation::{cents, dollars, grouped, nearest};
+use crate::report::fit::{Concern, Fit, LeadFlow, PlanFit, TruthRange, fits};
+use crate::report::insights::{insights_as_ranges, overview_with_ages};
+use crate::report::lead_costs::{AdSpell, PairCost, pair_costs};
+use crate::session::{GroupWeek, Session};
+use crate::tools;
+use crate::world::identifiers::{Group, Plan};
+
+impl Interpreter {
+    pub(super) fn fit(&self, name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
+        let all = fits(&self.session);
+        let shown: Vec<&Fit> = match name {
+            None => all.iter().collect(),
+            Some(id) => match all.iter().find(|fit| fit.group.id().eq_ignore_ascii_case(id)) {
+                Some(fit) => vec![fit],
+                None => {
+                    let near = nearest(id, all.iter().map(|fit| fit.group.id()));
+                    let known = if near.is_empty() {
+                        all.iter().map(|fit| fit.group.id()).collect::<Vec<_>>().join(", ")
+                    } else {
+                        near.join(" or ")
+                    };
+                    return Err(problem(arguments, &format!("{id} is no known group; known: {known}")));
+                }
+            },
+        };
+        let mut lines: Vec<String> = shown.iter().flat_map(|fit| fit.lines()).collect();
+        lines.push(
+            "ranges are those of the group's means; the quality a customer requires rises with the price"
+                .to_owned(),
+        );
+        let data = json!({ "groups": shown.into_iter().map(fit_as_data).collect::<Vec<Value>>() });
+        Ok(Answer::done("fit", lines.join("\n"), data))
+    }
+
+    pub(super) fn leads(&self) -> Answer {
+        let (all, weeks) = (fits(&self.session), self.session.group_weeks());
+        let mut lines: Vec<String> = Vec::new();
+        for fit in &all {
+            match fit.last_week {
+                Some(week) => {
+                    let (group, week, recent) = (fit.group, week.in_words(), fit.recent.in_words());
+                    lines.push(format!("{group}: last week {week}; last 4 weeks {recent}"));
+                }
+                None => lines.push(format!("{}: no week has run", fit.group)),
+            }
+        }
+        let costs = pair_costs(weeks);
+        lines.extend(costs.iter().map(cost_line));
+        let week = |(at, own): (usize, &GroupWeek)| {
+            json!({
+                "week": at + 1,
+                "leads": own.leads,
+                "paid": own.paid_leads(),
+                "word_of_mouth": own.word_of_mouth,
+                "signed": own.signed,
+            })
+        };
+        let by_week = |group: Group| -> Vec<Value> {
+            weeks.iter().map(|week| &week[group]).enumerate().map(week).collect()
+        };
+        let groups: Vec<Value> =
+            all.iter().map(|fit| json!({ "group": fit.group.id(), "weeks": by_week(fit.group) })).collect();
+        let costs: Vec<Value> = costs.iter().map(cost_as_data).collect();
+        Answer::done("leads", lines.join("\n"), json!({ "groups": groups, "costs": costs }))
+    }
+}
+
+/// What a tool answered with ranges in place of estimates and the days they are of; none where it holds no estimates.
+pub(super) fn with_ranges(session: &Session, answer: &tools::Answer) -> Option<Value> {
+    match answer {
+        tools::Answer::GetGroupInsights(insights) => {
+            let all = fits(session);
+            let fit = all.iter().find(|fit| fit.group == insights.group_id)?;
+            Some(insights_as_ranges(&answer.to_json(), fit))
+        }
+        tools::Answer::GetMarketOverview(_) => Some(overview_with_ages(&answer.to_json(), &fits(session))),
+        _ => None,
+    }
+}
+
+fn fit_as_data(fit: &Fit) -> Value {
+    let ends = |range: TruthRange| json!({ "least": range.least, "most": range.most });
+    let plan = |own: &PlanFit| {
+        let missing = |concern: &Concern| (concern.id().to_owned(), json!(fit.missing(own.plan, *concern)));
+        let missing: serde_json::Map<String, Value> = Concern::ALL.iter().map(missing).collect();
+        json!({
+            "plan": own.plan.id(),
+            "list_price": own.list,
+            "price_for_leads": own.price,
+            "billed": own.billed,
+            "quality": own.quality,
+            "quota": own.quota,
+            "missing": missing,
+        })
+    };
+    json!({
+        "group": fit.group.id(),
+        "level": fit.level,
+        "noise": fit.noise,
+        "as_of": fit.as_of,
+        "age_days": fit.age,
+        "floor": ends(fit.floor),
+        "budget": ends(fit.budget),
+        "usage": ends(fit.usage),
+        "plans": Plan::ALL.map(|own| plan(&fit.plans[own])),
+        "last_week": fit.last_week.map(flow_as_data),
+        "last_4_weeks": flow_as_data(fit.recent),
+    })
+}
+
+fn flow_as_data(flow: LeadFlow) -> Value {
+    json!({
+        "leads": flow.leads,
+        "paid": flow.paid,
+        "word_of_mouth": flow.word_of_mouth,
+        "signed": flow.signed,
+        "conversion": flow.conversion(),
+    })
+}
+
+fn cost_as_data(pair: &PairCost) -> Value {
+    let spell = |spell: &AdSpell| {
+        json!({
+            "weeks": [spell.weeks.0, spell.weeks.1],
+            "leads": spell.leads,
+            "spend": spell.spend,
+            "per_lead": spell.per_lead(),
+            "first_bills": spell.billed,
+            "per_first_bill": spell.per_bill(),
+        })
+    };
+    json!({
+        "channel": pair.channel.id(),
+        "group": pair.group.id(),
+        "last_4_weeks": spell(&pair.recent),
+        "cheapest_4_weeks_before": pair.cheapest.as_ref().map(spell),
+    })
+}
+
+fn cost_line(pair: &PairCost) -> String {
+    let each = |value: Option<f64>| value.map_or("–".to_owned(), cents);
+    let words = |spell: &AdSpell| {
+        format!("{} a lead, {} a first bill", each(spell.per_lead()), each(spell.per_bill()))
+    };
+    let before = pair.cheapest.map_or(String::new(), |spell| {
+        format!("; cheapest in weeks {} to {}: {}", spell.weeks.0, spell.weeks.1, words(&spell))
+    });
+    format!(
+        "{} × {}: {} leads for {} in 4 weeks, {}{before}",
+        pair.channel.id(),
+        pair.group,
+        grouped(f64::from(pair.recent.leads), 0),
+        dollars(pair.recent.spend),
+        words(&pair.recent)
+    )
+}

@@ -5,14 +5,17 @@
 //! beginning, which costs time and nothing else (docs/formats/snapshot.md).
 //!
 //! The file is a title line, the blake3 digest of the rest, and the rest as canonical bytes: header and notes as
-//! JSON texts, then what the world and the session hold as numbers.
+//! JSON texts, the notes deflated, then what the world and the session hold as numbers.
 
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
 use std::sync::Arc;
 
+use flate2::Compression;
+use flate2::read::DeflateDecoder;
+use flate2::write::DeflateEncoder;
 use serde::{Deserialize, Serialize};
 
 use crate::database::Position;
@@ -78,6 +81,19 @@ struct Notes<'a> {
 }
 
 impl Notes<'_> {
+    /// Deflated JSON: a journal of thousands of offers repeats itself.
+    fn packed(&self) -> Vec<u8> {
+        let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
+        let written = encoder.write_all(&serde_json::to_vec(self).unwrap_or_default());
+        written.and_then(|()| encoder.finish()).unwrap_or_default()
+    }
+
+    fn unpacked(bytes: &[u8]) -> Option<Notes<'static>> {
+        let mut text = String::new();
+        DeflateDecoder::new(bytes).read_to_string(&mut text).ok()?;
+        serde_json::from_str(&text).ok()
+    }
+
     /// No days have run yet.
     fn cannot_have_a_dashboard(&self) -> bool {
         self.weeks.is_empty() && self.running_week.days_run == 0
@@ -154,7 +170,7 @@ impl Snapshot {
     /// The state of a run; none if it is not the one it claims to be.
     pub(in crate::session) fn recall(&self, manifest: &Manifest, params: &Arc<Params>) -> Option<Recalled> {
         let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
-        let notes: Notes<'static> = serde_json::from_str(&reader.read::<String>()?).ok()?;
+        let notes = Notes::unpacked(&reader.read::<Vec<u8>>()?)?;
         // Snapshots of earlier builds lack it, and it cannot be made of a state that was changed since.
         if notes.last_dashboard.is_none() && !notes.cannot_have_a_dashboard() {
             return None;
@@ -255,7 +271,7 @@ impl Session {
         };
         let rows: u32 = simulation.world.customers.active().iter().sum();
         let mut bytes = CanonicalHasher::collector(rows as usize * BYTES_OF_A_SUBSCRIBER);
-        serde_json::to_string(&notes).unwrap_or_default().feed(&mut bytes);
+        notes.packed().feed(&mut bytes);
         simulation.world.feed(&mut bytes);
         simulation.facts.feed(&mut bytes);
         simulation.trace.feed(&mut bytes);

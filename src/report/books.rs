@@ -1,11 +1,11 @@
-//! What the database knows of a run: groups by week, money by category, leads by channel. Guarded queries over the
-//! visible tables; what it does not answer is named and left out.
+//! What is known of a run: money by category and week, as the session booked it; groups by week and leads by channel, from
+//! guarded queries over the visible tables. What the database does not answer is named and left out.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::session::{Cell, Rows, Session, WEEK_OF_ENTRY, number_at, text_at};
+use crate::session::{Booked, Cell, Rows, Session, number_at, text_at};
 use crate::world::identifiers::Group;
 
 /// Who came and left by week and group. A deal that was left early ends in the future: it counts from the last day.
@@ -64,8 +64,8 @@ pub struct Books {
     pub groups: Vec<GroupBook>,
     /// Ads by group and channel.
     pub channels: Vec<ChannelRow>,
-    /// Dollars by week and category of the ledger; costs are negative.
-    pub ledger: BTreeMap<u32, BTreeMap<String, f64>>,
+    /// Dollars by week and category of the ledger; costs are negative. The first cash is no week's.
+    pub ledger: BTreeMap<u32, BTreeMap<&'static str, f64>>,
     /// Outages: day and minutes.
     pub outages: Vec<(u32, u32)>,
     /// What could not be read, and why.
@@ -79,8 +79,8 @@ impl Books {
         let connection = match connection {
             Ok(connection) => connection,
             Err(refusal) => {
-                let missing = vec![format!("groups, channels and the ledger: {refusal}")];
-                return Books { missing, ..Books::default() };
+                let missing = vec![format!("groups and channels: {refusal}")];
+                return Books { ledger: ledger_of(session), missing, ..Books::default() };
             }
         };
         let mut missing = Vec::new();
@@ -96,11 +96,9 @@ impl Books {
         let (leads, revenue) = (ask("leads", LEADS), ask("revenue", REVENUE));
         let groups = groups_of(&flows, &by_group(&leads), &by_group(&revenue), weeks);
         let channels = ask("channels", CHANNELS).rows.iter().map(|row| channel_of(row)).collect();
-        let ledger = format!("SELECT {WEEK_OF_ENTRY}, category, sum(amount) FROM ledger GROUP BY 1, 2");
-        let ledger = ledger_of(&ask("the ledger", &ledger));
         let outage = |row: &Vec<Cell>| (number_at(row, 0) as u32, number_at(row, 1) as u32);
         let outages = ask("outages", OUTAGES).rows.iter().map(outage).collect();
-        Books { groups, channels, ledger, outages, missing }
+        Books { groups, channels, ledger: ledger_of(session), outages, missing }
     }
 
     /// Only the ads, for those who need no more; empty if the database does not say.
@@ -114,7 +112,7 @@ impl Books {
     pub fn totals(&self) -> BTreeMap<&str, f64> {
         let mut totals = BTreeMap::new();
         for (category, amount) in self.ledger.values().flatten() {
-            *totals.entry(category.as_str()).or_default() += amount;
+            *totals.entry(*category).or_default() += amount;
         }
         totals
     }
@@ -157,19 +155,20 @@ fn channel_of(row: &[Cell]) -> ChannelRow {
     }
 }
 
-fn ledger_of(rows: &Rows) -> BTreeMap<u32, BTreeMap<String, f64>> {
-    let mut ledger: BTreeMap<u32, BTreeMap<String, f64>> = BTreeMap::new();
-    for row in &rows.rows {
-        let week = ledger.entry(number_at(row, 0) as u32).or_default();
-        week.insert(text_at(row, 1).to_owned(), number_at(row, 2));
-    }
-    ledger
+/// What each week booked, and what was booked since the last one.
+fn ledger_of(session: &Session) -> BTreeMap<u32, BTreeMap<&'static str, f64>> {
+    let since = session.observe().booked_since;
+    let weeks = session.weeks().iter().map(|week| week.booked).chain([since]);
+    let entries =
+        |booked: Booked| booked.entries().map(|(category, dollars)| (category.id(), dollars)).collect();
+    (1..).zip(weeks.map(entries)).filter(|(_, entries): &(u32, BTreeMap<_, _>)| !entries.is_empty()).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::report::test_kit;
+    use crate::session::WEEK_OF_ENTRY;
 
     #[test]
     fn the_books_agree_with_the_figures_of_the_run() {
@@ -186,8 +185,16 @@ mod tests {
             let then: f64 = people.map(|book| book.active[at + 1]).sum();
             assert_eq!(then, f64::from(week.individual_subscribers), "week {}", at + 1);
         }
-        let total: f64 = books.totals().values().sum();
+        let total: f64 = books.totals().values().sum::<f64>() + session.cash_by_day()[0];
         assert!((total - seen.cash).abs() < 0.01, "{total} is not {}", seen.cash);
+        let connection = session.open_connection().expect("a connection");
+        let sql =
+            format!("SELECT {WEEK_OF_ENTRY}, category, sum(amount) FROM ledger WHERE day > 0 GROUP BY 1, 2");
+        for row in connection.ask(&sql, session.query_limits()).expect("the ledger").rows {
+            let (week, category) = (number_at(&row, 0) as u32, text_at(&row, 1));
+            let booked = books.ledger.get(&week).and_then(|week| week.get(category)).copied().unwrap_or(0.0);
+            assert!((booked - number_at(&row, 2)).abs() < 0.01, "week {week}: {category} {booked}");
+        }
         assert!(
             books.channels.iter().any(|row| row.channel == "content_marketing" && row.spend == 5.0 * 5250.0)
         );

@@ -35,6 +35,32 @@ pub fn change_in_words(change: &Change) -> String {
     change.setting.unit().map_or(told.clone(), |unit| format!("{told} {unit}"))
 }
 
+/// Changes as words, those of one family in one line: `price: A 0 → 14, B 0 → 49 $/month`.
+pub fn changes_in_words(changes: &[Change]) -> Vec<String> {
+    let mut families: Vec<(String, Vec<&Change>)> = Vec::new();
+    for change in changes {
+        let (family, _) = change.setting.parts();
+        match families.iter_mut().find(|(known, _)| *known == family) {
+            Some((_, members)) => members.push(change),
+            None => families.push((family, vec![change])),
+        }
+    }
+    let member = |change: &&Change| {
+        let (_, member) = change.setting.parts();
+        let name = if member.is_empty() { "in general" } else { &member };
+        format!("{name} {} → {}", number(change.old), number(change.new))
+    };
+    let line = |(family, members): (String, Vec<&Change>)| match members[..] {
+        [only] => change_in_words(only),
+        _ => {
+            let told: Vec<String> = members.iter().map(member).collect();
+            let unit = members[0].setting.unit().map_or(String::new(), |unit| format!(" {unit}"));
+            format!("{family}: {}{unit}", told.join(", "))
+        }
+    };
+    families.into_iter().map(line).collect()
+}
+
 /// The chapters of a run: weeks in which nothing new was decided join the one before them.
 pub fn chapters(decisions: &[Decisions], journal: &[JournalEntry], start_cash: f64) -> Vec<Chapter> {
     let mut told: Vec<Chapter> = Vec::new();
@@ -50,7 +76,7 @@ pub fn chapters(decisions: &[Decisions], journal: &[JournalEntry], start_cash: f
             day: decided.day,
             until: decided.until,
             why: entries.iter().find_map(rationale_of).unwrap_or_default(),
-            changes: decided.changes.iter().map(change_in_words).collect(),
+            changes: changes_in_words(&decided.changes),
             deeds: deeds(decided, entries),
             cash: after,
             cash_change: after - cash,
@@ -123,7 +149,8 @@ mod tests {
         let told = chapters(session.decisions(), session.journal(), 1_000_000.0);
         let weeks: Vec<(u32, u32)> = told.iter().map(|chapter| (chapter.week, chapter.last_week)).collect();
         assert_eq!(weeks, [(1, 2), (3, 3), (4, 5)], "the third week has a reason of its own");
-        assert!(told[0].changes.contains(&"price A: 0 → 12 $/month".to_owned()), "{:?}", told[0].changes);
+        let prices = "price: A 0 → 12, B 0 → 25, C 0 → 55 $/month";
+        assert!(told[0].changes.contains(&prices.to_owned()), "{:?}", told[0].changes);
         let post = "post: “NovaMind <opens> today | with *three* plans & fair prices.”";
         assert_eq!(told[0].deeds, [post]);
         assert_eq!(told[1].changes, ["price B: 25 → 22 $/month"]);

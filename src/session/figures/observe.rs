@@ -8,6 +8,7 @@ use super::dashboard::{self, DeliveredQuality, Waiting, delivered_quality};
 use super::pace::Pace;
 use super::week::{WeekFigures, week_of};
 use crate::session::folder::mode::Mode;
+use crate::session::play::irrevocable::Irrevocable;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Ended;
 use crate::world::day::closing_figures;
@@ -136,7 +137,7 @@ impl Session {
             last_week: self.history.weeks.last().copied(),
             dashboard: self.dashboard(),
             changes: self.changes(),
-            purchases: self.history.this_week.done.clone(),
+            purchases: self.history.this_week.done.iter().map(Irrevocable::to_string).collect(),
             waiting: self.waiting(),
             running_research: self.running_research(),
         }

@@ -89,6 +89,25 @@ impl SettingId {
         }
     }
 
+    /// What it is one of, and which one it is: `ads linkedin` and `E1`; nothing for everybody.
+    pub fn parts(self) -> (String, String) {
+        let of = |family: &str, member: String| (family.to_owned(), member.trim_start().to_owned());
+        match self {
+            SettingId::Price(plan) => of("price", plan.to_string()),
+            SettingId::ModelTier(plan) => of("model tier", plan.to_string()),
+            SettingId::Quota(plan) => of("quota", plan.to_string()),
+            SettingId::Operations => of("operations", String::new()),
+            SettingId::Development => of("development", String::new()),
+            SettingId::CapacityTier => of("capacity tier", String::new()),
+            SettingId::Advertising(channel, group) => of(&format!("ads {channel}"), group.to_string()),
+            SettingId::TargetedDevelopment(group) => of("development", group.to_string()),
+            SettingId::TargetedOperations(audience) => of("operations", audience.to_string()),
+            SettingId::Discount(audience) => of("discount", audience.to_string()),
+            SettingId::LeadDiscount(audience) => of("lead discount", audience.to_string()),
+            SettingId::AdsStrength(audience) => of("in-app ads", audience.to_string()),
+        }
+    }
+
     /// The plan, of a setting that every plan has.
     pub fn plan(self) -> Option<Plan> {
         match self {
@@ -101,20 +120,9 @@ impl SettingId {
 /// For instance `price A` or `ads linkedin E1`.
 impl Display for SettingId {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
-        match self {
-            SettingId::Price(plan) => write!(out, "price {plan}"),
-            SettingId::ModelTier(plan) => write!(out, "model tier {plan}"),
-            SettingId::Quota(plan) => write!(out, "quota {plan}"),
-            SettingId::Operations => out.write_str("operations"),
-            SettingId::Development => out.write_str("development"),
-            SettingId::CapacityTier => out.write_str("capacity tier"),
-            SettingId::Advertising(channel, group) => write!(out, "ads {channel} {group}"),
-            SettingId::TargetedDevelopment(group) => write!(out, "development {group}"),
-            SettingId::TargetedOperations(audience) => write!(out, "operations{audience}"),
-            SettingId::Discount(audience) => write!(out, "discount{audience}"),
-            SettingId::LeadDiscount(audience) => write!(out, "lead discount{audience}"),
-            SettingId::AdsStrength(audience) => write!(out, "in-app ads{audience}"),
-        }
+        let (family, member) = self.parts();
+        out.write_str(&family)?;
+        if member.is_empty() { Ok(()) } else { write!(out, " {member}") }
     }
 }
 

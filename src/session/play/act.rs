@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use serde_json::{Map, Value};
 
+use super::irrevocable::Irrevocable;
 use super::this_week::Step;
 use crate::session::error::RunError;
 use crate::session::figures::changes::{Change, changes, daily_cost};
@@ -172,7 +173,7 @@ impl Session {
             let (day, tool) = (self.simulation.world.day, spec.id);
             self.history.journal.push(JournalEntry::Call { seq, day, tool, args, reversal });
         }
-        self.history.this_week.done.extend(self.simulation.irrevocable(&resolved));
+        Irrevocable::add(&mut self.history.this_week.done, self.simulation.irrevocable(&resolved));
         if matches!(resolved, ResolvedCommand::None | ResolvedCommand::ReadInsights(_)) {
             return;
         }

@@ -1,5 +1,6 @@
 //! What has happened in a run, as far as screens, dashboard and report look back: figures of weeks, decisions, journal.
 
+use super::irrevocable::Irrevocable;
 use super::simulation::Simulation;
 use super::surroundings::Calculated;
 use super::this_week::ThisWeek;
@@ -137,7 +138,7 @@ impl History {
             day: self.decisions.last().map_or(0, |before| before.until),
             until: world.day,
             changes: self.changes(world),
-            purchases: std::mem::take(&mut self.this_week.done),
+            purchases: std::mem::take(&mut self.this_week.done).iter().map(Irrevocable::to_string).collect(),
         });
         self.journal.push(JournalEntry::Week { figures });
         self.this_week.begin(world.settings.clone());

@@ -1,7 +1,10 @@
-//! What a call does that cannot be taken back, in words: purchases, posts, offers, threads that end. Many like ones are
-//! one sentence.
+//! What was done that cannot be taken back: purchases, posts, offers, threads that end. Many like ones are one, whether one
+//! call did them or several of a week.
 
 use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
+
+use serde::{Deserialize, Serialize};
 
 use super::simulation::Simulation;
 use crate::notation::{cents, grouped};
@@ -13,29 +16,98 @@ use crate::world::identifiers::{Group, Plan};
 /// Offers or threads of one call that are named one by one.
 const NAMED: usize = 5;
 
+/// What cannot be taken back.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(in crate::session) enum Irrevocable {
+    /// Something single.
+    Single(String),
+    /// Offers of the same plans to companies of a group.
+    Offered {
+        group: Option<Group>,
+        /// Plan, lowest and highest price.
+        offerings: Vec<(Plan, f64, f64)>,
+        companies: u32,
+    },
+    /// Threads with companies of a group that were ended.
+    Ended { group: Group, companies: u32 },
+}
+
+impl Irrevocable {
+    /// Adds what was done to what was done before it.
+    pub(in crate::session) fn add(done: &mut Vec<Irrevocable>, more: Vec<Irrevocable>) {
+        for own in more {
+            if !done.iter_mut().any(|before| before.takes_in(&own)) {
+                done.push(own);
+            }
+        }
+    }
+
+    /// Joins another of its kind; false where it is of another kind.
+    fn takes_in(&mut self, other: &Irrevocable) -> bool {
+        use Irrevocable::{Ended, Offered};
+        match (self, other) {
+            (
+                Offered { group, offerings, companies },
+                Offered { group: to, offerings: more, companies: count },
+            ) if group == to && plans(offerings).eq(plans(more)) => {
+                for ((_, least, most), (_, low, high)) in offerings.iter_mut().zip(more) {
+                    (*least, *most) = (least.min(*low), most.max(*high));
+                }
+                *companies += count;
+                true
+            }
+            (Ended { group, companies }, Ended { group: of, companies: count }) if group == of => {
+                *companies += count;
+                true
+            }
+            _ => false,
+        }
+    }
+}
+
+fn plans(offerings: &[(Plan, f64, f64)]) -> impl Iterator<Item = Plan> {
+    offerings.iter().map(|(plan, ..)| *plan)
+}
+
+impl Display for Irrevocable {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Irrevocable::Single(words) => out.write_str(words),
+            Irrevocable::Offered { group, offerings, companies } => {
+                let offerings: Vec<String> = offerings.iter().map(offering_in_words).collect();
+                write!(out, "offered {} to {}", offerings.join(" or "), counted(*companies, *group))
+            }
+            Irrevocable::Ended { group, companies } => {
+                write!(out, "threads with {} ended", counted(*companies, Some(*group)))
+            }
+        }
+    }
+}
+
 impl Simulation {
     /// What cannot be taken back of a command that is about to be applied.
-    pub(in crate::session) fn irrevocable(&self, resolved: &ResolvedCommand) -> Vec<String> {
+    pub(in crate::session) fn irrevocable(&self, resolved: &ResolvedCommand) -> Vec<Irrevocable> {
+        let single = |words: String| vec![Irrevocable::Single(words)];
         match resolved {
             ResolvedCommand::None | ResolvedCommand::Set(_) | ResolvedCommand::ReadInsights(_) => Vec::new(),
-            ResolvedCommand::Post(_) => vec!["post published".to_owned()],
+            ResolvedCommand::Post(_) => single("post published".to_owned()),
             ResolvedCommand::StartResearch(project, _) => {
-                vec![format!("R&D project {} started, done on day {}", project.id(), project.due_day)]
+                single(format!("R&D project {} started, done on day {}", project.id(), project.due_day))
             }
-            ResolvedCommand::ResearchMarket(attempt) => vec![match attempt.found {
+            ResolvedCommand::ResearchMarket(attempt) => single(match attempt.found {
                 Some(group) => format!("market research found group {group}"),
                 None => "market research found nothing".to_owned(),
-            }],
+            }),
             ResolvedCommand::ResearchGroup(study, _) => {
                 let (group, level, day) = (study.group, study.target, study.due_day);
-                vec![format!("study of {group} to level {level} ordered, done on day {day}")]
+                single(format!("study of {group} to level {level} ordered, done on day {day}"))
             }
             ResolvedCommand::SendDeals(letters) => self.offers(letters),
             ResolvedCommand::RejectDeals(threads) => self.rejections(threads),
         }
     }
 
-    fn offers(&self, letters: &[Letter]) -> Vec<String> {
+    fn offers(&self, letters: &[Letter]) -> Vec<Irrevocable> {
         if letters.len() <= NAMED {
             return letters.iter().map(offer).collect();
         }
@@ -44,35 +116,32 @@ impl Simulation {
             let plans = letter.offerings.iter().map(|offering| offering.plan).collect();
             alike.entry((self.group_of(letter.customer), plans)).or_default().push(letter);
         }
-        let sentence = |((group, _), letters): ((Option<Group>, Vec<Plan>), Vec<&Letter>)| match letters[..] {
+        let joined = |((group, plans), letters): ((Option<Group>, Vec<Plan>), Vec<&Letter>)| match letters[..]
+        {
             [only] => offer(only),
-            [first, ..] => {
-                let offerings: Vec<String> =
-                    (0..first.offerings.len()).map(|at| offering_of_all(&letters, at)).collect();
-                let to = companies(letters.len(), group);
-                format!("offered {} to {to}", offerings.join(" or "))
-            }
-            [] => String::new(),
+            _ => Irrevocable::Offered {
+                group,
+                offerings: (0..plans.len()).map(|at| offering_of_all(&letters, at)).collect(),
+                companies: letters.len() as u32,
+            },
         };
-        alike.into_iter().map(sentence).collect()
+        alike.into_iter().map(joined).collect()
     }
 
-    fn rejections(&self, threads: &[u32]) -> Vec<String> {
+    fn rejections(&self, threads: &[u32]) -> Vec<Irrevocable> {
         let all = &self.world.enterprise.threads;
         let ended = threads.iter().filter_map(|number| {
             all.binary_search_by_key(number, |thread| thread.number).ok().map(|at| &all[at])
         });
         if threads.len() <= NAMED {
-            return ended.map(|thread| format!("thread with customer {} ended", thread.customer)).collect();
+            let words = ended.map(|thread| format!("thread with customer {} ended", thread.customer));
+            return words.map(Irrevocable::Single).collect();
         }
-        let mut by_group: BTreeMap<Group, usize> = BTreeMap::new();
+        let mut by_group: BTreeMap<Group, u32> = BTreeMap::new();
         for thread in ended {
             *by_group.entry(thread.group).or_default() += 1;
         }
-        by_group
-            .into_iter()
-            .map(|(group, count)| format!("threads with {} ended", companies(count, Some(group))))
-            .collect()
+        by_group.into_iter().map(|(group, companies)| Irrevocable::Ended { group, companies }).collect()
     }
 
     fn group_of(&self, customer: u32) -> Option<Group> {
@@ -80,24 +149,27 @@ impl Simulation {
     }
 }
 
-fn companies(count: usize, group: Option<Group>) -> String {
+fn counted(count: u32, group: Option<Group>) -> String {
     let of = group.map_or(String::new(), |group| format!(" of {group}"));
     let noun = if count == 1 { "company" } else { "companies" };
-    format!("{} {noun}{of}", grouped(count as f64, 0))
+    format!("{} {noun}{of}", grouped(f64::from(count), 0))
 }
 
-fn offer(letter: &Letter) -> String {
+fn offer(letter: &Letter) -> Irrevocable {
     let offering = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
     let offerings: Vec<String> = letter.offerings.iter().map(offering).collect();
-    format!("offered to customer {}: {}", letter.customer, offerings.join(", "))
+    Irrevocable::Single(format!("offered to customer {}: {}", letter.customer, offerings.join(", ")))
 }
 
-/// Plan and prices of the offerings at a place of letters with the same plans.
-fn offering_of_all(letters: &[&Letter], at: usize) -> String {
+/// Plan, lowest and highest price of the offerings at a place of letters with the same plans.
+fn offering_of_all(letters: &[&Letter], at: usize) -> (Plan, f64, f64) {
     let prices = letters.iter().map(|letter| letter.offerings[at].price);
     let (least, most) =
         prices.fold((f64::INFINITY, f64::NEG_INFINITY), |all, price| (all.0.min(price), all.1.max(price)));
-    let plan = letters[0].offerings[at].plan;
+    (letters[0].offerings[at].plan, least, most)
+}
+
+fn offering_in_words(&(plan, least, most): &(Plan, f64, f64)) -> String {
     match least == most {
         true => format!("{plan} at {}", cents(least)),
         false => format!("{plan} at {} to {}", cents(least), cents(most)),
@@ -129,7 +201,8 @@ mod tests {
     fn few_offers_are_named_and_many_are_counted_by_plan() {
         let session = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
         let told = |letters: &[Letter]| {
-            session.simulation.irrevocable(&ResolvedCommand::SendDeals(letters.to_vec()))
+            let done = session.simulation.irrevocable(&ResolvedCommand::SendDeals(letters.to_vec()));
+            done.iter().map(Irrevocable::to_string).collect::<Vec<_>>()
         };
         let few: Vec<Letter> = (1..=5).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
         assert_eq!(told(&few).len(), 5);
@@ -144,6 +217,37 @@ mod tests {
             [
                 "offered to customer 4001: A $8.00, C $54.00",
                 "offered B at $35.00 to $70.50 to 3,570 companies"
+            ]
+        );
+    }
+
+    #[test]
+    fn like_ones_of_several_calls_are_one() {
+        let s1 = Group::parse("E2").expect("a group");
+        let offered = |plan: Plan, price: f64, companies: u32| Irrevocable::Offered {
+            group: Some(s1),
+            offerings: vec![(plan, price, price)],
+            companies,
+        };
+        let mut done = vec![Irrevocable::Single("post published".to_owned())];
+        for more in [
+            vec![offered(Plan::B, 35.0, 900), Irrevocable::Ended { group: s1, companies: 40 }],
+            vec![offered(Plan::C, 60.0, 10), offered(Plan::B, 30.0, 99)],
+            vec![
+                Irrevocable::Ended { group: s1, companies: 2 },
+                Irrevocable::Single("post published".to_owned()),
+            ],
+        ] {
+            Irrevocable::add(&mut done, more);
+        }
+        assert_eq!(
+            done.iter().map(Irrevocable::to_string).collect::<Vec<_>>(),
+            [
+                "post published",
+                "offered B at $30.00 to $35.00 to 999 companies of E2",
+                "threads with 42 companies of E2 ended",
+                "offered C at $60.00 to 10 companies of E2",
+                "post published",
             ]
         );
     }

@@ -1,5 +1,6 @@
 //! What was done since the last week ran, so that settings can be taken back.
 
+use super::irrevocable::Irrevocable;
 use crate::session::trajectory::record::Reversal;
 use crate::tools::ToolId;
 use crate::world::settings::Settings;
@@ -14,7 +15,7 @@ pub(in crate::session) struct ThisWeek {
     /// Calls that took settings back and can be reversed themselves, newest last.
     pub(in crate::session) redo: Vec<Step>,
     /// Purchases and the like, in words.
-    pub(in crate::session) done: Vec<String>,
+    pub(in crate::session) done: Vec<Irrevocable>,
 }
 
 /// A call that changed settings, and the settings that reversing it restores.

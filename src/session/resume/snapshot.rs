@@ -26,6 +26,7 @@ use crate::session::folder::manifest::Manifest;
 use crate::session::play::facts_chain::FactsChain;
 use crate::session::play::feed::Feed;
 use crate::session::play::history::History;
+use crate::session::play::irrevocable::Irrevocable;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::Calculated;
 use crate::session::play::this_week::{Step, ThisWeek};
@@ -69,7 +70,7 @@ struct Notes<'a> {
     decisions: Cow<'a, [Decisions]>,
     notices: Cow<'a, [(u32, String)]>,
     feed: Cow<'a, Feed>,
-    done: Cow<'a, [String]>,
+    done: Cow<'a, [Irrevocable]>,
     journal: Cow<'a, [JournalEntry]>,
     asked: Cow<'a, [String]>,
     notebook: Cow<'a, Notebook>,

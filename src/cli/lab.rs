@@ -1,6 +1,7 @@
 //! `novamind lab`: comparison with reference figures, and of runs with each other.
 
 mod comparison;
+mod forecasts;
 
 use std::path::{Path, PathBuf};
 
@@ -24,6 +25,8 @@ pub struct Options {
 enum Laboratory {
     /// Run the policies of a reference folder over many seeds and compare with its figures.
     Golden(Golden),
+    /// Play policies and tell how often the intervals of naive forecasts held.
+    Forecasts(forecasts::Options),
     /// Put runs side by side: cash by week, decisions, behaviour measures, and the paper's published figures.
     Compare(comparison::Options),
 }
@@ -63,6 +66,7 @@ const SHARE_OF_ALL: f64 = 0.97;
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.command {
         Laboratory::Golden(golden) => run_golden(golden, context),
+        Laboratory::Forecasts(options) => forecasts::run(options, context),
         Laboratory::Compare(options) => comparison::run(options, context),
     }
 }

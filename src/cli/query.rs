@@ -9,7 +9,7 @@ use super::{Context, Failure, print};
 use crate::notation::printable;
 use crate::session::record::Outcome;
 use crate::session::{
-    Access, Cell, Line, Record, Refusal, Rows, RunError, Session, Trajectory, connection_to_file,
+    Access, Cell, Library, Line, Record, Refusal, Rows, RunError, Session, Trajectory, connection_to_file,
     find_run_to_read, rebuild_database, rows_as_json,
 };
 
@@ -18,7 +18,7 @@ use crate::session::{
 pub struct Options {
     /// Run, or `latest`: the newest.
     run: String,
-    /// One read-only statement.
+    /// One read-only statement, or the name of a query of the library.
     // A statement may begin with a comment, which begins with hyphens.
     #[arg(allow_hyphen_values = true)]
     sql: String,
@@ -36,16 +36,36 @@ pub enum RowFormat {
     Csv,
     /// One JSON object.
     Json,
+    /// A Markdown table.
+    Md,
 }
 
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
-    let rows = ask(&folder, &options.sql)?;
+    let rows = ask(&folder, &statement(&options.sql, context)?)?;
     match options.format {
         RowFormat::Table => print(&printable(&crate::plain::table(&rows))),
         RowFormat::Csv => print(&as_csv(&rows)?),
+        RowFormat::Md => print(&as_markdown(&rows)),
         RowFormat::Json => print(&format!("{}\n", serde_json::Value::Object(rows_as_json(&rows)))),
+    }
+}
+
+/// What is asked: a name, which no statement is, stands for a query of the library.
+fn statement(given: &str, context: &Context) -> Result<String, Failure> {
+    let is_name =
+        given.contains('-') && given.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
+    let library = Library::of(&context.configuration);
+    match library.find(given) {
+        Some(query) => Ok(query.body().to_owned()),
+        None if is_name && !given.starts_with('-') => {
+            let near = library.near(given);
+            let near =
+                if near.is_empty() { String::new() } else { format!("; near it: {}", near.join(", ")) };
+            Err(Failure::usage(format!("the library has no query {given}{near}")))
+        }
+        None => Ok(given.to_owned()),
     }
 }
 
@@ -98,6 +118,27 @@ fn moves_database(line: &Line) -> bool {
         Record::Start(_) | Record::Week(_) | Record::Step(_) | Record::End(_) => true,
         _ => false,
     }
+}
+
+/// A result as a Markdown table.
+fn as_markdown(rows: &Rows) -> String {
+    let escaped = |text: &str| text.replace('|', "\\|").replace(['\n', '\r'], " ");
+    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let is_number = |at: usize| {
+        let mut cells =
+            rows.rows.iter().filter_map(|row| row.get(at)).filter(|cell| **cell != Cell::Null).peekable();
+        cells.peek().is_some() && cells.all(|cell| matches!(cell, Cell::Integer(_) | Cell::Real(_)))
+    };
+    let ruler = (0..rows.columns.len()).map(|at| if is_number(at) { "--:" } else { "---" }.to_owned());
+    let mut text = line(rows.columns.iter().map(|name| escaped(name)).collect()) + &line(ruler.collect());
+    for row in &rows.rows {
+        let cell = |cell: &Cell| match cell {
+            Cell::Null => String::new(),
+            other => escaped(&crate::plain::cell_text(other)),
+        };
+        text += &line(row.iter().map(cell).collect());
+    }
+    printable(&text).into_owned()
 }
 
 /// A result as comma-separated values with a header.

@@ -6,6 +6,7 @@
 mod answers;
 pub mod bench;
 pub(crate) mod comparison;
+mod forecasts;
 mod golden;
 mod metrics;
 mod policy;
@@ -15,6 +16,7 @@ mod statistics;
 mod symbols;
 
 pub use answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
+pub use forecasts::{PlayedWeeks, coverage, horizons, measure, play_weeks, policies_of};
 pub use golden::{GoldenComparison, GoldenError, Reference, compare, read_reference};
 pub use metrics::{Collector, Figure};
 pub use policy::{Policy, PolicyError};

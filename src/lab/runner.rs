@@ -12,7 +12,7 @@ use super::policy::Policy;
 use super::routine;
 use super::symbols::Symbols;
 use crate::session::{
-    Configuration, Ended, Mode, NewRun, Refusal, RunError as SessionError, Session, Storage, Via,
+    Configuration, Ended, Mode, NewRun, Refusal, RunError as SessionError, Session, Storage, Via, WeekFigures,
 };
 use crate::tools::ToolId;
 
@@ -155,6 +155,27 @@ pub fn play(
     collector: &mut Collector,
 ) -> Result<Outcome, RunError> {
     let started = Instant::now();
+    let session = play_session(policy, spec, configuration, collector)?;
+    Ok(outcome(policy, spec.seed, &session, started.elapsed()))
+}
+
+/// The weeks of a policy played to its end.
+pub(super) fn weeks_of(
+    policy: &Policy,
+    spec: &RunSpec,
+    configuration: &Configuration,
+) -> Result<Vec<WeekFigures>, RunError> {
+    let session = play_session(policy, spec, configuration, &mut Collector::idle())?;
+    Ok(session.weeks().to_vec())
+}
+
+/// The session of a policy played to its end.
+pub(super) fn play_session(
+    policy: &Policy,
+    spec: &RunSpec,
+    configuration: &Configuration,
+    collector: &mut Collector,
+) -> Result<Session, RunError> {
     let mut session = Session::create(new_run(policy, spec), configuration).map_err(RunError::Start)?;
     let until = spec.until.unwrap_or(u32::MAX);
     while session.ended().is_none() && session.day() < until {
@@ -162,7 +183,7 @@ pub fn play(
         advance(policy, spec.seed, until, &mut session, collector)?;
     }
     session.save().map_err(RunError::Start)?;
-    Ok(outcome(policy, spec.seed, &session, started.elapsed()))
+    Ok(session)
 }
 
 /// The run a policy asks for.

@@ -23,6 +23,9 @@ use crate::session::library::NamedQuery;
 use crate::session::{Change, Library, Mode, Refusal, Session, Via, rows_as_json};
 use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 
+/// Words that run a week: the command, and the tool as agents call it.
+const NEXT: [&str; 3] = ["next", "next-week", "next_week"];
+
 /// Commands that are no tools.
 const COMMANDS: [(&str, &str); 27] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
@@ -86,7 +89,7 @@ impl Interpreter {
         let answer = match grammar::parse(line) {
             Ok(Line::Empty) => return Ok(None),
             Ok(Line::Text { word, rest }) => self.text(&word, &rest),
-            Ok(Line::Call { word, arguments, .. }) if ["next", "next-week"].contains(&word.as_str()) => {
+            Ok(Line::Call { word, arguments, .. }) if NEXT.contains(&word.as_str()) => {
                 self.next(&arguments, input)?
             }
             Ok(Line::Call { word, column, arguments }) => self.command(&word, column, &arguments),

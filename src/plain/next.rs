@@ -28,7 +28,7 @@ pub enum Filing {
     Ask,
 }
 
-/// Reads the four forms of the command.
+/// Reads the forms of the command.
 pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<Filing, Problem> {
     let naive = session.naive_forecasts();
     let given = |rationale: Value, predictions: Value, naive| Filing::Given { rationale, predictions, naive };
@@ -36,8 +36,17 @@ pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<
     match arguments {
         [] if prompts => Ok(Filing::Ask),
         [] => Ok(given(Value::Null, Value::Null, [false; 4])),
-        [Argument { key: None, value: Value::Object(body), .. }] => {
+        [Argument { key: None, value: Value::Object(body), column }] => {
+            body.keys().try_for_each(|name| known(name, *column))?;
             let field = |name: &str| body.get(name).cloned().unwrap_or(Value::Null);
+            Ok(given(field("rationale"), field("predictions"), [false; 4]))
+        }
+        named if named.iter().all(|argument| argument.key.is_some()) => {
+            let field = |name: &str| {
+                let own = named.iter().find(|argument| argument.key.as_deref() == Some(name));
+                own.map_or(Value::Null, |argument| argument.value.clone())
+            };
+            named.iter().try_for_each(|own| known(own.key.as_deref().unwrap_or_default(), own.column))?;
             Ok(given(field("rationale"), field("predictions"), [false; 4]))
         }
         [only] if is_naive(only) && session.manifest().mode == Mode::Baseline => {
@@ -49,6 +58,17 @@ pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<
         }
         [why, numbers @ ..] => Ok(given(why.value.clone(), predictions(why, numbers)?, [false; 4])),
     }
+}
+
+/// Refuses an argument that the tool does not have.
+fn known(name: &str, column: usize) -> Result<(), Problem> {
+    if ["rationale", "predictions"].contains(&name) {
+        return Ok(());
+    }
+    Err(Problem {
+        text: format!("next_week has no argument {name}; it takes rationale and predictions"),
+        column,
+    })
 }
 
 /// Twelve numbers: point, lower, upper of four horizons.

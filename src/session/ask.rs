@@ -147,17 +147,26 @@ pub fn connection_to_file(folder: &Path) -> Result<(QueryConnection, crate::data
         .map_err(|error| Refusal::new("sql_error", error.to_string()))
 }
 
-/// A result as programs get it: rows as objects, of equal column names the first wins.
+/// Names of columns, each once: the second `n` is `n:2`.
+fn unique_names(columns: &[String]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::with_capacity(columns.len());
+    for column in columns {
+        let numbered = (2..).map(|number| format!("{column}:{number}"));
+        let mut free = std::iter::once(column.clone()).chain(numbered).filter(|name| !names.contains(name));
+        names.extend(free.next());
+    }
+    names
+}
+
+/// A result as programs get it: rows as objects; of equal column names the second is `name:2`.
 pub fn rows_as_json(rows: &Rows) -> Map<String, Value> {
+    let columns = unique_names(&rows.columns);
     let object = |row: &Vec<Cell>| {
-        let mut fields = Map::new();
-        for (column, cell) in rows.columns.iter().zip(row) {
-            fields.entry(column.clone()).or_insert_with(|| cell_as_json(cell));
-        }
-        Value::Object(fields)
+        let fields = columns.iter().zip(row).map(|(column, cell)| (column.clone(), cell_as_json(cell)));
+        Value::Object(fields.collect())
     };
     let mut data = Map::from_iter([
-        ("columns".to_owned(), json!(rows.columns)),
+        ("columns".to_owned(), json!(columns)),
         ("rows".to_owned(), rows.rows.iter().map(object).collect()),
         ("row_count".to_owned(), rows.rows.len().into()),
     ]);
@@ -181,5 +190,19 @@ pub fn cell_as_json(cell: &Cell) -> Value {
         Cell::Real(number) if number.fract() == 0.0 => json!(number),
         Cell::Real(number) => json_number(*number),
         Cell::Text(text) => text.clone().into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_of_equal_names_are_all_kept() {
+        let columns = ["n", "n", "day", "n", "n:2"].map(str::to_owned).to_vec();
+        let rows = Rows { columns, rows: vec![(1..=5).map(Cell::Integer).collect()], ..Rows::default() };
+        let data = rows_as_json(&rows);
+        assert_eq!(data["columns"], json!(["n", "n:2", "day", "n:3", "n:2:2"]));
+        assert_eq!(data["rows"], json!([{ "n": 1, "n:2": 2, "day": 3, "n:3": 4, "n:2:2": 5 }]));
     }
 }

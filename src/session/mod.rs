@@ -24,6 +24,7 @@ pub use figures::dashboard::DeliveredQuality;
 pub use figures::estimates::{Estimates, truth_behind};
 pub use figures::groups::{GroupWeek, PaidLeads};
 pub use figures::journal::JournalEntry;
+pub use figures::naive::{Bands, Coverage, Hindcast, Stage, hindcasts};
 pub use figures::observe::{Observation, WaitingThread};
 pub use figures::pace::Pace;
 pub use figures::scored_forecast::{ForecastScore, ScoredForecast, Verdict, filed_forecasts};

@@ -68,3 +68,21 @@ fn a_query_brings_five_thousand_rows_whether_or_not_the_database_is_there() {
         fs::remove_file(run.join("world.db")).unwrap_or_default();
     }
 }
+
+#[test]
+fn a_query_of_the_library_is_asked_by_its_name_and_written_as_a_table_of_a_document() {
+    let home = Home::new();
+    let run = home.two_weeks();
+    let said = home.run(&["query", &id(&run), "economy", "--format", "md"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(
+        said.out.starts_with("| ") && said.out.lines().nth(1).is_some_and(|line| line.contains("---")),
+        "{}",
+        said.out
+    );
+    let told = home.run(&["query", &id(&run), "SELECT 'a|b' AS text, 7 AS n, 8 AS n", "--format", "md"]);
+    assert_eq!(told.out, "| text | n | n |\n| --- | --: | --: |\n| a\\|b | 7 | 8 |\n");
+    let near = home.run(&["query", &id(&run), "cash-by-weeks"]);
+    assert_eq!(near.code, 2);
+    assert!(near.err.contains("cash-by-week"), "{}", near.err);
+}

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
-use super::{COMMANDS, Interpreter, problem, tool_called, words};
+use super::{COMMANDS, Interpreter, NEXT, problem, tool_called, words};
 use crate::database;
 use crate::glossary;
 use crate::notation::{dollars, grouped, nearest, signed_dollars};
@@ -14,7 +14,7 @@ use crate::report::chapters::change_in_words;
 use crate::report::funnel::{Funnel, funnels};
 use crate::report::needs::{Need, Place, needs};
 use crate::report::review::money_lines;
-use crate::session::{Change, JournalEntry, Numbers, Reversal, undone_calls};
+use crate::session::{Bands, Change, JournalEntry, Numbers, Reversal, undone_calls};
 use crate::tools::describe::{self, ToolDocument, document};
 use crate::tools::{self, Kind};
 
@@ -204,6 +204,10 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers
         );
         return Ok(Answer::done("help", text, json!({ "commands": lines, "tools": tools })));
     };
+    if NEXT.contains(&name) {
+        let text = next_in_full();
+        return Ok(Answer::done("help", text.clone(), json!({ "command": text })));
+    }
     if let Some((_, line)) = COMMANDS.iter().find(|(command, line)| *command == name && !line.is_empty()) {
         return Ok(Answer::done("help", (*line).to_owned(), json!({ "command": line })));
     }
@@ -219,6 +223,19 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers
     let names = COMMANDS.iter().map(|(name, _)| *name).chain(callable());
     let names = names.chain(database::tables().iter().map(|table| table.name.as_str()));
     Err(problem(arguments, &not_there("nothing", name, nearest(name, names))))
+}
+
+/// The forms of the command that runs a week, and what its naive forecasts are worth.
+fn next_in_full() -> String {
+    format!(
+        "next \"WHY\" naive                         naive forecasts\n\
+         next \"WHY\" P L U  P L U  P L U  P L U    point, lower, upper of cash in 1, 4, 12 and 26 weeks\n\
+         next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": {{\"point\": 950000, \"lower\": 900000, \
+         \"upper\": 990000}}, \"cash_4wk\": …, \"cash_12wk\": …, \"cash_26wk\": …}}}}\n\
+         next                                     asks, at a terminal\n\
+         Naive forecasts: income, compute and lead costs go on as in the last four weeks, at the costs set now. {}.",
+        Bands::shipped().coverage_in_words()
+    )
 }
 
 /// `tools [NAME]`.

@@ -6,6 +6,7 @@ pub(in crate::session) mod dashboard;
 pub(in crate::session) mod estimates;
 pub(in crate::session) mod groups;
 pub(in crate::session) mod journal;
+pub(in crate::session) mod naive;
 pub(in crate::session) mod notices;
 pub(in crate::session) mod observe;
 pub(in crate::session) mod pace;

@@ -20,7 +20,7 @@ use crate::console::widgets::fan::draw_fan;
 use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::console::widgets::{Editor, Field};
 use crate::notation::{dollars, grouped, percent};
-use crate::session::Forecasts;
+use crate::session::{Bands, Forecasts};
 use crate::tools::{Forecast, ToolId};
 
 /// Steps.
@@ -400,8 +400,11 @@ impl FilingDialog {
         {
             let words = "naive: four-week mean of income and usage at the costs set now (recorded)";
             canvas.text(row, words, Role::Text);
+            if let Some(row) = rows.next().filter(|_| area.height >= 12) {
+                canvas.text(row, &Bands::shipped().coverage_in_words(), Role::Dim);
+            }
         }
-        let used = 7;
+        let used = if area.height >= 12 { 8 } else { 7 };
         let left = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
         if let Ok(forecasts) = self.forecasts(company) {
             draw_fan(canvas, left, company, company.seen.day, &forecasts.all);

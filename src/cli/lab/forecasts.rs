@@ -1,0 +1,92 @@
+//! `novamind lab forecasts`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rayon::prelude::*;
+
+use super::super::run::{Seeds, parse_seeds, progress_bar, thread_pool};
+use super::super::{Context, Failure, print};
+use crate::lab::{PlayedWeeks, Policy, coverage, horizons, measure, play_weeks, policies_of};
+use crate::session::Bands;
+use crate::shipped;
+
+/// Options of `lab forecasts`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Seeds of each policy.
+    #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
+    seeds: Seeds,
+    /// Only this policy, by name or path; can be repeated [default: every shipped one].
+    #[arg(long, value_name = "NAME|FILE")]
+    only: Vec<String>,
+    /// Seeds played at the same time.
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+    /// Measure the intervals anew and write them to this file, instead of testing the shipped ones.
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let runs = played(options, context)?;
+    let horizons = horizons();
+    let seeds = options.seeds.last + 1 - options.seeds.first;
+    let measured = options.write.as_ref().map(|_| measure(&runs, &horizons, seeds));
+    let bands = measured.as_ref().unwrap_or(Bands::shipped());
+    print(&table(&runs, &horizons, bands))?;
+    if let (Some(path), Some(bands)) = (&options.write, &measured) {
+        let text = toml::to_string(bands).map_err(|error| Failure::failed(error.to_string()))?;
+        let head = "# Intervals of naive forecasts, in shares of what moves until then. `novamind lab forecasts --write` makes\n\
+                    # this file.\n\n";
+        std::fs::write(path, format!("{head}{text}"))
+            .map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
+    }
+    Ok(())
+}
+
+/// Every run, in the order of policies and seeds.
+fn played(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, Failure> {
+    let names: Vec<String> = match options.only.is_empty() {
+        true => shipped::policies().into_iter().map(|(name, _)| name.to_owned()).collect(),
+        false => options.only.clone(),
+    };
+    let policies: Result<Vec<Policy>, _> =
+        names.iter().map(|name| Policy::find(name, &context.configuration)).collect();
+    let policies = policies?;
+    let seeds = options.seeds.first..=options.seeds.last;
+    let games: Vec<(&Policy, u64)> =
+        policies.iter().flat_map(|policy| seeds.clone().map(move |seed| (policy, seed))).collect();
+    let bar = progress_bar(games.len() as u64, "runs");
+    let pool = thread_pool(options.jobs)?;
+    let runs: Result<Vec<PlayedWeeks>, _> = pool.install(|| {
+        let play = |(policy, seed): &(&Policy, u64)| {
+            let run = play_weeks(policy, *seed, &context.configuration);
+            bar.inc(1);
+            run
+        };
+        games.par_iter().map(play).collect()
+    });
+    bar.finish_and_clear();
+    Ok(runs?)
+}
+
+/// How often intervals held, by policy and horizon.
+fn table(runs: &[PlayedWeeks], horizons: &[u32], bands: &Bands) -> String {
+    let row = |name: &str, policy: Option<&str>| {
+        let cells = horizons.iter().map(|horizon| {
+            let own = coverage(runs, policy, *horizon, bands);
+            match own.forecasts {
+                0 => format!("{:>18}", "–"),
+                count => format!("{:>7.1} % of {:>5}", own.held * 100.0, count),
+            }
+        });
+        format!("{name:<12}{}\n", cells.collect::<String>())
+    };
+    let mut text = format!("{:<12}", "policy");
+    horizons.iter().for_each(|days| text += &format!("{:>18}", format!("{days} days")));
+    text.push('\n');
+    policies_of(runs).into_iter().for_each(|policy| text += &row(policy, Some(policy)));
+    text + &row("all", None)
+}

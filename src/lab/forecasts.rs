@@ -1,0 +1,108 @@
+//! Back-test of naive forecasts: policies are played, and what a naive forecast before each week would have said is compared
+//! with what came.
+
+use super::policy::Policy;
+use super::runner::{RunError, RunSpec, weeks_of};
+use crate::session::{Bands, Configuration, Coverage, Hindcast, Stage, WeekFigures, hindcasts};
+use crate::world::params::Params;
+
+/// Days ahead that forecasts are asked for.
+pub fn horizons() -> Vec<u32> {
+    Params::shipped().limits.prediction_horizons_days
+}
+
+/// The weeks of one run of a policy.
+#[derive(Debug, Clone)]
+pub struct PlayedWeeks {
+    /// Policy.
+    pub policy: String,
+    /// Its weeks.
+    pub weeks: Vec<WeekFigures>,
+}
+
+/// Plays a policy with a seed.
+///
+/// # Errors
+/// The run cannot begin, or a tool refuses a call that may not fail.
+pub fn play_weeks(
+    policy: &Policy,
+    seed: u64,
+    configuration: &Configuration,
+) -> Result<PlayedWeeks, RunError> {
+    let weeks = weeks_of(policy, &RunSpec::of_seed(seed), configuration)?;
+    Ok(PlayedWeeks { policy: policy.name.clone(), weeks })
+}
+
+/// The bands that held in some runs, with how often they hold there.
+pub fn measure(runs: &[PlayedWeeks], horizons: &[u32], seeds: u64) -> Bands {
+    // Errors do not depend on the bands they are compared with.
+    let all = horizons.iter().flat_map(|horizon| runs.iter().map(move |run| (*horizon, run)));
+    let errors: Vec<(Stage, u32, f64)> = all
+        .flat_map(|(horizon, run)| {
+            let made = hindcasts(&run.weeks, horizon, Bands::shipped());
+            made.into_iter().map(move |own| (own.stage, horizon, own.error))
+        })
+        .collect();
+    let policies = policies_of(runs).len();
+    let bands = Bands::measured(&errors, policies, seeds);
+    let coverage = horizons.iter().map(|horizon| coverage(runs, None, *horizon, &bands)).collect();
+    Bands { coverage, ..bands }
+}
+
+/// How often bands hold a horizon ahead, in all runs or in those of a policy.
+pub fn coverage(runs: &[PlayedWeeks], policy: Option<&str>, horizon: u32, bands: &Bands) -> Coverage {
+    let own = runs.iter().filter(|run| policy.is_none_or(|policy| run.policy == policy));
+    let made: Vec<Hindcast> = own.flat_map(|run| hindcasts(&run.weeks, horizon, bands)).collect();
+    let held = made.iter().filter(|own| own.held).count();
+    // To the digit that is shown, so that the file reads well.
+    let share = if made.is_empty() { 0.0 } else { held as f64 / made.len() as f64 };
+    Coverage { horizon, forecasts: made.len(), held: (share * 1e4).round() / 1e4 }
+}
+
+/// Names of the policies, in their order.
+pub fn policies_of(runs: &[PlayedWeeks]) -> Vec<&str> {
+    let mut names: Vec<&str> = runs.iter().map(|run| run.policy.as_str()).collect();
+    names.dedup();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::JournalEntry;
+
+    /// What the game offers before a week is what the back-test takes for it afterwards.
+    #[test]
+    fn what_is_measured_is_what_is_offered() {
+        let configuration = Configuration::shipped();
+        let policy = Policy::find("P1c", &configuration).expect("a shipped policy");
+        let spec = RunSpec { until: Some(84), ..RunSpec::of_seed(5) };
+        let session = super::super::runner::play_session(
+            &policy,
+            &spec,
+            &configuration,
+            &mut super::super::Collector::idle(),
+        )
+        .expect("it plays");
+        let filed: Vec<_> = session
+            .journal()
+            .iter()
+            .filter_map(|entry| match entry {
+                JournalEntry::Advance { day, forecasts, .. } => Some((*day, forecasts.clone())),
+                _ => None,
+            })
+            .collect();
+        let mut compared = 0;
+        for horizon in [7, 28] {
+            let made = hindcasts(session.weeks(), horizon, Bands::shipped());
+            for (own, (day, forecasts)) in made.iter().zip(&filed) {
+                let forecast = forecasts.iter().find(|one| one.horizon_days == horizon).expect("filed");
+                let outcome = session.cash_by_day()[(day + horizon) as usize];
+                let inside = (forecast.lower..=forecast.upper).contains(&outcome);
+                assert_eq!(inside, own.held, "day {day}, {horizon} ahead: {outcome} beside {forecast:?}");
+                compared += 1;
+            }
+        }
+        assert_eq!(compared, 12 + 9);
+    }
+}

@@ -95,6 +95,11 @@ pub fn arrange(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look:
     } else if matches!(focus, Cohorts | Fit | Quality) {
         // Triangle, bars and curves need the width.
         draw(area, focus);
+    } else if area.width < 70 {
+        // Words side by side would be cut.
+        let [above, below] = split(area, area.height.saturating_sub(6));
+        draw(above, if matches!(focus, Study | Weeks) { focus } else { Fit });
+        draw(below, if focus == Facts { Facts } else { Ways });
     } else {
         let [left, _, right] =
             columns([Constraint::Min(0), Constraint::Length(0), Constraint::Percentage(50)]);

@@ -19,10 +19,11 @@ use rusqlite::vtab::{
     VTabCursor,
 };
 
-use super::blocks::{AdsRow, AdsRun, BlockStore, PackedDay, Run, Seen};
+use super::blocks::{AdsRow, AdsRun, BlockStore, Seen};
 use super::by_customer::{ByCustomer, Indexes};
 use super::day_table::number_of;
 use super::issues::{self, IssueRow, IssueRun};
+use super::packing::{PackedDay, Run};
 use crate::world::events::UsageRows;
 use crate::world::identifiers::Group;
 
@@ -148,7 +149,7 @@ impl BlockKind for Issues {
         column: c_int,
         context: &mut Context,
     ) -> rusqlite::Result<()> {
-        issues::show(at, row, column, context)
+        issues::show((&at.0.issue_clock, at.1), row, column, context)
     }
 
     fn day_of(store: &BlockStore, number: f64) -> Option<usize> {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use super::blocks::{PackedDay, Run};
+use super::packing::{PackedDay, Run};
 
 /// Bytes that the indexes of one statement may take together.
 const MOST_BYTES: usize = 256 << 20;

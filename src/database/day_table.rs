@@ -11,40 +11,15 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Arc;
 
-use rusqlite::Connection;
 use rusqlite::ffi;
 use rusqlite::types::Type;
 use rusqlite::vtab::{
-    Context, Filters, IndexConstraintOp, IndexInfo, Module, VTab, VTabConfig, VTabConnection, VTabCursor,
+    Context, Filters, IndexConstraintOp, IndexInfo, VTab, VTabConfig, VTabConnection, VTabCursor,
 };
 
 use super::blocks::{BlockStore, Seen};
 use super::by_text::{ByText, TextIndexes, TextRow};
-use super::ledger::Ledger;
-use super::notices::Notifications;
-
-/// Registers both tables on a connection.
-pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::Result<()> {
-    const NOTICES: Module<'static, DayTable<Notifications>> = Module::eponymous_only_module();
-    const LEDGER: Module<'static, DayTable<Ledger>> = Module::eponymous_only_module();
-    connection.create_module(c"notifications", &NOTICES, Some(seen.clone()))?;
-    connection.create_module(c"ledger", &LEDGER, Some(seen.clone()))
-}
-
-/// Kinds as bits: those of a row's day that are asked for.
-pub(super) type Kinds = u32;
-
-/// A packed day: rows at places from 0, each of a kind.
-pub(super) trait PackedRows {
-    /// The day.
-    fn day(&self) -> u32;
-    /// Number of the first row; the others follow.
-    fn first(&self) -> u64;
-    /// Rows.
-    fn len(&self) -> u64;
-    /// The first place from `place` on whose kind is among these.
-    fn next_among(&self, kinds: Kinds, place: u64) -> Option<u64>;
-}
+use super::packing::{Kinds, PackedRows};
 
 /// What the two tables differ in. Columns 0 to 2 are always number, day and kind.
 pub(super) trait DayKind: Send + Sync + Sized + 'static {
@@ -172,7 +147,7 @@ impl Order {
 }
 
 #[repr(C)]
-struct DayTable<K: DayKind> {
+pub(super) struct DayTable<K: DayKind> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab,
     seen: Arc<Seen>,
@@ -267,7 +242,7 @@ impl Pass {
 }
 
 #[repr(C)]
-struct DayCursor<'vtab, K: DayKind> {
+pub(super) struct DayCursor<'vtab, K: DayKind> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab_cursor,
     store: BlockStore,
@@ -472,8 +447,10 @@ pub(super) fn number_of(text: &str) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss};
+    use super::super::packed_tables::register;
     use super::*;
     use crate::world::events::LossCause;
+    use rusqlite::Connection;
 
     /// A connection to five days: notices of three types, losses that repeat from day 2 on, a call on day 3.
     fn connection() -> Connection {

@@ -4,7 +4,7 @@ use rusqlite::vtab::Context;
 use std::ffi::c_int;
 use std::sync::Arc;
 
-use super::blocks::{BlockStore, LONGEST_RUN, PackedDay, Packer, Run, Unpacker};
+use super::packing::{LONGEST_RUN, PackedDay, Packer, Run, Unpacker};
 use crate::world::events::IssueOpened;
 use crate::world::identifiers::Group;
 
@@ -91,9 +91,9 @@ pub(super) mod column {
     pub const SOLVED_DAY: c_int = 6;
 }
 
-/// A column of a row that was opened on a day.
+/// A column of a row that was opened on a day, by the clock of issues.
 pub(super) fn show(
-    (store, day): (&BlockStore, u32),
+    (clock, day): (&[u32], u32),
     row: IssueRow,
     column: c_int,
     context: &mut Context,
@@ -102,7 +102,7 @@ pub(super) fn show(
     match column {
         column::ISSUE => context.set_result(row.issue),
         column::GROUP => context.set_result(row.group.map(Group::id)),
-        column::DAYS_OPEN => context.set_result(days_open(&store.issue_clock, day, solved)),
+        column::DAYS_OPEN => context.set_result(days_open(clock, day, solved)),
         column::STATUS => context.set_result(if solved.is_some() { "resolved" } else { "open" }),
         column::SOLVED_DAY => context.set_result(solved),
         _ => context.set_result(solved.map(|_| "ops_resolved")),

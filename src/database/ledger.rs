@@ -1,20 +1,13 @@
 //! The ledger as compact days: most of its rows are costs of leads, which come in the order of their customers, and
 //! payments, which repeat few amounts.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::ffi::{CStr, c_int};
-use std::sync::Arc;
 
-use rusqlite::vtab::Context;
-
-use super::blocks::{BlockStore, Packer, Seen, Unpacker};
-use super::by_text::TextIndexes;
-use super::day_table::{Comparison, DayKind, Kinds, PackedRows, RowAt};
+use super::packing::{Kinds, PackedRows, Packer, Unpacker};
 use crate::world::events::Category;
 
 /// Categories in ascending order of their words.
-const CATEGORIES: [&str; 12] = [
+pub(super) const CATEGORIES: [&str; 12] = [
     "ad_revenue",
     "advertising",
     "capacity",
@@ -28,17 +21,17 @@ const CATEGORIES: [&str; 12] = [
     "research_project",
     "subscription_payment",
 ];
-const LEADS: usize = 7;
-const PAYMENTS: usize = 11;
+pub(super) const LEADS: usize = 7;
+pub(super) const PAYMENTS: usize = 11;
 /// Those that never take money.
-const INCOME: Kinds = 1 | 1 << 6 | 1 << PAYMENTS;
+pub(super) const INCOME: Kinds = 1 | 1 << 6 | 1 << PAYMENTS;
 
 /// A movement of cash that is neither a lead's cost nor a payment.
 #[derive(Debug, Clone, PartialEq)]
-struct OtherEntry {
-    category: u8,
-    amount: f64,
-    note: String,
+pub(super) struct OtherEntry {
+    pub category: u8,
+    pub amount: f64,
+    pub note: String,
 }
 
 /// The movements of cash of one day: costs of leads, payments, everything else.
@@ -47,11 +40,11 @@ pub(super) struct LedgerDay {
     day: u32,
     first: u64,
     /// Dollars that a lead cost, negative.
-    lead_cost: f64,
+    pub lead_cost: f64,
     leads: u32,
     payments: u32,
     /// Customers and amounts, packed.
-    packed: Vec<u8>,
+    pub packed: Vec<u8>,
     others: Vec<OtherEntry>,
 }
 
@@ -122,7 +115,8 @@ impl LedgerDay {
         (sound && unpacker.is_empty()).then_some(read)
     }
 
-    fn at(&self, place: u64) -> Movement<'_> {
+    /// What stands at a place, from 0.
+    pub fn at(&self, place: u64) -> Movement<'_> {
         let (leads, payments) = (u64::from(self.leads), u64::from(self.payments));
         match place {
             place if place < leads => Movement::Lead(place as usize),
@@ -133,7 +127,7 @@ impl LedgerDay {
 }
 
 /// What stands at a place of a day.
-enum Movement<'a> {
+pub(super) enum Movement<'a> {
     Lead(usize),
     Payment(usize),
     Other(&'a OtherEntry),
@@ -165,7 +159,8 @@ impl Movements {
         packer.finish()
     }
 
-    fn unpack(bytes: &[u8]) -> Option<Movements> {
+    /// None when the bytes are not those of movements.
+    pub fn unpack(bytes: &[u8]) -> Option<Movements> {
         let mut unpacker = Unpacker::of(bytes);
         let leads = unpacker.ascending()?;
         let amounts: Vec<f64> = (0..unpacker.number()?).map(|_| unpacker.float()).collect::<Option<_>>()?;
@@ -208,78 +203,11 @@ impl PackedRows for LedgerDay {
     }
 }
 
-/// The table `ledger`.
-pub(super) struct Ledger;
-
-const AMOUNT: c_int = 3;
-
-impl DayKind for Ledger {
-    type Day = LedgerDay;
-    type Unpacked = Movements;
-    const DECLARATION: &'static CStr =
-        c"CREATE TABLE x(id INTEGER NOT NULL, day INTEGER NOT NULL, category TEXT NOT NULL, amount REAL NOT NULL,
-        note TEXT)";
-    const KINDS: &'static [&'static str] = &CATEGORIES;
-
-    fn days(store: &BlockStore) -> &[Arc<LedgerDay>] {
-        &store.ledger
-    }
-
-    fn unpack(day: &LedgerDay, kinds: Kinds) -> Movements {
-        match kinds & (1 << LEADS | 1 << PAYMENTS) {
-            0 => Movements::default(),
-            _ => Movements::unpack(&day.packed).unwrap_or_default(),
-        }
-    }
-
-    fn kind(day: &LedgerDay, place: u64) -> usize {
-        match day.at(place) {
-            Movement::Lead(_) => LEADS,
-            Movement::Payment(_) => PAYMENTS,
-            Movement::Other(own) => own.category.into(),
-        }
-    }
-
-    const TEXT: c_int = 4;
-
-    fn text<'a>(row: &RowAt<'a, Self>) -> Cow<'a, str> {
-        let Movements { leads, payments } = row.unpacked;
-        match row.day.at(row.place) {
-            Movement::Lead(at) => lead_note(leads[at]).into(),
-            Movement::Payment(at) => payment_note(payments[at].0).into(),
-            Movement::Other(own) => own.note.as_str().into(),
-        }
-    }
-
-    fn texts(seen: &Seen) -> &TextIndexes {
-        &seen.ledger_notes
-    }
-
-    fn column(row: &RowAt<'_, Self>, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
-        context.set_result(match row.day.at(row.place) {
-            Movement::Lead(_) => row.day.lead_cost,
-            Movement::Payment(at) => row.unpacked.payments[at].1,
-            Movement::Other(own) => own.amount,
-        })
-    }
-
-    fn kinds_where(column: c_int, comparison: Comparison, value: f64) -> Kinds {
-        match comparison {
-            _ if column != AMOUNT => Kinds::MAX,
-            Comparison::Less if value <= 0.0 => !INCOME,
-            Comparison::AtMost | Comparison::Equal if value < 0.0 => !INCOME,
-            Comparison::Greater if value >= 0.0 => INCOME,
-            Comparison::AtLeast | Comparison::Equal if value > 0.0 => INCOME,
-            _ => Kinds::MAX,
-        }
-    }
-}
-
-fn lead_note(customer: u32) -> String {
+pub(super) fn lead_note(customer: u32) -> String {
     format!("Lead acquisition cost for customer {customer}")
 }
 
-fn payment_note(customer: u32) -> String {
+pub(super) fn payment_note(customer: u32) -> String {
     format!("Subscription payment from customer {customer}")
 }
 

@@ -22,6 +22,8 @@ mod ledger;
 mod location;
 mod memory;
 mod notices;
+mod packed_tables;
+mod packing;
 mod plain_copy;
 mod plan;
 mod projector;

@@ -4,13 +4,9 @@
 //! for a large company. They are kept as one fact a lead, in the order in which they began, and a day knows how many of
 //! them it repeats.
 
-use std::borrow::Cow;
-use std::ffi::{CStr, c_int};
 use std::sync::Arc;
 
-use super::blocks::{BlockStore, Packer, Seen, Unpacker};
-use super::by_text::TextIndexes;
-use super::day_table::{DayKind, Kinds, PackedRows, RowAt};
+use super::packing::{Kinds, PackedRows, Packer, Unpacker};
 use crate::world::events::{LossCause, Notice};
 
 /// Types as the table writes them, in ascending order.
@@ -165,44 +161,6 @@ impl PackedRows for NoticeDay {
             }
         }
         None
-    }
-}
-
-/// The table `notifications`.
-pub(super) struct Notifications;
-
-impl DayKind for Notifications {
-    type Day = NoticeDay;
-    type Unpacked = ();
-    const DECLARATION: &'static CStr =
-        c"CREATE TABLE x(notification_id INTEGER NOT NULL, day INTEGER NOT NULL, type TEXT NOT NULL,
-        message TEXT)";
-    const KINDS: &'static [&'static str] = &TYPES;
-
-    fn days(store: &BlockStore) -> &[Arc<NoticeDay>] {
-        &store.inbox.days
-    }
-
-    fn unpack(_: &NoticeDay, _: Kinds) {}
-
-    fn kind(day: &NoticeDay, place: u64) -> usize {
-        match day.at(place) {
-            Place::Own(at) => usize::from(day.type_at(at)),
-            Place::Repeated(_) => usize::from(LEAD_LOST),
-        }
-    }
-
-    const TEXT: c_int = 3;
-
-    fn text<'a>(row: &RowAt<'a, Self>) -> Cow<'a, str> {
-        match row.day.at(row.place) {
-            Place::Own(at) => row.day.text_at(at).into(),
-            Place::Repeated(at) => row.store.inbox.losses[at].words().into(),
-        }
-    }
-
-    fn texts(seen: &Seen) -> &TextIndexes {
-        &seen.notice_texts
     }
 }
 

@@ -8,10 +8,10 @@ use rusqlite::backup::Backup;
 use rusqlite::{Connection, Transaction, params};
 
 use super::blocks::{AdsRun, BlockStore};
-use super::day_table::PackedRows;
 use super::issues::{IssueRun, days_open};
 use super::location::Location;
 use super::notices::{Inbox, Place, TYPES};
+use super::packing::PackedRows;
 use super::projector::{ProjectionError, Projector, load_store};
 use crate::world::events::UsageRows;
 

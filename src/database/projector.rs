@@ -8,11 +8,12 @@ use std::thread::JoinHandle;
 
 use rusqlite::{Connection, OptionalExtension};
 
-use super::blocks::{AdsRun, BlockStore, PackedDay, Run, SharedStore};
+use super::blocks::{AdsRun, BlockStore, SharedStore};
 use super::issues::IssueRun;
 use super::ledger::LedgerDay;
 use super::location::Location;
 use super::notices::{Inbox, NoticeDay, RepeatedLoss};
+use super::packing::{PackedDay, Run};
 use super::query::QueryConnection;
 use super::rows::{Entry, LAYOUT, RowWriter, create};
 use crate::world::events::{Facts, LossCause, UsageRows};

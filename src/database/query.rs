@@ -15,13 +15,13 @@ use rusqlite::types::ValueRef;
 
 use super::block_table;
 use super::blocks::{BlockStore, Seen, SharedStore};
-use super::day_table;
 use super::guard::{
     Guard, InnerViews, Objection, Objections, is_hidden_table, is_inside, is_of_engine, limit,
 };
 use super::help::{explain_error, hints};
 use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS, Ticket};
 use super::location::Location;
+use super::packed_tables;
 use super::plan;
 use super::released::{Reading, Released, without_explain};
 use super::tokens::tokens;
@@ -140,7 +140,7 @@ impl QueryConnection {
         let mut connection = location.open_reader()?;
         let seen = Arc::new(Seen::default());
         block_table::register(&connection, &seen)?;
-        day_table::register(&connection, &seen)?;
+        packed_tables::register(&connection, &seen)?;
         connection.pragma_update(None, "temp_store", "MEMORY")?;
         let guard = Guard::set_up(&connection)?;
         connection.pragma_update(None, "query_only", true)?;

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use rusqlite::{Transaction, params};
 
-use crate::database::blocks::{BlockStore, PackedDay};
+use crate::database::blocks::BlockStore;
 use crate::database::issues::IssueRun;
+use crate::database::packing::PackedDay;
 use crate::world::events::Facts;
 
 /// Collects issues until the next commit.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use rusqlite::{Transaction, params};
 
-use crate::database::day_table::PackedRows;
 use crate::database::ledger::{LedgerDay, Movements};
+use crate::database::packing::PackedRows;
 use crate::world::events::{Category, Facts, LedgerNote};
 use crate::world::params::Params;
 

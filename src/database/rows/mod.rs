@@ -16,7 +16,8 @@ use rusqlite::{Transaction, params};
 
 pub(super) use create::{LAYOUT, create};
 
-use super::blocks::{AdsRun, PackedDay, SharedStore};
+use super::blocks::{AdsRun, SharedStore};
+use super::packing::PackedDay;
 use crate::world::customers::persona::PersonaPicks;
 use crate::world::events::{
     Arrival, Facts, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus, TermsChanged,

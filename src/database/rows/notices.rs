@@ -6,8 +6,8 @@ use std::sync::Arc;
 use rusqlite::{Transaction, params};
 
 use super::Entry;
-use crate::database::day_table::PackedRows;
 use crate::database::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss, type_of};
+use crate::database::packing::PackedRows;
 use crate::world::events::{Facts, LossCause};
 
 /// Collects the inbox until the next commit.

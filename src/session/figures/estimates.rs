@@ -1,9 +1,8 @@
 //! What studies say of a group, as numbers: what get_group_insights answers, without its words.
 
-use crate::session::play::simulation::Simulation;
+use super::truth::truth_behind;
 use crate::session::state::Session;
 use crate::tools::GetGroupInsights;
-use crate::world::command::{Command, ResolvedCommand};
 use crate::world::identifiers::Group;
 
 /// Estimates of a group. The truth at the time of the study lies within a relative error of each.
@@ -43,23 +42,6 @@ impl Estimates {
         let ((least, most), (fewest, seats)) = (self.range(self.usage), self.range(self.seats.0));
         // People have one seat, whatever the error.
         if self.group.is_enterprise() { (least * fewest, most * seats) } else { (least, most) }
-    }
-}
-
-/// Least and greatest truth behind an estimate that is off by at most a share: it is the truth times 1 ± share.
-pub fn truth_behind(estimate: f64, share: f64) -> (f64, f64) {
-    let from = estimate / (1.0 + share);
-    let to = if share < 1.0 { estimate / (1.0 - share) } else { f64::INFINITY };
-    (from.min(to), from.max(to))
-}
-
-/// Least and greatest mean floor of a group behind its estimate; none while it is unknown.
-pub(super) fn floor_of(group: Group, simulation: &Simulation) -> Option<(f64, f64)> {
-    match simulation.resolve(Command::ReadInsights(group)) {
-        ResolvedCommand::ReadInsights(Some(insights)) => {
-            Some(truth_behind(insights.quality_floor, insights.noise))
-        }
-        _ => None,
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::dashboard::delivered_quality;
-use super::estimates::floor_of;
+use super::truth::floor_of;
 use crate::session::play::simulation::Simulation;
 use crate::world::canonical::canonical;
 use crate::world::events::{Arrival, DayFigures, Facts, SubscriptionStatus};

@@ -13,5 +13,6 @@ pub(in crate::session) mod pace;
 pub(in crate::session) mod scored_forecast;
 pub(in crate::session) mod setting;
 pub(in crate::session) mod tool_limits;
+pub(in crate::session) mod truth;
 pub(in crate::session) mod week;
 pub(in crate::session) mod xray;

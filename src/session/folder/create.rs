@@ -16,8 +16,7 @@ use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::RunSurroundings;
 use crate::session::state::Session;
-use crate::session::trajectory::record::Start;
-use crate::session::trajectory::{Record, now};
+use crate::session::trajectory::now;
 use crate::world::MECHANICS;
 use crate::world::params::Params;
 
@@ -221,26 +220,4 @@ pub(in crate::session) fn new_id() -> String {
         std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |d| d.as_nanos());
     let mix = format!("{moment} {} {count}", std::process::id());
     blake3::hash(mix.as_bytes()).to_hex()[..8].to_owned()
-}
-
-/// The first line: what the manifest says.
-pub(in crate::session) fn start_of(manifest: &Manifest) -> Record {
-    let manifest = manifest.clone();
-    Record::Start(Box::new(Start {
-        format: manifest.format,
-        version: manifest.version,
-        mechanics: manifest.mechanics,
-        run: manifest.id,
-        seed: manifest.seed,
-        days: manifest.days,
-        cash: manifest.cash,
-        scenario: manifest.scenario,
-        overrides: manifest.parameters,
-        parameters_digest: manifest.parameters_digest,
-        mode: manifest.mode,
-        participant: manifest.participant,
-        consent: manifest.consent,
-        parent: manifest.parent,
-        line_sums: true,
-    }))
 }

@@ -1,11 +1,12 @@
 //! The folder of runs: names, locks, the list.
 
-use std::fs::{File, TryLockError};
-use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::lock::lock_run;
 use super::manifest::Manifest;
 use super::mode::Mode;
 use crate::session::error::RunError;
@@ -253,30 +254,6 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
     let lock = lock_run(&folder, id)?;
     drop(lock);
     std::fs::remove_dir_all(&folder).map_err(RunError::io(&folder))
-}
-
-/// Claims a run for writing; the claim ends with the program, however it ends.
-pub(in crate::session) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
-    let path = folder.join("lock");
-    let open = File::options().create(true).truncate(false).read(true).write(true).open(&path);
-    let mut file = open.map_err(|error| match error.kind() {
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            RunError::NotWritable { id: id.to_owned(), folder: folder.to_owned(), error }
-        }
-        _ => RunError::Io { path: path.clone(), error },
-    })?;
-    match file.try_lock() {
-        Ok(()) => {
-            // Only for people who look; the lock itself is what counts.
-            let _ = file.set_len(0).and_then(|()| writeln!(file, "process {}", std::process::id()));
-            Ok(file)
-        }
-        Err(TryLockError::WouldBlock) => {
-            let holder = std::fs::read_to_string(&path).unwrap_or_default().trim().to_owned();
-            Err(RunError::InUse { id: id.to_owned(), holder })
-        }
-        Err(TryLockError::Error(error)) => Err(RunError::Io { path, error }),
-    }
 }
 
 /// Runs of a seed and scenario that the folder of runs and those of its participants hold.

@@ -2,6 +2,7 @@
 
 pub(in crate::session) mod act;
 pub(in crate::session) mod advance;
+pub(in crate::session) mod entry;
 pub(in crate::session) mod facts_chain;
 pub(in crate::session) mod feed;
 pub(in crate::session) mod history;

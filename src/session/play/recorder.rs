@@ -5,9 +5,9 @@ use std::path::Path;
 
 use crate::database::Position;
 use crate::session::error::RunError;
-use crate::session::folder::create::start_of;
+use crate::session::folder::first_line::start_of;
+use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::{Manifest, sync_folder};
-use crate::session::folder::runs::lock_run;
 use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
 
 /// What a run has that is played, and a run that is only read has not.

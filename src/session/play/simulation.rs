@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
+use super::entry::entry_of;
 use super::facts_chain::{FactsChain, StateHash, state_hash};
 use super::feed::Feed;
 use super::projection::Entries;
-use super::recording::entry_of;
 use crate::database::Entry;
 use crate::session::folder::manifest::Manifest;
 use crate::world::command::{Command, ResolvedCommand};

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::open::Access;
 use crate::session::error::RunError;
-use crate::session::folder::create::{new_id, start_of};
+use crate::session::folder::create::new_id;
+use crate::session::folder::first_line::start_of;
 use crate::session::folder::manifest::{Manifest, sync_folder};
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::integrity::Integrity;
 use super::open::{Access, check_start, open_projector, usable};
 use crate::session::error::RunError;
+use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::Manifest;
-use crate::session::folder::runs::lock_run;
 use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
 

@@ -120,7 +120,7 @@ mod tests {
             .expect("a run")
             .manifest()
             .clone();
-        crate::session::folder::create::start_of(&manifest)
+        crate::session::folder::first_line::start_of(&manifest)
     }
 
     /// A start, and memos after it.

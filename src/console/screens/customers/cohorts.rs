@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use ratatui::layout::Rect;
 
 use super::Customers;
-use super::opened::show_rows;
+use super::steps::show_rows;
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click};
 use crate::console::effect::Effect;

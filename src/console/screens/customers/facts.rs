@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
-use super::opened::show_rows;
+use super::steps::show_rows;
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::company::Company;

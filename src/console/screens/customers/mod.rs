@@ -10,6 +10,7 @@ mod heat;
 mod model;
 mod opened;
 mod quality;
+mod steps;
 mod study;
 #[cfg(test)]
 mod tests;

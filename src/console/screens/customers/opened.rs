@@ -8,11 +8,9 @@ use super::fit::FitPane;
 use super::quality::QualityByWeekPane;
 use super::ways::CHOICES;
 use super::{Customers, CustomersPane};
-use crate::console::action::Action;
 use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
 use crate::console::screens::panes::{Pane, Seat, draw_pane};
-use crate::console::screens::{Figure, Look};
+use crate::console::screens::Look;
 
 /// Where the person is in an open group.
 #[derive(Debug)]
@@ -41,22 +39,6 @@ impl Default for Opened {
         let cohort = cohorts::CohortPlace::default();
         Opened { focus, choice: 0, fact: 0, back: 0, flow: 0, cohort, fit_line: 0, line: 0 }
     }
-}
-
-/// A place in a list after an action.
-pub fn moved(at: usize, last: usize, action: Action) -> usize {
-    match action {
-        Action::Up => at.min(last).saturating_sub(1),
-        Action::Down => (at + 1).min(last),
-        Action::First => 0,
-        Action::Last => last,
-        _ => at,
-    }
-}
-
-/// Leads to the rows behind a figure, to look further.
-pub fn show_rows(figure: Option<Figure>) -> Vec<Effect> {
-    figure.and_then(|figure| figure.sql).map(Effect::EditSql).into_iter().collect()
 }
 
 /// Rows that the fit of a group wants with its border.

@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::Customers;
-use super::opened::{moved, show_rows};
+use super::steps::{moved, show_rows};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::effect::Effect;

@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::Customers;
-use super::opened::moved;
+use super::steps::moved;
 use crate::console::action::Action;
 use crate::console::canvas::{Align, Canvas, Click, rows_of};
 use crate::console::effect::Effect;

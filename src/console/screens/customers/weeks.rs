@@ -4,7 +4,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::columns::flow_statement;
 use super::model::{self, CustomerFacts, Flow};
-use super::opened::{moved, show_rows};
+use super::steps::{moved, show_rows};
 use super::{Customers, CustomersPane};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;

@@ -1,0 +1,27 @@
+//! The first line of a trajectory.
+
+use super::manifest::Manifest;
+use crate::session::trajectory::Record;
+use crate::session::trajectory::record::Start;
+
+/// The first line: what the manifest says.
+pub(in crate::session) fn start_of(manifest: &Manifest) -> Record {
+    let manifest = manifest.clone();
+    Record::Start(Box::new(Start {
+        format: manifest.format,
+        version: manifest.version,
+        mechanics: manifest.mechanics,
+        run: manifest.id,
+        seed: manifest.seed,
+        days: manifest.days,
+        cash: manifest.cash,
+        scenario: manifest.scenario,
+        overrides: manifest.parameters,
+        parameters_digest: manifest.parameters_digest,
+        mode: manifest.mode,
+        participant: manifest.participant,
+        consent: manifest.consent,
+        parent: manifest.parent,
+        line_sums: true,
+    }))
+}

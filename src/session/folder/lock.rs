@@ -1,0 +1,31 @@
+//! The lock of a run: one program at a time writes it.
+
+use std::fs::{File, TryLockError};
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+use crate::session::error::RunError;
+
+/// Claims a run for writing; the claim ends with the program, however it ends.
+pub(in crate::session) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
+    let path = folder.join("lock");
+    let open = File::options().create(true).truncate(false).read(true).write(true).open(&path);
+    let mut file = open.map_err(|error| match error.kind() {
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            RunError::NotWritable { id: id.to_owned(), folder: folder.to_owned(), error }
+        }
+        _ => RunError::Io { path: path.clone(), error },
+    })?;
+    match file.try_lock() {
+        Ok(()) => {
+            // Only for people who look; the lock itself is what counts.
+            let _ = file.set_len(0).and_then(|()| writeln!(file, "process {}", std::process::id()));
+            Ok(file)
+        }
+        Err(TryLockError::WouldBlock) => {
+            let holder = std::fs::read_to_string(&path).unwrap_or_default().trim().to_owned();
+            Err(RunError::InUse { id: id.to_owned(), holder })
+        }
+        Err(TryLockError::Error(error)) => Err(RunError::Io { path, error }),
+    }
+}

@@ -1,6 +1,7 @@
 //! The rules of the house, checked on its own text: short files, arrows that point down, nothing unfinished, no clock
 //! and no order of chance in the simulator, configuration that can be read.
 
+mod circles;
 mod documents;
 
 use std::collections::BTreeMap;

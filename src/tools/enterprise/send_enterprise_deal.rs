@@ -48,7 +48,9 @@ static SPEC: Spec = Spec {
              {enterprise.late_reply_free_days} that a company's message waits costs \
              {enterprise.late_reply_relationship_delta_per_day:-} of the relationship; after \
              {enterprise.agent_response_timeout_days} days without an answer the thread ends. A subscriber \
-             without an open thread is offered new terms: if it declines, it leaves.",
+             without an open thread is offered new terms: if it declines, it leaves. In the released world a \
+             thread that died of silence does not rest: a lead's repeats its notice every day, a subscriber's \
+             damages the reputation of its group every day. Rejecting in time ends a thread for good.",
     cost: "nothing",
     writes: &["enterprise_turns"],
     refusals: &[

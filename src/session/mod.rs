@@ -14,6 +14,7 @@ mod playback;
 mod resume;
 mod state;
 mod trajectory;
+mod witness;
 
 pub use archive::{Export, Imported, Seal, import_run};
 pub use ask::{connection_to_file, rows_as_json};
@@ -58,6 +59,7 @@ pub use resume::verify::{Verification, verify};
 pub use state::Session;
 pub use trajectory::record::{Ended, Parent, Reversal, Via};
 pub use trajectory::{Line, Record, Trajectory, record, seconds as moment_of};
+pub use witness::{Finding, FindingKind, Told, Witness, WitnessRecord, compare, read_witness};
 
 pub use crate::database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
 pub use crate::tools::{Numbers, PublicPost, Refusal, ToolId};

@@ -9,6 +9,7 @@ use crate::session::folder::first_line::start_of;
 use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::{Manifest, sync_folder};
 use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
+use crate::session::witness::Witness;
 
 /// What a run has that is played, and a run that is only read has not.
 pub(in crate::session) struct Recorder {
@@ -93,6 +94,16 @@ impl Recorder {
     /// Puts the lines of calls on the disk that are confirmed already. The database must not know more than the disk.
     pub(in crate::session) fn sync_calls(&self) -> Result<(), RunError> {
         self.trajectory.sync_written()
+    }
+
+    /// Tells a witness of every line that is on the disk from now on.
+    pub(in crate::session) fn tell(&mut self, witness: Witness) {
+        self.trajectory.tell(witness);
+    }
+
+    /// Who is told of lines, if somebody is.
+    pub(in crate::session) fn witness(&self) -> Option<&Witness> {
+        self.trajectory.witness()
     }
 
     /// Whether the file still stands where it is looked for, and no line waits for it.

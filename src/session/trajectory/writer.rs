@@ -11,6 +11,7 @@ use super::record::Record;
 use crate::database::Position;
 use crate::session::error::RunError;
 use crate::session::trajectory::Trajectory;
+use crate::session::witness::Witness;
 
 /// When a line has to be on the disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +33,12 @@ pub struct TrajectoryWriter {
     backlog: Vec<u8>,
     next_seq: u64,
     last_hash: String,
+    /// The moment that the last line carries.
+    last_at: String,
+    /// Who is told of lines once they are on the disk.
+    witness: Option<Witness>,
+    /// Number, hash and moment of lines that the witness has not been told of.
+    untold: Vec<(u64, String, String)>,
 }
 
 impl TrajectoryWriter {
@@ -44,6 +51,9 @@ impl TrajectoryWriter {
             backlog: Vec::new(),
             next_seq: 0,
             last_hash: line_hash(b""),
+            last_at: String::new(),
+            witness: None,
+            untold: Vec::new(),
         }
     }
 
@@ -68,10 +78,25 @@ impl TrajectoryWriter {
             medium: Some(Box::new(file)),
             path: path.to_owned(),
             length: read.length,
-            backlog: Vec::new(),
             next_seq: read.lines.len() as u64,
             last_hash: read.lines.last().map_or_else(|| line_hash(b""), |line| line.hash.clone()),
+            last_at: read.lines.last().map(|line| line.at.clone()).unwrap_or_default(),
+            ..TrajectoryWriter::in_memory()
         })
+    }
+
+    /// Tells a witness of the last line, and of every line that follows once it is on the disk.
+    pub fn tell(&mut self, witness: Witness) {
+        if self.next_seq > 0 {
+            witness.tell(self.next_seq - 1, &self.last_hash, &self.last_at);
+        }
+        self.untold.clear();
+        self.witness = Some(witness);
+    }
+
+    /// Who is told, if somebody is.
+    pub fn witness(&self) -> Option<&Witness> {
+        self.witness.as_ref()
     }
 
     /// Number and hash of the last line.
@@ -106,7 +131,8 @@ impl TrajectoryWriter {
         let (bytes, hash, at) = self.line(kind, day, fields);
         let written = self.write(&bytes, durability);
         if written.is_ok() {
-            self.accept(hash);
+            self.accept(hash, &at);
+            self.tell_synced(durability);
         }
         written.map(|()| at)
     }
@@ -117,18 +143,30 @@ impl TrajectoryWriter {
     /// # Errors
     /// The disk refuses for now.
     pub fn append_done(&mut self, day: u32, record: &Record) -> Result<(), RunError> {
-        let (bytes, hash, _) = self.line(record.kind(), day, record.fields());
+        let (bytes, hash, at) = self.line(record.kind(), day, record.fields());
         let written = self.write(&bytes, Durability::Synced);
-        if written.is_err() {
-            self.backlog.extend_from_slice(&bytes);
+        self.accept(hash, &at);
+        match &written {
+            Ok(()) => self.tell_synced(Durability::Synced),
+            Err(_) => self.backlog.extend_from_slice(&bytes),
         }
-        self.accept(hash);
         written
     }
 
-    fn accept(&mut self, hash: String) {
+    fn accept(&mut self, hash: String, at: &str) {
+        if self.witness.is_some() {
+            self.untold.push((self.next_seq, hash.clone(), at.to_owned()));
+        }
         self.next_seq += 1;
         self.last_hash = hash;
+        at.clone_into(&mut self.last_at);
+    }
+
+    /// Tells the witness of every line, all of which are on the disk after one that was synced.
+    fn tell_synced(&mut self, durability: Durability) {
+        if let Some(witness) = self.witness.as_ref().filter(|_| durability == Durability::Synced) {
+            self.untold.drain(..).for_each(|(seq, hash, at)| witness.tell(seq, &hash, &at));
+        }
     }
 
     fn line(&self, kind: &str, day: u32, fields: Map<String, Value>) -> (Vec<u8>, String, String) {
@@ -201,6 +239,8 @@ impl TrajectoryWriter {
     /// # Errors
     /// The disk refuses.
     pub fn sync(&mut self) -> Result<(), RunError> {
-        self.write(b"", Durability::Synced)
+        self.write(b"", Durability::Synced)?;
+        self.tell_synced(Durability::Synced);
+        Ok(())
     }
 }

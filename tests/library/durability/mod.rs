@@ -7,3 +7,4 @@ mod property;
 mod recorded;
 mod resume;
 mod run;
+mod witness;

@@ -28,7 +28,7 @@ macro_rules! shipped {
     };
 }
 
-const SHIPPED: [(&str, &str); 44] = shipped![
+const SHIPPED: [(&str, &str); 47] = shipped![
     "cash-by-week",
     "ledger-by-category",
     "costs-by-week",
@@ -38,6 +38,7 @@ const SHIPPED: [(&str, &str); 44] = shipped![
     "prices-paid",
     "discounts-given",
     "biggest-accounts",
+    "billing-waves",
     "in-app-ads",
     "growth-by-week",
     "acquisition-by-source",
@@ -45,6 +46,7 @@ const SHIPPED: [(&str, &str); 44] = shipped![
     "cost-per-lead",
     "advertising-and-growth",
     "leads-by-week-and-source",
+    "choices-of-new-leads",
     "lost-leads",
     "retention-by-cohort",
     "retention-by-plan",
@@ -59,6 +61,7 @@ const SHIPPED: [(&str, &str); 44] = shipped![
     "support-wait",
     "repeated-issues",
     "deal-outcomes",
+    "first-offers",
     "deals-by-week",
     "negotiation-length",
     "companies-by-group",

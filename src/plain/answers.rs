@@ -81,10 +81,13 @@ impl Answer {
     pub fn as_text(&self) -> String {
         match self {
             Answer::Done { text, .. } => text.clone(),
-            Answer::Refused { refusal, .. } => match &refusal.field {
-                Some(field) => format!("refused {} ({field}): {}", refusal.code, refusal.message),
-                None => format!("refused {}: {}", refusal.code, refusal.message),
-            },
+            Answer::Refused { refusal, .. } => {
+                let results = match refusal.results.as_slice() {
+                    [] | [_] => String::new(),
+                    several => format!("\n{}", field("results", &json!(several)).trim_end()),
+                };
+                format!("refused {refusal}{results}")
+            }
             Answer::Usage { problem, column } => format!("error usage: {problem} (column {column})"),
             Answer::Quit => String::new(),
         }
@@ -96,15 +99,21 @@ impl Answer {
             Answer::Done { command, data, .. } => {
                 json!({ "line": line, "command": command, "ok": true, "day": day, "data": data })
             }
-            Answer::Refused { command, refusal } => json!({
-                "line": line,
-                "command": command,
-                "ok": false,
-                "day": day,
-                "code": refusal.code,
-                "field": refusal.field,
-                "error": refusal.message,
-            }),
+            Answer::Refused { command, refusal } => {
+                let mut object = json!({
+                    "line": line,
+                    "command": command,
+                    "ok": false,
+                    "day": day,
+                    "code": refusal.code,
+                    "field": refusal.field,
+                    "error": refusal.message,
+                });
+                if !refusal.results.is_empty() {
+                    object["results"] = json!(refusal.results);
+                }
+                object
+            }
             Answer::Usage { problem, column } => json!({
                 "line": line,
                 "command": null,
@@ -153,6 +162,7 @@ mod tests {
     use super::*;
     use crate::database::text::table;
     use crate::session::{Cell, Rows};
+    use crate::tools::DealResult;
 
     #[test]
     fn calls_refusals_and_rows_have_their_forms() {
@@ -163,6 +173,21 @@ mod tests {
         let refused = Answer::refused("set_prices", refusal);
         assert_eq!(refused.as_text(), "refused price_not_positive (A): price of plan A must be above zero");
         assert_eq!(refused.as_json(4, 0)["field"], "A");
+        let wrong = |customer, error: &str| DealResult::Failed {
+            customer_id: Some(customer),
+            error: error.to_owned(),
+        };
+        let results = vec![wrong(99, "not found"), wrong(5, "not enterprise")];
+        let refusal = Refusal { results, ..Refusal::new("customer_not_found", "there is no customer 99") };
+        let refused = Answer::refused("send_enterprise_deal", refusal);
+        assert_eq!(
+            refused.as_text(),
+            "refused customer_not_found: there is no customer 99\n  results:\n    customer_id  error\n    \
+             99           not found\n    5            not enterprise"
+        );
+        let told =
+            json!([{"customer_id": 99, "error": "not found"}, {"customer_id": 5, "error": "not enterprise"}]);
+        assert_eq!(refused.as_json(4, 0)["results"], told);
         let rows = Rows {
             columns: vec!["category".to_owned(), "total".to_owned()],
             rows: vec![vec![Cell::Text("initial_funding".to_owned()), Cell::Real(1_000_000.0)]],

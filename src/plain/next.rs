@@ -9,6 +9,7 @@ use super::grammar::{Argument, Problem};
 use super::input::{Input, Read};
 use super::prompt;
 use crate::notation::{dollars, grouped, signed_dollars};
+use crate::report::review::alike_lines;
 use crate::session::{Mode, Session, Via, Week};
 use crate::tools::{FORECAST_KEYS, Forecast};
 
@@ -138,14 +139,13 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
 /// The input or the prompt fails.
 pub fn ask(session: &Session, input: &mut Input<impl BufRead>) -> io::Result<Option<Filing>> {
     let seen = session.observe();
-    let lines: Vec<String> =
-        seen.changes.iter().map(super::commands::change_line).chain(seen.purchases).collect();
-    let changed = if lines.is_empty() {
-        "nothing has changed since the last week".to_owned()
-    } else {
-        lines.join("\n")
-    };
-    prompt(&format!("{changed}\n"))?;
+    let changes = seen.changes.iter().map(super::commands::change_line);
+    let mut lines: Vec<String> = changes.chain(seen.purchases.iter().cloned()).collect();
+    if lines.is_empty() {
+        lines.push("nothing has changed since the last week".to_owned());
+    }
+    lines.extend(alike_lines(&seen));
+    prompt(&format!("{}\n", lines.join("\n")))?;
     let rationale = loop {
         match ask_line(input, "why (. cancels)> ")? {
             None => return Ok(None),

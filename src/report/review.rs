@@ -2,7 +2,8 @@
 //! cash lasts at that.
 
 use super::words::{count, money};
-use crate::session::Observation;
+use crate::notation::{cents, dollars};
+use crate::session::{AlikePlans, Observation};
 
 /// Lines on the money of a company before its next week.
 pub fn money_lines(seen: &Observation) -> Vec<String> {
@@ -41,13 +42,38 @@ pub fn money_lines(seen: &Observation) -> Vec<String> {
     lines
 }
 
+/// A line for each pair of plans that differ in nothing but price.
+pub fn alike_lines(seen: &Observation) -> Vec<String> {
+    seen.alike_plans.iter().map(alike_in_words).collect()
+}
+
+fn alike_in_words(plans: &AlikePlans) -> String {
+    let AlikePlans { cheap, dear, .. } = plans;
+    let since = if plans.before { "still" } else { "now" };
+    let (low, high) = (price(plans.cheap_price), price(plans.dear_price));
+    if low == high {
+        return format!("{cheap} and {dear} {since} differ in nothing: both cost {low}");
+    }
+    let payers = match plans.subscribers {
+        0 => format!("nobody has {dear}"),
+        1 => format!("1 subscriber has {dear}"),
+        more => format!("{} have {dear}", count(more, "subscriber")),
+    };
+    format!("{cheap} and {dear} {since} differ in nothing but price ({low} against {high}); {payers}")
+}
+
+/// A price with the decimals it has.
+fn price(value: f64) -> String {
+    if value.fract() == 0.0 { dollars(value) } else { cents(value) }
+}
+
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     use super::*;
     use crate::report::test_kit;
-    use crate::session::Via;
+    use crate::session::{Session, Via, number_at};
 
     #[test]
     fn eighteen_changes_have_one_total_and_purchases_stand_apart() {
@@ -73,5 +99,42 @@ mod tests {
         let lines = money_lines(&played.observe());
         assert!(lines[0].starts_with("Committed: $") && !lines[0].contains("since"), "{lines:?}");
         assert!(lines[1].starts_with("Last 3 weeks: income $"), "{lines:?}");
+    }
+
+    #[test]
+    fn plans_that_became_alike_are_named_with_those_who_pay_more() {
+        let mut session = test_kit::played(4);
+        assert_eq!(alike_lines(&session.observe()), [""; 0]);
+        let call = |session: &mut Session, tool: &str, arguments: Value| {
+            session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        };
+        call(&mut session, "set_model_tiers", json!({"A": 2, "B": 2}));
+        call(&mut session, "set_usage_quotas", json!({"A": 60_000, "B": 60_000, "C": 1_200_000}));
+        let sql = "SELECT count(*) FROM subscriptions WHERE plan = 'B' AND status = 'subscribed'";
+        let on_b = number_at(&session.query(sql).expect("a count").rows[0], 0);
+        let payers = format!("{} have B", count(on_b as u32, "subscriber"));
+        assert!(on_b > 1.0, "{payers}");
+        let told = format!("A and B now differ in nothing but price ($12 against $22); {payers}");
+        assert_eq!(alike_lines(&session.observe()), [told]);
+        // Which of them is dearer follows from the prices, not from their letters.
+        call(&mut session, "set_prices", json!({"A": 30.5}));
+        let turned = alike_lines(&session.observe());
+        assert!(
+            turned[0].starts_with("B and A now differ in nothing but price ($22 against $30.50); "),
+            "{turned:?}"
+        );
+        call(&mut session, "set_prices", json!({"A": 22}));
+        assert_eq!(alike_lines(&session.observe()), ["A and B now differ in nothing: both cost $22"]);
+        call(&mut session, "set_prices", json!({"A": 12}));
+        session
+            .advance_given(
+                &json!("why"),
+                &session.naive_forecasts().as_predictions(),
+                [true; 4],
+                Via::Script,
+                &mut |_| {},
+            )
+            .unwrap_or_else(|refusal| panic!("{refusal}"));
+        assert!(alike_lines(&session.observe())[0].contains("A and B still differ"));
     }
 }

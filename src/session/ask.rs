@@ -131,7 +131,7 @@ impl From<QueryError> for Refusal {
             Some(at) => format!("{} (at character {})", error.message, at + 1),
             None => error.message,
         };
-        Refusal { code: error.code, message, field: None }
+        Refusal::new(error.code, message)
     }
 }
 

@@ -19,6 +19,7 @@ mod witness;
 pub use archive::{Export, Imported, Seal, import_run};
 pub use ask::{connection_to_file, rows_as_json};
 pub use error::RunError;
+pub use figures::alike_plans::AlikePlans;
 pub use figures::booked::Booked;
 pub use figures::changes::{Change, Decisions};
 pub use figures::dashboard::DeliveredQuality;

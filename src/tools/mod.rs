@@ -8,6 +8,7 @@
 mod arguments;
 pub(crate) mod bounds;
 pub(crate) mod catalogue;
+mod deal_results;
 pub(crate) mod describe;
 mod keeping;
 mod notebook;
@@ -40,7 +41,7 @@ use serde_json::{Map, Value};
 pub use analytics::{GetSocialPosts, PostLimit, SocialPost};
 pub use arguments::Arguments;
 pub use catalogue::{Answer, CATALOGUE, ToolId, find};
-pub use enterprise::{DealResult, DealResults};
+pub use deal_results::{DealResult, DealResults};
 pub use infrastructure::{CapacityTierFacts, GetCostInfo, ModelTierFacts, PriceList};
 pub use market::{
     DiscoveryAttempt, Estimates, GetGroupInsights, GetMarketOverview, GroupInsights, Influence,

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::deal_results::DealResult;
+
 /// A refused call: nothing was changed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Refusal {
@@ -14,17 +16,20 @@ pub struct Refusal {
     /// Path of the argument at fault, for instance `targeted_spend.linkedin.E9`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
+    /// Of a call with several deals, all refused: what is wrong with each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub results: Vec<DealResult>,
 }
 
 impl Refusal {
     /// A refusal that blames no single argument.
     pub fn new(code: &'static str, message: impl Into<String>) -> Refusal {
-        Refusal { code, message: message.into(), field: None }
+        Refusal { code, message: message.into(), field: None, results: Vec::new() }
     }
 
     /// A refusal that blames an argument.
     pub fn at(field: impl Into<String>, code: &'static str, message: impl Into<String>) -> Refusal {
-        Refusal { code, message: message.into(), field: Some(field.into()) }
+        Refusal { code, message: message.into(), field: Some(field.into()), results: Vec::new() }
     }
 }
 

@@ -57,6 +57,12 @@ impl Company {
         (refusal.code, refusal.field)
     }
 
+    /// What a refused call says of each deal.
+    fn refused_results(&mut self, name: &str, arguments: Value) -> Value {
+        let refusal = self.try_call(name, arguments).expect_err("a refusal");
+        serde_json::to_value(refusal.results).expect("results are JSON")
+    }
+
     fn assert_refused(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
         for (arguments, code, field) in cases {
             let (own_code, own_field) = self.refused(name, arguments.clone());
@@ -485,6 +491,25 @@ fn send_enterprise_deal() {
             ),
         ],
     );
+}
+
+#[test]
+fn a_call_of_which_no_deal_is_sent_says_why_for_each() {
+    let mut company = with_companies();
+    let deals = json!({"deals": [[99, [["B", 5]]], [2, []], [5, [["B", 5]]], [6, [["B", 5]]]]});
+    let told = json!([
+        {"customer_id": 2, "error": "offerings required"},
+        {"customer_id": 99, "error": "not found"},
+        {"customer_id": 5, "error": "not enterprise"},
+        {"customer_id": 6, "error": "no subscription"},
+    ]);
+    assert_eq!(company.refused_results("send_enterprise_deal", deals), told);
+    let deals = json!({"deals": [77, "x"]});
+    let told = json!([{"error": "invalid format"}, {"customer_id": 77, "error": "no active thread"}]);
+    assert_eq!(company.refused_results("reject_enterprise_deal", deals), told);
+    // What concerns the call and none of its deals has no results.
+    let none = json!({"deals": []});
+    assert_eq!(company.refused_results("send_enterprise_deal", none), json!([]));
 }
 
 /// Offerings of the newest turn of a customer's open thread.

@@ -13,7 +13,7 @@ use crate::notation::{dollars, grouped, nearest, signed_dollars};
 use crate::report::chapters::change_in_words;
 use crate::report::funnel::{Funnel, funnels};
 use crate::report::needs::{Need, Place, needs};
-use crate::report::review::money_lines;
+use crate::report::review::{alike_lines, money_lines};
 use crate::session::{Bands, Change, JournalEntry, Numbers, Reversal, undone_calls};
 use crate::tools::describe::{self, ToolDocument, document};
 use crate::tools::{self, Kind};
@@ -122,10 +122,12 @@ impl Interpreter {
         if lines.is_empty() {
             lines.push("nothing has changed since the last week".to_owned());
         }
+        lines.extend(alike_lines(&seen));
         lines.extend(money_lines(&seen));
         let data = json!({
             "changes": seen.changes,
             "purchases": seen.purchases,
+            "alike_plans": seen.alike_plans,
             "committed_per_day": seen.pace.committed,
             "one_time_costs": -seen.booked_since.sum(),
             "runway_weeks": seen.runway_weeks,

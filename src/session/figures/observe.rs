@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::alike_plans::AlikePlans;
 use super::booked::Booked;
 use super::changes::Change;
 use super::dashboard::{self, DeliveredQuality, Waiting, delivered_quality};
@@ -69,6 +70,8 @@ pub struct Observation {
     pub changes: Vec<Change>,
     /// Purchases since the last week, in words.
     pub purchases: Vec<String>,
+    /// Plans that differ in nothing but price.
+    pub alike_plans: Vec<AlikePlans>,
     /// Threads that wait for an answer.
     pub waiting: Vec<WaitingThread>,
     /// R&D projects that run.
@@ -138,6 +141,7 @@ impl Session {
             dashboard: self.dashboard(),
             changes: self.changes(),
             purchases: self.history.this_week.done.iter().map(Irrevocable::to_string).collect(),
+            alike_plans: self.alike_plans(),
             waiting: self.waiting(),
             running_research: self.running_research(),
         }

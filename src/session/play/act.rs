@@ -334,7 +334,7 @@ fn rounded(took_ms: f64) -> f64 {
 impl Refusal {
     /// As a line of the trajectory has it.
     fn outcome(&self) -> Outcome {
-        let Refusal { code, message, field } = self.clone();
+        let Refusal { code, message, field, results: _ } = self.clone();
         Outcome::Refused(RefusalRecord { code: code.to_owned(), message, field })
     }
 }

@@ -4,51 +4,12 @@ mod reading;
 mod reject_enterprise_deal;
 mod send_enterprise_deal;
 
-use serde::Serialize;
-
 pub use reject_enterprise_deal::RejectEnterpriseDeal;
 pub use send_enterprise_deal::SendEnterpriseDeal;
 
+use super::deal_results::{DealResult, DealResults};
 use super::refusal::Refusal;
 use super::spec::Output;
-
-/// What became of each deal of a call: what could not be read first, then the rest in the order of the call.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct DealResults {
-    /// One entry per deal.
-    pub results: Vec<DealResult>,
-}
-
-/// What became of a deal.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-#[serde(untagged)]
-pub enum DealResult {
-    /// It was sent, or the thread ended.
-    Done {
-        /// The company.
-        customer_id: u32,
-        /// Always true.
-        success: bool,
-    },
-    /// It was not.
-    Failed {
-        /// The customer, where the deal names one.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        customer_id: Option<i64>,
-        /// Why.
-        error: String,
-    },
-}
-
-impl DealResult {
-    /// The company of a deal that was sent.
-    pub fn done(&self) -> Option<u32> {
-        match self {
-            DealResult::Done { customer_id, .. } => Some(*customer_id),
-            DealResult::Failed { .. } => None,
-        }
-    }
-}
 
 /// What becomes of one element of a list of deals.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,18 +34,23 @@ pub struct Failure {
     /// Words of the result.
     error: String,
     /// The refusal, if no element is sent.
-    refusal: Refusal,
+    refusal: Box<Refusal>,
     /// It could not be read; such elements stand first in the result.
     unreadable: bool,
 }
 
 impl Failure {
     fn unreadable(customer: Option<i64>, error: impl Into<String>, refusal: Refusal) -> Failure {
-        Failure { customer, error: error.into(), refusal, unreadable: true }
+        Failure { customer, error: error.into(), refusal: refusal.into(), unreadable: true }
     }
 
     fn of(customer: i64, error: &str, refusal: Refusal) -> Failure {
-        Failure { customer: Some(customer), error: error.to_owned(), refusal, unreadable: false }
+        Failure {
+            customer: Some(customer),
+            error: error.to_owned(),
+            refusal: refusal.into(),
+            unreadable: false,
+        }
     }
 }
 
@@ -102,13 +68,18 @@ fn result(fate: Fate) -> DealResult {
     }
 }
 
-/// Refuses a call of which nothing is sent, with the reason of its first element.
-fn unless_all_failed(fates: &[Fate]) -> Result<(), Refusal> {
-    match fates.first() {
+/// Refuses a call of which nothing is sent, with the reason of its first element and what became of each.
+fn unless_all_failed(fates: Vec<Fate>) -> Result<DealResults, Refusal> {
+    let refused = match fates.first() {
         Some(Fate::Failed(first)) if fates.iter().all(|fate| matches!(fate, Fate::Failed(_))) => {
-            Err(first.refusal.clone())
+            Some((*first.refusal).clone())
         }
-        _ => Ok(()),
+        _ => None,
+    };
+    let DealResults { results } = results(fates);
+    match refused {
+        Some(refusal) => Err(Refusal { results, ..refusal }),
+        None => Ok(DealResults { results }),
     }
 }
 

@@ -1,9 +1,10 @@
 use serde_json::Value;
 
 use super::super::arguments::Arguments;
+use super::super::deal_results::DealResults;
 use super::super::{Argument, ArgumentKind, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::reading::{Unreadable, customer, elements, malformed};
-use super::{DealResults, Failure, Fate, RESULTS, results, unless_all_failed};
+use super::{Failure, Fate, RESULTS, unless_all_failed};
 use crate::world::command::Command;
 
 /// Ends talks with companies.
@@ -74,8 +75,8 @@ impl Tool for RejectEnterpriseDeal {
             }
         };
         let fates: Vec<Fate> = given.into_iter().map(|given| Fate::of(given.and_then(&mut end))).collect();
-        unless_all_failed(&fates)?;
-        Ok(Planned::doing(Command::RejectDeals(threads), results(fates)))
+        let results = unless_all_failed(fates)?;
+        Ok(Planned::doing(Command::RejectDeals(threads), results))
     }
 }
 

@@ -10,7 +10,7 @@ use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::text::{number, wrapped};
 use crate::console::theme::Role;
-use crate::report::review::money_lines;
+use crate::report::review::{alike_lines, money_lines};
 use crate::tools::ToolId;
 
 /// How far the review is scrolled.
@@ -83,6 +83,9 @@ fn lines(canvas: &Canvas<'_>, width: usize, company: &Company, unsent: &[ToolId]
     );
     if seen.changes.is_empty() && seen.purchases.is_empty() {
         lines.push(TextLine::from(canvas.span("  none", Role::Dim)));
+    }
+    for text in alike_lines(seen).iter().flat_map(|line| wrapped(line, width.saturating_sub(2))) {
+        lines.push(TextLine::from(canvas.span(format!("  {text}"), Role::Warning)));
     }
     lines.push(TextLine::default());
     lines.push(head("Before you continue", canvas));

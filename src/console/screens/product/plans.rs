@@ -12,7 +12,6 @@ use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens;
 use crate::console::screens::panes::Seat;
-use crate::console::text::count;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{cents, compact, grouped, percent};
@@ -32,15 +31,20 @@ impl ProductPart for Plans {
     }
 
     fn summary(&self, product: &Product, _: &Company) -> String {
-        let plan = |(name, plan): (&Plan, &PlanFacts)| {
-            let margin = plan.margin().map_or("–".to_owned(), |margin| percent(margin, 0));
-            format!("{name} {}, margin {margin}", count(plan.customers, "customer"))
+        let each = |write: fn(&PlanFacts) -> String| {
+            let plans = Plan::ALL.iter().zip(&product.plans);
+            plans.map(|(name, plan)| format!("{name} {}", write(plan))).collect::<Vec<_>>().join(", ")
         };
-        Plan::ALL.iter().zip(&product.plans).map(plan).collect::<Vec<_>>().join(" · ")
+        let customers = each(|plan| grouped(plan.customers, 0));
+        if product.plans.iter().all(|plan| plan.margin().is_none()) {
+            return format!("no margin yet · customers {customers}");
+        }
+        let margins = each(|plan| or_none(plan.margin(), |margin| percent(margin, 0)));
+        format!("margin at the last day's use {margins} · customers {customers}")
     }
 
     fn note(&self, _: &Product, _: &Company) -> String {
-        "last day's usage, 30 days a month".to_owned()
+        "at the last day's use, 30 days a month".to_owned()
     }
 
     fn destination(&self, product: &Product) -> &'static str {

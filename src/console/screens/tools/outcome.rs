@@ -162,7 +162,13 @@ fn answer_lines(answer: &Result<Value, crate::session::Refusal>, paragraph: &mut
                 paragraph(&line, Role::Text);
             }
         }
-        Err(refusal) => paragraph(&format!("! {}: {}", refusal.code, refusal.message), Role::Bad),
+        Err(refusal) => {
+            paragraph(&format!("! {}: {}", refusal.code, refusal.message), Role::Bad);
+            if refusal.results.len() > 1 {
+                let results = serde_json::to_value(&refusal.results).unwrap_or_default();
+                readable(&results, 0).iter().for_each(|line| paragraph(line, Role::Text));
+            }
+        }
     }
 }
 

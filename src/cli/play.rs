@@ -1,6 +1,7 @@
 //! `novamind play`: the console, or line by line.
 
 use std::io::IsTerminal;
+use std::time::Instant;
 
 use clap::Args;
 
@@ -15,7 +16,8 @@ use crate::console::request::Recorded;
 use crate::console::request::Request;
 use crate::console::theme::Theme;
 use crate::session::{
-    Access, Configuration, Goal, Library, Mode, NewRun, RunError, Session, Storage, find_run,
+    Access, Configuration, ConsentGiven, ConsentMeans, Goal, Library, Mode, NewRun, RunError, Session,
+    Storage, find_run,
 };
 
 /// Options of `play`.
@@ -104,7 +106,8 @@ impl Options {
             overrides: self.set.clone(),
             mode: self.mode.unwrap_or(standard.mode),
             participant: self.participant.clone(),
-            agreed: self.consent,
+            agreed: self.consent.then(ConsentGiven::on_paper),
+            study: None,
             storage: Storage::Runs(context.runs()?),
             projection: true,
             sync_calls: true,
@@ -132,6 +135,7 @@ fn open(options: &Options, context: &Context) -> Result<Session, Failure> {
 fn create(new: NewRun, context: &Context) -> Result<Session, Failure> {
     match Session::create(new.clone(), &context.configuration) {
         Err(RunError::ConsentNeeded(text)) if std::io::stdin().is_terminal() => {
+            let shown = Instant::now();
             eprint!("{}\n\nType yes to agree: ", text.text.trim_end());
             let mut answer = String::new();
             let read = std::io::stdin().read_line(&mut answer);
@@ -140,7 +144,12 @@ fn create(new: NewRun, context: &Context) -> Result<Session, Failure> {
                     "nobody agreed; no run was started and nothing was recorded".to_owned(),
                 ));
             }
-            Ok(Session::create(NewRun { agreed: true, ..new }, &context.configuration)?)
+            let given = ConsentGiven {
+                means: ConsentMeans::Prompt,
+                scrolled_to_end: true,
+                read_ms: shown.elapsed().as_millis() as u64,
+            };
+            Ok(Session::create(NewRun { agreed: Some(given), ..new }, &context.configuration)?)
         }
         created => Ok(created?),
     }

@@ -24,7 +24,7 @@ use super::company::Company;
 use super::message::{Message, News};
 use super::preferences::Preferences;
 use super::request::Request;
-use crate::session::{Configuration, Goal, Playback, Refusal, Rows, Session};
+use crate::session::{Configuration, Goal, Playback, QuerySource, Refusal, Rows, Session};
 use crate::tools::ToolId;
 use queries::QueryThreads;
 use run::OpenRun;
@@ -46,7 +46,7 @@ pub enum Job {
     /// Pass a question on once everything confirmed is in the database.
     Ask(Question),
     /// Record what the person asked.
-    NoteQuery(String, Result<Rows, Refusal>, Duration),
+    NoteQuery(String, Result<Rows, Refusal>, Duration, QuerySource),
     /// Record what the person looked at: screen, screen before, milliseconds.
     NoteView(&'static str, &'static str, u64),
     /// Start with this look the next time, too. One after the other: what was chosen last counts.
@@ -198,8 +198,8 @@ impl SessionThread {
                 run.queries.ask(question);
                 None
             }),
-            Job::NoteQuery(sql, answer, took) => self.with_run(|run| {
-                run.session.note_query(&sql, answer.as_ref(), took);
+            Job::NoteQuery(sql, answer, took, via) => self.with_run(|run| {
+                run.session.note_query(&sql, answer.as_ref(), took, via);
                 None
             }),
             Job::NoteView(screen, from, for_ms) => self.with_run(|run| {

@@ -430,7 +430,8 @@ impl From<rusqlite::Error> for Fault {
 
 const TOO_MUCH_MEMORY: &str = "the query needs too much memory; ask for less at a time";
 
-const CANCELLED: &str = "the query was cancelled";
+/// What is said of a query that the person stopped.
+pub const CANCELLED: &str = "the query was cancelled";
 
 const SCHEMA_WORDS: &str = "schema statements are not allowed; the table browser describes all tables";
 

@@ -20,7 +20,7 @@ use super::signals::{Phase, Watch};
 use crate::database::text::table;
 use crate::notation::nearest;
 use crate::session::library::NamedQuery;
-use crate::session::{Change, Library, Mode, Refusal, Session, Via, rows_as_json};
+use crate::session::{Change, Library, Mode, QuerySource, Refusal, Session, Via, rows_as_json};
 use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 
 /// Words that run a week: the command, and the tool as agents call it.
@@ -104,16 +104,16 @@ impl Interpreter {
             "memo" => self.add_to_memo(rest),
             "explain" | "what" => explain(word, rest, &self.session.numbers()),
             "glossary" => glossary(rest),
-            _ => self.query(rest),
+            _ => self.query(rest, QuerySource::Typed),
         }
     }
 
-    fn query(&mut self, sql: &str) -> Answer {
+    fn query(&mut self, sql: &str, via: QuerySource) -> Answer {
         let answer = self.session.interrupt().and_then(|interrupt| {
             // What is stopped from here on is this query, though it has not begun.
             let ticket = interrupt.ticket();
             self.watch.enter_query(interrupt);
-            self.session.query_as(ticket, sql)
+            self.session.query_as(ticket, sql, via)
         });
         self.watch.enter(Phase::Working, String::new());
         match answer {
@@ -145,7 +145,7 @@ impl Interpreter {
             return Err(problem(arguments, &format!("there is no query {name}; {help}")));
         };
         let sql = query.sql.clone();
-        Ok(self.query(&sql))
+        Ok(self.query(&sql, QuerySource::Library))
     }
 
     fn show_memo(&self) -> Answer {

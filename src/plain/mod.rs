@@ -17,7 +17,8 @@ use serde_json::{Value, json};
 pub use crate::database::text::{cell_text, table};
 
 use crate::notation::printable;
-use crate::session::{Library, Session};
+use crate::session::record::LeavingCause;
+use crate::session::{Interface, Library, Session};
 use answers::Answer;
 use commands::Interpreter;
 use input::{Input, Read};
@@ -53,6 +54,15 @@ impl End {
         }
     }
 
+    fn cause(self) -> LeavingCause {
+        match self {
+            End::Quit => LeavingCause::Quit,
+            End::InputOver => LeavingCause::EndOfInput,
+            End::Strict => LeavingCause::Strict,
+            End::Signal(_) => LeavingCause::Signal,
+        }
+    }
+
     fn code(self) -> u8 {
         match self {
             End::Quit | End::InputOver => 0,
@@ -66,8 +76,9 @@ impl End {
 ///
 /// # Errors
 /// Standard input or output fails.
-pub fn play(session: Session, library: Library, style: Style) -> io::Result<u8> {
+pub fn play(mut session: Session, library: Library, style: Style) -> io::Result<u8> {
     let prompts = io::stdin().is_terminal();
+    session.take_up(Interface { name: "plain", window: None });
     let watch = Watch::start();
     let mut interpreter = Interpreter::new(session, library, watch.clone(), prompts);
     let mut out = io::stdout();
@@ -104,6 +115,7 @@ pub fn play(session: Session, library: Library, style: Style) -> io::Result<u8> 
             break End::Strict;
         }
     };
+    interpreter.session.leave(end.cause());
     // Everything answered `ok` is on the disk already; what is left are rows that can be made again.
     let _ = interpreter.session.save();
     writeln!(out, "{}", farewell(&interpreter.session, style, end))?;

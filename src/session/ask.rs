@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value, json};
 
-use crate::database::query::Limits;
+use crate::database::query::{CANCELLED, Limits};
 use crate::database::{
     Cell, Interrupt, Location, QueryConnection, QueryError, Rows, Ticket, query_connection,
 };
@@ -13,7 +13,7 @@ use crate::notation::json_number;
 use crate::session::resume::integrity::is_as_left;
 use crate::session::state::Session;
 use crate::session::trajectory::Record;
-use crate::session::trajectory::record::Query;
+use crate::session::trajectory::record::{Query, QuerySource};
 use crate::tools::Refusal;
 
 impl Session {
@@ -22,10 +22,18 @@ impl Session {
     /// # Errors
     /// The `sql_` codes.
     pub fn query(&mut self, sql: &str) -> Result<Rows, Refusal> {
+        self.query_of(sql, QuerySource::Typed)
+    }
+
+    /// The same for a statement that came from somewhere else.
+    ///
+    /// # Errors
+    /// The `sql_` codes.
+    pub fn query_of(&mut self, sql: &str, via: QuerySource) -> Result<Rows, Refusal> {
         match self.interrupt() {
-            Ok(interrupt) => self.query_as(interrupt.ticket(), sql),
+            Ok(interrupt) => self.query_as(interrupt.ticket(), sql, via),
             Err(refusal) => {
-                self.note_query(sql, Err(&refusal), Duration::ZERO);
+                self.note_query(sql, Err(&refusal), Duration::ZERO, via);
                 Err(refusal)
             }
         }
@@ -35,13 +43,13 @@ impl Session {
     ///
     /// # Errors
     /// The `sql_` codes.
-    pub fn query_as(&mut self, ticket: Ticket, sql: &str) -> Result<Rows, Refusal> {
+    pub fn query_as(&mut self, ticket: Ticket, sql: &str, via: QuerySource) -> Result<Rows, Refusal> {
         let started = Instant::now();
         let limits = limits(self);
         let answer = self
             .connection()
             .and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from));
-        self.note_query(sql, answer.as_ref(), started.elapsed());
+        self.note_query(sql, answer.as_ref(), started.elapsed(), via);
         answer
     }
 
@@ -81,14 +89,24 @@ impl Session {
     }
 
     /// Records a query that was asked elsewhere.
-    pub fn note_query(&mut self, sql: &str, answer: Result<&Rows, &Refusal>, took: Duration) {
+    pub fn note_query(
+        &mut self,
+        sql: &str,
+        answer: Result<&Rows, &Refusal>,
+        took: Duration,
+        via: QuerySource,
+    ) {
         self.remember_query(sql);
         let rows = answer.ok();
+        let refusal = answer.err();
         self.note(Record::Query(Query {
             sql: sql.to_owned(),
             rows: rows.map(|rows| rows.rows.len() as u64),
             truncated: rows.is_some_and(|rows| rows.truncated),
-            error: answer.err().map(|refusal| refusal.code.to_owned()),
+            error: refusal.map(|refusal| refusal.code.to_owned()),
+            message: refusal.map(|refusal| refusal.message.clone()),
+            stopped: refusal.is_some_and(|refusal| refusal.message.starts_with(CANCELLED)),
+            via: Some(via),
             took_ms: (took.as_secs_f64() * 1e6).round() / 1e3,
         }));
     }

@@ -13,6 +13,7 @@ mod play;
 mod playback;
 mod resume;
 mod state;
+mod study;
 mod trajectory;
 mod witness;
 
@@ -36,7 +37,7 @@ pub use figures::truth::truth_behind;
 pub use figures::week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
 pub use figures::xray::Xray;
 pub use folder::configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
-pub use folder::consent::{Consent, ConsentText};
+pub use folder::consent::{Consent, ConsentGiven, ConsentMeans, ConsentText};
 pub use folder::create::{NewRun, Storage};
 pub use folder::library::{self, Library};
 pub use folder::manifest::{FORMAT, Manifest};
@@ -48,6 +49,8 @@ pub use folder::runs::{
 };
 pub use play::act::Preview;
 pub use play::advance::{DayReport, Week};
+pub use play::afterwards::lines_afterwards;
+pub use play::presence::{Interface, Machine};
 pub use play::surroundings::Calculated;
 pub use play::undo::undone_calls;
 pub use playback::Playback;
@@ -58,7 +61,9 @@ pub use resume::rebuild::rebuild_database;
 pub use resume::rescue::{Rescued, rescue};
 pub use resume::verify::{Verification, verify};
 pub use state::Session;
-pub use trajectory::record::{Ended, Parent, Reversal, Via};
+pub use study::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
+pub use study::stamp::{EarlierRun, StudyStamp};
+pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via};
 pub use trajectory::{Line, Record, Trajectory, record, seconds as moment_of};
 pub use witness::{Finding, FindingKind, Told, Witness, WitnessRecord, compare, read_witness};
 

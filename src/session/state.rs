@@ -16,6 +16,7 @@ use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::RunSurroundings;
+use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::Ended;
 use crate::tools::Numbers;
 use crate::world::identifiers::ByGroup;
@@ -53,6 +54,11 @@ impl Session {
     /// What the run is.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
+    }
+
+    /// By which rules it is played.
+    pub fn rules(&self) -> SessionRules {
+        self.manifest.session_rules()
     }
 
     /// Folder of the run; none in memory.

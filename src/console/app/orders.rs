@@ -9,6 +9,7 @@ use crate::console::effect::Effect;
 use crate::console::request::Request;
 use crate::console::screens::ScreenId;
 use crate::console::worker::{Job, Question};
+use crate::session::QuerySource;
 
 impl App {
     /// Lets effects follow, in their order.
@@ -30,8 +31,8 @@ impl App {
                 self.checker = self.run().map_or(ScreenId::Tools, |run| run.here);
                 self.orders.push(Order::Job(Job::Check(self.checks, tool, arguments)));
             }
-            Effect::Ask(sql) => self.sql_question = self.ask(sql),
-            Effect::AskBehind(sql) => self.rows_question = self.ask(sql),
+            Effect::Ask(sql) => self.sql_question = self.ask(sql, QuerySource::Typed),
+            Effect::AskBehind(sql) => self.rows_question = self.ask(sql, QuerySource::DrillDown),
             Effect::CancelQuery => self.orders.push(Order::CancelQuery),
             Effect::Read(reading) => {
                 if let Stage::Run(run) = &mut self.stage {
@@ -116,12 +117,12 @@ impl App {
     }
 
     /// Asks the database for the person; returns the number of the question.
-    fn ask(&mut self, sql: String) -> u64 {
+    fn ask(&mut self, sql: String, via: QuerySource) -> u64 {
         self.questions += 1;
         let interrupt = self.run().and_then(|run| run.interrupt.as_ref());
         // Drawn now: a stop may come before the query has begun.
         let ticket = interrupt.map(|interrupt| interrupt.ticket());
-        let question = Question::of_person(sql, self.questions, ticket);
+        let question = Question::of_person(sql, self.questions, ticket, via);
         let running = self.busy.is_some();
         self.orders.push(if running { Order::AskNow(question) } else { Order::Job(Job::Ask(question)) });
         self.questions

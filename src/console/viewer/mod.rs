@@ -1,5 +1,6 @@
 //! A recorded run on the screen: where it is, whether it plays and how fast, what was decided there.
 
+mod activities;
 mod pane;
 mod strip;
 pub mod told;

@@ -1,10 +1,11 @@
 //! Decisions of a week in words: in few for the pane, in full to read.
 
+use super::activities;
 use crate::console::screens::journal::entries::in_words;
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped};
-use crate::session::record::{Advance, Branch, Call, Closing, Outcome, Query};
+use crate::session::record::{Advance, Branch, Call, Closing, Memo, Note, Outcome, Query};
 use crate::session::{Chapter, PlaybackPosition, Record, RecordView, Reversal, ScoredForecast, naively};
 
 /// Longest JSON that is written in one line, in bytes.
@@ -28,9 +29,9 @@ pub fn brief(entry: &RecordView) -> Vec<(String, Role)> {
             };
             vec![(sql, Role::Keyword), (answer, Role::Dim)]
         }
-        Record::View(view) => one(format!("viewed {} for {}", view.screen, time(view.for_ms)), Role::Dim),
-        Record::Memo(memo) => {
-            one(format!("saved notes ({} bytes)", grouped(memo.length as f64, 0)), Role::Text)
+        Record::Activity(activity) => vec![activities::brief(activity)],
+        Record::Memo(Memo { length, .. }) | Record::Note(Note { length, .. }) => {
+            one(format!("saved notes ({} bytes)", grouped(*length as f64, 0)), Role::Text)
         }
         Record::Advance(filed) => {
             let mut lines = vec![(format!("“{}”", filed.rationale.trim()), Role::Strong)];
@@ -177,7 +178,7 @@ fn forecast_in_full(scored: &ScoredForecast, later: bool) -> String {
 }
 
 /// A time somebody looked at something.
-fn time(milliseconds: u64) -> String {
+pub(super) fn time(milliseconds: u64) -> String {
     match milliseconds / 1000 {
         0 => "a moment".to_owned(),
         seconds @ 1..60 => format!("{seconds} s"),
@@ -188,6 +189,7 @@ fn time(milliseconds: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::Activity;
     use crate::session::record::{End, RefusalRecord, View};
     use crate::session::{Ended, Parent, Via};
     use crate::tools::Forecast;
@@ -219,13 +221,22 @@ mod tests {
         assert_eq!(said(call(json!({"A": -1}), refused, None)), ["set_prices A -1", "refused: too low"]);
         let query = |rows, error: Option<&str>| {
             let (sql, error) = ("SELECT 1\n FROM x".to_owned(), error.map(str::to_owned));
-            Record::Query(Query { sql, rows, truncated: false, error, took_ms: 3.4 })
+            Record::Query(Query {
+                sql,
+                rows,
+                truncated: false,
+                error,
+                message: None,
+                stopped: false,
+                via: None,
+                took_ms: 3.4,
+            })
         };
         assert_eq!(said(query(Some(1200), None)), ["SELECT 1 FROM x", "1,200 rows, 3 ms"]);
         assert_eq!(said(query(None, Some("sql_error"))), ["SELECT 1 FROM x", "refused: sql_error"]);
         for (for_ms, words) in [(400, "a moment"), (1_500, "1 s"), (83_000, "1 min 23 s")] {
             let view = View { screen: "cash".to_owned(), from: String::new(), for_ms };
-            assert_eq!(said(Record::View(view)), [format!("viewed cash for {words}")]);
+            assert_eq!(said(Record::Activity(Activity::View(view))), [format!("viewed cash for {words}")]);
         }
         let from = Some(Parent { run: "aa".to_owned(), seq: 3 });
         assert_eq!(said(Record::Branch(Branch { from })), ["branched off run aa here"]);

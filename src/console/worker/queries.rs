@@ -7,7 +7,7 @@ use super::Job;
 use crate::console::message::{Message, News};
 use crate::console::readings::Reading;
 use crate::database::query::Limits;
-use crate::session::{Interrupt, QueryConnection, Refusal, Session, Ticket};
+use crate::session::{Interrupt, QueryConnection, QuerySource, Refusal, Session, Ticket};
 
 /// A question for the database.
 pub struct Question {
@@ -17,14 +17,14 @@ pub struct Question {
 
 /// Who asked, with what tells the answer from others.
 enum AskedBy {
-    Person(u64, Option<Ticket>),
+    Person(u64, Option<Ticket>, QuerySource),
     Screen(Reading, u64),
 }
 
 impl Question {
-    /// A question of the person, with its number and with the ticket by which it can be stopped.
-    pub fn of_person(sql: String, number: u64, ticket: Option<Ticket>) -> Question {
-        Question { sql, by: AskedBy::Person(number, ticket) }
+    /// A question of the person: its number, the ticket by which it can be stopped, and where it came from.
+    pub fn of_person(sql: String, number: u64, ticket: Option<Ticket>, via: QuerySource) -> Question {
+        Question { sql, by: AskedBy::Person(number, ticket, via) }
     }
 
     /// A question of a screen, with the number of changes of the run before it.
@@ -108,7 +108,7 @@ fn answer(
 ) {
     let started = Instant::now();
     let rows = match (connection, &question.by) {
-        (Some((connection, limits)), AskedBy::Person(_, Some(ticket))) => {
+        (Some((connection, limits)), AskedBy::Person(_, Some(ticket), _)) => {
             connection.ask_as(*ticket, &question.sql, *limits).map_err(Refusal::from)
         }
         (Some((connection, limits)), _) => connection.ask(&question.sql, *limits).map_err(Refusal::from),
@@ -116,9 +116,9 @@ fn answer(
     };
     let took = started.elapsed();
     let report = match question.by {
-        AskedBy::Person(number, _) => {
+        AskedBy::Person(number, _, via) => {
             let noted = rows.clone();
-            let _ = jobs.send(Job::NoteQuery(question.sql, noted, took));
+            let _ = jobs.send(Job::NoteQuery(question.sql, noted, took, via));
             News::Answered(number, rows, took)
         }
         AskedBy::Screen(reading, changes) => News::Read(reading, changes, rows),

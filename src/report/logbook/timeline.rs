@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 use super::Effort;
 use crate::session::record::{Closing, FiledForecast, Outcome, View};
-use crate::session::{Line, Record, Reversal};
+use crate::session::{Activity, Line, Record, Reversal};
 
 /// Seconds without a line after which somebody is taken to be away: ten minutes.
 pub const BREAK_SECONDS: f64 = 600.0;
@@ -110,13 +110,13 @@ impl Timeline {
                 effort.queries += 1;
                 effort.queries_failed += u32::from(query.error.is_some());
             }
-            Record::View(view) => {
+            Record::Activity(Activity::View(view)) => {
                 let seconds = self.seconds_looked(line, view);
                 let effort = &mut self.open.effort;
                 effort.views += 1;
                 *effort.screens.entry(view.screen.clone()).or_default() += seconds;
             }
-            Record::Memo(_) => effort.memos += 1,
+            Record::Memo(_) | Record::Note(_) => effort.memos += 1,
             Record::Advance(filed) => {
                 self.open.decided_at.clone_from(&line.at);
                 self.open.rationale = Some(filed.rationale.clone());
@@ -124,6 +124,7 @@ impl Timeline {
             }
             Record::Week(closing) | Record::Step(closing) => self.close(line, closing),
             Record::Start(_)
+            | Record::Activity(_)
             | Record::Branch(_)
             | Record::Override(_)
             | Record::End(_)
@@ -200,11 +201,20 @@ mod tests {
     fn breaks_are_counted_apart_and_the_simulator_takes_no_time_of_the_player() {
         let view = View { screen: "cash".to_owned(), from: String::new(), for_ms: 1_560_000 };
         let sql = "x".to_owned();
-        let query = Query { sql, rows: Some(1), truncated: false, error: None, took_ms: 1.0 };
+        let query = Query {
+            sql,
+            rows: Some(1),
+            truncated: false,
+            error: None,
+            message: None,
+            stopped: false,
+            via: None,
+            took_ms: 1.0,
+        };
         let timeline = Timeline::of(&lines(&[
             ("10:00:00", start()),
             ("10:05:00", call()),
-            ("10:30:00", Record::View(view)),
+            ("10:30:00", Record::Activity(Activity::View(view))),
             ("10:31:00", advance()),
             ("10:32:00", week()),
             ("10:33:00", Record::Query(query)),

@@ -12,6 +12,7 @@ use super::workshop::Workshop;
 use crate::session::archive::{DATABASE, MANIFEST, MEMO, SEAL, TRAJECTORY, is_compressed};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::play::afterwards::{AFTERWARDS, lines_afterwards};
 use crate::session::play::memo::notes_file;
 use crate::session::resume::integrity::Integrity;
 use crate::session::resume::open::{Access, check_start};
@@ -50,6 +51,12 @@ impl Export {
         // A line without its end was never confirmed: it may be in the middle of being written.
         put(TRAJECTORY, bytes.get(..trajectory.length as usize).unwrap_or(&bytes))?;
         trajectory.unfinished = 0;
+        let after = lines_afterwards(folder, &trajectory)?;
+        if !after.lines.is_empty() {
+            let path = folder.join(AFTERWARDS);
+            let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
+            put(AFTERWARDS, bytes.get(..after.length as usize).unwrap_or(&bytes))?;
+        }
         let memo = notes_file(folder, &trajectory);
         match std::fs::read(&memo) {
             Ok(bytes) => put(MEMO, &bytes)?,
@@ -99,8 +106,9 @@ impl Export {
 
     fn seal(&self) -> Result<Seal, RunError> {
         let folder = &self.copies;
-        let there =
-            [MANIFEST, TRAJECTORY, MEMO, DATABASE].into_iter().filter(|name| folder.join(name).exists());
+        let there = [MANIFEST, TRAJECTORY, AFTERWARDS, MEMO, DATABASE]
+            .into_iter()
+            .filter(|name| folder.join(name).exists());
         let file = there.map(|name| SealedFile::of(folder, name)).collect::<Result<_, _>>()?;
         let last = self.trajectory.lines.last();
         let seal = Seal {

@@ -8,6 +8,7 @@
 //! | `seal.toml` | what the archive holds: length and BLAKE3 hash of every file, last line of the trajectory, a checksum over it all |
 //! | `run.toml` | what the run is |
 //! | `trajectory.jsonl` | the truth, up to its last confirmed line |
+//! | `afterwards.jsonl` | what was done after the end, if anything was |
 //! | `memo.md` | the player's notes, if there are any |
 //! | `world.db` | the observable company, with ordinary tables only, for any SQLite tool |
 //!
@@ -28,10 +29,17 @@ pub use seal::Seal;
 pub use workshop::close_workshops;
 
 use crate::session::error::RunError;
+use crate::session::play::afterwards::AFTERWARDS;
 
 /// Files an archive may hold and the most bytes each may have: enough for any run, too few to fill a disk by surprise.
-const FILES: [(&str, u64); 5] =
-    [(SEAL, 1 << 20), (MANIFEST, 1 << 20), (TRAJECTORY, 4 << 30), (MEMO, 64 << 20), (DATABASE, 16 << 30)];
+const FILES: [(&str, u64); 6] = [
+    (SEAL, 1 << 20),
+    (MANIFEST, 1 << 20),
+    (TRAJECTORY, 4 << 30),
+    (AFTERWARDS, 1 << 30),
+    (MEMO, 64 << 20),
+    (DATABASE, 16 << 30),
+];
 
 const SEAL: &str = "seal.toml";
 const MANIFEST: &str = "run.toml";

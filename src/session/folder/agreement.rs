@@ -35,8 +35,9 @@ pub(in crate::session) fn agreed(
 ) -> Result<Option<Consent>, RunError> {
     let Some(text) = configuration.consent()? else { return Ok(None) };
     let digest = text.digest();
-    if new.agreed {
-        return Ok(Some(Consent { digest, at: now() }));
+    if let Some(given) = new.agreed {
+        let text = Some(text.text);
+        return Ok(Some(Consent { digest, at: now(), given: Some(given), text }));
     }
     let earlier = match (&new.storage, participant) {
         (Storage::Runs(runs), Some(participant)) => earlier_consent(runs, participant, &digest),
@@ -58,11 +59,13 @@ fn earlier_consent(runs: &Path, participant: &str, digest: &str) -> Option<Conse
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::folder::consent::ConsentGiven;
     use crate::session::folder::mode::Mode;
     use crate::session::resume::open::Access;
     use crate::session::state::Session;
 
     fn new(runs: &Path, participant: Option<&str>, agreed: bool, mode: Mode) -> NewRun {
+        let agreed = agreed.then(ConsentGiven::on_paper);
         let storage = Storage::Runs(runs.to_owned());
         let participant = participant.map(str::to_owned);
         NewRun { mode, participant, agreed, storage, days: Some(28), ..NewRun::default() }

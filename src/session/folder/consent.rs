@@ -13,6 +13,43 @@ pub struct Consent {
     pub digest: String,
     /// When, RFC 3339.
     pub at: String,
+    /// How it was given; none in runs of format 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub given: Option<ConsentGiven>,
+    /// The text, whole; none in runs of format 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<String>,
+}
+
+/// How somebody has agreed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConsentGiven {
+    /// By which means.
+    pub means: ConsentMeans,
+    /// The text was scrolled to its end on the screen before.
+    pub scrolled_to_end: bool,
+    /// Milliseconds the text was on the screen.
+    pub read_ms: u64,
+}
+
+impl ConsentGiven {
+    /// Signed on paper, as the experimenter says.
+    pub fn on_paper() -> ConsentGiven {
+        ConsentGiven { means: ConsentMeans::Paper, scrolled_to_end: false, read_ms: 0 }
+    }
+}
+
+/// By which means somebody agrees.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ConsentMeans {
+    /// On a screen of the console.
+    Screen,
+    /// At a prompt of a terminal.
+    Prompt,
+    /// On paper, as the experimenter says.
+    Paper,
 }
 
 /// A text that somebody has to agree to.

@@ -5,9 +5,10 @@ use std::sync::{Arc, OnceLock};
 
 use super::agreement::agreed;
 use super::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
-use super::manifest::{FORMAT, Manifest, differences};
+use super::consent::ConsentGiven;
+use super::manifest::{FORMAT, Manifest, differences, same_world};
 use super::mode::Mode;
-use super::runs::{earlier_runs, label_of};
+use super::runs::{earlier_runs_of, label_of};
 use crate::database::{Location, Position, Projector};
 use crate::session::error::RunError;
 use crate::session::play::history::History;
@@ -16,6 +17,8 @@ use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::RunSurroundings;
 use crate::session::state::Session;
+use crate::session::study::rules::SessionRules;
+use crate::session::study::stamp::StudyStamp;
 use crate::session::trajectory::now;
 use crate::world::MECHANICS;
 use crate::world::params::Params;
@@ -37,8 +40,10 @@ pub struct NewRun {
     pub mode: Mode,
     /// Who plays, as the experimenter names them; if left out, whoever the folder of runs belongs to.
     pub participant: Option<String>,
-    /// Whether the person has agreed to the text that the experimenter asks for; baseline runs only.
-    pub agreed: bool,
+    /// How the person has agreed to the text that the experimenter asks for; baseline runs only.
+    pub agreed: Option<ConsentGiven>,
+    /// The study it belongs to, and the rules that it lays down.
+    pub study: Option<(StudyStamp, SessionRules)>,
     /// Where the run is kept.
     pub storage: Storage,
     /// Whether the database is kept up to date; without it queries are refused.
@@ -66,7 +71,8 @@ impl Default for NewRun {
             overrides: Vec::new(),
             mode: Mode::Sandbox,
             participant: None,
-            agreed: false,
+            agreed: None,
+            study: None,
             storage: Storage::Memory,
             projection: true,
             sync_calls: true,
@@ -178,15 +184,16 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
     if seed > i64::MAX as u64 {
         return Err(RunError::NotPossible(format!("a seed is at most {}, not {seed}", i64::MAX)));
     }
-    let earlier_runs = match &new.storage {
-        Storage::Runs(runs) => earlier_runs(runs, seed, &scenario.name),
-        Storage::Memory => 0,
-    };
     let of_folder = match &new.storage {
         Storage::Runs(runs) => label_of(runs),
         Storage::Memory => None,
     };
     let participant = new.participant.clone().or(of_folder);
+    let earlier = match &new.storage {
+        Storage::Runs(runs) => earlier_runs_of(runs, participant.as_deref()),
+        Storage::Memory => Vec::new(),
+    };
+    let (study, rules) = new.study.clone().unzip();
     let consent = match new.mode {
         Mode::Baseline => agreed(new, participant.as_deref(), configuration)?,
         Mode::Sandbox | Mode::Lesson | Mode::Debug => None,
@@ -200,13 +207,16 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         seed,
         days,
         cash,
+        earlier_runs: same_world(&earlier, seed, &scenario.name),
         scenario: scenario.name,
         mode: new.mode,
         participant,
-        earlier_runs,
         consent,
         parameters_digest: params.digest(),
         parent: None,
+        study,
+        rules: Some(rules.unwrap_or_else(|| SessionRules::of_mode(new.mode))),
+        earlier,
         parameters: differences(&params),
     };
     Ok((manifest, params))

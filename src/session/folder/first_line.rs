@@ -21,6 +21,9 @@ pub(in crate::session) fn start_of(manifest: &Manifest) -> Record {
         mode: manifest.mode,
         participant: manifest.participant,
         consent: manifest.consent,
+        study: manifest.study,
+        rules: manifest.rules,
+        earlier_runs: manifest.earlier,
         parent: manifest.parent,
         line_sums: true,
     }))

@@ -9,13 +9,15 @@ use super::configuration::Configuration;
 use super::consent::Consent;
 use super::mode::Mode;
 use crate::session::error::RunError;
+use crate::session::study::rules::SessionRules;
+use crate::session::study::stamp::{EarlierRun, StudyStamp};
 use crate::session::trajectory::record::Parent;
 use crate::session::trajectory::{Line, Record};
 use crate::world::MECHANICS;
 use crate::world::params::{ParameterError, ParameterSource, Params, shipped_sources};
 
 /// Format of trajectories and manifests that this program writes.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// What a run is; written once, never changed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -45,7 +47,7 @@ pub struct Manifest {
     /// Who plays, as the experimenter names them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub participant: Option<String>,
-    /// Runs of this seed and scenario that the folder of runs held when this one began.
+    /// Earlier runs of the same person with this seed and scenario.
     pub earlier_runs: u32,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
@@ -55,6 +57,15 @@ pub struct Manifest {
     /// Run and line this one branched from.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parent: Option<Parent>,
+    /// The study it belongs to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub study: Option<StudyStamp>,
+    /// By which rules it is played; none in runs of format 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rules: Option<SessionRules>,
+    /// Everything that the same person played before.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub earlier: Vec<EarlierRun>,
     /// Every parameter that differs from the shipped ones.
     #[serde(default, skip_serializing_if = "Table::is_empty")]
     pub parameters: Table,
@@ -123,6 +134,7 @@ impl Manifest {
             return Err(damaged("the trajectory does not begin with the start of a run"));
         };
         let start = start.as_ref().clone();
+        let earlier_runs = same_world(&start.earlier_runs, start.seed, &start.scenario);
         Manifest {
             format: start.format,
             version: start.version,
@@ -135,10 +147,13 @@ impl Manifest {
             scenario: start.scenario,
             mode: start.mode,
             participant: start.participant,
-            earlier_runs: 0,
+            earlier_runs,
             consent: start.consent,
             parameters_digest: start.parameters_digest,
             parent: start.parent,
+            study: start.study,
+            rules: start.rules,
+            earlier: start.earlier_runs,
             parameters: start.overrides,
         }
         .understood()
@@ -152,6 +167,11 @@ impl Manifest {
         let path = folder.join("run.toml");
         let text = toml::to_string(self).expect("a manifest holds plain values");
         write_whole(&path, text.as_bytes())
+    }
+
+    /// By which rules it is played.
+    pub fn session_rules(&self) -> SessionRules {
+        self.rules.clone().unwrap_or_else(|| SessionRules::of_mode(self.mode))
     }
 
     /// Whether the run's parameters are others than those of the shipped scenario whose name it has.
@@ -183,6 +203,11 @@ impl Manifest {
         let own = params.digest();
         if own == self.parameters_digest { Ok(params) } else { Err(other(own)) }
     }
+}
+
+/// How many of a person's runs were in this world with this luck.
+pub(in crate::session) fn same_world(earlier: &[EarlierRun], seed: u64, scenario: &str) -> u32 {
+    earlier.iter().filter(|run| run.seed == seed && run.scenario == scenario).count() as u32
 }
 
 /// Every parameter that differs from the shipped ones, as a table of tables.
@@ -250,6 +275,9 @@ mod tests {
             consent: None,
             parameters_digest: params.digest(),
             parent: None,
+            study: None,
+            rules: None,
+            earlier: Vec::new(),
             parameters: differences(params),
         }
     }
@@ -281,10 +309,10 @@ mod tests {
         let error = Manifest::read(folder.path()).expect_err("other mechanics").to_string();
         assert!(error.contains("version 0.1.0") && error.contains("Nothing was changed"), "{error}");
         own.mechanics = MECHANICS;
-        own.format = 2;
+        own.format = FORMAT + 1;
         own.write(folder.path()).expect("it is written");
         let error = Manifest::read(folder.path()).expect_err("another format").to_string();
-        assert!(error.contains("format 2"), "{error}");
+        assert!(error.contains(&format!("format {}", FORMAT + 1)), "{error}");
         std::fs::write(folder.path().join("run.toml"), "format = 1\nversion = ").expect("a file");
         let error = Manifest::read(folder.path()).expect_err("damaged").to_string();
         assert!(error.contains("line 2") && error.contains("trajectory was not touched"), "{error}");

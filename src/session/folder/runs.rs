@@ -12,6 +12,7 @@ use super::mode::Mode;
 use crate::session::error::RunError;
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
+use crate::session::study::stamp::EarlierRun;
 use crate::session::trajectory::record::Ended;
 use crate::session::trajectory::{Line, Record};
 
@@ -256,14 +257,24 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
     std::fs::remove_dir_all(&folder).map_err(RunError::io(&folder))
 }
 
-/// Runs of a seed and scenario that the folder of runs and those of its participants hold.
-pub(in crate::session) fn earlier_runs(runs: &Path, seed: u64, scenario: &str) -> u32 {
-    let folders = all_run_folders(runs);
+/// What a person has played before: runs of their label in the folder of runs and in those of its participants; of
+/// somebody without a label those in this very folder.
+pub(in crate::session) fn earlier_runs_of(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
+    let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
-    let same = |folder: &PathBuf| {
-        Manifest::read(folder).is_ok_and(|manifest| manifest.seed == seed && manifest.scenario == scenario)
-    };
-    entries.map(|entry| entry.path()).filter(same).count() as u32
+    let manifests = entries.filter_map(|entry| Manifest::read(&entry.path()).ok());
+    let own = manifests.filter(|manifest| manifest.participant.as_deref() == participant);
+    let mut earlier: Vec<EarlierRun> = own
+        .map(|manifest| EarlierRun {
+            run: manifest.id,
+            mode: manifest.mode,
+            seed: manifest.seed,
+            scenario: manifest.scenario,
+            created: manifest.created,
+        })
+        .collect();
+    earlier.sort_by(|one, other| one.created.cmp(&other.created).then_with(|| one.run.cmp(&other.run)));
+    earlier
 }
 
 #[cfg(test)]
@@ -287,9 +298,11 @@ mod tests {
         let last = play(&second);
         assert_eq!(
             (last.participant.as_deref(), last.earlier_runs),
-            (Some("P02"), 2),
-            "seeds count everywhere"
+            (Some("P02"), 0),
+            "others' runs are not this person's"
         );
+        assert_eq!(play(&second).earlier_runs, 1);
+        delete_run(&second, &last.id).expect("deleted");
         for folder in [&base, &first, &second] {
             assert_eq!(list_runs(folder).expect("a list").len(), 1, "nobody sees the others' runs");
             assert_eq!(all_run_folders(folder), [base.clone(), first.clone(), second.clone()]);

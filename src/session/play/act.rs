@@ -146,19 +146,14 @@ impl Session {
             Err(refusal) => {
                 // A refusal changes nothing, so a disk that refuses its line takes nothing away.
                 let record = called(arguments.clone(), refusal.outcome());
-                let _ = self.record_call(&record, Durability::Written);
+                self.note(record);
                 Err(refusal)
             }
             Ok((given, accepted, answer)) => {
                 let durability = self.durability_of_calls();
                 let record =
                     called(Value::Object(given.as_map().clone()), Outcome::Accepted(answer.to_json()));
-                // Statements can be kept even when the run is over, and then their line comes after its end.
-                let recorded = match accepted.change {
-                    Some(_) => self.append(&record, durability).map(|_| ()),
-                    None => self.record_call(&record, durability),
-                };
-                recorded.map_err(not_saved)?;
+                self.append(&record, durability).map_err(not_saved)?;
                 self.apply(tool.spec(), &given, reversal, accepted);
                 Ok(answer)
             }
@@ -296,13 +291,6 @@ impl Session {
         }
     }
 
-    fn record_call(&mut self, record: &Record, durability: Durability) -> Result<(), RunError> {
-        match self.history.ended {
-            Some(_) => Ok(()),
-            None => self.append(record, durability).map(|_| ()),
-        }
-    }
-
     /// Records a refused call that has no other place, for instance a refused week.
     pub(in crate::session) fn record_refusal(
         &mut self,
@@ -313,7 +301,7 @@ impl Session {
     ) {
         let (args, outcome) = (arguments.clone(), refusal.outcome());
         let record = Record::Call(Call { tool, args, outcome, via, took_ms: 0.0, reversal: None });
-        let _ = self.record_call(&record, Durability::Written);
+        self.note(record);
     }
 }
 

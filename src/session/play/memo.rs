@@ -8,10 +8,11 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use crate::session::error::RunError;
-use crate::session::folder::manifest::{sync_folder, write_whole};
+use crate::session::folder::manifest::sync_folder;
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
-use crate::session::trajectory::record::Memo;
+use crate::session::study::rules::FreeText;
+use crate::session::trajectory::record::Note;
 use crate::session::trajectory::{Durability, Record, Trajectory};
 use crate::tools::Refusal;
 
@@ -44,10 +45,6 @@ impl Session {
         let not_saved = |error: RunError| Refusal::new("not_saved", error.to_string());
         match self.folder.clone() {
             None => self.memo_in_memory = text.to_owned(),
-            // Once a run is over nothing more is recorded.
-            Some(folder) if self.history.ended.is_some() => {
-                return write_whole(&folder.join(FILE), text.as_bytes()).map_err(not_saved);
-            }
             Some(folder) => {
                 let draft = folder.join(DRAFT);
                 let kept = write_draft(&draft, text).and_then(|()| self.note_memo(text));
@@ -62,11 +59,10 @@ impl Session {
     }
 
     fn note_memo(&mut self, text: &str) -> Result<(), RunError> {
-        if self.history.ended.is_some() {
-            return Ok(());
-        }
-        let memo = Memo { digest: digest(text.as_bytes()), length: text.len() as u64 };
-        self.append(&Record::Memo(memo), Durability::Synced)?;
+        let kept = self.manifest.session_rules().free_text == FreeText::Kept;
+        let (digest, length) = (digest(text.as_bytes()), text.len() as u64);
+        let note = Note { digest, length, text: kept.then(|| text.to_owned()) };
+        self.append(&Record::Note(note), Durability::Synced)?;
         Ok(())
     }
 
@@ -103,10 +99,7 @@ pub(in crate::session) fn notes_file(folder: &Path, trajectory: &Trajectory) -> 
 }
 
 fn last_digest(trajectory: &Trajectory) -> Option<String> {
-    trajectory.lines.iter().rev().find_map(|line| match &line.record {
-        Record::Memo(memo) => Some(memo.digest.clone()),
-        _ => None,
-    })
+    trajectory.lines.iter().rev().find_map(|line| line.record.notes_digest().map(str::to_owned))
 }
 
 /// Digest of the notes in a file, as lines tell it; that of no notes where there is no file.

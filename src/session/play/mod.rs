@@ -2,6 +2,7 @@
 
 pub(in crate::session) mod act;
 pub(in crate::session) mod advance;
+pub(in crate::session) mod afterwards;
 pub(in crate::session) mod entry;
 pub(in crate::session) mod facts_chain;
 pub(in crate::session) mod feed;
@@ -9,6 +10,7 @@ pub(in crate::session) mod history;
 pub(in crate::session) mod irrevocable;
 pub(in crate::session) mod judging;
 pub(in crate::session) mod memo;
+pub(in crate::session) mod presence;
 pub(in crate::session) mod projection;
 pub(in crate::session) mod recorder;
 pub(in crate::session) mod recording;

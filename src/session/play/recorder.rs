@@ -1,14 +1,15 @@
 //! Writing a run: its trajectory, when a line has to be on the disk, and the lock that keeps other programs out.
 
 use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::database::Position;
 use crate::session::error::RunError;
 use crate::session::folder::first_line::start_of;
 use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::{Manifest, sync_folder};
-use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
+use crate::session::play::afterwards::AFTERWARDS;
+use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, now};
 use crate::session::witness::Witness;
 
 /// What a run has that is played, and a run that is only read has not.
@@ -17,6 +18,10 @@ pub(in crate::session) struct Recorder {
     /// When the line of an accepted call has to be on the disk: before the call is confirmed, or, in headless runs,
     /// with the week.
     calls: Durability,
+    /// Folder of the run; none in memory.
+    folder: Option<PathBuf>,
+    /// What is done once the run is over, from the first line of it on.
+    afterwards: Option<TrajectoryWriter>,
     /// Held while the run may be written; none in memory.
     _lock: Option<File>,
 }
@@ -40,7 +45,8 @@ impl Recorder {
         };
         trajectory.append(0, &start_of(manifest), Durability::Synced)?;
         let calls = if sync_calls { Durability::Synced } else { Durability::Written };
-        Ok(Recorder { trajectory, calls, _lock: lock })
+        let folder = folder.map(Path::to_owned);
+        Ok(Recorder { trajectory, calls, folder, afterwards: None, _lock: lock })
     }
 
     /// Goes on with the trajectory of a run whose lock is held.
@@ -50,7 +56,8 @@ impl Recorder {
         lock: File,
     ) -> Result<Recorder, RunError> {
         let trajectory = TrajectoryWriter::resume(path, read)?;
-        Ok(Recorder { trajectory, calls: Durability::Synced, _lock: Some(lock) })
+        let folder = path.parent().map(Path::to_owned);
+        Ok(Recorder { trajectory, calls: Durability::Synced, folder, afterwards: None, _lock: Some(lock) })
     }
 
     /// Number and hash of the last line.
@@ -79,6 +86,25 @@ impl Recorder {
         durability: Durability,
     ) -> Result<String, RunError> {
         self.trajectory.append(day, record, durability)
+    }
+
+    /// Appends a line about something that is done once the run is over, to a file of its own. In memory it is not kept.
+    ///
+    /// # Errors
+    /// The disk refuses, or the file is damaged: then the line does not exist.
+    pub(in crate::session) fn append_afterwards(
+        &mut self,
+        day: u32,
+        record: &Record,
+        durability: Durability,
+    ) -> Result<String, RunError> {
+        let Some(folder) = &self.folder else { return Ok(now()) };
+        if self.afterwards.is_none() {
+            let path = folder.join(AFTERWARDS);
+            self.afterwards = Some(TrajectoryWriter::open_after(&path, self.trajectory.position())?);
+        }
+        let Some(writer) = &mut self.afterwards else { return Ok(now()) };
+        writer.append(day, record, durability)
     }
 
     /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.

@@ -7,7 +7,7 @@ use super::recorder::Recorder;
 use crate::database::Entry;
 use crate::session::error::RunError;
 use crate::session::state::Session;
-use crate::session::trajectory::record::View;
+use crate::session::trajectory::record::{Activity, View};
 use crate::session::trajectory::{Durability, Record};
 use crate::session::witness::Witness;
 
@@ -35,6 +35,10 @@ impl Session {
         durability: Durability,
     ) -> Result<String, RunError> {
         let Some(recorder) = &mut self.recorder else { return Ok(String::new()) };
+        if self.history.ended.is_some() {
+            // The end is the last line.
+            return recorder.append_afterwards(self.simulation.world.day, record, durability);
+        }
         let at = recorder.append(self.simulation.world.day, record, durability)?;
         self.position = recorder.position();
         Ok(at)
@@ -63,14 +67,12 @@ impl Session {
 
     /// Records what the person looked at, and for how long.
     pub fn note_view(&mut self, screen: &str, from: &str, for_ms: u64) {
-        self.note(Record::View(View { screen: screen.to_owned(), from: from.to_owned(), for_ms }));
+        let view = View { screen: screen.to_owned(), from: from.to_owned(), for_ms };
+        self.note_activity(Activity::View(view));
     }
 
-    /// Records something that changes nothing; once the run is over nothing more is recorded.
+    /// Records something that changes nothing; a disk that refuses it is no reason to stop.
     pub(in crate::session) fn note(&mut self, record: Record) {
-        if self.history.ended.is_none() {
-            // Nothing is lost with it, so a disk that refuses it is no reason to stop.
-            let _ = self.append(&record, Durability::Written);
-        }
+        let _ = self.append(&record, Durability::Written);
     }
 }

@@ -21,6 +21,7 @@ use crate::session::playback::position::{Chapter, Goal, PlaybackPosition, SeekRe
 use crate::session::playback::record_view::RecordView;
 use crate::session::resume::open::check_start;
 use crate::session::state::Session;
+use crate::session::trajectory::record::Note;
 use crate::session::trajectory::{Line, Record, Trajectory, damaged_at};
 use crate::tools::Refusal;
 use crate::world::params::Params;
@@ -282,15 +283,16 @@ impl Playback {
         self.stops.iter().find(|stop| stop.day == day).map(|stop| stop.cash)
     }
 
-    /// The notes of the run, if they had already been written as they are now: earlier texts are not recorded.
+    /// The notes of the run as they were at this moment. Lines of format 1 do not hold them: their notes are known only
+    /// where they are the last.
     pub fn memo(&self) -> Option<String> {
+        let lines = self.trajectory.lines[..self.applied].iter().rev();
+        let kept = lines.map(|line| &line.record).find(|record| record.notes_digest().is_some())?;
+        if let Record::Note(Note { text: Some(text), .. }) = kept {
+            return Some(text.clone());
+        }
         let text = self.session.memo().ok()?;
-        let last =
-            self.trajectory.lines[..self.applied].iter().rev().find_map(|line| match &line.record {
-                Record::Memo(memo) => Some(memo),
-                _ => None,
-            })?;
-        (last.digest == blake3::hash(text.as_bytes()).to_hex().as_str()).then_some(text)
+        (kept.notes_digest()? == blake3::hash(text.as_bytes()).to_hex().as_str()).then_some(text)
     }
 
     fn no_branch(&self) -> Option<Refusal> {

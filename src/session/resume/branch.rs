@@ -6,9 +6,10 @@ use super::open::Access;
 use crate::session::error::RunError;
 use crate::session::folder::create::new_id;
 use crate::session::folder::first_line::start_of;
-use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::folder::manifest::{FORMAT, Manifest, sync_folder};
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;
+use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::{Branch, Ended, Parent};
 use crate::session::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter, now};
 use crate::tools::Refusal;
@@ -67,7 +68,10 @@ pub(in crate::session) fn branch_of(
         id: new_id(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         created: now(),
+        format: FORMAT,
         mode,
+        study: None,
+        rules: Some(SessionRules::of_mode(mode)),
         parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
         ..parent.clone()
     };

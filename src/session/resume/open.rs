@@ -72,6 +72,7 @@ impl Session {
                 "The last line of the trajectory was unfinished ({bytes} bytes) and was dropped: it was never confirmed."
             ));
         }
+        session.replay_afterwards(&trajectory);
         session.check_memo(&trajectory, access);
         session.finish_week(&trajectory);
         Ok(session)
@@ -149,8 +150,9 @@ impl Session {
                 self.commit_projection();
             }
             Record::Query(query) => self.remember_query(&query.sql),
-            Record::View(_)
+            Record::Activity(_)
             | Record::Memo(_)
+            | Record::Note(_)
             | Record::Branch(_)
             | Record::Override(_)
             | Record::Unknown(_) => {}

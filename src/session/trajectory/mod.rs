@@ -17,6 +17,7 @@ pub(super) use medium::Medium;
 pub use record::Record;
 pub use writer::{Durability, TrajectoryWriter};
 
+use crate::database::Position;
 use crate::session::error::RunError;
 use line::line_hash;
 
@@ -29,6 +30,8 @@ pub struct Trajectory {
     pub length: u64,
     /// Bytes after the last complete line: a line that was never confirmed.
     pub unfinished: usize,
+    /// The line that its first one goes on from, of a file that goes on from another.
+    goes_on_from: Option<Position>,
 }
 
 impl Trajectory {
@@ -57,9 +60,31 @@ impl Trajectory {
         trajectory.extend(bytes).map(|()| trajectory)
     }
 
+    /// Checks the bytes of a file whose lines go on from the last of another.
+    ///
+    /// # Errors
+    /// A line is damaged; the error names it and says what is still good.
+    pub fn of_file_after(path: &Path, last: Position, bytes: &[u8]) -> Result<Trajectory, RunError> {
+        let mut trajectory = Trajectory { goes_on_from: Some(last), ..Trajectory::default() };
+        trajectory.extend(bytes).map_err(damaged_at(path))?;
+        Ok(trajectory)
+    }
+
+    /// Number of the line that follows.
+    pub(super) fn next_seq(&self) -> u64 {
+        self.goes_on_from.as_ref().map_or(0, |last| last.seq + 1) + self.lines.len() as u64
+    }
+
+    /// What the line that follows has to name.
+    pub(super) fn last_hash(&self) -> String {
+        let before =
+            || self.goes_on_from.as_ref().map_or_else(|| line_hash(b""), |last| last.line_hash.clone());
+        self.lines.last().map_or_else(before, |line| line.hash.clone())
+    }
+
     /// Whether every line ends with a sum. Before the first line is read nobody knows.
     fn has_sums(&self) -> bool {
-        self.lines.first().is_none_or(Line::promises_sums)
+        self.goes_on_from.is_some() || self.lines.first().is_none_or(Line::promises_sums)
     }
 
     /// Takes what follows in the file after the lines that are known.
@@ -70,9 +95,8 @@ impl Trajectory {
         let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         for text in bytes[..end].split_inclusive(|byte| *byte == b'\n') {
             let line = &text[..text.len() - 1];
-            let expected = self.lines.last().map_or_else(|| line_hash(b""), |line| line.hash.clone());
             let number = self.lines.len() + 1;
-            let line = Line::read(line, self.lines.len() as u64, &expected, self.has_sums())
+            let line = Line::read(line, self.next_seq(), &self.last_hash(), self.has_sums())
                 .map_err(|problem| (number, problem))?;
             self.lines.push(line);
             self.length += text.len() as u64;
@@ -107,7 +131,7 @@ mod tests {
     use super::*;
     use crate::session::folder::configuration::Configuration;
     use crate::session::folder::create::NewRun;
-    use crate::session::trajectory::record::{Memo, Query, View};
+    use crate::session::trajectory::record::{Activity, Memo, Query, QuerySource, View};
     use serde_json::{Value, json};
     use std::path::PathBuf;
 
@@ -228,7 +252,7 @@ mod tests {
         }
         let kinds: std::collections::BTreeSet<&str> =
             examples.iter().map(|(kind, _)| kind.as_str()).collect();
-        assert_eq!(kinds.len(), 11, "{kinds:?}");
+        assert_eq!(kinds.len(), 22, "{kinds:?}");
     }
 
     #[test]
@@ -247,7 +271,16 @@ mod tests {
                 "call" => "tool",
                 "query" => "sql",
                 "view" => "screen",
-                "memo" => "digest",
+                "memo" | "note" => "digest",
+                "session" | "clock" => "event",
+                "limit" => "used_ms",
+                "select" => "which",
+                "dialog" => "outcome",
+                "help" => "term",
+                "draft" => "typed",
+                "question" => "form",
+                "answer" => "id",
+                "look" => "command",
                 "advance" => "rationale",
                 "week" | "step" => "days_run",
                 "override" => "key",
@@ -271,10 +304,13 @@ mod tests {
             rows: None,
             truncated: false,
             error: Some("sql_error".to_owned()),
+            message: Some("no such column".to_owned()),
+            stopped: false,
+            via: Some(QuerySource::Typed),
             took_ms: 3.0,
         };
         let view = View { screen: "cash".to_owned(), from: "sql".to_owned(), for_ms: 12 };
-        let records = [start(), Record::Query(query), Record::View(view), memo()];
+        let records = [start(), Record::Query(query), Record::Activity(Activity::View(view)), memo()];
         for record in &records {
             writer.append(3, record, Durability::Written).expect("a line");
         }

@@ -67,6 +67,21 @@ impl TrajectoryWriter {
         Ok(TrajectoryWriter { medium: Some(medium), path: path.to_owned(), ..TrajectoryWriter::in_memory() })
     }
 
+    /// A new file, or one that is there, whose lines go on from the last of another file.
+    ///
+    /// # Errors
+    /// It cannot be read or made, or is damaged.
+    pub fn open_after(path: &Path, last: Position) -> Result<TrajectoryWriter, RunError> {
+        match std::fs::read(path) {
+            Ok(bytes) => TrajectoryWriter::resume(path, &Trajectory::of_file_after(path, last, &bytes)?),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                let (next_seq, last_hash) = (last.seq + 1, last.line_hash);
+                Ok(TrajectoryWriter { next_seq, last_hash, ..TrajectoryWriter::create(path)? })
+            }
+            Err(error) => Err(RunError::Io { path: path.to_owned(), error }),
+        }
+    }
+
     /// Goes on with a file that was read; bytes after the good ones are cut off.
     ///
     /// # Errors
@@ -78,8 +93,8 @@ impl TrajectoryWriter {
             medium: Some(Box::new(file)),
             path: path.to_owned(),
             length: read.length,
-            next_seq: read.lines.len() as u64,
-            last_hash: read.lines.last().map_or_else(|| line_hash(b""), |line| line.hash.clone()),
+            next_seq: read.next_seq(),
+            last_hash: read.last_hash(),
             last_at: read.lines.last().map(|line| line.at.clone()).unwrap_or_default(),
             ..TrajectoryWriter::in_memory()
         })

@@ -155,7 +155,7 @@ fn lines_that_are_missing_are_missed() {
             Ok(_) => {
                 let rest = Trajectory::parse(&whole).expect("lines").lines.split_off(lines.len());
                 let idle = |line: &Line| match &line.record {
-                    Record::Query(_) | Record::View(_) | Record::Memo(_) => true,
+                    Record::Query(_) | Record::Activity(_) | Record::Memo(_) | Record::Note(_) => true,
                     Record::Call(call) => matches!(call.outcome, Outcome::Refused(_)),
                     _ => false,
                 };

@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use novamind::session::{Access, JournalEntry, Line, Record, Reversal, Session, Trajectory, verify};
+use novamind::session::{
+    Access, JournalEntry, Line, Record, Reversal, Session, Trajectory, lines_afterwards, verify,
+};
 use serde_json::Value;
 
 use super::games::Deed;
@@ -85,7 +87,9 @@ fn as_answered(answers: &[Value]) -> Vec<String> {
 
 /// The same as the trajectory has it, without the calls that `undo` made.
 fn as_recorded(folder: &Path) -> Vec<String> {
-    let lines = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads").lines;
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
+    let after = lines_afterwards(folder, &trajectory).expect("it reads");
+    let lines = [trajectory.lines, after.lines].concat();
     let word = |line: &Line| match (&line.record, line.record.accepted_call()) {
         (_, Some((call, _))) if !matches!(call.reversal, Some(Reversal::Undoes(_))) => {
             Some(call.tool.to_string())

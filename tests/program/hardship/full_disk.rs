@@ -74,7 +74,7 @@ fn a_week_whose_closing_line_did_not_fit_is_simulated_again() {
     home.play(&["--days", "28"], &(start.clone() + "next naive\n"));
     let bytes = bytes_of(&home.only_run(), "trajectory.jsonl");
     let lines = lines_of(&bytes);
-    let [before @ .., padded, advance, week] = &lines[..] else { panic!("there are lines") };
+    let [before @ .., padded, advance, week, _closed] = &lines[..] else { panic!("there are lines") };
     let frame = padded.len() - PADDING;
     let before = before.concat().len() + padded.len();
     let (advance, week) = (advance.len(), week.len());

@@ -123,7 +123,7 @@ fn a_wrong_policy_names_file_line_and_what_is_allowed() {
     home.run(&["run", "--policy", "nothere", "--days", "28"]).fails(3, &["nothere", "baseline"]);
 }
 
-/// What is done to a trajectory of eight lines.
+/// What is done to a trajectory of ten lines.
 type Damage = fn(&mut Vec<u8>);
 
 fn flip_after(bytes: &mut [u8], line: usize, word: &str) {
@@ -137,19 +137,19 @@ fn a_damaged_trajectory_is_refused_with_its_line_and_left_as_it_is() {
     let home = Home::new();
     let folder = home.two_weeks();
     let (id, good) = (id(&folder), bytes_of(&folder, "trajectory.jsonl"));
-    assert_eq!(lines_of(&good).len(), 8);
+    assert_eq!(lines_of(&good).len(), 10);
     let cases: [(Damage, &[&str]); 9] = [
-        (|bytes| flip_after(bytes, 3, "\"B\":"), &["line 3", "its own sum", "Lines 1 to 2 are good"]),
+        (|bytes| flip_after(bytes, 4, "\"B\":"), &["line 4", "its own sum", "Lines 1 to 3 are good"]),
         (|bytes| flip_after(bytes, 1, "\"seed\":"), &["line 1", "its own sum"]),
-        (|bytes| flip_after(bytes, 8, "\"cash\":"), &["line 8", "changed", "Lines 1 to 7 are good"]),
-        (|bytes| flip_after(bytes, 8, "\"at\":\"202"), &["line 8", "changed", "rescue"]),
+        (|bytes| flip_after(bytes, 9, "\"cash\":"), &["line 9", "changed", "Lines 1 to 8 are good"]),
+        (|bytes| flip_after(bytes, 10, "\"at\":\"202"), &["line 10", "changed", "rescue"]),
         (
             |bytes| *bytes = [lines_of(bytes)[..2].concat(), lines_of(bytes)[3..].concat()].concat(),
             &["line 3", "missing"],
         ),
         (|bytes| *bytes = lines_of(bytes)[..6].concat(), &["line 7", "missing", "rescue"]),
-        (|bytes| bytes.extend(lines_of(bytes)[7].clone()), &["line 9", "Lines 1 to 8 are good"]),
-        (|bytes| bytes.extend(b"\0\0\0\n"), &["line 9", "not a line of a trajectory"]),
+        (|bytes| bytes.extend(lines_of(bytes)[9].clone()), &["line 11", "Lines 1 to 10 are good"]),
+        (|bytes| bytes.extend(b"\0\0\0\n"), &["line 11", "not a line of a trajectory"]),
         (Vec::clear, &["line 1", "does not begin with the start of a run"]),
     ];
     for (damage, parts) in cases {
@@ -174,18 +174,23 @@ fn a_changed_figure_is_found_without_the_database() {
     let home = Home::new();
     let folder = home.two_weeks();
     let mut bytes = bytes_of(&folder, "trajectory.jsonl");
-    flip_after(&mut bytes, 8, "\"cash\":");
+    flip_after(&mut bytes, 9, "\"cash\":");
     fs::write(folder.join("trajectory.jsonl"), &bytes).expect("written");
     fs::remove_file(folder.join("world.db")).expect("gone");
-    home.run(&["replay", &id(&folder), "--verify"]).fails(3, &["line 8", "its own sum"]);
+    home.run(&["replay", &id(&folder), "--verify"]).fails(3, &["line 9", "its own sum"]);
 }
 
 #[test]
 fn a_torn_last_line_is_cut_off_and_the_run_goes_on() {
-    let home = Home::new();
-    let folder = home.two_weeks();
-    let (id, good) = (id(&folder), bytes_of(&folder, "trajectory.jsonl"));
+    // Up to the line that closes the second week: what stands after it was written on leaving.
+    let played = || {
+        let home = Home::new();
+        let folder = home.two_weeks();
+        let (id, good) = (id(&folder), lines_of(&bytes_of(&folder, "trajectory.jsonl"))[..9].concat());
+        (home, folder, id, good)
+    };
     for lost in [1, 5, 300] {
+        let (home, folder, id, good) = played();
         fs::write(folder.join("trajectory.jsonl"), &good[..good.len() - lost]).expect("written");
         let said = home.play(&["--run", &id], "set_prices A=13\n");
         assert_eq!(said.code, 0, "{}", said.err);
@@ -200,11 +205,13 @@ fn a_torn_last_line_is_cut_off_and_the_run_goes_on() {
         }
         assert_eq!(home.run(&["replay", &id, "--verify"]).code, 0);
     }
+    let (home, folder, id, good) = played();
     let unfinished = [&good[..], &good[..100]].concat();
     fs::write(folder.join("trajectory.jsonl"), unfinished).expect("written");
     let said = home.play(&["--run", &id], "");
     assert!(said.code == 0 && said.out.contains("unfinished (100 bytes)"), "{}{}", said.out, said.err);
-    assert_eq!(bytes_of(&folder, "trajectory.jsonl"), good);
+    let bytes = bytes_of(&folder, "trajectory.jsonl");
+    assert!(bytes.starts_with(&good) && lines_of(&bytes).len() == 11, "only coming and leaving were added");
 }
 
 #[test]
@@ -222,12 +229,12 @@ fn a_damaged_manifest_is_named_and_the_trajectory_left_alone() {
         ),
         (good.replace("days = 28", "days = -3"), format!("run.toml, line {}", line("days"))),
         (good.replace("mode = \"sandbox\"", "mode = \"god\""), "`baseline`".to_owned()),
-        (good.replace("format = 1", "format = 2"), "use a newer version".to_owned()),
+        (good.replace("format = 2", "format = 3"), "use a newer version".to_owned()),
         (
             good.replace("parameters_digest = \"", "parameters_digest = \"0"),
             "open the run with that version".to_owned(),
         ),
-        (good.replace("format = 1", "format = "), "run.toml, line 1".to_owned()),
+        (good.replace("format = 2", "format = "), "run.toml, line 1".to_owned()),
         (String::new(), "missing field `format`".to_owned()),
     ];
     for (text, part) in cases {

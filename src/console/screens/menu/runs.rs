@@ -15,7 +15,7 @@ use crate::console::theme::Role;
 use crate::console::widgets::chart::zero_if_near;
 use crate::console::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
 use crate::notation::{dollars, grouped};
-use crate::session::{Access, Ended, Goal, Mode, NewRun, RunPreview, RunSummary};
+use crate::session::{Access, ConsentGiven, ConsentMeans, Ended, Goal, Mode, NewRun, RunPreview, RunSummary};
 
 /// Something that cannot be taken back and is asked about first.
 #[derive(Debug, Clone, PartialEq)]
@@ -173,7 +173,8 @@ impl Menu {
                 vec![Effect::Request(Request::Rescue(id))]
             }
             (Action::Confirm, Some(Asked::Instead(Instead::Agree(new, _), _))) => {
-                vec![Effect::Request(Request::Create(Box::new(NewRun { agreed: true, ..*new })))]
+                let given = ConsentGiven { means: ConsentMeans::Screen, scrolled_to_end: false, read_ms: 0 };
+                vec![Effect::Request(Request::Create(Box::new(NewRun { agreed: Some(given), ..*new })))]
             }
             (Action::ScrollUp, Some(Asked::Instead(Instead::Agree(new, from), text))) => {
                 self.asked = Some(Asked::Instead(Instead::Agree(new, from.saturating_sub(1)), text));

@@ -1,0 +1,51 @@
+//! What is done once a run is over: `afterwards.jsonl`, lines like those of the trajectory that go on from its last.
+//!
+//! The end is the last line of a trajectory, so that a finished run never changes. Notes, statements that are kept, looks
+//! and answers to questions come after it.
+
+use std::path::Path;
+
+use crate::session::error::RunError;
+use crate::session::state::Session;
+use crate::session::trajectory::{Line, Record, Trajectory};
+
+/// Name of the file in the folder of the run.
+pub(in crate::session) const AFTERWARDS: &str = "afterwards.jsonl";
+
+/// Lines after the end of a run; none if nothing was done. They go on from the last line of the trajectory.
+///
+/// # Errors
+/// The file cannot be read, or is damaged.
+pub fn lines_afterwards(folder: &Path, trajectory: &Trajectory) -> Result<Trajectory, RunError> {
+    let path = folder.join(AFTERWARDS);
+    let last = trajectory.lines.last().map(Line::position);
+    match (std::fs::read(&path), last) {
+        (Ok(bytes), Some(last)) => Trajectory::of_file_after(&path, last, &bytes),
+        (Ok(_), None) => Ok(Trajectory::default()),
+        (Err(error), _) if error.kind() == std::io::ErrorKind::NotFound => Ok(Trajectory::default()),
+        (Err(error), _) => Err(RunError::Io { path, error }),
+    }
+}
+
+impl Session {
+    /// Applies what was kept after the end of the run. A file that is damaged is told and left alone.
+    pub(in crate::session) fn replay_afterwards(&mut self, trajectory: &Trajectory) {
+        let Some(folder) = self.folder.clone().filter(|_| self.history.ended.is_some()) else { return };
+        match lines_afterwards(&folder, trajectory) {
+            Ok(after) => after.lines.iter().for_each(|line| self.keep_again(line)),
+            Err(problem) => self.remarks.push(format!("{problem} What was done after the end is not shown.")),
+        }
+    }
+
+    /// Statements that were kept, and nothing else: the company is as it ended.
+    fn keep_again(&mut self, line: &Line) {
+        match &line.record {
+            Record::Query(query) => self.remember_query(&query.sql),
+            record => {
+                if let Some((call, answer)) = record.accepted_call() {
+                    let _ = self.replay_call(call, answer);
+                }
+            }
+        }
+    }
+}

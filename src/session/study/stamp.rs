@@ -1,0 +1,41 @@
+//! What the first line of a run says of the study it belongs to.
+
+use serde::{Deserialize, Serialize};
+
+use crate::session::folder::mode::Mode;
+
+/// The study, and the place of this person in it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StudyStamp {
+    /// Name of the study.
+    pub name: String,
+    /// blake3 digest of its protocol, in hexadecimal digits.
+    pub digest: String,
+    /// Condition the person was assigned to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub condition: Option<String>,
+    /// Place of the person in the assignment, from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order: Option<u32>,
+    /// This is the practice, not the session.
+    #[serde(default)]
+    pub practice: bool,
+    /// Labels that were refused before this one was taken.
+    #[serde(default)]
+    pub refused_labels: u32,
+}
+
+/// An earlier run of the same person.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EarlierRun {
+    /// Run.
+    pub run: String,
+    /// Its mode.
+    pub mode: Mode,
+    /// Its seed.
+    pub seed: u64,
+    /// Its scenario.
+    pub scenario: String,
+    /// When it was created, RFC 3339.
+    pub created: String,
+}

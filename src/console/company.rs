@@ -13,8 +13,8 @@ use crate::report::funnel::{Funnel, funnels};
 use crate::report::lead_costs::{PairCost, pair_costs};
 use crate::report::needs::{Need, needs};
 use crate::session::{
-    DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, Mode, Numbers, Observation,
-    RunningStudy, Session, ToolLimits, WeekFigures,
+    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, Mode, Numbers,
+    Observation, RunningStudy, Session, ToolLimits, WeekFigures,
 };
 use crate::tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,
@@ -73,6 +73,8 @@ pub struct Company {
     pub posts: Posts,
     /// The known groups and the economy.
     pub market: MarketOverview,
+    /// What companies are called.
+    pub names: CompanyNames,
     /// What is known of every known group.
     pub insights: BTreeMap<Group, GroupInsights>,
     /// ToolLimits of the tools.
@@ -121,6 +123,7 @@ impl Company {
             projects: session.look_up(&ListResearchProjects, ()).unwrap_or_default(),
             posts: posts::read(session, before.map(|company| &company.posts)),
             market: session.look_up(&GetMarketOverview, ()).unwrap_or_default(),
+            names: session.company_names().clone(),
             insights: insights(session),
             terms: session.terms(),
             numbers: session.numbers(),

@@ -6,6 +6,7 @@
 
 pub(crate) mod books;
 pub(crate) mod chapters;
+pub(crate) mod deals;
 pub(crate) mod fit;
 pub(crate) mod funnel;
 pub(crate) mod highlights;

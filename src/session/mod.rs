@@ -69,6 +69,7 @@ pub use witness::{Finding, FindingKind, Told, Witness, WitnessRecord, compare, r
 
 pub use crate::database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
 pub use crate::tools::{Numbers, PublicPost, Refusal, ToolId};
+pub use crate::voice::CompanyNames;
 pub use crate::voice::judge::Judgement;
 pub use crate::world::events::Category;
 pub use crate::world::settings::{CoreSettings, Settings};

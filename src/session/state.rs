@@ -19,6 +19,7 @@ use crate::session::play::surroundings::RunSurroundings;
 use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::Ended;
 use crate::tools::Numbers;
+use crate::voice::CompanyNames;
 use crate::world::identifiers::ByGroup;
 use crate::world::params::Params;
 use crate::world::settings::Settings;
@@ -119,6 +120,11 @@ impl Session {
     /// The numbers that documentation names, as they are in this run.
     pub fn numbers(&self) -> Arc<Numbers> {
         self.numbers.get_or_init(|| Numbers::of(&self.simulation.params).into()).clone()
+    }
+
+    /// What the companies of the run are called.
+    pub fn company_names(&self) -> &CompanyNames {
+        &self.simulation.names
     }
 
     /// The effective parameters.

@@ -11,6 +11,13 @@ fn picks(customer: u32) -> [u32; 5] {
     [h % 48, h / 48 % 48, h / 2_304 % 20, h / 46_080 % 6, h / 1_000 % 4]
 }
 
+/// The word that stands for the company in its address.
+pub(super) fn company_word(customer: u32, parts: &EmailParts) -> &str {
+    let [_, _, company, ..] = picks(customer);
+    let words = &parts.company_domains;
+    words.get(company as usize % words.len().max(1)).map_or("", String::as_str)
+}
+
 /// Address of a company.
 pub fn address(customer: u32, parts: &EmailParts) -> String {
     let [first, last, company, suffix, form] = picks(customer);

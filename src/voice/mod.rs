@@ -2,6 +2,7 @@
 //! player's posts. Facts go in, text comes out (or text in, scores out); nothing here touches a number of the world.
 
 pub(crate) mod address;
+mod company_names;
 mod grammar;
 pub(crate) mod judge;
 mod negotiation;
@@ -10,6 +11,7 @@ pub(crate) mod posts;
 mod readings;
 
 pub use address::address;
+pub use company_names::CompanyNames;
 pub use negotiation::message;
 #[cfg(test)]
 pub use notices::notice;

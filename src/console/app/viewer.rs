@@ -135,8 +135,9 @@ impl App {
     }
 
     fn show_decisions(&mut self) {
+        let Some(names) = self.run().map(|run| run.company.names.clone()) else { return };
         let Some(viewer) = self.viewer() else { return };
-        let (title, text) = (told::title(&viewer.place.chapter), told::whole(&viewer.place));
+        let (title, text) = (told::title(&viewer.place.chapter), told::whole(&viewer.place, &names));
         self.open(Reader::new(title, text));
     }
 

@@ -8,6 +8,7 @@ use unicode_width::UnicodeWidthStr;
 use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, centered, fit};
+use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens::overview::needs::screen_of;
 use crate::console::screens::{Look, ScreenId};
@@ -106,7 +107,7 @@ impl Report {
             head,
             decided,
             with_heading(canvas, "Most unusual changes", moves),
-            news.into_iter().chain(notice_lines(canvas, notices, width, left.min(8))).collect(),
+            news.into_iter().chain(notice_lines(canvas, look.company, width, left.min(8))).collect(),
             with_heading(canvas, "What comes next", coming),
         ];
         let mut lines = Vec::new();
@@ -281,20 +282,20 @@ fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>)
 }
 
 /// The last notices that have room; equal ones are counted.
-fn notice_lines<'a>(canvas: &Canvas<'_>, notices: &[(u32, String)], width: u16, room: usize) -> Section<'a> {
+fn notice_lines<'a>(canvas: &Canvas<'_>, company: &Company, width: u16, room: usize) -> Section<'a> {
     let mut told: Vec<(u32, String, u32)> = Vec::new();
-    for (day, text) in notices.iter().rev() {
-        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        match told.iter_mut().find(|(_, known, _)| *known == text) {
-            Some((.., times)) => *times += 1,
-            None => told.push((*day, text, 1)),
+    for (day, text) in company.notices.iter().rev() {
+        match told.iter().position(|(_, known, _)| known == text) {
+            Some(at) => told[at].2 += 1,
+            None if told.len() < room => told.push((*day, text.clone(), 1)),
+            None => {}
         }
     }
-    told.truncate(room);
     let line = |(day, text, times): (u32, String, u32)| {
         let times = if times > 1 { format!(" ({times} times)") } else { String::new() };
         let before = format!("  day {day:<4} ");
         let left = usize::from(width).saturating_sub(before.len() + times.len());
+        let text = company.names.put_into(&text.split_whitespace().collect::<Vec<_>>().join(" "));
         Line::from(vec![
             canvas.span(before, Role::Dim),
             canvas.span(fit(&text, left), Role::Text),

@@ -38,7 +38,7 @@ impl Viewer {
             if at == chapter.done {
                 next = Some(rows.len());
             }
-            for (part, (text, role)) in told::brief(entry).into_iter().enumerate() {
+            for (part, (text, role)) in told::brief(entry, &look.company.names).into_iter().enumerate() {
                 let mark = match (part, done) {
                     (0, true) => "✓ ",
                     (0, false) if at == chapter.done => "▸ ",

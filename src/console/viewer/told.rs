@@ -5,8 +5,11 @@ use crate::console::screens::journal::entries::in_words;
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped};
+use crate::report::deals::deals_in_words;
 use crate::session::record::{Advance, Branch, Call, Closing, Memo, Note, Outcome, Query};
-use crate::session::{Chapter, PlaybackPosition, Record, RecordView, Reversal, ScoredForecast, naively};
+use crate::session::{
+    Chapter, CompanyNames, PlaybackPosition, Record, RecordView, Reversal, ScoredForecast, naively,
+};
 
 /// Longest JSON that is written in one line, in bytes.
 const ONE_LINE: usize = 90;
@@ -17,10 +20,10 @@ pub fn title(chapter: &Chapter) -> String {
 }
 
 /// A line of the record in few words, with its meaning.
-pub fn brief(entry: &RecordView) -> Vec<(String, Role)> {
+pub fn brief(entry: &RecordView, names: &CompanyNames) -> Vec<(String, Role)> {
     let one = |text: String, role: Role| vec![(text, role)];
     match &entry.record {
-        Record::Call(call) => call_in_brief(call),
+        Record::Call(call) => call_in_brief(call, names),
         Record::Query(query) => {
             let sql = query.sql.split_whitespace().collect::<Vec<_>>().join(" ");
             let answer = match answered(query) {
@@ -52,9 +55,10 @@ pub fn brief(entry: &RecordView) -> Vec<(String, Role)> {
     }
 }
 
-fn call_in_brief(call: &Call) -> Vec<(String, Role)> {
+fn call_in_brief(call: &Call, names: &CompanyNames) -> Vec<(String, Role)> {
     let Call { tool, args, .. } = call;
-    let named = format!("{tool} {}", in_words(args)).trim_end().to_owned();
+    let words = deals_in_words(*tool, args, names).unwrap_or_else(|| in_words(args));
+    let named = format!("{tool} {words}").trim_end().to_owned();
     match &call.outcome {
         Outcome::Accepted(_) => {
             let sign = match call.reversal {
@@ -102,7 +106,7 @@ fn verdict(scored: &ScoredForecast) -> &'static str {
 }
 
 /// Everything that was decided, with arguments, statements and answers.
-pub fn whole(place: &PlaybackPosition) -> String {
+pub fn whole(place: &PlaybackPosition, names: &CompanyNames) -> String {
     let chapter = &place.chapter;
     let mut parts = vec![format!(
         "Day {}, before week {}. Outcomes marked “later” come from later in the record; nobody knew them then.",
@@ -111,12 +115,12 @@ pub fn whole(place: &PlaybackPosition) -> String {
     for (at, entry) in chapter.entries.iter().enumerate() {
         let mark = if at < chapter.done { "✓" } else { "–" };
         let moment = entry.at.get(11..19).unwrap_or("");
-        parts.push(format!("{mark} {moment}  {}", in_full(entry)));
+        parts.push(format!("{mark} {moment}  {}", in_full(entry, names)));
     }
     parts.join("\n\n")
 }
 
-fn in_full(entry: &RecordView) -> String {
+fn in_full(entry: &RecordView, names: &CompanyNames) -> String {
     let pretty = |value: &serde_json::Value| {
         let short = value.to_string();
         if short.len() <= ONE_LINE {
@@ -157,7 +161,7 @@ fn in_full(entry: &RecordView) -> String {
             let rationale = filed.rationale.trim();
             format!("next_week\n  “{rationale}”\n  forecasts of cash{naively}:\n{}", lines.join("\n"))
         }
-        _ => brief(entry).into_iter().map(|(text, _)| text).collect::<Vec<_>>().join("\n  "),
+        _ => brief(entry, names).into_iter().map(|(text, _)| text).collect::<Vec<_>>().join("\n  "),
     }
 }
 
@@ -198,7 +202,8 @@ mod tests {
     fn said(record: Record) -> Vec<String> {
         let at = "2026-11-21T10:42:07Z".to_owned();
         let entry = RecordView { seq: 1, day: 14, at, record, forecasts: Vec::new(), today: 14 };
-        brief(&entry).into_iter().map(|(text, _)| text).collect()
+        let names = CompanyNames::new(1, &crate::world::params::Params::shipped().personas.email);
+        brief(&entry, &names).into_iter().map(|(text, _)| text).collect()
     }
 
     fn scored(outcome: Option<f64>) -> ScoredForecast {

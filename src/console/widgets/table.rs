@@ -23,22 +23,29 @@ pub struct Column {
     pub align: Align,
     /// Widest it gets.
     pub most: u16,
+    /// Width down to which it gives way to the columns after it.
+    pub least: u16,
 }
 
 impl Column {
     /// A column of words.
     pub fn words(title: impl Into<String>) -> Column {
-        Column { title: title.into(), align: Align::Left, most: 40 }
+        Column { title: title.into(), align: Align::Left, most: 40, least: u16::MAX }
     }
 
     /// A column of numbers.
     pub fn numbers(title: impl Into<String>) -> Column {
-        Column { title: title.into(), align: Align::Right, most: 24 }
+        Column { title: title.into(), align: Align::Right, most: 24, least: u16::MAX }
     }
 
     /// The same, at most this wide.
     pub fn at_most(self, most: u16) -> Column {
         Column { most, ..self }
+    }
+
+    /// The same, which is cut down to this width where the columns after it have no room.
+    pub fn at_least(self, least: u16) -> Column {
+        Column { least, ..self }
     }
 }
 
@@ -339,14 +346,27 @@ impl Table {
 
     /// Columns that fit, with their place and width: the first one always, the others scrolled so that the
     /// selected one is seen.
+    /// Widths of the columns; those that can give way do as far as all need.
+    fn widths_within(&self, width: u16) -> Vec<u16> {
+        let all: usize = self.widths.iter().map(|own| usize::from(*own) + 2).sum();
+        let mut missing = all.saturating_sub(usize::from(width) + 2).min(usize::from(u16::MAX)) as u16;
+        let fitted = |(own, column): (&u16, &Column)| {
+            let given = own.saturating_sub(column.least).min(missing);
+            missing -= given;
+            own - given
+        };
+        self.widths.iter().zip(&self.columns).map(fitted).collect()
+    }
+
     fn visible_columns(&self, width: u16) -> Vec<(usize, (u16, u16))> {
+        let widths = self.widths_within(width);
         let mut from = 1;
         loop {
             let mut x = 0;
             let mut columns = Vec::new();
             let order = std::iter::once(0).chain(from..self.columns.len());
             for at in order.filter(|at| *at < self.columns.len()) {
-                let own = self.widths[at];
+                let own = widths[at];
                 // A part of a column only if it is still a readable part of words.
                 let room = width.saturating_sub(x);
                 let readable = match self.columns[at].align {
@@ -359,8 +379,7 @@ impl Table {
                 columns.push((at, (x, own.min(width - x))));
                 x += own + 2;
             }
-            let whole =
-                |(at, (_, shown)): &(usize, (u16, u16))| *at == self.column && *shown == self.widths[*at];
+            let whole = |(at, (_, shown)): &(usize, (u16, u16))| *at == self.column && *shown == widths[*at];
             if self.column < from
                 || columns.iter().any(whole)
                 || from >= self.columns.len()

@@ -11,10 +11,13 @@ use crate::database;
 use crate::glossary;
 use crate::notation::{dollars, grouped, nearest, signed_dollars};
 use crate::report::chapters::change_in_words;
+use crate::report::deals::deals_in_words;
 use crate::report::funnel::{Funnel, funnels};
 use crate::report::needs::{Need, Place, needs};
 use crate::report::review::{alike_lines, money_lines};
-use crate::session::{Bands, Change, JournalEntry, Numbers, Reversal, undone_calls};
+use crate::session::{
+    Bands, Change, CompanyNames, JournalEntry, Numbers, Reversal, WaitingThread, undone_calls,
+};
 use crate::tools::describe::{self, ToolDocument, document};
 use crate::tools::{self, Kind};
 
@@ -105,7 +108,9 @@ impl Interpreter {
             })
         };
         let funnels_so_far: Vec<Value> = funnels(&self.session).iter().map(funnel).collect();
-        let data = json!({ "threads": waiting, "funnels": funnels_so_far });
+        let names = self.session.company_names();
+        let threads: Vec<Value> = waiting.iter().map(|thread| thread_row(thread, names)).collect();
+        let data = json!({ "threads": threads, "funnels": funnels_so_far });
         if waiting.is_empty() {
             let mut lines = vec!["no threads waiting".to_owned()];
             lines.extend(funnels(&self.session).iter().map(Funnel::in_words));
@@ -139,12 +144,24 @@ impl Interpreter {
         let journal = self.session.journal();
         let undone = undone_calls(journal);
         let last = &journal[journal.len().saturating_sub(count as usize)..];
-        let mut text: String = last.iter().map(|entry| entry_line(entry, &undone) + "\n").collect();
+        let mut text: String = last
+            .iter()
+            .map(|entry| entry_line(entry, &undone, self.session.company_names()) + "\n")
+            .collect();
         if text.is_empty() {
             text = "nothing has been done yet".to_owned();
         }
         Answer::done("history", text, json!({ "entries": last }))
     }
+}
+
+/// A waiting thread with the name of its company, which stands beside the number that calls take.
+fn thread_row(thread: &WaitingThread, names: &CompanyNames) -> Value {
+    let mut row = json!({ "company": names.of(thread.customer) });
+    if let (Value::Object(row), Value::Object(fields)) = (&mut row, json!(thread)) {
+        row.extend(fields);
+    }
+    row
 }
 
 /// A need in one line, and the call that would mend it in another.
@@ -165,7 +182,7 @@ pub fn change(change: &Change) -> String {
     change_in_words(change)
 }
 
-fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>) -> String {
+fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>, names: &CompanyNames) -> String {
     match entry {
         JournalEntry::Call { seq, day, tool, args, reversal } => {
             let remark = match reversal {
@@ -174,7 +191,8 @@ fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>) -> String {
                 Some(Reversal::Redoes(_)) => " (redo)",
                 None => "",
             };
-            format!("day {day:>3}  {tool}{remark} {args}")
+            let words = deals_in_words(*tool, args, names).unwrap_or_else(|| args.to_string());
+            format!("day {day:>3}  {tool}{remark} {words}")
         }
         JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
             let naive = if filled_naively[0] { ", naive" } else { "" };

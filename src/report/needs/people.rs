@@ -42,7 +42,10 @@ pub(super) fn threads(situation: &Situation<'_>) -> Option<Need> {
     let seats: u32 = waiting.iter().map(|thread| thread.seats).sum();
     let first = waiting.iter().max_by(|left, right| value(left).total_cmp(&value(right)))?;
     let (who, fate) = match waiting.len() {
-        1 => ("1 company waits".to_owned(), "the thread ends"),
+        1 => (
+            format!("{} waits", situation.session.company_names().with_number(first.customer)),
+            "the thread ends",
+        ),
         more => (format!("{} wait", count(more as u32, "company")), "their threads end"),
     };
     Some(Need {

@@ -109,7 +109,7 @@ impl Simulation {
 
     fn offers(&self, letters: &[Letter]) -> Vec<Irrevocable> {
         if letters.len() <= NAMED {
-            return letters.iter().map(offer).collect();
+            return letters.iter().map(|letter| self.offer(letter)).collect();
         }
         let mut alike: BTreeMap<(Option<Group>, Vec<Plan>), Vec<&Letter>> = BTreeMap::new();
         for letter in letters {
@@ -118,7 +118,7 @@ impl Simulation {
         }
         let joined = |((group, plans), letters): ((Option<Group>, Vec<Plan>), Vec<&Letter>)| match letters[..]
         {
-            [only] => offer(only),
+            [only] => self.offer(only),
             _ => Irrevocable::Offered {
                 group,
                 offerings: (0..plans.len()).map(|at| offering_of_all(&letters, at)).collect(),
@@ -134,7 +134,8 @@ impl Simulation {
             all.binary_search_by_key(number, |thread| thread.number).ok().map(|at| &all[at])
         });
         if threads.len() <= NAMED {
-            let words = ended.map(|thread| format!("thread with customer {} ended", thread.customer));
+            let words =
+                ended.map(|thread| format!("thread with {} ended", self.names.with_number(thread.customer)));
             return words.map(Irrevocable::Single).collect();
         }
         let mut by_group: BTreeMap<Group, u32> = BTreeMap::new();
@@ -142,6 +143,13 @@ impl Simulation {
             *by_group.entry(thread.group).or_default() += 1;
         }
         by_group.into_iter().map(|(group, companies)| Irrevocable::Ended { group, companies }).collect()
+    }
+
+    fn offer(&self, letter: &Letter) -> Irrevocable {
+        let offering = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
+        let offerings: Vec<String> = letter.offerings.iter().map(offering).collect();
+        let company = self.names.with_number(letter.customer);
+        Irrevocable::Single(format!("offered to {company}: {}", offerings.join(", ")))
     }
 
     fn group_of(&self, customer: u32) -> Option<Group> {
@@ -153,12 +161,6 @@ fn counted(count: u32, group: Option<Group>) -> String {
     let of = group.map_or(String::new(), |group| format!(" of {group}"));
     let noun = if count == 1 { "company" } else { "companies" };
     format!("{} {noun}{of}", grouped(f64::from(count), 0))
-}
-
-fn offer(letter: &Letter) -> Irrevocable {
-    let offering = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
-    let offerings: Vec<String> = letter.offerings.iter().map(offering).collect();
-    Irrevocable::Single(format!("offered to customer {}: {}", letter.customer, offerings.join(", ")))
 }
 
 /// Plan, lowest and highest price of the offerings at a place of letters with the same plans.
@@ -206,7 +208,8 @@ mod tests {
         };
         let few: Vec<Letter> = (1..=5).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
         assert_eq!(told(&few).len(), 5);
-        assert_eq!(told(&few)[0], "offered to customer 1: B $35.00");
+        let named = |customer: u32| session.company_names().with_number(customer);
+        assert_eq!(told(&few)[0], format!("offered to {}: B $35.00", named(1)));
         let mut many: Vec<Letter> =
             (1..=3_569).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
         assert_eq!(told(&many), ["offered B at $35.00 to 3,569 companies"]);
@@ -215,8 +218,8 @@ mod tests {
         assert_eq!(
             told(&many),
             [
-                "offered to customer 4001: A $8.00, C $54.00",
-                "offered B at $35.00 to $70.50 to 3,570 companies"
+                format!("offered to {}: A $8.00, C $54.00", named(4_001)),
+                "offered B at $35.00 to $70.50 to 3,570 companies".to_owned()
             ]
         );
     }

@@ -14,6 +14,7 @@ use super::feed::Feed;
 use super::projection::Entries;
 use crate::database::Entry;
 use crate::session::folder::manifest::Manifest;
+use crate::voice::CompanyNames;
 use crate::world::command::{Command, ResolvedCommand};
 use crate::world::day::{DayTrace, step_day};
 use crate::world::events::{DayFigures, Facts};
@@ -32,6 +33,8 @@ pub(in crate::session) struct Simulation {
     facts_before: Arc<Facts>,
     /// How the leads of the last day came about.
     pub(in crate::session) trace: DayTrace,
+    /// What companies are called.
+    pub(in crate::session) names: CompanyNames,
     /// What people wrote in public, in words.
     pub(in crate::session) feed: Feed,
     /// Hashes of this week's facts.
@@ -53,6 +56,7 @@ impl Simulation {
         (world, facts): (World, Facts),
     ) -> Simulation {
         Simulation {
+            names: CompanyNames::new(manifest.seed, &params.personas.email),
             params,
             streams: Streams::new(manifest.seed),
             world,

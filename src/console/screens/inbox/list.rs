@@ -15,6 +15,9 @@ use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Table};
 use crate::notation::grouped;
 
+/// Columns of a name in a narrow list: the number beside it tells companies apart.
+const NAME: u16 = 14;
+
 /// The threads of a view.
 pub struct ThreadListPane;
 
@@ -142,11 +145,12 @@ pub(super) fn columns(view: InboxView) -> Vec<Column> {
     vec![
         Column::words("✓"),
         Column::numbers(day),
-        Column::numbers("company"),
+        Column::words("company").at_least(NAME),
+        Column::numbers("no."),
         Column::words("group"),
-        Column::words("kind"),
         Column::numbers("seats"),
         Column::numbers("they ask"),
+        Column::words("kind"),
         Column::words(if view == InboxView::Over { "end" } else { "you offered" }).at_most(34),
     ]
 }
@@ -183,11 +187,12 @@ pub(super) fn row_of(thread: &Thread, marked: bool) -> Vec<Cell> {
     vec![
         Cell::words(if marked { "●" } else { "" }).role(Role::Changed),
         day,
+        Cell::words(&thread.name),
         Cell::number(f64::from(thread.customer), format!("#{}", thread.customer)),
         Cell::words(&thread.group).role(Role::Strong),
-        Cell::words(thread.kind_in_words()),
         Cell::number(thread.seats, grouped(thread.seats, 0)),
         asked,
+        Cell::words(thread.kind_in_words()),
         end,
     ]
 }

@@ -121,7 +121,7 @@ impl Inbox {
     fn refresh(&mut self, company: &Company) {
         let shown: Vec<u32> = self.table.shown().iter().filter_map(|row| self.number_of(*row)).collect();
         let here = self.here().map(|thread| thread.number);
-        self.letters.settle(&company.seen.waiting);
+        self.letters.settle(&company.seen.waiting, &company.names);
         let threads = &self.letters.threads;
         let open =
             |number: &u32| threads.iter().any(|thread| thread.number == *number && thread.state.is_open());

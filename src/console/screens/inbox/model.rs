@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde_json::Value;
 
 use crate::console::readings::Reading;
-use crate::session::{Rows, WaitingThread};
+use crate::session::{CompanyNames, Rows, WaitingThread};
 use crate::session::{number_at, text_at};
 use crate::world::identifiers::Plan;
 
@@ -69,6 +69,8 @@ pub struct Thread {
     pub number: u32,
     /// The company.
     pub customer: u32,
+    /// Its name.
+    pub name: String,
     /// Group of the company.
     pub group: String,
     /// How it began, as the table says it.
@@ -82,6 +84,11 @@ pub struct Thread {
 }
 
 impl Thread {
+    /// The company by its name and number.
+    pub fn company(&self) -> String {
+        format!("{} #{}", self.name, self.customer)
+    }
+
     /// Kind in words.
     pub fn kind_in_words(&self) -> &str {
         match self.kind.as_str() {
@@ -115,9 +122,9 @@ impl Thread {
         Some(match last.sender.as_str() {
             "agent" => {
                 let offers = super::offer::in_words(&last.offers);
-                format!("#{} declined {offers} of day {} without another word.", self.customer, last.day)
+                format!("{} declined {offers} of day {} without another word.", self.company(), last.day)
             }
-            _ => format!("#{} got no answer to its message of day {}.", self.customer, last.day),
+            _ => format!("{} got no answer to its message of day {}.", self.company(), last.day),
         })
     }
 
@@ -184,7 +191,7 @@ impl Letters {
     }
 
     /// Brings threads and those that wait together.
-    pub fn settle(&mut self, waiting: &[WaitingThread]) {
+    pub fn settle(&mut self, waiting: &[WaitingThread], names: &CompanyNames) {
         let mut left = self.read.clone();
         let mut threads: Vec<Thread> = waiting.iter().map(|own| of_waiting(own, &mut left)).collect();
         // A company has one open thread at the most, its newest.
@@ -198,6 +205,12 @@ impl Letters {
             }
             threads.push(thread);
         }
+        for thread in &mut threads {
+            thread.name = names.of(thread.customer);
+            for turn in &mut thread.turns {
+                turn.text = names.put_into(&turn.text);
+            }
+        }
         self.threads = threads;
     }
 }
@@ -207,6 +220,7 @@ fn of_waiting(waiting: &WaitingThread, read: &mut BTreeMap<u32, Thread>) -> Thre
     Thread {
         number: waiting.thread,
         customer: waiting.customer,
+        name: String::new(),
         group: waiting.group.to_owned(),
         kind: waiting.kind.to_owned(),
         seats: f64::from(waiting.seats),

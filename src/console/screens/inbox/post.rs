@@ -36,7 +36,7 @@ pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure 
         Effect::EditSql(sql) => Some(sql),
         _ => None,
     };
-    Figure { title: format!("{what} #{}", thread.customer), term, sql }
+    Figure { title: format!("{what} {}", thread.company()), term, sql }
 }
 
 /// Usage behind the estimated compute of an offer: what the companies of the group used on the last day.
@@ -88,7 +88,7 @@ impl Inbox {
         };
         let arguments = json!({ "deals": sent.iter().map(deal).collect::<Vec<_>>() });
         let text = if sent.len() == 1 {
-            let to = format!("#{} ({})", first.customer, count(first.seats, "seat"));
+            let to = format!("{} ({})", first.company(), count(first.seats, "seat"));
             match first.state {
                 State::Waiting(_) => return vec![Effect::Request(Request::Call { tool: SEND, arguments })],
                 State::Theirs => format!(

@@ -11,6 +11,12 @@ use crate::console::screens::panes::{Border, Seat};
 use crate::console::theme::Role;
 use crate::notation::{cents, dollars};
 
+/// Columns of a company with its name, and of one without.
+const NAMED: u16 = 28;
+const NUMBERED: u16 = 14;
+/// Width from which on there is room for names.
+const WORTH_A_NAME: u16 = 68;
+
 /// What stands in its border.
 pub fn border(inbox: &Inbox, look: &Look<'_>) -> Border {
     let title = format!("What {} would get", inbox.planned(look.company).len());
@@ -30,9 +36,12 @@ pub fn draw(inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>)
 }
 
 fn draw_planned(canvas: &mut Canvas<'_>, row: Rect, (thread, offers): &Planned<'_>) {
-    let head = format!("#{} {}", thread.customer, thread.group);
-    canvas.text(Rect { width: row.width.min(13), ..row }, &head, Role::Text);
-    let rest = Rect { x: row.x + 14.min(row.width), width: row.width.saturating_sub(14), ..row };
+    // The number is what tells companies apart: a name is shown where there is room.
+    let named = row.width >= WORTH_A_NAME;
+    let head = if named { thread.company() } else { format!("#{} {}", thread.customer, thread.group) };
+    let width = if named { NAMED } else { NUMBERED }.min(row.width);
+    canvas.text(Rect { width: width.saturating_sub(1), ..row }, &head, Role::Text);
+    let rest = Rect { x: row.x + width, width: row.width - width, ..row };
     let offers = match offers {
         Ok(offers) => offers,
         Err(why) => return canvas.text(rest, &format!("skipped: {why}"), Role::Warning),

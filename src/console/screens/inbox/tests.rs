@@ -201,7 +201,7 @@ fn pictures_hold_list_thread_offer_and_preview() {
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
         for words in
-            ["200 waiting for you", "left", "company", "new lead", "retention", "Your offer", "a seat"]
+            ["200 waiting for you", "left", "company", "no.", "new lead", "Your offer", "a seat"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }

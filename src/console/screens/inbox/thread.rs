@@ -89,10 +89,10 @@ impl Pane<Inbox> for Conversation {
         };
         // In a small window the list beside it says how many seats; the days are what presses.
         let note = match area.width {
-            ..50 => state,
+            ..72 => state,
             _ => format!("{} · {state}", count(thread.seats, "seat")),
         };
-        let title = format!("#{} {} · {}", thread.customer, thread.group, thread.kind_in_words());
+        let title = format!("{} {} · {}", thread.company(), thread.group, thread.kind_in_words());
         Border { title, note, ..Border::default() }
     }
 

@@ -8,7 +8,8 @@ use crate::console::company::Company;
 use crate::console::text::{number, short_dollars};
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, signed_dollars};
-use crate::session::{JournalEntry, Reversal, ScoredForecast, WeekFigures, naively, undone_calls};
+use crate::report::deals::deals_in_words;
+use crate::session::{CompanyNames, JournalEntry, Reversal, ScoredForecast, WeekFigures, naively, undone_calls};
 use crate::tools::{Forecast, Kind, Spec};
 
 /// A line.
@@ -54,7 +55,7 @@ pub fn lines(company: &Company) -> Vec<JournalLine> {
     for entry in &company.journal {
         let Some(last) = groups.last_mut() else { continue };
         match entry {
-            JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings, &undone)),
+            JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings, &undone, &company.names)),
             JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
                 last.filed = Some(FiledWeek { day: *day, rationale, forecasts, filled_naively });
             }
@@ -202,12 +203,17 @@ impl FiledWeek<'_> {
 }
 
 /// A call as a line; a call that was taken back is shown as such, and so is the call that did it.
-fn of_call(entry: &JournalEntry, settings: &mut KnownSettings, undone: &BTreeSet<u64>) -> Option<JournalLine> {
+fn of_call(
+    entry: &JournalEntry,
+    settings: &mut KnownSettings,
+    undone: &BTreeSet<u64>,
+    names: &CompanyNames,
+) -> Option<JournalLine> {
     let JournalEntry::Call { seq, day, tool, args, reversal } = entry else { return None };
     let spec = tool.spec();
     let words = match spec.kind {
         Kind::Setting => settings.change(spec, args),
-        _ => in_words(args),
+        _ => deals_in_words(*tool, args, names).unwrap_or_else(|| in_words(args)),
     };
     let is_undone = undone.contains(seq);
     let (sign, remark) = match reversal {

@@ -4,6 +4,7 @@ use serde_json::Value;
 
 use crate::console::company::Company;
 use crate::console::screens::journal::entries::in_words;
+use crate::report::deals::deals_in_words;
 use crate::session::JournalEntry;
 use crate::tools::ToolId;
 
@@ -25,7 +26,10 @@ pub fn calls(tool: ToolId, company: &Company, most: usize) -> Vec<(u32, String)>
             _ => told.push((day, arguments)),
         }
     }
-    told.into_iter().map(|(day, arguments)| (day, in_words(arguments))).collect()
+    let words = |arguments: &Value| {
+        deals_in_words(tool, arguments, &company.names).unwrap_or_else(|| in_words(arguments))
+    };
+    told.into_iter().map(|(day, arguments)| (day, words(arguments))).collect()
 }
 
 #[cfg(test)]

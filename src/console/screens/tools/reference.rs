@@ -82,12 +82,17 @@ fn threads(company: &Company) -> Vec<String> {
     if company.seen.waiting.is_empty() {
         return Vec::new();
     }
-    let mut lines = vec!["customer  group   seats  thread            asks         days left".to_owned()];
+    let mut lines = vec!["customer  group   seats  thread            asks         days left  company".to_owned()];
     lines.extend(company.seen.waiting.iter().map(|thread| {
         let asks = thread.asked.map_or("–".to_owned(), cents);
         format!(
-            "{:>8}  {:<6} {:>6}  {:<16} {asks:>8}   {:>14}",
-            thread.customer, thread.group, thread.seats, thread.kind, thread.days_left
+            "{:>8}  {:<6} {:>6}  {:<16} {asks:>8}   {:>14}  {}",
+            thread.customer,
+            thread.group,
+            thread.seats,
+            thread.kind,
+            thread.days_left,
+            company.names.of(thread.customer)
         )
     }));
     lines

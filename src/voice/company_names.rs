@@ -1,0 +1,189 @@
+//! Names of companies: a pure function of the seed of a run and the customer number, made when a name is shown and
+//! stored nowhere (docs/mechanics/market/social/texts.md#names-of-companies). Since nothing else goes in, a name tells
+//! nothing about its company.
+
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+
+use serde::Deserialize;
+
+use super::address::company_word;
+use crate::world::params::EmailParts;
+
+/// The words of names: `assets/voice/companies.toml`.
+#[derive(Debug, Deserialize)]
+struct Words {
+    heads: Vec<String>,
+    tails: Vec<String>,
+}
+
+impl Words {
+    fn shipped() -> &'static Words {
+        static WORDS: OnceLock<Words> = OnceLock::new();
+        let text = include_str!("../../assets/voice/companies.toml");
+        WORDS.get_or_init(|| toml::from_str(text).expect("the shipped words are tested"))
+    }
+}
+
+/// What an address appends to the word of its company.
+const LEGAL_FORMS: [&str; 4] = ["group", "works", "hq", "co"];
+
+/// The names of the companies of a run.
+#[derive(Clone)]
+pub struct CompanyNames {
+    seed: u64,
+    email: Arc<EmailParts>,
+}
+
+impl fmt::Debug for CompanyNames {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "CompanyNames({})", self.seed)
+    }
+}
+
+impl CompanyNames {
+    /// The names of the companies of a run with this seed and these words of addresses.
+    pub fn new(seed: u64, email: &EmailParts) -> CompanyNames {
+        CompanyNames { seed, email: Arc::new(email.clone()) }
+    }
+
+    /// The name of a company. It begins with the word of its address, or joins it to another.
+    pub fn of(&self, customer: u32) -> String {
+        let first = first_word(company_word(customer, &self.email));
+        let mut draw = Draw(mixed(self.seed ^ u64::from(customer).wrapping_mul(0x9E37_79B9_7F4A_7C15)));
+        let words = Words::shipped();
+        let second = format!("{}{}", draw.of(&words.heads), draw.of(&words.tails));
+        match draw.below(3) {
+            0 => format!("{first} {second}"),
+            1 => format!("{first} & {second}"),
+            _ => format!("{second} & {first}"),
+        }
+    }
+
+    /// The name with the number that statements and calls take: `Northgate Ashwick #16064`.
+    pub fn with_number(&self, customer: u32) -> String {
+        format!("{} #{customer}", self.of(customer))
+    }
+
+    /// A text of the records with names where it says `customer 16064`.
+    pub fn put_into(&self, text: &str) -> String {
+        const WORD: &str = "ustomer ";
+        let mut told = String::with_capacity(text.len() + 16);
+        let mut rest = text;
+        while let Some(at) = rest.find(WORD) {
+            let after = &rest[at + WORD.len()..];
+            let digits = after.len() - after.trim_start_matches(|sign: char| sign.is_ascii_digit()).len();
+            let begins = rest[..at].ends_with(['C', 'c']);
+            match after[..digits].parse() {
+                Ok(customer) if begins => {
+                    told += &rest[..at - 1];
+                    told += &self.with_number(customer);
+                    rest = &after[digits..];
+                }
+                _ => {
+                    told += &rest[..at + WORD.len()];
+                    rest = after;
+                }
+            }
+        }
+        told + rest
+    }
+}
+
+/// The word of an address as a name writes it: without a legal form, with a capital.
+fn first_word(word: &str) -> String {
+    let short = LEGAL_FORMS.iter().find_map(|form| word.strip_suffix(form).filter(|rest| rest.len() > 3));
+    let mut letters = short.unwrap_or(word).chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + letters.as_str())
+}
+
+/// Numbers that follow from one.
+struct Draw(u64);
+
+impl Draw {
+    fn below(&mut self, count: usize) -> usize {
+        self.0 = mixed(self.0.wrapping_add(0x9E37_79B9_7F4A_7C15));
+        (self.0 % count.max(1) as u64) as usize
+    }
+
+    fn of<'a>(&mut self, words: &'a [String]) -> &'a str {
+        let at = self.below(words.len());
+        words.get(at).map_or("", String::as_str)
+    }
+}
+
+/// Every bit of the answer depends on every bit of the number.
+fn mixed(number: u64) -> u64 {
+    let number = (number ^ (number >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let number = (number ^ (number >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    number ^ (number >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::{BTreeMap, BTreeSet};
+
+    use super::*;
+    use crate::voice::address;
+    use crate::world::params::Params;
+
+    fn names(seed: u64) -> CompanyNames {
+        CompanyNames::new(seed, &Params::shipped().personas.email)
+    }
+
+    #[test]
+    fn a_company_keeps_its_name() {
+        assert_eq!(names(42).of(16_064), names(42).of(16_064));
+        let of_seed = |seed: u64| (1..200).map(|customer| names(seed).of(customer)).collect::<Vec<_>>();
+        let same = of_seed(42).iter().zip(of_seed(7)).filter(|(one, other)| **one == *other).count();
+        assert!(same < 5, "{same} of 199 have one name in two runs");
+        assert_eq!(names(42).with_number(16_064), format!("{} #16064", names(42).of(16_064)));
+        // Recorded runs show these names: a change of the words renames every company.
+        assert_eq!(names(42).of(1), "Westhaven Wolgrove");
+    }
+
+    #[test]
+    fn a_name_holds_the_word_of_the_address() {
+        let email = Params::shipped().personas.email;
+        for customer in 1..2_000 {
+            let domain = address(customer, &email);
+            let domain = domain.split(['@', '.']).nth_back(1).expect("a domain").to_owned();
+            let name = names(42).of(customer).to_lowercase();
+            assert!(
+                name.split(' ').any(|word| word.len() > 3 && domain.starts_with(word)),
+                "{name}: {domain}"
+            );
+        }
+    }
+
+    #[test]
+    fn names_are_short_words_and_rarely_shared() {
+        let mut count: BTreeMap<String, u32> = BTreeMap::new();
+        for customer in (10_000..45_000).step_by(10) {
+            *count.entry(names(42).of(customer)).or_default() += 1;
+        }
+        let shared: u32 = count.values().filter(|count| **count > 1).sum();
+        assert!(shared < 70, "{shared} of 3,500 share their name with another");
+        assert!(count.keys().all(|name| name.chars().count() <= 26 && !name.contains("  ")));
+        let second: BTreeSet<&str> = count.keys().flat_map(|name| name.split(' ')).collect();
+        assert!(second.len() > 1_500);
+        let taken = ["Harbor Freight Desk", "Castell & Byrne", "Meridian Group", "Aurelia Holdings"];
+        assert!(taken.iter().all(|name| !count.contains_key(*name)));
+    }
+
+    #[test]
+    fn texts_of_the_records_get_names() {
+        let names = names(42);
+        let (one, other) = (names.with_number(4_711), names.with_number(12));
+        for (text, told) in [
+            ("Customer 4711 (E2, 1,094 seats) accepts.", format!("{one} (E2, 1,094 seats) accepts.")),
+            ("Deal closed with customer 12: plan A", format!("Deal closed with {other}: plan A")),
+            ("customer 12, Customer 4711", format!("{other}, {one}")),
+            ("A customer asks; customers 12", "A customer asks; customers 12".to_owned()),
+            ("customer ", "customer ".to_owned()),
+            ("ustomer 12 customer 99999999999", "ustomer 12 customer 99999999999".to_owned()),
+        ] {
+            assert_eq!(names.put_into(text), told);
+        }
+    }
+}

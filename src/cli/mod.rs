@@ -13,6 +13,7 @@ mod report;
 mod run;
 mod runs;
 mod scenario;
+mod study;
 mod tables;
 mod tools;
 
@@ -22,7 +23,7 @@ use clap::{Parser, Subcommand};
 
 pub use failure::Failure;
 
-use crate::session::{Configuration, participant_folder};
+use crate::session::{Configuration, Study, participant_folder};
 
 /// Run a simulated AI subscription company for 500 days.
 ///
@@ -40,6 +41,12 @@ pub struct Arguments {
     /// Whose runs these are: they have a folder of their own and carry this label, and no others are shown.
     #[arg(long = "as", global = true, env = "NOVAMIND_PARTICIPANT", value_name = "LABEL")]
     whose: Option<String>,
+    /// Folder of a study: participants get what its protocol gives them, and nothing else without its code.
+    #[arg(long, global = true, env = "NOVAMIND_STUDY", value_name = "DIR")]
+    study: Option<PathBuf>,
+    /// The experimenter's code of the study.
+    #[arg(long, global = true, env = "NOVAMIND_CODE", value_name = "CODE", hide_env_values = true)]
+    code: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -66,6 +73,8 @@ enum Command {
     Pictures(pictures::Options),
     /// Show the scenarios and their parameters.
     Scenario(scenario::Options),
+    /// Set up studies with people: protocol, participants, checks.
+    Study(study::Options),
     /// Compare policies with reference figures, and runs with each other.
     Lab(lab::Options),
     /// Measure how fast this machine simulates.
@@ -89,6 +98,7 @@ impl Command {
             Command::Keys(_) => "keys",
             Command::Pictures(_) => "pictures",
             Command::Scenario(_) => "scenario",
+            Command::Study(_) => "study",
             Command::Lab(_) => "lab",
             Command::Bench(_) => "bench",
             Command::Completions(_) => "completions",
@@ -160,6 +170,23 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         runs: arguments.runs_dir.or_else(Configuration::runs_folder),
         participant: arguments.whose.filter(|label| !label.is_empty()),
     };
+    if let Some(folder) = &arguments.study {
+        let is_visit = matches!(arguments.command, None | Some(Command::Play(_)));
+        let study = Study::read(folder)?;
+        let has_code = study.protocol.opens_with(arguments.code.as_deref());
+        if is_visit && !has_code {
+            let options = match arguments.command {
+                Some(Command::Play(options)) => options,
+                _ => arguments.play,
+            };
+            return play::lead(folder, &options, &context);
+        }
+        if !has_code {
+            return Err(Failure::usage(
+                "with --study this command needs the experimenter's code: --code, or NOVAMIND_CODE",
+            ));
+        }
+    }
     match arguments.command {
         None => play::run(arguments.play, &context),
         Some(Command::Play(options)) => play::run(options, &context),
@@ -173,6 +200,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Keys(options)) => keys::run(&options, &context),
         Some(Command::Pictures(options)) => pictures::run(&options, &context),
         Some(Command::Scenario(options)) => scenario::run(&options, &context),
+        Some(Command::Study(options)) => study::run(options, &context),
         Some(Command::Lab(options)) => lab::run(&options, &context),
         Some(Command::Bench(options)) => bench::run(&options, &context),
         Some(Command::Completions(options)) => completions::run(&options),

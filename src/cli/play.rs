@@ -1,6 +1,7 @@
 //! `novamind play`: the console, or line by line.
 
 use std::io::IsTerminal;
+use std::path::Path;
 use std::time::Instant;
 
 use clap::Args;
@@ -17,7 +18,7 @@ use crate::console::request::Request;
 use crate::console::theme::Theme;
 use crate::session::{
     Access, Configuration, ConsentGiven, ConsentMeans, Goal, Library, Mode, NewRun, RunError, Session,
-    Storage, find_run,
+    Storage, Study, find_run,
 };
 
 /// Options of `play`.
@@ -119,6 +120,22 @@ impl Options {
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     let plain = options.plain || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal();
     if plain { play_plain(&options, context) } else { play_console(&options, context) }
+}
+
+/// Leads a participant through a study. What is played follows from its protocol, so no other option says so.
+pub fn lead(folder: &Path, options: &Options, context: &Context) -> Result<(), Failure> {
+    if options.run.is_some() || options.asks_for_new_run() {
+        return Err(Failure::usage(
+            "in a study the protocol says what is played: no --run, and no option of a new run",
+        ));
+    }
+    let study = Study::read(folder)?;
+    let style = crate::plain::Style { json: options.json, echo: options.echo, strict: options.strict };
+    let base = context.runs()?;
+    match crate::plain::visit(study, &base, &context.configuration, style)? {
+        0 => Ok(()),
+        code => Err(Failure::code_only(code)),
+    }
 }
 
 fn open(options: &Options, context: &Context) -> Result<Session, Failure> {

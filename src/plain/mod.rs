@@ -8,17 +8,21 @@ mod commands;
 mod grammar;
 mod input;
 mod next;
+mod questions;
 mod signals;
+mod visit;
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, BufRead, IsTerminal, Write};
 
 use serde_json::{Value, json};
+
+pub use visit::visit;
 
 pub use crate::database::text::{cell_text, table};
 
 use crate::notation::printable;
 use crate::session::record::LeavingCause;
-use crate::session::{Interface, Library, Session};
+use crate::session::{Interface, Library, Session, Study};
 use answers::Answer;
 use commands::Interpreter;
 use input::{Input, Read};
@@ -42,6 +46,10 @@ enum End {
     InputOver,
     Strict,
     Signal(i32),
+    /// The run of a study is over, and its questions are answered.
+    Over,
+    /// The person withdrew from the study.
+    Withdrawn,
 }
 
 impl End {
@@ -51,21 +59,24 @@ impl End {
             End::InputOver => "end_of_input",
             End::Strict => "strict",
             End::Signal(_) => "signal",
+            End::Over => "over",
+            End::Withdrawn => "withdrawn",
         }
     }
 
     fn cause(self) -> LeavingCause {
         match self {
-            End::Quit => LeavingCause::Quit,
+            End::Quit | End::Over => LeavingCause::Quit,
             End::InputOver => LeavingCause::EndOfInput,
             End::Strict => LeavingCause::Strict,
             End::Signal(_) => LeavingCause::Signal,
+            End::Withdrawn => LeavingCause::Withdrawn,
         }
     }
 
     fn code(self) -> u8 {
         match self {
-            End::Quit | End::InputOver => 0,
+            End::Quit | End::InputOver | End::Over | End::Withdrawn => 0,
             End::Strict => 1,
             End::Signal(number) => 128u8.saturating_add(number as u8),
         }
@@ -76,15 +87,34 @@ impl End {
 ///
 /// # Errors
 /// Standard input or output fails.
-pub fn play(mut session: Session, library: Library, style: Style) -> io::Result<u8> {
+pub fn play(session: Session, library: Library, style: Style) -> io::Result<u8> {
+    let mut input = Input::new(io::stdin().lock());
+    dialogue(session, library, style, None, &mut input).map(|(end, _)| end.code())
+}
+
+/// A dialogue about a run, until the person or the input leaves it.
+fn dialogue(
+    mut session: Session,
+    library: Library,
+    style: Style,
+    study: Option<&Study>,
+    input: &mut Input<impl BufRead>,
+) -> io::Result<(End, Session)> {
     let prompts = io::stdin().is_terminal();
     session.take_up(Interface { name: "plain", window: None });
     let watch = Watch::start();
     let mut interpreter = Interpreter::new(session, library, watch.clone(), prompts);
     let mut out = io::stdout();
     greet(&mut out, &interpreter.session, style)?;
-    let mut input = Input::new(io::stdin().lock());
     let end = loop {
+        if let Some(study) = study {
+            if !questions::ask_due(study, &mut interpreter.session, style, input)? {
+                break End::InputOver;
+            }
+            if interpreter.session.ended().is_some() {
+                break End::Over;
+            }
+        }
         if prompts {
             prompt(&format!("day {}> ", interpreter.session.day()))?;
         }
@@ -103,7 +133,13 @@ pub fn play(mut session: Session, library: Library, style: Style) -> io::Result<
                 continue;
             }
         };
-        let Some(reply) = interpreter.answer(&line, &mut input)? else { continue };
+        if study.is_some() && line.trim() == "withdraw" {
+            if withdraws(style, input)? {
+                break End::Withdrawn;
+            }
+            continue;
+        }
+        let Some(reply) = interpreter.answer(&line, input)? else { continue };
         if reply.is_quit() {
             break End::Quit;
         }
@@ -120,7 +156,20 @@ pub fn play(mut session: Session, library: Library, style: Style) -> io::Result<
     let _ = interpreter.session.save();
     writeln!(out, "{}", farewell(&interpreter.session, style, end))?;
     out.flush()?;
-    Ok(end.code())
+    Ok((end, interpreter.session))
+}
+
+/// Asks whether a participant really withdraws.
+fn withdraws(style: Style, input: &mut Input<impl BufRead>) -> io::Result<bool> {
+    let question = "Withdrawing erases everything that you did in this study, for good. Type withdraw again to do so, \
+                    anything else to go on:";
+    if style.json {
+        println!("{}", json!({ "event": "ask", "what": "withdraw", "text": question }));
+    } else {
+        println!("{question}");
+    }
+    io::stdout().flush()?;
+    Ok(matches!(input.read()?, Read::Line(line) if line.trim() == "withdraw"))
 }
 
 /// Shows a prompt where a person sees it.
@@ -144,14 +193,19 @@ fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()
         });
         writeln!(out, "{event}")?;
     } else {
-        let (run, seed, day, days) = (seen.run, seen.seed, seen.day, seen.last_day);
-        writeln!(out, "run {run} · seed {seed} · day {day} of {days} · {}", seen.mode)?;
+        let (run, seed, day, days) = (seen.run, seed_in_words(seen.seed), seen.day, seen.last_day);
+        writeln!(out, "run {run}{seed} · day {day} of {days} · {}", seen.mode)?;
         for remark in session.remarks() {
             writeln!(out, "note: {remark}")?;
         }
         writeln!(out, "{}", seen.dashboard)?;
     }
     out.flush()
+}
+
+/// The seed after the name of a run; nothing where it stays hidden.
+fn seed_in_words(seed: Option<u64>) -> String {
+    seed.map_or(String::new(), |seed| format!(" · seed {seed}"))
 }
 
 fn farewell(session: &Session, style: Style, end: End) -> String {

@@ -30,11 +30,11 @@ pub fn page_of(story: &Story) -> Page {
     blocks.extend(decisions(story));
     let mut tags = vec![
         format!("run {}", seen.run),
-        format!("seed {}", seen.seed),
         format!("{} days", whole(f64::from(seen.last_day))),
         format!("scenario {}", seen.scenario),
         format!("{} mode", seen.mode),
     ];
+    tags.extend(seen.seed.map(|seed| format!("seed {seed}")));
     tags.extend(seen.participant.iter().map(|who| format!("played by {who}")));
     Page {
         title: format!("NovaMind · run {}", seen.run),

@@ -146,8 +146,8 @@ pub fn published_targeted_shares() -> (f64, f64) {
 fn caveat(seen: &Observation, start_cash: f64) -> Option<String> {
     let (seed, days) = PUBLISHED_RUN;
     let mut other = Vec::new();
-    if seen.seed != seed {
-        other.push(format!("seed {}", seen.seed));
+    if seen.seed != Some(seed) {
+        other.push(seen.seed.map_or("another seed".to_owned(), |own| format!("seed {own}")));
     }
     if seen.last_day != days {
         other.push(format!("{} days", whole(f64::from(seen.last_day))));
@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn a_score_stands_among_the_published_ones() {
         let mut seen = test_kit::played(0).observe();
-        (seen.seed, seen.last_day) = (42, 500);
+        (seen.seed, seen.last_day) = (Some(42), 500);
         assert_eq!(seen.scenario, "default");
         let good = standing(Some(14_208_331.0), &seen, 1_000_000.0);
         assert_eq!((good.rank, good.caveat.clone()), (Some(2), None));
@@ -187,7 +187,7 @@ mod tests {
         assert_eq!(ruined.rank, Some(14), "four published agents have nothing either");
         assert_eq!(ruined.places.last().map(|place| place.whose), Some(Whose::Own));
         assert_eq!(standing(None, &seen, 1_000_000.0).rank, None);
-        seen.seed = 7;
+        seen.seed = Some(7);
         assert_eq!(standing(Some(0.0), &seen, 1_000_000.0).rank, Some(14), "other luck is no other game");
         assert!(published_targeted_shares().0 < published_targeted_shares().1);
     }

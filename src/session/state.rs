@@ -16,6 +16,7 @@ use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::RunSurroundings;
+use crate::session::study::answer_book::AnswerBook;
 use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::Ended;
 use crate::tools::Numbers;
@@ -43,6 +44,8 @@ pub struct Session {
     pub(super) position: Position,
     /// Rows that follow from what has happened.
     pub(super) projection: Projection,
+    /// What the record says about questions of a study.
+    pub(super) answers: AnswerBook,
     /// Notes of a run without a folder.
     pub(super) memo_in_memory: String,
     /// What the person should know about the opening of the run.

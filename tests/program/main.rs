@@ -8,6 +8,7 @@ mod golden;
 mod hardship;
 mod plain;
 mod scenarios;
+mod studies;
 #[path = "../support/mod.rs"]
 mod support;
 #[cfg(unix)]

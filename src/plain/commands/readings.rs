@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
+use super::super::seed_in_words;
 use super::{COMMANDS, Interpreter, NEXT, problem, tool_called, words};
 use crate::database;
 use crate::glossary;
@@ -34,10 +35,10 @@ impl Interpreter {
             seen.weeks_of_cash().map_or("to the last day".to_owned(), |weeks| format!("{weeks} weeks"));
         let ended = seen.ended.map_or(String::new(), |ended| format!("ended: {}\n", ended.id()));
         let text = format!(
-            "run {} · seed {} · {}\nday {} of {} · week {}\n{ended}cash {} ({} over the last week) · runway {runway}\n\
+            "run {}{} · {}\nday {} of {} · week {}\n{ended}cash {} ({} over the last week) · runway {runway}\n\
              subscribers {} · seats {}\nwaiting threads {} · running research {} · changes this week {}",
             seen.run,
-            seen.seed,
+            seed_in_words(seen.seed),
             seen.mode,
             seen.day,
             seen.last_day,

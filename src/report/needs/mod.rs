@@ -16,7 +16,7 @@ use serde_json::Value;
 
 use crate::session::ToolId;
 use crate::session::{
-    CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Mode, Observation, Session, ToolLimits,
+    CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Observation, Session, ToolLimits,
     WeekFigures,
 };
 use crate::world::identifiers::{ByGroup, Channel, Group};
@@ -203,7 +203,7 @@ pub fn needs(session: &Session) -> Vec<Need> {
     found.extend(people::churn(&situation));
     let moved = situation.revenue_ahead() + situation.commitments_ahead();
     found.retain(|need| need.at_risk >= SMALL * moved);
-    if session.manifest().mode == Mode::Baseline {
+    if !session.rules().advice {
         found.iter_mut().for_each(Need::keep_to_facts);
     }
     found.sort_by(|left, right| {

@@ -22,8 +22,8 @@ pub struct Observation {
     pub run: String,
     /// Mode.
     pub mode: Mode,
-    /// Seed.
-    pub seed: u64,
+    /// Seed; none in a study, whose participants do not learn it.
+    pub seed: Option<u64>,
     /// Scenario.
     pub scenario: String,
     /// The parameters are others than those of the shipped scenario of that name.
@@ -115,7 +115,7 @@ impl Session {
         Observation {
             run: self.manifest.id.clone(),
             mode: self.manifest.mode,
-            seed: self.manifest.seed,
+            seed: Some(self.manifest.seed).filter(|_| self.manifest.study.is_none()),
             scenario: self.manifest.scenario.clone(),
             has_own_parameters: *self.own_parameters.get_or_init(|| self.manifest.has_own_parameters()),
             participant: self.manifest.participant.clone(),

@@ -33,7 +33,12 @@ pub(in crate::session) fn agreed(
     participant: Option<&str>,
     configuration: &Configuration,
 ) -> Result<Option<Consent>, RunError> {
-    let Some(text) = configuration.consent()? else { return Ok(None) };
+    let text = match &new.study {
+        // A study has a text of its own, or none.
+        Some(study) => study.consent.clone(),
+        None => configuration.consent()?,
+    };
+    let Some(text) = text else { return Ok(None) };
     let digest = text.digest();
     if let Some(given) = new.agreed {
         let text = Some(text.text);

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::agreement::agreed;
 use super::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
-use super::consent::ConsentGiven;
+use super::consent::{ConsentGiven, ConsentText};
 use super::manifest::{FORMAT, Manifest, differences, same_world};
 use super::mode::Mode;
 use super::runs::{earlier_runs_of, label_of};
@@ -17,6 +17,7 @@ use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::RunSurroundings;
 use crate::session::state::Session;
+use crate::session::study::answer_book::AnswerBook;
 use crate::session::study::rules::SessionRules;
 use crate::session::study::stamp::StudyStamp;
 use crate::session::trajectory::now;
@@ -42,14 +43,25 @@ pub struct NewRun {
     pub participant: Option<String>,
     /// How the person has agreed to the text that the experimenter asks for; baseline runs only.
     pub agreed: Option<ConsentGiven>,
-    /// The study it belongs to, and the rules that it lays down.
-    pub study: Option<(StudyStamp, SessionRules)>,
+    /// The study it belongs to, and what that lays down.
+    pub study: Option<StudyEntry>,
     /// Where the run is kept.
     pub storage: Storage,
     /// Whether the database is kept up to date; without it queries are refused.
     pub projection: bool,
     /// Whether every call is on the disk before it is confirmed; otherwise once a week.
     pub sync_calls: bool,
+}
+
+/// What a study lays down for a new run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StudyEntry {
+    /// The study, and the place of the person in it.
+    pub stamp: StudyStamp,
+    /// By which rules it is played.
+    pub rules: SessionRules,
+    /// The text that participants agree to; none if none is asked for.
+    pub consent: Option<ConsentText>,
 }
 
 /// Where a run is kept.
@@ -136,6 +148,7 @@ impl Session {
             projection,
             position: Position { seq: 0, line_hash: String::new() },
             surroundings: RunSurroundings::default(),
+            answers: AnswerBook::default(),
             memo_in_memory: String::new(),
             remarks: Vec::new(),
             recorder: None,
@@ -193,7 +206,7 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         Storage::Runs(runs) => earlier_runs_of(runs, participant.as_deref()),
         Storage::Memory => Vec::new(),
     };
-    let (study, rules) = new.study.clone().unzip();
+    let (study, rules) = new.study.clone().map(|entry| (entry.stamp, entry.rules)).unzip();
     let consent = match new.mode {
         Mode::Baseline => agreed(new, participant.as_deref(), configuration)?,
         Mode::Sandbox | Mode::Lesson | Mode::Debug => None,

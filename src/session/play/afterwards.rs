@@ -7,6 +7,7 @@ use std::path::Path;
 
 use crate::session::error::RunError;
 use crate::session::state::Session;
+use crate::session::study::answer_book::AnswerBook;
 use crate::session::trajectory::{Line, Record, Trajectory};
 
 /// Name of the file in the folder of the run.
@@ -30,9 +31,13 @@ pub fn lines_afterwards(folder: &Path, trajectory: &Trajectory) -> Result<Trajec
 impl Session {
     /// Applies what was kept after the end of the run. A file that is damaged is told and left alone.
     pub(in crate::session) fn replay_afterwards(&mut self, trajectory: &Trajectory) {
+        self.answers = AnswerBook::of(&trajectory.lines);
         let Some(folder) = self.folder.clone().filter(|_| self.history.ended.is_some()) else { return };
         match lines_afterwards(&folder, trajectory) {
-            Ok(after) => after.lines.iter().for_each(|line| self.keep_again(line)),
+            Ok(after) => {
+                self.answers = AnswerBook::of(trajectory.lines.iter().chain(&after.lines));
+                after.lines.iter().for_each(|line| self.keep_again(line));
+            }
             Err(problem) => self.remarks.push(format!("{problem} What was done after the end is not shown.")),
         }
     }

@@ -89,6 +89,7 @@ impl Session {
         if !self.rules().records(activity.kind()) {
             return;
         }
+        self.answers.note(&activity);
         let durability = if activity.is_evidence() { Durability::Synced } else { Durability::Written };
         let _ = self.append(&Record::Activity(activity), durability);
     }

@@ -1,4 +1,11 @@
-//! Studies with people: what of a study stands in a run.
+//! Studies with people: what an experimenter lays down, the way of a participant through it, and what of it stands in a run.
 
+pub mod answer_book;
+pub mod assignment;
+pub mod definition;
+pub mod due;
+pub mod questions;
 pub mod rules;
 pub mod stamp;
+pub mod visit;
+pub mod visit_log;

@@ -1,0 +1,151 @@
+//! `novamind study check`: the protocol, and the machine.
+
+use std::path::Path;
+
+use crate::cli::{Context, Failure, print};
+use crate::session::{Machine, Moment, PracticeOffer, Study};
+
+/// Free bytes that a machine should have: a session of a large company with its database.
+const ROOM: u64 = 2 << 30;
+/// Columns and rows of the smallest window.
+const WINDOW: (u16, u16) = (60, 16);
+
+/// A point that was checked.
+struct Point {
+    name: &'static str,
+    outcome: Result<String, String>,
+}
+
+/// Checks a study and this machine.
+pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
+    let study = Study::read(folder)?;
+    let runs = context.runs()?;
+    let mut text = described(&study);
+    let mut points = vec![
+        Point { name: "version", outcome: Ok(format!("novamind {}", env!("CARGO_PKG_VERSION"))) },
+        Point { name: "world", outcome: world(&study, context) },
+        Point { name: "clock", outcome: clock() },
+        Point { name: "runs", outcome: writable(&runs).map(|()| runs.display().to_string()) },
+        Point { name: "disk", outcome: room(&runs) },
+        Point { name: "window", outcome: window() },
+        Point { name: "characters", outcome: characters() },
+        Point { name: "machine", outcome: Ok(Machine::here().id) },
+    ];
+    if let Some(witness) = &study.protocol.integrity.witness {
+        points.push(Point {
+            name: "witness",
+            outcome: writable(witness).map(|()| witness.display().to_string()),
+        });
+    }
+    let failed = points.iter().filter(|point| point.outcome.is_err()).count();
+    for Point { name, outcome } in &points {
+        let line = match outcome {
+            Ok(words) => format!("  ok    {name:<11} {words}\n"),
+            Err(problem) => format!("  WRONG {name:<11} {problem}\n"),
+        };
+        text += &line;
+    }
+    print(&text)?;
+    match failed {
+        0 => Ok(()),
+        1 => Err(Failure::failed("1 point is wrong: this machine is not ready")),
+        failed => Err(Failure::failed(format!("{failed} points are wrong: this machine is not ready"))),
+    }
+}
+
+fn described(study: &Study) -> String {
+    let questions: usize = study.questionnaires.iter().map(|own| own.questions.len()).sum();
+    let asked = |moment: Moment| study.questionnaires.iter().filter(|own| own.when == moment).count();
+    let places = study
+        .assignment
+        .as_ref()
+        .map_or("any label".to_owned(), |own| format!("{} labels", own.places.len()));
+    let consent = if study.consent.is_some() { "asked for" } else { "not asked for: there is no consent.md" };
+    format!(
+        "{} · {}\n  digest {}\n  {places} · consent {consent}\n  {questions} questions: {} before, {} after weeks, {} at breaks, {} at \
+         the end\n",
+        study.protocol.name,
+        study.protocol.title,
+        study.digest,
+        asked(Moment::Before),
+        asked(Moment::Weeks),
+        asked(Moment::Break),
+        asked(Moment::End),
+    )
+}
+
+/// The scenarios of session and practice are shipped ones with parameters.
+fn world(study: &Study, context: &Context) -> Result<String, String> {
+    let mut names = vec![study.protocol.world.scenario.clone()];
+    if study.protocol.practice.offer != PracticeOffer::None {
+        names.push(study.protocol.practice.scenario.clone());
+    }
+    for name in &names {
+        let scenario = context.configuration.scenario(name).map_err(|error| error.to_string())?;
+        if !scenario.shipped {
+            return Err(format!("{name} is a file of your own: sessions need a shipped scenario"));
+        }
+    }
+    Ok(names.join(", practice "))
+}
+
+/// The wall clock goes as fast as the one that nobody sets, and is not before this program was built.
+fn clock() -> Result<String, String> {
+    let wall = || std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
+    const BUILT_AFTER: u64 = 1_760_000_000;
+    let (before, steady) = (wall(), std::time::Instant::now());
+    if before.as_secs() < BUILT_AFTER {
+        return Err("the clock of this machine is years behind: set it".to_owned());
+    }
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    let drift = wall().as_secs_f64() - before.as_secs_f64() - steady.elapsed().as_secs_f64();
+    if drift.abs() > 0.1 {
+        return Err(format!("the clock jumped by {drift:.1} s while it was looked at: something sets it"));
+    }
+    Ok("runs evenly".to_owned())
+}
+
+fn writable(folder: &Path) -> Result<(), String> {
+    let probe = folder.join(format!(".novamind-check-{}", std::process::id()));
+    let tried = std::fs::create_dir_all(folder)
+        .and_then(|()| std::fs::write(&probe, b"check"))
+        .and_then(|()| std::fs::remove_file(&probe));
+    tried.map_err(|error| format!("{}: {error}", folder.display()))
+}
+
+/// Room on the disk, by writing: what a file system promises and what a quota allows are two things.
+fn room(folder: &Path) -> Result<String, String> {
+    let said = std::process::Command::new("df").args(["-Pk".as_ref(), folder.as_os_str()]).output().ok();
+    let text = said.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
+    let free = text.lines().nth(1).and_then(|line| line.split_whitespace().nth(3)?.parse::<u64>().ok());
+    match free.map(|kilobytes| kilobytes * 1024) {
+        None => Ok("this system does not tell how much is free".to_owned()),
+        Some(free) if free < ROOM => {
+            Err(format!("{} MB are free; a long session may need {}", free >> 20, ROOM >> 20))
+        }
+        Some(free) => Ok(format!("{} GB free", free >> 30)),
+    }
+}
+
+fn window() -> Result<String, String> {
+    match crossterm::terminal::size() {
+        Ok((columns, rows)) if columns < WINDOW.0 || rows < WINDOW.1 => {
+            Err(format!("{columns}×{rows}: at least {}×{} characters are needed", WINDOW.0, WINDOW.1))
+        }
+        Ok((columns, rows)) => Ok(format!("{columns}×{rows}")),
+        Err(_) => Ok("no terminal here: check it where people play".to_owned()),
+    }
+}
+
+/// Whether the locale speaks UTF-8; the person looks at the signs.
+fn characters() -> Result<String, String> {
+    let name = ["LC_ALL", "LC_CTYPE", "LANG"]
+        .iter()
+        .find_map(|name| std::env::var(name).ok().filter(|value| !value.is_empty()));
+    match name {
+        Some(locale) if !locale.to_lowercase().replace('-', "").contains("utf8") => {
+            Err(format!("the locale is {locale}, which is not UTF-8: set LANG, or play with --ascii"))
+        }
+        _ => Ok("these should be a box, a bar and a braille pattern: ┼ ▆ ⣿".to_owned()),
+    }
+}

@@ -1,0 +1,54 @@
+//! `novamind study`: what an experimenter does with a study.
+
+mod assign;
+mod check;
+mod code;
+mod new;
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::{Context, Failure, play};
+
+/// Options of `study`.
+#[derive(Debug, Args)]
+pub struct Options {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Write the folder of a new study, with a protocol to edit.
+    New(new::Options),
+    /// Check the protocol of a study, and whether this machine is fit for it.
+    Check {
+        /// Folder of the study.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
+    /// Assign labels to conditions and seeds, in random order within blocks.
+    Assign(assign::Options),
+    /// Print the line of study.toml that asks for an experimenter's code.
+    Code,
+    /// Lead a participant through the study; as `novamind --study DIR`.
+    Start {
+        /// Folder of the study.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        #[command(flatten)]
+        play: play::Options,
+    },
+}
+
+/// Runs the command.
+pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
+    match options.command {
+        Command::New(options) => new::run(&options),
+        Command::Check { folder } => check::run(&folder, context),
+        Command::Assign(options) => assign::run(&options),
+        Command::Code => code::run(),
+        Command::Start { folder, play } => play::lead(&folder, &play, context),
+    }
+}

@@ -1,0 +1,54 @@
+//! `novamind study new`: the folder of a study, to be edited.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use include_dir::{Dir, include_dir};
+
+use crate::cli::{Failure, print};
+use crate::session::{RunError, STUDY_FILE, Study};
+
+/// What a new study looks like.
+static TEMPLATE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/assets/study");
+
+/// Options of `study new`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Folder to write.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Name of the study: letters, digits and hyphens [default: that of the folder].
+    #[arg(long)]
+    name: Option<String>,
+}
+
+/// Runs the command.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let folder = &options.folder;
+    if folder.join(STUDY_FILE).exists() {
+        return Err(Failure::failed(format!("{} is a study already; nothing was changed", folder.display())));
+    }
+    let of_folder = || folder.file_name().map(|name| name.to_string_lossy().into_owned());
+    let name = options.name.clone().or_else(of_folder).unwrap_or_else(|| "study".to_owned());
+    let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '-' };
+    let name: String = name.chars().map(plain).collect();
+    write(&TEMPLATE, folder, &name)?;
+    let study = Study::read(folder)?;
+    print(&format!(
+        "{}: edit {STUDY_FILE}, consent.md and questions/, then\n\n    novamind study check {0}\n    novamind study assign {0} \
+         --participants N\n    novamind --study {0}\n\nProtocol {}\n",
+        folder.display(),
+        study.digest
+    ))
+}
+
+fn write(from: &Dir<'_>, to: &Path, name: &str) -> Result<(), Failure> {
+    for file in from.files() {
+        let path = to.join(file.path());
+        let parent = path.parent().unwrap_or(to);
+        std::fs::create_dir_all(parent).map_err(RunError::io(parent))?;
+        let text = file.contents_utf8().unwrap_or_default().replace("{name}", name);
+        std::fs::write(&path, text).map_err(RunError::io(&path))?;
+    }
+    from.dirs().try_for_each(|inner| write(inner, to, name))
+}

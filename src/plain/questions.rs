@@ -1,0 +1,122 @@
+//! Questions of a study, asked line by line between the commands.
+
+use std::io::{self, BufRead, Write};
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::Style;
+use super::input::{Input, Read};
+use crate::notation::printable;
+use crate::session::{DueQuestion, Form, Session, Study};
+
+/// Asks everything that is due; whether the input goes on after it.
+///
+/// # Errors
+/// Standard input or output fails.
+pub(super) fn ask_due(
+    study: &Study,
+    session: &mut Session,
+    style: Style,
+    input: &mut Input<impl BufRead>,
+) -> io::Result<bool> {
+    let due = study.due(session);
+    for (number, question) in due.iter().enumerate() {
+        let begins = number == 0 || due[number - 1].questionnaire != question.questionnaire;
+        if begins && !style.json {
+            println!("== {} ==\n{}", printable(&question.title), printable(question.introduction.trim()));
+        }
+        session.ask_question(question);
+        show(question, style)?;
+        if !answer(question, session, style, input)? {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Reads lines until one of them is an answer.
+fn answer(
+    due: &DueQuestion,
+    session: &mut Session,
+    style: Style,
+    input: &mut Input<impl BufRead>,
+) -> io::Result<bool> {
+    let shown = Instant::now();
+    let mut changes = 0;
+    loop {
+        let typed = match input.read()? {
+            Read::End => return Ok(false),
+            Read::Unreadable(_) => continue,
+            Read::Line(line) => line,
+        };
+        let value = match typed.trim() {
+            "" if !due.question.required => Ok(Value::Null),
+            "" => Err(format!("an answer is needed: {}", expected(&due.question.form))),
+            typed => due.question.form.value(typed).map_err(|expected| format!("type {expected}")),
+        };
+        match value {
+            Ok(value) => {
+                session.answer_question(due, &value, shown.elapsed().as_millis() as u64, changes);
+                return Ok(true);
+            }
+            Err(problem) => {
+                changes += 1;
+                if style.json {
+                    println!(
+                        "{}",
+                        json!({ "event": "question_refused", "id": due.question.id, "error": problem })
+                    );
+                } else {
+                    println!("{problem}");
+                }
+                io::stdout().flush()?;
+            }
+        }
+    }
+}
+
+fn show(due: &DueQuestion, style: Style) -> io::Result<()> {
+    let question = &due.question;
+    if style.json {
+        let event = json!({
+            "event": "question",
+            "questionnaire": due.questionnaire,
+            "occasion": due.occasion,
+            "id": question.id,
+            "text": question.text,
+            "form": question.form.id(),
+            "options": question.form.options(),
+            "required": question.required,
+        });
+        println!("{event}");
+    } else {
+        println!("{}", printable(&question.text));
+        for line in choices(&question.form) {
+            println!("  {}", printable(&line));
+        }
+        let pass = if question.required { "" } else { ", or an empty line to pass" };
+        println!("type {}{pass}", expected(&question.form));
+    }
+    io::stdout().flush()
+}
+
+/// What can be chosen, a line each.
+fn choices(form: &Form) -> Vec<String> {
+    match form {
+        Form::Likert { points, low, high } => {
+            let ends = [(1, low), (*points, high)].into_iter().filter(|(_, words)| !words.is_empty());
+            ends.map(|(point, words)| format!("{point} = {words}")).collect()
+        }
+        Form::Choice { options, .. } | Form::Attention { options, .. } => {
+            options.iter().enumerate().map(|(at, option)| format!("{} {option}", at + 1)).collect()
+        }
+        Form::Number { unit, .. } if !unit.is_empty() => vec![format!("in {unit}")],
+        Form::Number { .. } | Form::Text { .. } => Vec::new(),
+    }
+}
+
+/// What is an answer; an impossible one says so best.
+fn expected(form: &Form) -> String {
+    form.value("").err().unwrap_or_default()
+}

@@ -1,0 +1,184 @@
+//! `assignment.csv`: who takes part, under which condition, with which seed, in which order.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use crate::session::error::RunError;
+use crate::session::folder::runs::participant_folder;
+use crate::world::params::ParameterError;
+
+/// Name of the file in the folder of the study.
+pub const ASSIGNMENT_FILE: &str = "assignment.csv";
+
+/// Who takes part.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Assignment {
+    /// One for each participant, in the order of the file.
+    pub places: Vec<Place>,
+}
+
+/// A participant's place in the study.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// Label.
+    pub label: String,
+    /// Condition; none in a study without conditions.
+    pub condition: Option<String>,
+    /// Seed of the session; none where everybody plays the same.
+    pub seed: Option<u64>,
+    /// Place in the order of the study, from 1.
+    pub order: u32,
+}
+
+/// Columns of the file.
+const COLUMNS: [&str; 4] = ["label", "condition", "seed", "order"];
+
+impl Assignment {
+    /// Reads the assignment in the folder of a study; none if there is no file.
+    ///
+    /// # Errors
+    /// A line is wrong, or a label stands there twice; the error names the line.
+    pub fn read(folder: &Path) -> Result<Option<Assignment>, RunError> {
+        let path = folder.join(ASSIGNMENT_FILE);
+        match std::fs::read(&path) {
+            Ok(bytes) => Ok(Some(Assignment::parse(&path.display().to_string(), &bytes)?)),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(RunError::Io { path, error }),
+        }
+    }
+
+    /// Reads the bytes of a file.
+    ///
+    /// # Errors
+    /// As [`Assignment::read`].
+    pub fn parse(source: &str, bytes: &[u8]) -> Result<Assignment, ParameterError> {
+        let wrong = |line: usize, key: &str, problem: String| ParameterError {
+            source: source.to_owned(),
+            line: Some(line),
+            key: key.to_owned(),
+            problem,
+        };
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
+        let header = reader.headers().map_err(|error| wrong(1, "", error.to_string()))?.clone();
+        if header.iter().ne(COLUMNS) {
+            return Err(wrong(1, "", format!("the first line has to be {}", COLUMNS.join(","))));
+        }
+        let (mut places, mut known) = (Vec::new(), BTreeSet::new());
+        for record in reader.records() {
+            let line_of = |position: Option<&csv::Position>| position.map_or(1, |at| at.line() as usize);
+            let record = record.map_err(|error| wrong(line_of(error.position()), "", error.to_string()))?;
+            let line = line_of(record.position());
+            let cell = |at: usize| record.get(at).unwrap_or_default();
+            let label = cell(0).to_owned();
+            participant_folder(Path::new(""), &label).map_err(|problem| wrong(line, "label", problem))?;
+            if !known.insert(label.clone()) {
+                return Err(wrong(line, "label", format!("{label} stands here twice")));
+            }
+            let whole = |at: usize| match cell(at) {
+                "" => Ok(None),
+                text => text
+                    .parse::<u64>()
+                    .map(Some)
+                    .map_err(|_| wrong(line, COLUMNS[at], format!("{text:?} is not a whole number"))),
+            };
+            let order = whole(3)?.unwrap_or(places.len() as u64 + 1) as u32;
+            let condition = Some(cell(1)).filter(|text| !text.is_empty()).map(str::to_owned);
+            places.push(Place { label, condition, seed: whole(2)?, order });
+        }
+        Ok(Assignment { places })
+    }
+
+    /// The place of a participant.
+    pub fn place(&self, label: &str) -> Option<&Place> {
+        self.places.iter().find(|place| place.label == label)
+    }
+
+    /// The file.
+    pub fn as_csv(&self) -> String {
+        let line = |place: &Place| {
+            let seed = place.seed.map_or(String::new(), |seed| seed.to_string());
+            format!(
+                "{},{},{seed},{}\n",
+                place.label,
+                place.condition.as_deref().unwrap_or_default(),
+                place.order
+            )
+        };
+        let lines: String = self.places.iter().map(line).collect();
+        format!("{}\n{lines}", COLUMNS.join(","))
+    }
+
+    /// Gives labels the cells of a design, each cell once in every block, in an order that a seed draws.
+    pub fn in_blocks(labels: &[String], seeds: &[u64], conditions: &[String], draw: u64) -> Assignment {
+        let conditions: Vec<Option<String>> = match conditions {
+            [] => vec![None],
+            some => some.iter().cloned().map(Some).collect(),
+        };
+        let cell = |condition: &Option<String>| {
+            let condition = condition.clone();
+            seeds.iter().map(move |seed| (condition.clone(), Some(*seed))).collect::<Vec<_>>()
+        };
+        let cells: Vec<(Option<String>, Option<u64>)> = conditions.iter().flat_map(cell).collect();
+        let places = labels.chunks(cells.len().max(1)).enumerate().flat_map(|(block, labels)| {
+            let order = shuffled(cells.len(), draw, block as u64);
+            let cells = &cells;
+            labels
+                .iter()
+                .enumerate()
+                .map(move |(at, label)| {
+                    let (condition, seed) = cells.get(order[at]).cloned().unwrap_or_default();
+                    let order = (block * cells.len() + at + 1) as u32;
+                    Place { label: label.clone(), condition, seed, order }
+                })
+                .collect::<Vec<_>>()
+        });
+        Assignment { places: places.collect() }
+    }
+}
+
+/// The numbers below `count` in an order that a seed draws for a block: sorted by a keyed hash, the same on any machine.
+fn shuffled(count: usize, draw: u64, block: u64) -> Vec<usize> {
+    let key = |at: usize| {
+        let drawn = [draw.to_le_bytes(), block.to_le_bytes(), (at as u64).to_le_bytes()].concat();
+        *blake3::hash(&blake3::derive_key("novamind block randomisation", &drawn)).as_bytes()
+    };
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|at| key(*at));
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_are_balanced_and_come_back_from_the_file() {
+        let labels: Vec<String> = (1..=13).map(|number| format!("P{number:02}")).collect();
+        let conditions = ["control".to_owned(), "advice".to_owned()];
+        let made = Assignment::in_blocks(&labels, &[3, 5, 8], &conditions, 7);
+        assert_eq!(made, Assignment::in_blocks(&labels, &[3, 5, 8], &conditions, 7));
+        assert_ne!(made, Assignment::in_blocks(&labels, &[3, 5, 8], &conditions, 8));
+        for block in made.places.chunks(6).filter(|block| block.len() == 6) {
+            let cells: BTreeSet<_> = block.iter().map(|place| (&place.condition, place.seed)).collect();
+            assert_eq!(cells.len(), 6);
+        }
+        let read = Assignment::parse("assignment.csv", made.as_csv().as_bytes()).expect("it reads");
+        assert_eq!(read, made);
+        assert_eq!(read.place("P13").expect("a place").order, 13);
+        assert_eq!(read.place("P14"), None);
+    }
+
+    #[test]
+    fn wrong_lines_are_named() {
+        for (text, part) in [
+            ("label,seed\nP1,3\n", "line 1"),
+            ("label,condition,seed,order\nP1,,3,1\nP1,,4,2\n", "line 3"),
+            ("label,condition,seed,order\nP1,,three,1\n", "line 2"),
+            ("label,condition,seed,order\n../x,,3,1\n", "line 2"),
+        ] {
+            let error = Assignment::parse("assignment.csv", text.as_bytes()).expect_err(text).to_string();
+            assert!(error.contains(part), "{error}");
+        }
+    }
+}

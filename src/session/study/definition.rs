@@ -1,0 +1,422 @@
+//! `study.toml`: what an experimenter lays down for all sessions of a study.
+//!
+//! A study is a folder: `study.toml`, `consent.md`, `questions/*.toml` and `assignment.csv`. Its digest names the protocol;
+//! it stands in the first line of every run, so that no two protocols pass for one.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::assignment::Assignment;
+use super::questions::Questionnaire;
+use super::rules::{DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
+use crate::session::error::RunError;
+use crate::session::folder::configuration::{DEFAULT_SCENARIO, check_cash, check_days};
+use crate::session::trajectory::record::Activity;
+use crate::world::params::{ParameterError, line_of_key};
+
+/// Name of the file that makes a folder a study.
+pub const STUDY_FILE: &str = "study.toml";
+/// Name of the text that participants agree to.
+pub const CONSENT_FILE: &str = "consent.md";
+
+/// A study that was read from its folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What `study.toml` says.
+    pub protocol: Protocol,
+    /// The text that participants agree to; none if none is asked for.
+    pub consent: Option<String>,
+    /// Questionnaires in the order of their files.
+    pub questionnaires: Vec<Questionnaire>,
+    /// Who takes part, and how; none where any label is taken.
+    pub assignment: Option<Assignment>,
+    /// blake3 digest of protocol, consent and questions, in hexadecimal digits. The assignment may grow; what it says of a
+    /// person stands in their run.
+    pub digest: String,
+}
+
+/// What `study.toml` says.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Protocol {
+    /// Name: letters, digits and hyphens.
+    pub name: String,
+    /// What participants are shown as its title.
+    pub title: String,
+    /// The company of the session.
+    #[serde(default)]
+    pub world: StudyWorld,
+    /// Who plays which seed.
+    #[serde(default)]
+    pub seeds: Seeds,
+    /// What is played first, to learn the controls.
+    #[serde(default)]
+    pub practice: Practice,
+    /// What the program shows.
+    #[serde(default)]
+    pub session: SessionPage,
+    /// How long a person may take.
+    #[serde(default)]
+    pub limits: TimeLimits,
+    /// What is recorded.
+    #[serde(default)]
+    pub record: RecordPage,
+    /// What makes the record evidence.
+    #[serde(default)]
+    pub integrity: IntegrityPage,
+    /// What opens what participants do not get.
+    #[serde(default)]
+    pub access: AccessPage,
+}
+
+/// The company of the session.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct StudyWorld {
+    /// A shipped scenario.
+    pub scenario: String,
+    /// Last day; as the scenario says if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub days: Option<u32>,
+    /// Cash on day 0, dollars; as the scenario says if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cash: Option<f64>,
+}
+
+impl Default for StudyWorld {
+    fn default() -> Self {
+        StudyWorld { scenario: DEFAULT_SCENARIO.to_owned(), days: None, cash: None }
+    }
+}
+
+/// Who plays which seed.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Seeds {
+    /// How seeds are given.
+    pub plan: SeedPlan,
+    /// The seed of everybody, with plan `one`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// Seeds of a block, with plan `blocks`: each block of participants gets all of them, in random order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub block: Vec<u64>,
+    /// Conditions, crossed with the seeds of a block.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub conditions: Vec<String>,
+}
+
+/// How seeds are given.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SeedPlan {
+    /// Everybody plays the same.
+    #[default]
+    One,
+    /// Randomised in blocks, when the assignment is made.
+    Blocks,
+    /// As `assignment.csv` says, written by the experimenter.
+    Assigned,
+}
+
+/// What is played first, to learn the controls.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Practice {
+    /// Whether there is a practice, and whether it can be passed over.
+    pub offer: PracticeOffer,
+    /// Its scenario.
+    pub scenario: String,
+    /// Its seed; never that of a session.
+    pub seed: u64,
+    /// Its last day; as the scenario says if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub days: Option<u32>,
+}
+
+/// Whether there is a practice.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PracticeOffer {
+    /// Everybody plays it to its end.
+    Required,
+    /// Everybody may pass it over.
+    #[default]
+    Optional,
+    /// There is none.
+    None,
+}
+
+impl Default for Practice {
+    fn default() -> Self {
+        Practice { offer: PracticeOffer::default(), scenario: "practice".to_owned(), seed: 1_618, days: None }
+    }
+}
+
+/// What the program shows.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SessionPage {
+    /// The tour is shown in the practice.
+    pub tour: bool,
+    /// Alerts recommend.
+    pub advice: bool,
+    /// The person sees how their own forecasts have done while they make new ones.
+    pub calibration: bool,
+    /// What the final page shows.
+    pub results: ResultsShown,
+    /// The person is asked why they stop the clock.
+    pub pause_reason: bool,
+}
+
+impl Default for SessionPage {
+    fn default() -> Self {
+        SessionPage {
+            tour: false,
+            advice: false,
+            calibration: false,
+            results: ResultsShown::Own,
+            pause_reason: false,
+        }
+    }
+}
+
+/// What is recorded.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RecordPage {
+    /// Kinds of activity that are left out.
+    pub leave_out: Vec<String>,
+    /// What is kept of notes and answers in words.
+    pub free_text: FreeText,
+    /// What is kept of texts that were edited.
+    pub drafts: DraftsKept,
+}
+
+impl Default for RecordPage {
+    fn default() -> Self {
+        RecordPage { leave_out: Vec::new(), free_text: FreeText::Kept, drafts: DraftsKept::Lengths }
+    }
+}
+
+/// What makes the record evidence.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct IntegrityPage {
+    /// Folder on another machine that is told of every line.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub witness: Option<PathBuf>,
+    /// Week reports show four words that stand for the record, to be noted by the experimenter.
+    pub code_words: bool,
+}
+
+impl Default for IntegrityPage {
+    fn default() -> Self {
+        IntegrityPage { witness: None, code_words: true }
+    }
+}
+
+/// What opens what participants do not get.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct AccessPage {
+    /// Salted digest of the experimenter's code, as `novamind study code` prints it; none: no code is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub code: Option<CodeDigest>,
+}
+
+/// Salted digest of the experimenter's code: `salt:digest`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct CodeDigest(String);
+
+impl CodeDigest {
+    /// Rounds of hashing, so that trying codes takes time.
+    const ROUNDS: u32 = 100_000;
+
+    /// The digest of a code under a salt.
+    pub fn of(code: &str, salt: &str) -> CodeDigest {
+        let mut digest =
+            blake3::derive_key("novamind experimenter code", format!("{salt}:{code}").as_bytes());
+        for _ in 0..CodeDigest::ROUNDS {
+            digest = *blake3::hash(&digest).as_bytes();
+        }
+        let digits: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+        CodeDigest(format!("{salt}:{digits}"))
+    }
+
+    /// Whether a code is the one.
+    pub fn opens(&self, code: &str) -> bool {
+        self.0.split_once(':').is_some_and(|(salt, _)| CodeDigest::of(code, salt) == *self)
+    }
+
+    /// As the file has it.
+    pub fn as_text(&self) -> &str {
+        &self.0
+    }
+}
+
+impl Study {
+    /// Reads the study in a folder.
+    ///
+    /// # Errors
+    /// A file is missing or wrong; the error names file, line and key, and what would be right.
+    pub fn read(folder: &Path) -> Result<Study, RunError> {
+        let path = folder.join(STUDY_FILE);
+        let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
+        let protocol = Protocol::read(&path.display().to_string(), &text)?;
+        let consent = read_if_there(&folder.join(CONSENT_FILE))?.filter(|text| !text.trim().is_empty());
+        let files = question_files(folder)?;
+        let mut questionnaires = Vec::new();
+        for (path, text) in &files {
+            questionnaires.push(Questionnaire::read(path, text)?);
+        }
+        let assignment = Assignment::read(folder)?;
+        if assignment.is_none() && protocol.seeds.plan != SeedPlan::One {
+            let problem =
+                "assignment.csv is missing: this plan gives seeds by it. `novamind study assign` writes one";
+            return Err(wrong(&path.display().to_string(), &text, "seeds.plan", problem).into());
+        }
+        let mut digest = blake3::Hasher::new_derive_key("novamind study protocol");
+        let mut take = |name: &str, text: &str| {
+            for part in [name, text] {
+                digest.update(&(part.len() as u64).to_le_bytes());
+                digest.update(part.as_bytes());
+            }
+        };
+        take(STUDY_FILE, &text);
+        take(CONSENT_FILE, consent.as_deref().unwrap_or_default());
+        for (path, text) in &files {
+            take(&path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default(), text);
+        }
+        let digest = digest.finalize().to_hex().to_string();
+        Ok(Study { folder: folder.to_owned(), protocol, consent, questionnaires, assignment, digest })
+    }
+
+    /// By which rules its sessions are played.
+    pub fn rules(&self) -> SessionRules {
+        let Protocol { session, record, integrity, limits, .. } = &self.protocol;
+        SessionRules {
+            advice: session.advice,
+            calibration: session.calibration,
+            results: session.results,
+            free_text: record.free_text,
+            drafts: record.drafts,
+            unrecorded: record.leave_out.clone(),
+            pause_reason: session.pause_reason,
+            code_words: integrity.code_words,
+            limits: *limits,
+        }
+    }
+}
+
+impl Protocol {
+    /// Whether a code opens what participants do not get. Without a code in the protocol nothing does.
+    pub fn opens_with(&self, code: Option<&str>) -> bool {
+        matches!((&self.access.code, code), (Some(digest), Some(code)) if digest.opens(code))
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its line and key.
+    pub fn read(source: &str, text: &str) -> Result<Protocol, ParameterError> {
+        let protocol: Protocol = toml::from_str(text).map_err(|error| ParameterError {
+            source: source.to_owned(),
+            line: error.span().map(|span| text[..span.start].matches('\n').count() + 1),
+            key: String::new(),
+            problem: error.message().to_owned(),
+        })?;
+        protocol.check().map_err(|(key, problem)| wrong(source, text, key, &problem))?;
+        Ok(protocol)
+    }
+
+    fn check(&self) -> Result<(), (&'static str, String)> {
+        let fits = |name: &str| {
+            let letters = name.bytes().all(|letter| letter.is_ascii_alphanumeric() || letter == b'-');
+            (1..=40).contains(&name.len()) && letters
+        };
+        if !fits(&self.name) {
+            return Err(("name", "a name has 1 to 40 letters, digits and hyphens".to_owned()));
+        }
+        self.world.days.map_or(Ok(()), check_days).map_err(|problem| ("world.days", problem))?;
+        self.world.cash.map_or(Ok(()), check_cash).map_err(|problem| ("world.cash", problem))?;
+        self.practice.days.map_or(Ok(()), check_days).map_err(|problem| ("practice.days", problem))?;
+        match self.seeds.plan {
+            SeedPlan::One if self.seeds.seed.is_none() => {
+                return Err(("seeds", "plan \"one\" needs seed = N".to_owned()));
+            }
+            SeedPlan::Blocks if self.seeds.block.is_empty() => {
+                return Err(("seeds", "plan \"blocks\" needs block = [seeds]".to_owned()));
+            }
+            _ => {}
+        }
+        let of_session = self.seeds.seed.iter().chain(&self.seeds.block);
+        if self.practice.offer != PracticeOffer::None
+            && of_session.into_iter().any(|seed| *seed == self.practice.seed)
+        {
+            let problem =
+                format!("{} is also the seed of a session: practice needs its own", self.practice.seed);
+            return Err(("practice.seed", problem));
+        }
+        let unknown = self.record.leave_out.iter().find(|kind| !Activity::KINDS.contains(&kind.as_str()));
+        if let Some(kind) = unknown {
+            let known = Activity::KINDS.join(", ");
+            return Err((
+                "record.leave_out",
+                format!("no kind of activity is called {kind}; the kinds are {known}"),
+            ));
+        }
+        const NEEDED: [&str; 5] = ["session", "clock", "limit", "answer", "question"];
+        if let Some(kind) = self.record.leave_out.iter().find(|kind| NEEDED.contains(&kind.as_str())) {
+            return Err((
+                "record.leave_out",
+                format!("{kind} cannot be left out: times and answers rest on it"),
+            ));
+        }
+        let limits = [self.limits.week_minutes, self.limits.session_minutes, self.limits.study_minutes];
+        if limits.contains(&Some(0)) {
+            return Err(("limits", "a limit has at least 1 minute".to_owned()));
+        }
+        Ok(())
+    }
+}
+
+/// What is wrong with a key of a file.
+pub(super) fn wrong(source: &str, text: &str, key: &str, problem: &str) -> ParameterError {
+    ParameterError {
+        source: source.to_owned(),
+        line: line_of_key(text, key),
+        key: key.to_owned(),
+        problem: problem.to_owned(),
+    }
+}
+
+fn read_if_there(path: &Path) -> Result<Option<String>, RunError> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => Ok(Some(text)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(RunError::Io { path: path.to_owned(), error }),
+    }
+}
+
+/// Files of questions by their names, with their texts.
+fn question_files(folder: &Path) -> Result<Vec<(PathBuf, String)>, RunError> {
+    let questions = folder.join("questions");
+    let entries = match std::fs::read_dir(&questions) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(RunError::Io { path: questions, error }),
+    };
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    paths.sort_unstable();
+    let read = |path: PathBuf| match std::fs::read_to_string(&path) {
+        Ok(text) => Ok((path, text)),
+        Err(error) => Err(RunError::Io { path, error }),
+    };
+    paths.into_iter().map(read).collect()
+}

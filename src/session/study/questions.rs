@@ -1,0 +1,359 @@
+//! Questionnaires: `questions/*.toml` in the folder of a study, one file each.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::definition::wrong;
+use crate::world::params::ParameterError;
+
+/// Questions that are asked together.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Questionnaire {
+    /// Name: that of its file.
+    #[serde(skip)]
+    pub name: String,
+    /// What stands above the questions.
+    pub title: String,
+    /// A text before the first question.
+    #[serde(default)]
+    pub introduction: String,
+    /// When it is asked.
+    pub when: Moment,
+    /// After which weeks, with `when = "weeks"`.
+    #[serde(default)]
+    pub weeks: Vec<u32>,
+    /// Its questions.
+    #[serde(rename = "question")]
+    pub questions: Vec<Question>,
+}
+
+/// When a questionnaire is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Moment {
+    /// Before the first week of the session.
+    Before,
+    /// After certain weeks.
+    Weeks,
+    /// When the person goes on after having stopped the clock or left.
+    Break,
+    /// Once the session is over.
+    End,
+}
+
+/// A question.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Question {
+    /// Name: letters, digits, underscores.
+    pub id: String,
+    /// What is asked.
+    pub text: String,
+    /// How it is answered.
+    #[serde(flatten)]
+    pub form: Form,
+    /// It cannot be passed over.
+    #[serde(default)]
+    pub required: bool,
+}
+
+/// How a question is answered.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "form", rename_all = "lowercase")]
+pub enum Form {
+    /// A point of a scale.
+    Likert {
+        /// Points, 2 to 11.
+        points: u32,
+        /// What the first point means.
+        #[serde(default)]
+        low: String,
+        /// What the last point means.
+        #[serde(default)]
+        high: String,
+    },
+    /// A number.
+    Number {
+        /// Smallest.
+        #[serde(default)]
+        min: Option<f64>,
+        /// Largest.
+        #[serde(default)]
+        max: Option<f64>,
+        /// Unit.
+        #[serde(default)]
+        unit: String,
+    },
+    /// One of some options, or several.
+    Choice {
+        /// What can be chosen.
+        options: Vec<String>,
+        /// More than one.
+        #[serde(default)]
+        several: bool,
+    },
+    /// Words.
+    Text {
+        /// Most characters.
+        #[serde(default = "most_letters")]
+        most: u32,
+    },
+    /// One of some options, one of which is right: whether the person reads.
+    Attention {
+        /// What can be chosen.
+        options: Vec<String>,
+        /// The right one.
+        expected: String,
+    },
+}
+
+fn most_letters() -> u32 {
+    2000
+}
+
+impl Form {
+    /// Word as records write it.
+    pub fn id(&self) -> &'static str {
+        match self {
+            Form::Likert { .. } => "likert",
+            Form::Number { .. } => "number",
+            Form::Choice { .. } => "choice",
+            Form::Text { .. } => "text",
+            Form::Attention { .. } => "attention",
+        }
+    }
+
+    /// What can be chosen, as it is shown.
+    pub fn options(&self) -> Vec<String> {
+        match self {
+            Form::Likert { points, .. } => (1..=*points).map(|point| point.to_string()).collect(),
+            Form::Choice { options, .. } | Form::Attention { options, .. } => options.clone(),
+            Form::Number { .. } | Form::Text { .. } => Vec::new(),
+        }
+    }
+
+    /// The value of an answer as it was typed.
+    ///
+    /// # Errors
+    /// What would be an answer.
+    pub fn value(&self, typed: &str) -> Result<Value, String> {
+        let typed = typed.trim();
+        match self {
+            Form::Likert { points, .. } => match typed.parse::<u32>() {
+                Ok(point) if (1..=*points).contains(&point) => Ok(json!(point)),
+                _ => Err(format!("a number from 1 to {points}")),
+            },
+            Form::Number { min, max, .. } => {
+                let number = typed.replace('_', "").parse::<f64>().ok().filter(|number| number.is_finite());
+                let above = |number: &f64| min.is_none_or(|min| *number >= min);
+                let below = |number: &f64| max.is_none_or(|max| *number <= max);
+                number.filter(above).filter(below).map(|number| json!(number)).ok_or_else(|| {
+                    match (min, max) {
+                        (Some(min), Some(max)) => format!("a number from {min} to {max}"),
+                        (Some(min), None) => format!("a number of at least {min}"),
+                        (None, Some(max)) => format!("a number of at most {max}"),
+                        (None, None) => "a number".to_owned(),
+                    }
+                })
+            }
+            Form::Choice { options, several: true } => {
+                let chosen: Option<Vec<&String>> =
+                    typed.split(',').map(|one| chosen(options, one.trim())).collect();
+                chosen
+                    .filter(|chosen| !chosen.is_empty())
+                    .map(|chosen| json!(chosen))
+                    .ok_or_else(|| format!("numbers from 1 to {}, with commas", options.len()))
+            }
+            Form::Choice { options, several: false } | Form::Attention { options, .. } => {
+                let none = || format!("a number from 1 to {}", options.len());
+                chosen(options, typed).map(|option| json!(option)).ok_or_else(none)
+            }
+            Form::Text { most } => match typed.chars().count() {
+                0 => Err("a few words".to_owned()),
+                length if length as u64 > u64::from(*most) => Err(format!("at most {most} characters")),
+                _ => Ok(json!(typed)),
+            },
+        }
+    }
+
+    /// Whether it is answered in the person's own words.
+    pub fn is_in_words(&self) -> bool {
+        matches!(self, Form::Text { .. })
+    }
+
+    /// Whether an answer is the expected one; none where none is expected.
+    pub fn is_as_expected(&self, value: &Value) -> Option<bool> {
+        match self {
+            Form::Attention { expected, .. } => Some(value.as_str() == Some(expected)),
+            _ => None,
+        }
+    }
+
+    /// Keys that a question of this form can have.
+    fn keys(&self) -> &'static [&'static str] {
+        match self {
+            Form::Likert { .. } => &["points", "low", "high"],
+            Form::Number { .. } => &["min", "max", "unit"],
+            Form::Choice { .. } => &["options", "several"],
+            Form::Text { .. } => &["most"],
+            Form::Attention { .. } => &["options", "expected"],
+        }
+    }
+
+    fn check(&self) -> Result<(), String> {
+        match self {
+            Form::Likert { points, .. } if !(2..=11).contains(points) => {
+                Err("a scale has 2 to 11 points".to_owned())
+            }
+            Form::Number { min: Some(min), max: Some(max), .. } if min > max => {
+                Err(format!("min {min} is above max {max}"))
+            }
+            Form::Choice { options, .. } | Form::Attention { options, .. } if options.len() < 2 => {
+                Err("there have to be at least two options".to_owned())
+            }
+            Form::Attention { options, expected } if !options.contains(expected) => {
+                Err(format!("the expected answer {expected:?} is none of the options"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// An option by its number from 1, or by its words.
+fn chosen<'a>(options: &'a [String], typed: &str) -> Option<&'a String> {
+    let numbered = typed.parse::<usize>().ok().and_then(|number| options.get(number.checked_sub(1)?));
+    numbered.or_else(|| options.iter().find(|option| option.eq_ignore_ascii_case(typed)))
+}
+
+impl Questionnaire {
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its line and key.
+    pub fn read(path: &Path, text: &str) -> Result<Questionnaire, ParameterError> {
+        let source = path.display().to_string();
+        let read: Questionnaire = toml::from_str(text).map_err(|error| ParameterError {
+            source: source.clone(),
+            line: error.span().map(|span| text[..span.start].matches('\n').count() + 1),
+            key: String::new(),
+            problem: error.message().to_owned(),
+        })?;
+        let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let questionnaire = Questionnaire { name, ..read };
+        if (questionnaire.when == Moment::Weeks) != !questionnaire.weeks.is_empty() {
+            return Err(wrong(
+                &source,
+                text,
+                "weeks",
+                "weeks = [N, …] stands with when = \"weeks\" and only there",
+            ));
+        }
+        let tables = text.parse::<toml::Table>().unwrap_or_default();
+        let tables = tables.get("question").and_then(toml::Value::as_array).cloned().unwrap_or_default();
+        let mut known = std::collections::BTreeSet::new();
+        for (question, table) in questionnaire.questions.iter().zip(&tables) {
+            let own = [&["id", "text", "form", "required"], question.form.keys()].concat();
+            let unknown = table
+                .as_table()
+                .into_iter()
+                .flat_map(toml::Table::keys)
+                .find(|key| !own.contains(&key.as_str()));
+            if let Some(key) = unknown {
+                let problem =
+                    format!("{}: {key} is no key of this form; its keys are {}", question.id, own.join(", "));
+                return Err(wrong(&source, text, key, &problem));
+            }
+            let fits = |letter: u8| letter.is_ascii_alphanumeric() || letter == b'_';
+            if question.id.is_empty() || !question.id.bytes().all(fits) {
+                let problem =
+                    format!("{:?} is no name of a question: letters, digits, underscores", question.id);
+                return Err(wrong(&source, text, "question", &problem));
+            }
+            if !known.insert(&question.id) {
+                return Err(wrong(&source, text, "question", &format!("{} stands here twice", question.id)));
+            }
+            let problem =
+                |problem: String| wrong(&source, text, "question", &format!("{}: {problem}", question.id));
+            question.form.check().map_err(problem)?;
+        }
+        Ok(questionnaire)
+    }
+
+    /// Whether it is asked after a week, counted from 1.
+    pub fn is_due_after(&self, week: u32) -> bool {
+        self.when == Moment::Weeks && self.weeks.contains(&week)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Questionnaire, String> {
+        Questionnaire::read(Path::new("questions/effort.toml"), text).map_err(|error| error.to_string())
+    }
+
+    const EFFORT: &str = r#"
+title = "Effort"
+when = "weeks"
+weeks = [4, 12]
+[[question]]
+id = "effort"
+text = "How hard was this week?"
+form = "likert"
+points = 7
+low = "easy"
+high = "hard"
+required = true
+[[question]]
+id = "check"
+text = "Choose the second option."
+form = "attention"
+options = ["first", "second"]
+expected = "second"
+[[question]]
+id = "tools"
+text = "What helped?"
+form = "choice"
+options = ["SQL", "forms", "notes"]
+several = true
+[[question]]
+id = "cash"
+text = "Cash at the end?"
+form = "number"
+min = 0.0
+"#;
+
+    #[test]
+    fn answers_are_read_as_their_forms_say() {
+        let effort = read(EFFORT).expect("it reads");
+        assert_eq!(effort.name, "effort");
+        assert!(effort.is_due_after(4) && !effort.is_due_after(5));
+        let value = |at: usize, typed: &str| effort.questions[at].form.value(typed);
+        assert_eq!(value(0, "7"), Ok(json!(7)));
+        assert_eq!(value(0, "8"), Err("a number from 1 to 7".to_owned()));
+        assert_eq!(value(1, "2"), Ok(json!("second")));
+        assert_eq!(effort.questions[1].form.is_as_expected(&json!("first")), Some(false));
+        assert_eq!(value(2, "1, notes"), Ok(json!(["SQL", "notes"])));
+        assert!(value(2, "1, none").is_err());
+        assert_eq!(value(3, "1_000"), Ok(json!(1000.0)));
+        assert!(value(3, "-1").is_err() && value(3, "inf").is_err());
+    }
+
+    #[test]
+    fn wrong_questions_are_named() {
+        for (from, to, part) in [
+            ("points = 7", "points = 1", "2 to 11"),
+            ("expected = \"second\"", "expected = \"third\"", "none of the options"),
+            ("weeks = [4, 12]", "", "weeks"),
+            ("id = \"check\"", "id = \"effort\"", "twice"),
+            ("when = \"weeks\"", "when = \"sometimes\"", "line 3"),
+            ("low = \"easy\"", "lowest = \"easy\"", "lowest is no key of this form"),
+        ] {
+            let error = read(&EFFORT.replace(from, to)).expect_err(to);
+            assert!(error.contains(part), "{error}");
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! A participant at a machine: what comes next for them, from the label to the thanks.
+//!
+//! Nothing is kept but the runs themselves and a list of visits: whoever leaves at any point goes on there.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::assignment::Place;
+use super::definition::{PracticeOffer, SeedPlan, Study};
+use super::stamp::StudyStamp;
+use super::visit_log::{VisitEvent, VisitLog};
+use crate::session::error::RunError;
+use crate::session::folder::consent::{ConsentGiven, ConsentText};
+use crate::session::folder::create::{NewRun, Storage, StudyEntry};
+use crate::session::folder::manifest::Manifest;
+use crate::session::folder::mode::Mode;
+use crate::session::folder::runs::{RunSummary, list_runs, participant_folder};
+use crate::session::resume::open::Access;
+use crate::session::state::Session;
+use crate::session::trajectory::now;
+
+/// Name of the file that is left of what somebody has withdrawn.
+const TOMBSTONE: &str = "withdrawn.toml";
+
+/// A participant who has given a label.
+#[derive(Debug, Clone)]
+pub struct Visit {
+    study: Study,
+    label: String,
+    place: Option<Place>,
+    /// Folder of this participant's runs.
+    runs: PathBuf,
+    log: VisitLog,
+    refused_labels: u32,
+}
+
+/// What comes next for a participant.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NextStep {
+    /// They read a text and agree, or not.
+    Consent(ConsentText),
+    /// They practise: in a run of theirs that is unfinished, or in a new one.
+    Practice {
+        /// The unfinished run.
+        unfinished: Option<PathBuf>,
+        /// They may pass it over.
+        may_pass: bool,
+    },
+    /// They play: in a run of theirs that is unfinished, or in a new one.
+    Session(Option<PathBuf>),
+    /// Questions at the end are open.
+    Questions(PathBuf),
+    /// They have done everything.
+    Thanks,
+    /// They have withdrawn.
+    Withdrawn,
+}
+
+/// What is left of what somebody has withdrawn.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Tombstone {
+    /// Run that was erased.
+    pub run: String,
+    /// Digest of the study's protocol.
+    pub study: String,
+    /// When it was erased, RFC 3339.
+    pub at: String,
+}
+
+impl Visit {
+    /// Begins the visit of a participant; `runs` is the folder of all runs of the machine, `refused` how many labels were
+    /// refused before.
+    ///
+    /// # Errors
+    /// The label is none of the study's, or cannot name a folder. The refusal is in the list of visits.
+    pub fn begin(study: Study, runs: &Path, label: &str, refused: u32) -> Result<Visit, RunError> {
+        let log = VisitLog::of(runs, &study);
+        let label = label.trim();
+        let folder = participant_folder(runs, label);
+        let place = study.assignment.as_ref().map(|assignment| assignment.place(label).cloned());
+        let problem = match (&folder, &place) {
+            (Err(problem), _) => Some(problem.clone()),
+            (Ok(_), Some(None)) => {
+                Some(format!("{label} is no label of this study: check it, or ask the experimenter"))
+            }
+            _ => None,
+        };
+        if let Some(problem) = problem {
+            log.write(label, VisitEvent::LabelRefused);
+            return Err(RunError::NotPossible(problem));
+        }
+        let visit = Visit {
+            runs: folder.unwrap_or_default(),
+            place: place.flatten(),
+            label: label.to_owned(),
+            refused_labels: refused,
+            study,
+            log,
+        };
+        visit.refuse_other_protocol()?;
+        visit.log.write(label, VisitEvent::Came);
+        Ok(visit)
+    }
+
+    /// The study.
+    pub fn study(&self) -> &Study {
+        &self.study
+    }
+
+    /// Label of the participant.
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
+    /// Folder of the participant's runs.
+    pub fn runs(&self) -> &Path {
+        &self.runs
+    }
+
+    /// What comes next.
+    ///
+    /// # Errors
+    /// The participant's runs cannot be read.
+    pub fn next(&self) -> Result<NextStep, RunError> {
+        if self.runs.join(TOMBSTONE).exists() {
+            return Ok(NextStep::Withdrawn);
+        }
+        match self.open_consent(&self.own_runs()?)? {
+            Some(text) => Ok(NextStep::Consent(text)),
+            None => self.after_consent(),
+        }
+    }
+
+    /// What comes once the participant has agreed; their first run records that they have.
+    ///
+    /// # Errors
+    /// As [`Visit::next`].
+    pub fn after_consent(&self) -> Result<NextStep, RunError> {
+        let own = self.own_runs()?;
+        let find =
+            |practice: bool| own.iter().find(|(stamp, _)| stamp.practice == practice).map(|(_, run)| run);
+        let (practice, session) = (find(true), find(false));
+        let has_practised = practice.is_some_and(|run| run.ended.is_some());
+        if session.is_none() && !has_practised && self.study.protocol.practice.offer != PracticeOffer::None {
+            let may_pass = self.study.protocol.practice.offer == PracticeOffer::Optional;
+            let unfinished = practice.map(|run| self.runs.join(&run.id));
+            if !(may_pass && self.log.has(&self.label, VisitEvent::PassedPractice)) {
+                return Ok(NextStep::Practice { unfinished, may_pass });
+            }
+        }
+        let Some(run) = session else { return Ok(NextStep::Session(None)) };
+        let folder = self.runs.join(&run.id);
+        if run.ended.is_none() {
+            return Ok(NextStep::Session(Some(folder)));
+        }
+        let finished = Session::open(&folder, Access::Read, false)?;
+        let open = !self.study.due(&finished).is_empty();
+        Ok(if open { NextStep::Questions(folder) } else { NextStep::Thanks })
+    }
+
+    /// The new run of the practice or of the session.
+    pub fn new_run(&self, practice: bool, agreed: Option<ConsentGiven>) -> NewRun {
+        let protocol = &self.study.protocol;
+        let stamp = StudyStamp {
+            name: protocol.name.clone(),
+            digest: self.study.digest.clone(),
+            condition: self.place.as_ref().and_then(|place| place.condition.clone()),
+            order: self.place.as_ref().map(|place| place.order),
+            practice,
+            refused_labels: self.refused_labels,
+        };
+        let of_place = self.place.as_ref().and_then(|place| place.seed);
+        let seed = match protocol.seeds.plan {
+            SeedPlan::One => protocol.seeds.seed,
+            SeedPlan::Blocks | SeedPlan::Assigned => of_place.or(protocol.seeds.seed),
+        };
+        let (seed, scenario, days, cash) = match practice {
+            true => (Some(protocol.practice.seed), &protocol.practice.scenario, protocol.practice.days, None),
+            false => (seed, &protocol.world.scenario, protocol.world.days, protocol.world.cash),
+        };
+        NewRun {
+            seed,
+            days,
+            cash,
+            scenario: scenario.clone(),
+            mode: Mode::Baseline,
+            participant: Some(self.label.clone()),
+            agreed,
+            study: Some(StudyEntry { stamp, rules: self.study.rules(), consent: self.consent_text() }),
+            storage: Storage::Runs(self.runs.clone()),
+            ..NewRun::default()
+        }
+    }
+
+    /// Records that the participant has passed over the practice.
+    pub fn pass_practice(&self) {
+        self.log.write(&self.label, VisitEvent::PassedPractice);
+    }
+
+    /// Records that the participant does not agree.
+    pub fn decline(&self) {
+        self.log.write(&self.label, VisitEvent::ConsentDeclined);
+    }
+
+    /// Records that the participant has done everything.
+    pub fn finish(&self) {
+        self.log.write(&self.label, VisitEvent::Finished);
+    }
+
+    /// Erases the participant's runs of this study for good; what is left says that there were some.
+    ///
+    /// # Errors
+    /// They are in use, or cannot be removed.
+    pub fn withdraw(&self) -> Result<(), RunError> {
+        let own = self.own_runs()?;
+        for (_, run) in &own {
+            crate::session::folder::runs::delete_run(&self.runs, &run.id)?;
+        }
+        let stone = Tombstone {
+            run: own.iter().map(|(_, run)| run.id.clone()).collect::<Vec<_>>().join(" "),
+            study: self.study.digest.clone(),
+            at: now(),
+        };
+        let path = self.runs.join(TOMBSTONE);
+        std::fs::create_dir_all(&self.runs).map_err(RunError::io(&self.runs))?;
+        std::fs::write(&path, toml::to_string(&stone).unwrap_or_default()).map_err(RunError::io(&path))?;
+        self.log.write(&self.label, VisitEvent::Withdrew);
+        Ok(())
+    }
+
+    fn consent_text(&self) -> Option<ConsentText> {
+        let file = self.study.folder.join(super::definition::CONSENT_FILE).display().to_string();
+        self.study.consent.clone().map(|text| ConsentText { file, text })
+    }
+
+    /// The text that nobody has agreed to yet.
+    fn open_consent(&self, own: &[(StudyStamp, RunSummary)]) -> Result<Option<ConsentText>, RunError> {
+        let Some(text) = self.consent_text() else { return Ok(None) };
+        let digest = text.digest();
+        let has_agreed = own.iter().any(|(_, run)| {
+            let manifest = Manifest::read(&self.runs.join(&run.id)).ok();
+            manifest.and_then(|manifest| manifest.consent).is_some_and(|consent| consent.digest == digest)
+        });
+        Ok((!has_agreed).then_some(text))
+    }
+
+    /// The participant's runs of this study with their stamps, the last played first.
+    fn own_runs(&self) -> Result<Vec<(StudyStamp, RunSummary)>, RunError> {
+        let stamped = |run: RunSummary| {
+            let stamp = Manifest::read(&self.runs.join(&run.id)).ok()?.study?;
+            (stamp.digest == self.study.digest).then_some((stamp, run))
+        };
+        Ok(list_runs(&self.runs)?.into_iter().filter_map(stamped).collect())
+    }
+
+    /// A participant goes on under the protocol that they began with.
+    fn refuse_other_protocol(&self) -> Result<(), RunError> {
+        let other = list_runs(&self.runs)?.into_iter().find_map(|run| {
+            let stamp = Manifest::read(&self.runs.join(&run.id)).ok()?.study?;
+            (stamp.name == self.study.protocol.name && stamp.digest != self.study.digest).then_some(run.id)
+        });
+        match other {
+            None => Ok(()),
+            Some(run) => Err(RunError::NotPossible(format!(
+                "the study was changed since {} began (run {run}): ask the experimenter. Nothing was recorded",
+                self.label
+            ))),
+        }
+    }
+}

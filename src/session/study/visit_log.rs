@@ -1,0 +1,85 @@
+//! `visits.jsonl` in the folder of runs: who came when, and what became of it, also where no run began.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::definition::Study;
+use crate::session::play::presence::Machine;
+use crate::session::trajectory::now;
+
+/// Name of the file.
+pub const VISITS: &str = "visits.jsonl";
+
+/// Something that happened around the runs of a study.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VisitLine {
+    /// When, RFC 3339.
+    pub at: String,
+    /// The machine.
+    pub machine: String,
+    /// Digest of the study's protocol.
+    pub study: String,
+    /// Label, as it was typed.
+    pub label: String,
+    /// What happened.
+    pub event: VisitEvent,
+}
+
+/// What happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VisitEvent {
+    /// A participant gave a label that was taken.
+    Came,
+    /// A label was refused.
+    LabelRefused,
+    /// The participant does not agree to the text.
+    ConsentDeclined,
+    /// The practice was passed over.
+    PassedPractice,
+    /// The participant withdrew; their runs were erased.
+    Withdrew,
+    /// Everything is done.
+    Finished,
+}
+
+/// The list of visits of a machine.
+#[derive(Debug, Clone)]
+pub(super) struct VisitLog {
+    path: PathBuf,
+    study: String,
+}
+
+impl VisitLog {
+    /// The list beside the runs of a machine.
+    pub(super) fn of(runs: &Path, study: &Study) -> VisitLog {
+        VisitLog { path: runs.join(VISITS), study: study.digest.clone() }
+    }
+
+    /// Writes a line. A list that cannot be written keeps nobody from playing: the runs are the record.
+    pub(super) fn write(&self, label: &str, event: VisitEvent) {
+        let label = label.chars().take(80).collect();
+        let line =
+            VisitLine { at: now(), machine: Machine::here().id, study: self.study.clone(), label, event };
+        let text = serde_json::to_string(&line).unwrap_or_default() + "\n";
+        let folder = self.path.parent().map_or(Ok(()), std::fs::create_dir_all);
+        let _ = folder
+            .and_then(|()| File::options().create(true).append(true).open(&self.path))
+            .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()));
+    }
+
+    /// Whether something happened to a participant of this study.
+    pub(super) fn has(&self, label: &str, event: VisitEvent) -> bool {
+        let lines = visits(&self.path);
+        lines.iter().any(|line| line.study == self.study && line.label == label && line.event == event)
+    }
+}
+
+/// The lines of a list of visits; those that cannot be read are left out.
+pub fn visits(path: &Path) -> Vec<VisitLine> {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+}

@@ -1,0 +1,194 @@
+//! Studies with people, as experimenter and participants meet them.
+
+use std::fs;
+use std::path::PathBuf;
+
+use novamind::session::{Activity, Record, Trajectory, VisitEvent, lines_afterwards, visits};
+
+use crate::support::home::{Home, Said, id, said};
+
+/// A study of five weeks with questions, on a machine of its own.
+struct Lab(Home);
+
+impl Lab {
+    fn new() -> Lab {
+        let lab = Lab(Home::new());
+        let made = lab.0.run(&["study", "new", &lab.folder()]);
+        assert_eq!(made.code, 0, "{}", made.err);
+        lab.edit("# days = 84 ", "days = 35 #");
+        lab.edit("offer = \"required\"", "offer = \"none\"");
+        lab
+    }
+
+    fn folder(&self) -> String {
+        self.0.0.path().join("pilot").display().to_string()
+    }
+
+    fn edit(&self, from: &str, to: &str) {
+        let path = self.0.0.path().join("pilot/study.toml");
+        let text = fs::read_to_string(&path).expect("a protocol");
+        assert!(text.contains(from), "{from}");
+        fs::write(path, text.replace(from, to)).expect("written");
+    }
+
+    fn assign(&self) {
+        let made = self.0.run(&["study", "assign", &self.folder(), "--participants", "3"]);
+        assert_eq!(made.code, 0, "{}", made.err);
+    }
+
+    fn visit(&self, lines: &str) -> Said {
+        said(self.0.program().args(["--study", &self.folder()]), lines)
+    }
+
+    fn only_run(&self, label: &str) -> PathBuf {
+        let folders =
+            fs::read_dir(self.0.runs().join("participants").join(label)).expect("a folder").flatten();
+        let mut runs: Vec<PathBuf> = folders.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+        assert_eq!(runs.len(), 1);
+        runs.remove(0)
+    }
+
+    fn events(&self) -> Vec<(String, VisitEvent)> {
+        let lines = visits(&self.0.runs().join("visits.jsonl"));
+        lines.into_iter().map(|line| (line.label, line.event)).collect()
+    }
+}
+
+const WEEKS: &str = "next \"a\" naive\nnext \"b\" naive\nnext \"c\" naive\nnext \"d\" naive\n";
+
+/// Questionnaire, occasion, question and value of every answer of a run.
+fn answers(run: &std::path::Path) -> Vec<String> {
+    let trajectory = Trajectory::read(&run.join("trajectory.jsonl")).expect("it reads");
+    let after = lines_afterwards(run, &trajectory).expect("it reads");
+    let all = trajectory.lines.iter().chain(&after.lines);
+    all.filter_map(|line| match &line.record {
+        Record::Activity(Activity::Answer(answer)) => {
+            Some(format!("{} {} {} {}", line.day, answer.occasion, answer.id, answer.value))
+        }
+        _ => None,
+    })
+    .collect()
+}
+
+#[test]
+fn a_participant_is_led_from_the_label_to_the_thanks() {
+    let lab = Lab::new();
+    lab.assign();
+    let script = format!("P9\nP01\nwhat?\nyes\n8\n5\nset_prices A=9 B=19\n{WEEKS}4\n2\nquit\n");
+    let first = lab.visit(&script);
+    assert_eq!(first.code, 0, "{}", first.err);
+    for part in ["P9 is no label of this study", "Taking part", "type a number from 1 to 7", "ok set_prices"]
+    {
+        assert!(first.out.contains(part), "{part} is missing in\n{}", first.out);
+    }
+    assert!(!first.out.contains("seed"), "participants do not learn the seed");
+    // They come back, end the run, and answer what is asked then.
+    let second = lab.visit("P01\nnext \"e\" naive\nI tried to grow.\n1, 3\n");
+    for part in ["run ended: horizon", "What did you try to do", "Thank you"] {
+        assert!(second.out.contains(part), "{part} is missing in\n{}", second.out);
+    }
+    assert!(!second.out.contains("Taking part"), "consent is asked for once");
+    let run = lab.only_run("P01");
+    assert_eq!(
+        answers(&run),
+        [
+            "0 before experience 5",
+            "28 week 4 effort 4",
+            "28 week 4 reading \"second\"",
+            "35 end strategy \"I tried to grow.\"",
+            "35 end tools [\"the screens\",\"the tools' documentation\"]",
+        ]
+    );
+    let Record::Start(start) =
+        &Trajectory::read(&run.join("trajectory.jsonl")).expect("it reads").lines[0].record
+    else {
+        panic!("the first line")
+    };
+    let stamp = start.study.as_ref().expect("a study");
+    assert_eq!((stamp.refused_labels, stamp.order, stamp.practice), (1, Some(1), false));
+    assert!(
+        start
+            .consent
+            .as_ref()
+            .is_some_and(|consent| consent.text.as_ref().is_some_and(|text| text.contains("Taking part")))
+    );
+    assert!(start.rules.as_ref().is_some_and(|rules| !rules.advice && rules.code_words));
+    let third = lab.visit("P01\n");
+    assert!(third.out.contains("Thank you"), "{}", third.out);
+    let seen = lab.events();
+    assert_eq!(seen[0], ("P9".to_owned(), VisitEvent::LabelRefused));
+    assert_eq!(seen.iter().filter(|(_, event)| *event == VisitEvent::Finished).count(), 2);
+    assert_eq!(lab.0.run(&["replay", &id(&run), "--verify", "--as", "P01"]).code, 0);
+}
+
+#[test]
+fn who_declines_or_withdraws_leaves_no_run() {
+    let lab = Lab::new();
+    lab.assign();
+    let declined = lab.visit("P02\nno\n");
+    assert!(declined.code == 0 && declined.out.contains("Nothing of you was recorded"), "{}", declined.out);
+    let withdrew =
+        lab.visit(&format!("P03\nyes\n1\n{WEEKS}1\n2\nwithdraw\nno\nstatus\nwithdraw\nwithdraw\n"));
+    assert!(
+        withdrew.out.contains("subscribers 0") && withdrew.out.contains("were erased"),
+        "{}",
+        withdrew.out
+    );
+    let left: Vec<String> = fs::read_dir(lab.0.runs().join("participants/P03"))
+        .expect("a folder")
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    assert_eq!(left, ["withdrawn.toml"]);
+    assert!(lab.visit("P03\n").out.contains("You have withdrawn"));
+    assert!(!lab.0.runs().join("participants/P02").exists());
+}
+
+#[test]
+fn in_a_study_nothing_else_opens_without_the_code() {
+    let lab = Lab::new();
+    let code = said(lab.0.program().args(["study", "code"]), "open sesame\n");
+    let line = code.out.lines().find(|line| line.starts_with("code = ")).expect("a line");
+    lab.edit("# code = \"…\"", line);
+    let with = |options: &[&str]| lab.0.run(&[&["--study", &lab.folder()], options].concat());
+    for command in
+        [&["runs"][..], &["run", "--policy", "baseline"], &["scenario", "show", "default"], &["tools"]]
+    {
+        with(command).fails(2, &["experimenter's code"]);
+        with(&[&["--code", "guess"], command].concat()).fails(2, &["experimenter's code"]);
+    }
+    assert_eq!(with(&["--code", "open sesame", "runs"]).code, 0);
+    with(&["play", "--plain", "--seed", "3"]).fails(2, &["protocol"]);
+    // Whoever began under one protocol does not go on under another.
+    lab.visit("P1\nyes\n3\nquit\n");
+    lab.edit("advice = false", "advice = true ");
+    assert!(lab.visit("P1\n").out.contains("the study was changed since P1 began"));
+}
+
+#[test]
+fn wrong_protocols_are_named_with_line_and_key() {
+    let lab = Lab::new();
+    let good = fs::read_to_string(lab.0.0.path().join("pilot/study.toml")).expect("a protocol");
+    let line = |start: &str| good.lines().position(|line| line.starts_with(start)).expect(start) + 1;
+    for (from, to, parts) in [
+        ("plan = \"one\"", "plan = \"lots\"", vec![format!("line {}", line("plan")), "blocks".to_owned()]),
+        ("leave_out = []", "leave_out = [\"answer\"]", vec!["cannot be left out".to_owned()]),
+        ("leave_out = []", "leave_out = [\"vieuw\"]", vec!["no kind of activity is called vieuw".to_owned()]),
+        ("title = ", "titel = ", vec!["titel".to_owned()]),
+        ("days = 35", "days = 3", vec!["world.days".to_owned(), format!("line {}", line("days"))]),
+    ] {
+        fs::write(lab.0.0.path().join("pilot/study.toml"), good.replacen(from, to, 1)).expect("written");
+        let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
+        lab.0.run(&["study", "check", &lab.folder()]).fails(3, &parts);
+    }
+    let same =
+        good.replace("offer = \"none\"", "offer = \"optional\"").replace("seed = 1_618", "seed = 2_718");
+    fs::write(lab.0.0.path().join("pilot/study.toml"), same).expect("written");
+    lab.0.run(&["study", "check", &lab.folder()]).fails(3, &["practice.seed", "needs its own"]);
+    fs::write(lab.0.0.path().join("pilot/study.toml"), &good).expect("written");
+    let checked = lab.0.run(&["study", "check", &lab.folder()]);
+    assert!(checked.out.contains("digest") && checked.out.contains("ok    clock"), "{}", checked.out);
+    lab.assign();
+    lab.0.run(&["study", "assign", &lab.folder(), "--participants", "3"]).fails(1, &["exists"]);
+    lab.0.run(&["study", "new", &lab.folder()]).fails(1, &["a study already"]);
+}

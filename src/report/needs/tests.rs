@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::*;
+use crate::session::Mode;
 use crate::session::ToolId;
 use crate::session::{Configuration, NewRun, Storage, Via};
 

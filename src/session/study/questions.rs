@@ -242,7 +242,7 @@ impl Questionnaire {
         })?;
         let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let questionnaire = Questionnaire { name, ..read };
-        if (questionnaire.when == Moment::Weeks) != !questionnaire.weeks.is_empty() {
+        if (questionnaire.when == Moment::Weeks) == questionnaire.weeks.is_empty() {
             return Err(wrong(
                 &source,
                 text,

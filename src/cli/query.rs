@@ -98,16 +98,24 @@ fn ask(folder: &Path, sql: &str) -> Result<Rows, Failure> {
 
 /// Asks the run's database if it is complete.
 fn ask_file(folder: &Path, sql: &str) -> Result<Option<Rows>, Failure> {
-    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
+    // Both read long files: each has a thread of its own.
+    let (trajectory, opened) = std::thread::scope(|scope| {
+        let opened = scope.spawn(|| connection_to_file(folder));
+        (Trajectory::read(&folder.join("trajectory.jsonl")), opened.join())
+    });
+    let (trajectory, opened) = (trajectory?, opened.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
     // Queries and views do not move the database on; only lines that change the company do.
     let last = trajectory.lines.iter().rev().find(|line| moves_database(line));
-    if let (Ok((connection, position)), Some(last)) = (connection_to_file(folder), last)
+    if let (Ok((connection, position)), Some(last)) = (opened, last)
         && position.seq >= last.seq
         && trajectory.lines.get(position.seq as usize).is_some_and(|line| line.hash == position.line_hash)
     {
         let time = std::time::Duration::from_secs(120);
         let limits = crate::database::query::Limits { rows: 5000, time, steps: None };
-        return connection.ask(sql, limits).map(Some).map_err(|error| Refusal::from(error).into());
+        let answer = connection.ask(sql, limits);
+        if !connection.found_damage() {
+            return answer.map(Some).map_err(|error| Refusal::from(error).into());
+        }
     }
     Ok(None)
 }

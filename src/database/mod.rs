@@ -19,6 +19,7 @@ mod help;
 mod interrupt;
 mod issues;
 mod ledger;
+mod loading;
 mod location;
 mod memory;
 mod notices;

@@ -9,10 +9,11 @@ use rusqlite::{Connection, Transaction, params};
 
 use super::blocks::{AdsRun, BlockStore};
 use super::issues::{IssueRun, days_open};
+use super::loading::load_store;
 use super::location::Location;
 use super::notices::{Inbox, Place, TYPES};
 use super::packing::PackedRows;
-use super::projector::{ProjectionError, Projector, load_store};
+use super::projector::{ProjectionError, Projector};
 use crate::world::events::UsageRows;
 
 /// The tables that the program serves itself, as ordinary ones; of losses that repeat, only the days and the losses.

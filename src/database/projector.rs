@@ -1,5 +1,6 @@
 //! The writer thread: takes entries as they happen and commits them in one transaction per week or call.
 
+use std::cell::RefCell;
 use std::fmt;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
@@ -8,15 +9,12 @@ use std::thread::JoinHandle;
 
 use rusqlite::{Connection, OptionalExtension};
 
-use super::blocks::{AdsRun, BlockStore, SharedStore};
-use super::issues::IssueRun;
-use super::ledger::LedgerDay;
+use super::blocks::SharedStore;
+use super::loading::{BlockSource, load_store};
 use super::location::Location;
-use super::notices::{Inbox, NoticeDay, RepeatedLoss};
-use super::packing::{PackedDay, Run};
 use super::query::QueryConnection;
 use super::rows::{Entry, LAYOUT, RowWriter, create};
-use crate::world::events::{Facts, LossCause, UsageRows};
+use crate::world::events::Facts;
 use crate::world::params::Params;
 
 /// Entries that may wait before the simulation has to; a bound on memory.
@@ -176,7 +174,8 @@ impl Projector {
     /// # Errors
     /// The database cannot be opened for reading.
     pub fn connection(&self) -> Result<QueryConnection, ProjectionError> {
-        QueryConnection::open(&self.location, &self.store, self.gate.clone()).map_err(told)
+        let source = BlockSource::Writer(self.store.clone(), self.gate.clone());
+        QueryConnection::open(&self.location, source).map_err(told)
     }
 
     /// Leaves the database this many pages beside those it has, as a full disk does.
@@ -366,10 +365,8 @@ pub fn query_connection(location: &Location) -> Result<(QueryConnection, Positio
     if !is_laid_out_now(&connection) {
         return Err(ProjectionError("another version of the program created it".to_owned()));
     }
-    let store = SharedStore::default();
-    *store.write().unwrap_or_else(|poisoned| poisoned.into_inner()) =
-        load_store(&connection).ok_or_else(missing)?;
-    let connection = QueryConnection::open(location, &store, Arc::new(RwLock::new(()))).map_err(told)?;
+    let source = BlockSource::File(RefCell::default());
+    let connection = QueryConnection::open(location, source).map_err(told)?;
     Ok((connection, position))
 }
 
@@ -405,17 +402,6 @@ pub fn owner_of(location: &Location) -> Option<u32> {
     (owner != 0).then_some(owner as u32)
 }
 
-pub(super) fn load_store(connection: &Connection) -> Option<BlockStore> {
-    Some(BlockStore {
-        usage: Arc::new(load::<UsageRows>(connection, "usage_blocks")?),
-        ads: Arc::new(load::<AdsRun>(connection, "ads_blocks")?),
-        inbox: load_inbox(connection)?,
-        issues: Arc::new(load::<IssueRun>(connection, "issue_blocks")?),
-        issue_clock: Arc::new(load_clock(connection)?),
-        ledger: Arc::new(load_days(connection, "ledger_blocks", LedgerDay::read)?),
-    })
-}
-
 fn stored_position(connection: &Connection) -> rusqlite::Result<Option<Position>> {
     connection
         .query_row("SELECT seq, line_hash, own_check FROM projection", [], |row| {
@@ -426,44 +412,6 @@ fn stored_position(connection: &Connection) -> rusqlite::Result<Option<Position>
         })
         .optional()
         .map(Option::flatten)
-}
-
-fn load<R: Run>(connection: &Connection, table: &str) -> Option<Vec<Arc<PackedDay>>> {
-    let mut statement = connection.prepare(&format!("SELECT day, packed FROM {table} ORDER BY day")).ok()?;
-    let rows = statement.query_map([], |row| Ok((row.get::<_, u32>(0)?, row.get::<_, Vec<u8>>(1)?))).ok()?;
-    rows.map(|row| row.ok().and_then(|(day, packed)| PackedDay::read::<R>(day, packed)).map(Arc::new))
-        .collect()
-}
-
-/// Packed days of a table; none where one is not whole.
-fn load_days<D>(
-    connection: &Connection,
-    table: &str,
-    read: impl Fn(u32, &[u8]) -> Option<D>,
-) -> Option<Vec<Arc<D>>> {
-    let mut statement = connection.prepare(&format!("SELECT day, packed FROM {table} ORDER BY day")).ok()?;
-    let rows = statement.query_map([], |row| Ok((row.get::<_, u32>(0)?, row.get::<_, Vec<u8>>(1)?))).ok()?;
-    rows.map(|row| row.ok().and_then(|(day, packed)| read(day, &packed)).map(Arc::new)).collect()
-}
-
-/// What the clock of issues showed after each day, from day 0 on.
-fn load_clock(connection: &Connection) -> Option<Vec<u32>> {
-    let mut statement = connection.prepare("SELECT aged FROM issue_clock ORDER BY day").ok()?;
-    let rows = statement.query_map([], |row| row.get(0)).ok()?;
-    rows.collect::<Result<_, _>>().ok()
-}
-
-fn load_inbox(connection: &Connection) -> Option<Inbox> {
-    let days = load_days(connection, "notice_blocks", NoticeDay::read)?;
-    let sql = "SELECT customer_id, message_day, cause FROM repeated_losses ORDER BY number";
-    let mut statement = connection.prepare(sql).ok()?;
-    let loss = |row: &rusqlite::Row<'_>| {
-        let cause = if row.get(2)? { LossCause::Unanswered } else { LossCause::Silence };
-        Ok(RepeatedLoss { customer: row.get(0)?, message_day: row.get(1)?, cause })
-    };
-    let losses: Vec<_> = statement.query_map([], loss).ok()?.collect::<Result<_, _>>().ok()?;
-    let sound = days.iter().all(|day| day.repeats as usize <= losses.len());
-    sound.then(|| Inbox { days: Arc::new(days), losses: Arc::new(losses) })
 }
 
 fn make_anew(location: &Location, owner: u32, params: &Params) -> rusqlite::Result<Connection> {

@@ -5,21 +5,23 @@
 //! functions; limits bound the size of statements, values and results; a progress handler stops what takes too long or
 //! too much memory. What is refused is decided by what a statement does, never by how its text looks.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, RwLock};
 use std::time::{Duration, Instant};
 
 use rusqlite::Connection;
+use rusqlite::ffi;
 use rusqlite::hooks::{AuthContext, Authorization};
 use rusqlite::types::ValueRef;
 
 use super::block_table;
-use super::blocks::{BlockStore, Seen, SharedStore};
+use super::blocks::{BlockStore, Seen};
 use super::guard::{
     Guard, InnerViews, Objection, Objections, is_hidden_table, is_inside, is_of_engine, limit,
 };
 use super::help::{explain_error, hints};
 use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS, Ticket};
+use super::loading::BlockSource;
 use super::location::Location;
 use super::packed_tables;
 use super::plan;
@@ -122,20 +124,14 @@ pub struct QueryConnection {
     /// Set while the program itself works on the connection.
     trusted: Arc<AtomicBool>,
     interrupt: Interrupt,
-    /// Closed while a commit and its blocks become visible together.
-    gate: Arc<RwLock<()>>,
-    /// The blocks of all connections, and those that the running query sees.
-    store: SharedStore,
+    source: BlockSource,
+    /// The blocks that the running query sees.
     seen: Arc<Seen>,
 }
 
 impl QueryConnection {
     /// Opens a guarded connection.
-    pub(super) fn open(
-        location: &Location,
-        store: &SharedStore,
-        gate: Arc<RwLock<()>>,
-    ) -> rusqlite::Result<QueryConnection> {
+    pub(super) fn open(location: &Location, source: BlockSource) -> rusqlite::Result<QueryConnection> {
         let released = Released::open()?;
         let mut connection = location.open_reader()?;
         let seen = Arc::new(Seen::default());
@@ -161,8 +157,7 @@ impl QueryConnection {
         let interrupt = Interrupt::new();
         let clock = interrupt.clone();
         connection.progress_handler(STEPS_BETWEEN_LOOKS as i32, Some(move || clock.must_end()))?;
-        let store = store.clone();
-        Ok(QueryConnection { released, connection, objections, views, trusted, interrupt, gate, store, seen })
+        Ok(QueryConnection { released, connection, objections, views, trusted, interrupt, source, seen })
     }
 
     /// A handle that stops the queries of this connection.
@@ -239,12 +234,53 @@ impl QueryConnection {
         if self.interrupt.is_stopped() {
             return Err(refusal("sql_timeout", CANCELLED));
         }
-        let _open = self.gate.read().unwrap_or_else(|poisoned| poisoned.into_inner());
-        self.as_desk("BEGIN; SELECT seq FROM projection")
-            .map_err(|error| self.told(sql, Fault::Sqlite(error), limits))?;
-        let store = self.store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
-        self.seen.see(store);
+        let begin = || {
+            self.as_desk("BEGIN; SELECT seq FROM projection")
+                .map_err(|error| self.told(sql, Fault::Sqlite(error), limits))
+        };
+        match &self.source {
+            BlockSource::Writer(store, gate) => {
+                let _open = gate.read().unwrap_or_else(|poisoned| poisoned.into_inner());
+                begin()?;
+                self.seen.see(store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone());
+            }
+            BlockSource::File(blocks) => {
+                begin()?;
+                self.trusting(|connection| blocks.borrow_mut().refresh(connection));
+            }
+        }
         Ok(())
+    }
+
+    /// Whether blocks that a statement named were not as they were written: nothing it answers can be relied on.
+    pub fn found_damage(&self) -> bool {
+        matches!(&self.source, BlockSource::File(blocks) if blocks.borrow().is_damaged())
+    }
+
+    /// Reads the blocks that a statement needs and that are not there yet.
+    fn load_for(&self, reading: &Reading) -> Result<(), Fault> {
+        let BlockSource::File(blocks) = &self.source else { return Ok(()) };
+        let mut blocks = blocks.borrow_mut();
+        let loaded = self.trusting(|connection| blocks.load(connection, &reading.tables));
+        self.seen.see(blocks.store().clone());
+        match loaded {
+            true => Ok(()),
+            false if self.interrupt.must_end() => {
+                let stopped = ffi::Error::new(ffi::SQLITE_INTERRUPT);
+                Err(Fault::Sqlite(rusqlite::Error::SqliteFailure(stopped, None)))
+            }
+            false => {
+                blocks.set_damaged();
+                Err(Fault::Damaged)
+            }
+        }
+    }
+
+    fn trusting<T>(&self, work: impl FnOnce(&Connection) -> T) -> T {
+        self.trusted.store(true, Ordering::Relaxed);
+        let done = work(&self.connection);
+        self.trusted.store(false, Ordering::Relaxed);
+        done
     }
 
     fn look_away(&self) -> Result<(), QueryError> {
@@ -257,10 +293,7 @@ impl QueryConnection {
     }
 
     fn as_desk(&self, sql: &str) -> rusqlite::Result<()> {
-        self.trusted.store(true, Ordering::Relaxed);
-        let done = self.connection.execute_batch(sql);
-        self.trusted.store(false, Ordering::Relaxed);
-        done
+        self.trusting(|connection| connection.execute_batch(sql))
     }
 
     fn run(&self, sql: &str, limits: Limits) -> Result<Rows, Fault> {
@@ -273,6 +306,7 @@ impl QueryConnection {
     }
 
     fn fetch(&self, reading: Reading, sql: &str, limits: Limits) -> Result<Rows, Fault> {
+        self.load_for(&reading)?;
         let read = reading.copied.iter();
         let copies: Vec<String> =
             read.filter_map(|(table, columns)| self.views.as_ref()?.copy(table, columns)).collect();
@@ -343,6 +377,9 @@ impl QueryConnection {
                 refusal("sql_error", "statements take no parameters here; write the values in their place")
             }
             Fault::Write => write_refusal(),
+            Fault::Damaged => {
+                refusal("sql_error", "world.db is damaged; it is made anew when the run is opened to play on")
+            }
             Fault::TooLarge => {
                 let most = MOST_TEXT >> 20;
                 refusal("sql_error", &format!("the result is larger than {most} MiB; ask for less at a time"))
@@ -416,6 +453,8 @@ pub(super) enum Fault {
     Parameters,
     /// It changes something.
     Write,
+    /// What it reads is not as it was written.
+    Damaged,
     /// It, or its result, is too large.
     TooLarge,
     /// What the engine says.

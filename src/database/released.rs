@@ -46,6 +46,8 @@ pub(super) struct Reading {
     /// a RIGHT or FULL JOIN, because the engine cannot search a view there; `issues` where a query inside it looks for
     /// a customer in them once for every row outside. A stored index of issues would slow every week down.
     pub copied: Columns,
+    /// The tables it names.
+    pub tables: Vec<String>,
 }
 
 /// What a statement compiles to: the steps of its program. Names of columns are no part of it, but whatever is found by
@@ -91,6 +93,7 @@ impl Released {
         let sql = statement.expanded_sql().ok_or(Fault::TooLarge)?;
         let columns = statement.column_names().map(str::to_owned).collect();
         let mut copied = self.reads.take();
+        let tables = copied.keys().cloned().collect();
         if !joins_from_the_right(&sql) {
             let looked_up =
                 |table: &str, columns: &BTreeSet<String>| table == ISSUES && columns.contains(CUSTOMER);
@@ -100,7 +103,7 @@ impl Released {
             }
         }
         let is_plan = statement.is_explain() == 2;
-        Ok(Reading { sql: self.respelled(sql), columns, is_plan, copied })
+        Ok(Reading { sql: self.respelled(sql), columns, is_plan, copied, tables })
     }
 
     /// Whether a query inside the statement is asked again for every row outside.

@@ -620,6 +620,32 @@ fn a_database_of_another_layout_is_made_anew() {
 }
 
 #[test]
+fn days_of_a_file_are_read_when_their_table_is_named_and_have_to_be_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let location = Location::File(folder.path().join("world.db"));
+    let mut company = Company::open(location.clone());
+    let usage = "SELECT count(*), sum(usage_units) FROM daily_usage";
+    let ledger = "SELECT count(*), sum(amount) FROM ledger";
+    let connection = company.weeks(6);
+    let before = [usage, ledger].map(|sql| rows(&connection, sql));
+    drop((connection, company));
+    let file = rusqlite::Connection::open(folder.path().join("world.db")).expect("a file");
+    let (reader, _) = super::query_connection(&location).expect("a connection");
+    assert_eq!([usage, ledger].map(|sql| rows(&reader, sql)), before);
+    let damaged = file.execute("UPDATE usage_blocks SET packed = x'ff' WHERE day = 30", []);
+    assert_eq!(damaged, Ok(1));
+    assert_eq!(rows(&reader, ledger), before[1], "other tables still answer");
+    assert!(!reader.found_damage());
+    let refused = reader.ask(usage, LIMITS).expect_err("what was read before is not what the file holds now");
+    assert!(refused.message.starts_with("world.db is damaged") && reader.found_damage(), "{refused:?}");
+    for sql in
+        ["SELECT 1 WHERE EXISTS (SELECT 1 FROM daily_usage)", "SELECT (SELECT count(*) FROM daily_usage)"]
+    {
+        assert!(reader.ask(sql, LIMITS).is_err(), "{sql}");
+    }
+}
+
+#[test]
 fn a_database_is_continued_where_it_stands_or_made_anew() {
     let folder = tempfile::tempdir().expect("a folder");
     let location = Location::File(folder.path().join("world.db"));

@@ -97,6 +97,11 @@ const INSIDES: [(&str, bool); 11] = [
 /// Functions that reach beyond the database.
 const UNSAFE_FUNCTIONS: [&str; 2] = ["load_extension", "fts3_tokenizer"];
 
+/// Whether a function reaches beyond the database.
+pub(super) fn is_unsafe_function(name: &str) -> bool {
+    UNSAFE_FUNCTIONS.contains(&name)
+}
+
 /// Tables that are functions of their arguments and hold nothing of their own.
 const FUNCTIONS: [&str; 4] = ["json_each", "json_tree", "jsonb_each", "jsonb_tree"];
 

@@ -1,19 +1,25 @@
 //! Help for the SQL prompt: what an error means here, and why a result may be empty.
 
-use super::catalogue::{Table, table, tables};
-use super::tokens::{Token, TokenKind, tokens};
+use std::collections::BTreeSet;
 
-/// The message of the engine, with what is valid instead.
+use super::catalogue::{Table, table, tables};
+use super::guard::is_unsafe_function;
+use super::tokens::{Token, TokenKind, tokens};
+use crate::notation::nearest;
+
+/// The message of the engine, with what is valid instead. What is proposed comes from the visible tables, the functions
+/// of the engine and the statement itself, and from nothing else.
 pub(super) fn explain_error(message: &str, sql: &str) -> String {
     if let Some(column) = message.strip_prefix("no such column: ") {
         return unknown_column(column, sql);
     }
     if let Some(name) = message.strip_prefix("no such table: ") {
-        let mut names: Vec<&str> = tables().iter().map(|table| table.name.as_str()).collect();
-        names.sort_unstable();
-        let alone = name.split_once('.').map_or("", |(_, alone)| alone);
-        let help = if table(alone).is_some() { format!("write {alone} alone; ") } else { String::new() };
-        return format!("there is no table {name}; {help}the tables are {}", names.join(", "));
+        return unknown_table(name);
+    }
+    if let Some(name) = message.strip_prefix("no such function: ") {
+        let known = functions();
+        let meant = meant(name, known.iter().map(String::as_str));
+        return format!("there is no function {name}{meant}");
     }
     if let Some(column) = message.strip_prefix("ambiguous column name: ") {
         let holders: Vec<&str> = tables()
@@ -29,10 +35,70 @@ pub(super) fn explain_error(message: &str, sql: &str) -> String {
     message.to_owned()
 }
 
+/// `; did you mean customers?`, if a known name looks like one that does not exist.
+fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let near = nearest(name, known);
+    // A name of which every other letter differs is no help.
+    let is_close =
+        |known: &&&str| strsim::damerau_levenshtein(&name.to_lowercase(), known) * 3 <= name.len().max(3);
+    let begins =
+        |known: &&&str| known.starts_with(&name.to_lowercase()) || name.to_lowercase().starts_with(**known);
+    let near: Vec<&str> =
+        near.iter().filter(|known| is_close(known) || (name.len() > 2 && begins(known))).copied().collect();
+    match near[..] {
+        [] => String::new(),
+        [one] => format!("; did you mean {one}?"),
+        [ref others @ .., last] => format!("; did you mean {} or {last}?", others.join(", ")),
+    }
+}
+
+/// Names of the functions that a statement can call.
+fn functions() -> Vec<String> {
+    let names = || -> rusqlite::Result<Vec<String>> {
+        let engine = rusqlite::Connection::open_in_memory()?;
+        let mut statement = engine.prepare("SELECT DISTINCT name FROM pragma_function_list ORDER BY name")?;
+        statement.query_map([], |row| row.get(0))?.collect()
+    };
+    let can_be_called = |name: &String| {
+        name.starts_with(|first: char| first.is_ascii_lowercase())
+            && !name.starts_with("sqlite_")
+            && !is_unsafe_function(name)
+    };
+    names().unwrap_or_default().into_iter().filter(can_be_called).collect()
+}
+
+fn unknown_table(name: &str) -> String {
+    let mut names: Vec<&str> = tables().iter().map(|table| table.name.as_str()).collect();
+    names.sort_unstable();
+    let alone = name.split_once('.').map_or("", |(_, alone)| alone);
+    let help = match table(alone) {
+        Some(_) => format!("; write {alone} alone"),
+        None => meant(if alone.is_empty() { name } else { alone }, names.iter().copied()),
+    };
+    // A question ends with its mark.
+    let end = if help.ends_with('?') { " The" } else { "; the" };
+    format!("there is no table {name}{help}{end} tables are {}", names.join(", "))
+}
+
 fn unknown_column(column: &str, sql: &str) -> String {
     let mentioned = mentioned_tables(sql);
     if mentioned.is_empty() {
         return format!("there is no column {column}; the table browser lists the columns of every table");
+    }
+    let alone = column.rsplit('.').next().unwrap_or(column);
+    let columns = mentioned.iter().flat_map(|table| &table.columns).map(|own| own.name.as_str());
+    let columns: BTreeSet<&str> = columns.collect();
+    let mut help = match columns.contains(alone) {
+        // It is there, under another name of its table.
+        true => String::new(),
+        false => meant(alone, columns.iter().copied()),
+    };
+    let elsewhere =
+        tables().iter().filter(|table| table.columns.iter().any(|own| own.name.eq_ignore_ascii_case(alone)));
+    let elsewhere: Vec<&str> = elsewhere.map(|table| table.name.as_str()).collect();
+    if help.is_empty() && !columns.contains(alone) && !elsewhere.is_empty() {
+        let verb = if elsewhere.len() == 1 { "has" } else { "have" };
+        help = format!("; {} {verb} a column of that name", elsewhere.join(", "));
     }
     let lists: Vec<String> = mentioned
         .iter()
@@ -41,7 +107,8 @@ fn unknown_column(column: &str, sql: &str) -> String {
             format!("{} has {}", table.name, columns.join(", "))
         })
         .collect();
-    format!("there is no column {column}; {}", lists.join("; "))
+    let end = if help.ends_with('?') { " " } else { "; " };
+    format!("there is no column {column}{help}{end}{}", lists.join("; "))
 }
 
 /// Visible tables whose names stand in a statement as whole words.
@@ -108,6 +175,53 @@ mod tests {
         let text = explain_error("no such column: c_max", "SELECT c_max FROM issues");
         assert!(text.starts_with("there is no column c_max; issues has issue_id, customer_id"), "{text}");
         assert!(explain_error("no such column: x", "SELECT x").contains("table browser"));
+    }
+
+    #[test]
+    fn names_that_are_nearly_right_are_set_right() {
+        for (message, sql, help) in [
+            (
+                "no such table: custmers",
+                "",
+                "there is no table custmers; did you mean customers? The tables are ",
+            ),
+            ("no such table: main.Ledgr", "", "there is no table main.Ledgr; did you mean ledger? The"),
+            ("no such table: xyz", "", "there is no table xyz; the tables are"),
+            (
+                "no such column: c.grup_id",
+                "SELECT c.grup_id FROM customers c",
+                "; did you mean group_id? customers has",
+            ),
+            ("no such column: amout", "SELECT amout FROM ledger", "; did you mean amount? ledger has"),
+            (
+                "no such column: effective_price",
+                "SELECT effective_price FROM ledger",
+                "; subscriptions has a column of that",
+            ),
+            ("no such function: roundd", "", "there is no function roundd; did you mean round?"),
+            ("no such function: median_of_all", "", "there is no function median_of_all"),
+        ] {
+            let text = explain_error(message, sql);
+            assert!(text.contains(help), "{text}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_proposed_that_cannot_be_named() {
+        let hidden =
+            ["customer_rows", "subscription_rows", "ledger_blocks", "issue_clock", "repeated_losses"];
+        let inside =
+            ["c_max", "q_max", "sqlite_master", "load_extension", "pragma_table_info", "fts3_tokenizer"];
+        for name in hidden.into_iter().chain(inside) {
+            // A letter is missing, at every place.
+            for at in 0..name.len() {
+                let typed = format!("{}{}", &name[..at], &name[at + 1..]);
+                for kind in ["table", "column", "function"] {
+                    let text = explain_error(&format!("no such {kind}: {typed}"), "SELECT 1 FROM customers");
+                    assert!(!text.contains(name), "{text}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -7,6 +7,9 @@ use crate::report::ranking::published;
 /// Most days whose cash the text tells; of longer runs it leaves weeks out.
 const CASH_ROWS: usize = 20;
 
+/// Letters of a line of decisions.
+const LINE: usize = 110;
+
 /// The comparison as text: aligned columns.
 pub fn as_text(beside: &Comparison) -> String {
     let mut head = vec![String::new()];
@@ -84,13 +87,47 @@ fn aligned(rows: &[Vec<String>]) -> String {
 
 fn decisions(beside: &Comparison) -> String {
     let mut text = "\nDecisions\n".to_owned();
+    let width = beside.runs.iter().map(|run| run.chars().count()).max().unwrap_or(0);
     for decided in &beside.decisions {
         text += &format!("  day {}\n", decided.day);
         for (run, own) in beside.runs.iter().zip(&decided.by_run).filter(|(_, own)| !own.is_empty()) {
-            text += &format!("    {run}  {}\n", own.join("; "));
+            let lines = in_lines(&counted(own), LINE);
+            for (at, line) in lines.iter().enumerate() {
+                let name = if at == 0 { run.as_str() } else { "" };
+                text += &format!("    {name:<width$}  {line}\n");
+            }
         }
     }
     text + "\n"
+}
+
+/// Equal decisions of a week once, with their number.
+fn counted(decisions: &[String]) -> Vec<String> {
+    let mut counted: Vec<(&str, usize)> = Vec::new();
+    for decision in decisions {
+        match counted.iter_mut().find(|(known, _)| known == decision) {
+            Some((_, count)) => *count += 1,
+            None => counted.push((decision, 1)),
+        }
+    }
+    let told = |(decision, count): (&str, usize)| match count {
+        1 => decision.to_owned(),
+        count => format!("{decision} ({count} times)"),
+    };
+    counted.into_iter().map(told).collect()
+}
+
+/// Decisions one after the other, in lines of so many letters; none is broken.
+fn in_lines(decisions: &[String], width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for (at, decision) in decisions.iter().enumerate() {
+        let own = if at + 1 < decisions.len() { format!("{decision};") } else { decision.clone() };
+        match lines.last_mut().filter(|line| line.chars().count() + 1 + own.chars().count() <= width) {
+            Some(line) => *line += &format!(" {own}"),
+            None => lines.push(own),
+        }
+    }
+    lines
 }
 
 /// The published agents, the best first.
@@ -125,4 +162,19 @@ pub fn as_rows(beside: &Comparison) -> Vec<Vec<String>> {
         rows.push(cells);
     }
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_decisions_stand_once_and_lines_are_short() {
+        let own = ["found nothing", "price A: 1 → 2", "found nothing"].map(str::to_owned);
+        let told = counted(&own);
+        assert_eq!(told, ["found nothing (2 times)", "price A: 1 → 2"]);
+        assert_eq!(in_lines(&told, 100), ["found nothing (2 times); price A: 1 → 2"]);
+        assert_eq!(in_lines(&told, 30), ["found nothing (2 times);", "price A: 1 → 2"]);
+        assert!(in_lines(&[], 30).is_empty());
+    }
 }

@@ -227,6 +227,13 @@ actions! {
         CopyRow "copy-row" "copy row" "Copy the row."
         Chart "chart" "chart" "Draw the result as lines or bars."
         Export "export" "export" "Write the result to a file, or copy all of it."
+        CountColumn "count-column" "count" "Count how often each value of the focused column stands in the result, by a query over all its rows."
+        Pivot "pivot" "pivot" "Pivot the result by the focused column, by a query over all its rows."
+        PreviousResult "previous-result" "previous result" "Show the result before."
+        NextResult "next-result" "next result" "Show the next result."
+        PinResult "pin-result" "pin" "Keep the result as it is, or let it go again."
+        CloseResult "close-result" "close result" "Close the result."
+        RecallQuery "recall-query" "its statement" "Put the statement of the result into the editor."
     }
     Chart {
         ChartX "chart-x" "along" "Use another column for the x axis."

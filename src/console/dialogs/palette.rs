@@ -40,7 +40,7 @@ impl PaletteEntry {
         match action {
             Action::WriteReport => &["export", "save", "markdown", "html", "print"],
             Action::Journal => &["memo", "notes", "log", "history"],
-            Action::Sql => &["export", "csv", "database"],
+            Action::Sql => &["export", "csv", "database", "pivot", "count"],
             Action::NextTheme => &["light", "dark", "colours", "colors", "contrast"],
             Action::NextMarker => &["ascii", "braille"],
             Action::LeaveRun => &["menu", "home", "save"],

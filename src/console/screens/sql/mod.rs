@@ -8,9 +8,12 @@ mod lexer;
 mod over;
 mod panes;
 mod picker;
+mod pivot;
 mod plot;
 mod results;
 mod saving;
+mod summary;
+mod tabs;
 mod takeout;
 #[cfg(test)]
 mod tests;
@@ -32,7 +35,7 @@ use browser::Browser;
 use editor::{QueryEditor, Statement};
 use history::History;
 use over::Over;
-use results::Results;
+use tabs::Tabs;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -59,7 +62,7 @@ struct Running {
 /// The screen.
 pub struct Sql {
     editor: QueryEditor,
-    results: Results,
+    results: Tabs,
     browser: Browser,
     history: History,
     library: Library,
@@ -74,7 +77,7 @@ impl Default for Sql {
     fn default() -> Self {
         Sql {
             editor: QueryEditor::default(),
-            results: Results::default(),
+            results: Tabs::default(),
             browser: Browser::default(),
             history: History::default(),
             library: Library::shipped(),

@@ -3,7 +3,8 @@
 use crossterm::event::KeyEvent;
 
 use super::Sql;
-use super::picker::{PickedQuery, ListedQuery, Picker};
+use super::picker::{ListedQuery, PickedQuery, Picker};
+use super::pivot::{PivotChoice, PivotStep};
 use super::saving::Saving;
 use super::takeout::TakeOut;
 use crate::console::action::{Action, Scope};
@@ -24,6 +25,8 @@ pub enum Over {
     Saving(Saving),
     /// Ways to take a result out.
     TakeOut(TakeOut),
+    /// What a pivot is made of.
+    Pivot(PivotChoice),
 }
 
 impl Over {
@@ -33,6 +36,7 @@ impl Over {
             Over::Earlier(_) | Over::Library(_) => &PickerPane,
             Over::Saving(_) => &SavingPane,
             Over::TakeOut(_) => &TakeOutPane,
+            Over::Pivot(_) => &PivotPane,
         }
     }
 }
@@ -151,7 +155,7 @@ impl Pane<Sql> for TakeOutPane {
         if way.is_some() || action == Action::Close {
             sql.over = None;
         }
-        way.map_or_else(Vec::new, |way| sql.results.take_out(way))
+        way.map_or_else(Vec::new, |way| sql.results.shown().take_out(way))
     }
 
     fn filter(&self, _: &mut Sql, _: &mut dyn FnMut(&mut Field)) {}
@@ -164,7 +168,51 @@ impl Pane<Sql> for TakeOutPane {
 
     fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         if let Some(Over::TakeOut(list)) = &sql.over {
-            list.draw(canvas, seat.area, seat.number, &sql.results.what_is_taken(), look);
+            list.draw(canvas, seat.area, seat.number, &sql.results.shown().what_is_taken(), look);
+        }
+    }
+}
+
+/// What a pivot is made of.
+struct PivotPane;
+
+impl PivotPane {
+    fn step(sql: &mut Sql, step: PivotStep) -> Vec<Effect> {
+        match step {
+            PivotStep::Choosing => return Vec::new(),
+            PivotStep::Left => sql.over = None,
+            PivotStep::Run(statement) => return sql.edit_and_run(&statement),
+        }
+        Vec::new()
+    }
+}
+
+impl Pane<Sql> for PivotPane {
+    fn scopes(&self, _: &Sql) -> Vec<Scope> {
+        vec![Scope::List]
+    }
+
+    fn hints(&self, _: &Sql) -> Vec<Action> {
+        vec![Action::Open, Action::Right, Action::Close]
+    }
+
+    fn act(&self, sql: &mut Sql, action: Action, _: &Look<'_>) -> Vec<Effect> {
+        let Some(Over::Pivot(choice)) = &mut sql.over else { return Vec::new() };
+        let step = choice.act(action);
+        PivotPane::step(sql, step)
+    }
+
+    fn filter(&self, _: &mut Sql, _: &mut dyn FnMut(&mut Field)) {}
+
+    fn click(&self, sql: &mut Sql, row: usize, _: &Look<'_>) -> Vec<Effect> {
+        let Some(Over::Pivot(choice)) = &mut sql.over else { return Vec::new() };
+        let step = choice.click(row);
+        PivotPane::step(sql, step)
+    }
+
+    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        if let Some(Over::Pivot(choice)) = &sql.over {
+            choice.draw(canvas, seat.area, seat.number, look);
         }
     }
 }
@@ -204,7 +252,7 @@ impl Sql {
     }
 
     pub(super) fn take_out(&mut self) -> Vec<Effect> {
-        if !self.results.has_rows() {
+        if !self.results.shown().has_rows() {
             return vec![Effect::Complain("no result to export: run a statement first".to_owned())];
         }
         self.over = Some(Over::TakeOut(TakeOut::default()));

@@ -3,6 +3,9 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::Rect;
 
+use super::over::Over;
+use super::pivot::PivotChoice;
+use super::summary::{NOT_A_TABLE, count};
 use super::{Sql, SqlPane};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::Canvas;
@@ -11,6 +14,8 @@ use crate::console::screens::Look;
 use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::widgets::{Field, Table};
 use crate::session::library::Head;
+
+const NO_RESULT: &str = "no result yet: run a statement first";
 
 /// The statement.
 pub struct EditorPane;
@@ -76,15 +81,15 @@ pub struct ResultsPane;
 
 impl Pane<Sql> for ResultsPane {
     fn table<'a>(&self, sql: &'a Sql) -> Option<&'a Table> {
-        Some(sql.results.table())
+        Some(sql.results.shown().table())
     }
 
     fn table_mut<'a>(&self, sql: &'a mut Sql) -> Option<&'a mut Table> {
-        Some(sql.results.table_mut())
+        Some(sql.results.shown_mut().table_mut())
     }
 
     fn scopes(&self, sql: &Sql) -> Vec<Scope> {
-        match (sql.results.table().is_typing(), sql.results.is_chart()) {
+        match (sql.results.shown().table().is_typing(), sql.results.shown().is_chart()) {
             (true, _) => vec![Scope::Field],
             (false, true) => vec![Scope::Chart, Scope::Result, Scope::List, Scope::Query],
             (false, false) => vec![Scope::Result, Scope::List, Scope::Query],
@@ -92,32 +97,42 @@ impl Pane<Sql> for ResultsPane {
     }
 
     fn hints(&self, sql: &Sql) -> Vec<Action> {
-        sql.results.hints()
+        sql.results.shown().hints()
     }
 
     fn act(&self, sql: &mut Sql, action: Action, look: &Look<'_>) -> Vec<Effect> {
         if matches!(action, Action::Close | Action::CloseChart) && sql.is_running() {
             return vec![Effect::CancelQuery];
         }
-        sql.results.act(action, look.page)
+        if let Some(effects) = sql.act_on_results(action) {
+            return effects;
+        }
+        sql.results.shown_mut().act(action, look.page)
     }
 
     fn click(&self, sql: &mut Sql, row: usize, look: &Look<'_>) -> Vec<Effect> {
-        sql.results.click(row, look.page)
+        if sql.results.click(row) {
+            return Vec::new();
+        }
+        sql.results.shown_mut().click(row, look.page)
     }
 
     fn border(&self, sql: &Sql, _: Rect, look: &Look<'_>) -> Border {
         let (title, note) = match sql.is_running() {
             true => ("Result".to_owned(), String::new()),
-            false => sql.results.head(),
+            false => sql.results.shown().head(),
         };
-        Border { title, note, keys: look.hints(sql.results.keys()), ..Border::default() }
+        let title = title.replacen("Result", &format!("Result{}", sql.results.number()), 1);
+        Border { title, note, keys: look.hints(sql.results.shown().keys()), ..Border::default() }
     }
 
     fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
         match &sql.running {
-            Some(running) => sql.results.draw_running(canvas, seat.area, running.since.elapsed()),
-            None => sql.results.draw(canvas, seat, &sql.library),
+            Some(running) => sql.results.shown().draw_running(canvas, seat.area, running.since.elapsed()),
+            None => {
+                let area = sql.results.draw(canvas, seat.area, seat.number);
+                sql.results.shown().draw(canvas, Seat { area, ..seat }, &sql.library);
+            }
         }
     }
 }
@@ -168,6 +183,52 @@ impl Pane<Sql> for TablesPane {
 }
 
 impl Sql {
+    /// What is done with results as a whole: going from one to another, keeping, closing, asking more of them.
+    fn act_on_results(&mut self, action: Action) -> Option<Vec<Effect>> {
+        match action {
+            Action::PreviousResult => self.results.walk(false),
+            Action::NextResult => self.results.walk(true),
+            Action::CloseResult if !self.results.close() => {
+                return Some(vec![Effect::Complain("no result to close".to_owned())]);
+            }
+            Action::CloseResult => {}
+            Action::PinResult => {
+                return Some(vec![match self.results.pin() {
+                    Ok(true) => Effect::Say("pinned: this result stays until it is closed".to_owned()),
+                    Ok(false) => Effect::Say("unpinned".to_owned()),
+                    Err(why) => Effect::Complain(why),
+                }]);
+            }
+            Action::RecallQuery => match self.results.statement().map(str::to_owned) {
+                Some(sql) => self.edit(&sql),
+                None => return Some(vec![Effect::Complain(NO_RESULT.to_owned())]),
+            },
+            Action::CountColumn | Action::Pivot => return Some(self.sum_up(action)),
+            _ => return None,
+        }
+        Some(Vec::new())
+    }
+
+    /// Counts the focused column, or asks what its pivot is made of.
+    fn sum_up(&mut self, action: Action) -> Vec<Effect> {
+        let complain = |text: &str| vec![Effect::Complain(text.to_owned())];
+        let (Some(sql), Some((rows, at))) = (self.results.statement(), self.results.shown().focused_column()) else {
+            return complain(NO_RESULT);
+        };
+        if self.is_running() {
+            return complain("a query is running; esc cancels it");
+        }
+        if action == Action::Pivot {
+            match PivotChoice::of(sql, rows, at) {
+                Some(choice) => self.over = Some(Over::Pivot(choice)),
+                None => return complain(NOT_A_TABLE),
+            }
+            return Vec::new();
+        }
+        let Some(counting) = count(sql, &rows.columns, at) else { return complain(NOT_A_TABLE) };
+        self.edit_and_run(&counting)
+    }
+
     /// Puts the selected name of the tables into the editor.
     fn put_in(&mut self) {
         let Some(entry) = self.browser.selected() else { return };

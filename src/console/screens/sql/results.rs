@@ -38,6 +38,7 @@ pub struct Results {
     proposed: Option<ChartLine>,
     /// The chart, while it is shown instead of the rows.
     plot: Option<PlottedColumns>,
+    bytes: usize,
 }
 
 /// What to try first.
@@ -76,9 +77,10 @@ impl Results {
                 }
                 self.table.set(columns, values::cells(&rows));
                 self.proposed = proposed;
+                self.bytes = bytes_of(&rows);
                 self.answer = Answer::Rows(rows, took);
             }
-            Err(refusal) => self.answer = Answer::Refused(refusal),
+            Err(refusal) => (self.answer, self.bytes) = (Answer::Refused(refusal), 0),
         }
     }
 
@@ -95,6 +97,22 @@ impl Results {
     /// Whether a chart is shown.
     pub fn is_chart(&self) -> bool {
         self.plot.is_some() && self.rows().is_some()
+    }
+
+    /// Whether the statement was refused.
+    pub fn is_refused(&self) -> bool {
+        matches!(self.answer, Answer::Refused(_))
+    }
+
+    /// About how many bytes it takes: rows as they came, and as they are shown.
+    pub fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// The rows and the selected column.
+    pub fn focused_column(&self) -> Option<(&Rows, usize)> {
+        let at = self.table.selected_column();
+        self.rows().filter(|rows| at < rows.columns.len()).map(|rows| (rows, at))
     }
 
     /// Whether there are rows to take somewhere.
@@ -315,6 +333,8 @@ impl Results {
                 Action::Sort,
                 Action::Filter,
                 Action::Chart,
+                Action::CountColumn,
+                Action::Pivot,
                 Action::Export,
                 Action::CopyCell,
                 Action::CopyRow,
@@ -345,6 +365,13 @@ fn title(rows: &Rows, took: Duration) -> String {
         _ => "under 1 ms".to_owned(),
     };
     format!("Result · {of}{} · {time}", takeout::count(rows.rows.len()))
+}
+
+/// Bytes of rows, and of the shown cells made of them: the first letters of a text.
+fn bytes_of(rows: &Rows) -> usize {
+    const OF_A_CELL: usize = 128;
+    let text = |cell: &Cell| if let Cell::Text(text) = cell { text.len() + text.len().min(400) } else { 0 };
+    rows.rows.iter().flatten().map(|cell| OF_A_CELL + text(cell)).sum()
 }
 
 /// A value to read in a window of its own; JSON is laid out.

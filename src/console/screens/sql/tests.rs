@@ -364,3 +364,53 @@ fn a_long_query_says_how_long_and_a_named_one_leaves_the_keys_to_its_result() {
     hear(&mut screen, &company, Err(Refusal::new("sql_error", "no such column: wrong (at character 8)")));
     assert_eq!(screen.scopes()[0], Scope::Editor, "the error is mended in the editor");
 }
+
+#[test]
+fn a_column_is_counted_by_a_query_that_can_be_edited() {
+    let company = company();
+    let mut screen = with_result(&company, "SELECT * FROM ad_channel_leads", three_rows());
+    act(&mut screen, &company, Action::Right);
+    let asked = act(&mut screen, &company, Action::CountColumn);
+    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql.contains("SELECT subs, count(*)")), "{asked:?}");
+    assert!(screen.editor.text().starts_with("-- title: subs counted"));
+    assert!(matches!(&act(&mut screen, &company, Action::Pivot)[..], [Effect::Complain(_)]), "one at a time");
+    hear(&mut screen, &company, Ok(three_rows()));
+    let lines = picture(&screen, &company, 120, 37);
+    assert!(holds(&lines, "Result 2/2 · 3 rows") && holds(&lines, " 1 ad_channel_leads ") && holds(&lines, " 2 subs counted "));
+    act(&mut screen, &company, Action::PreviousResult);
+    act(&mut screen, &company, Action::RecallQuery);
+    assert_eq!((screen.editor.text().as_str(), screen.focus), ("SELECT * FROM ad_channel_leads", SqlPane::Editor));
+    let mut empty = Sql::default();
+    empty.focus_on(SqlPane::Results);
+    for action in [Action::CountColumn, Action::Pivot, Action::RecallQuery, Action::CloseResult, Action::PinResult] {
+        assert!(matches!(&act(&mut empty, &company, action)[..], [Effect::Complain(_)]), "{action:?}");
+    }
+    for action in [Action::CountColumn, Action::Pivot] {
+        let mut plan = with_result(&company, "EXPLAIN QUERY PLAN SELECT 1", three_rows());
+        assert!(matches!(&act(&mut plan, &company, action)[..], [Effect::Complain(_)]));
+        assert!(plan.over.is_none());
+    }
+}
+
+#[test]
+fn a_pivot_takes_two_keys_and_is_drawn_at_every_size() {
+    let company = company();
+    let mut screen = with_result(&company, "SELECT * FROM ad_channel_leads", three_rows());
+    act(&mut screen, &company, Action::Pivot);
+    assert_eq!(screen.scopes(), [Scope::List]);
+    sweep(&mut screen, &company);
+    let lines = picture(&screen, &company, 60, 12);
+    assert!(holds(&lines, "Pivot by acquisition_source") && holds(&lines, "aggregate  sum"), "{lines:#?}");
+    act(&mut screen, &company, Action::Close);
+    assert!(screen.over.is_none());
+    screen.focus_on(SqlPane::Results);
+    act(&mut screen, &company, Action::Pivot);
+    let asked = act(&mut screen, &company, Action::Open);
+    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql.contains("sum(subs)")), "{asked:?}");
+    hear(&mut screen, &company, Ok(three_rows()));
+    sweep(&mut screen, &company);
+    screen.focus_on(SqlPane::Results);
+    let place = screen.focus();
+    with_look(&company, |look| screen.click(place, usize::MAX - 9, look));
+    assert!(holds(&picture(&screen, &company, 120, 37), "Result 1/2"), "a click on the first tab");
+}

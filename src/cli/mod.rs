@@ -23,7 +23,7 @@ use clap::{Parser, Subcommand};
 
 pub use failure::Failure;
 
-use crate::session::{Configuration, Study, participant_folder};
+use crate::session::{Configuration, Study, list_worlds_in, participant_folder};
 
 /// Run a simulated AI subscription company for 500 days.
 ///
@@ -170,6 +170,9 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         runs: arguments.runs_dir.or_else(Configuration::runs_folder),
         participant: arguments.whose.filter(|label| !label.is_empty()),
     };
+    if let Some(runs) = Configuration::runs_folder() {
+        list_worlds_in(&runs);
+    }
     if let Some(folder) = &arguments.study {
         let is_visit = matches!(arguments.command, None | Some(Command::Play(_)));
         let study = Study::read(folder)?;

@@ -162,10 +162,12 @@ impl<R: BufRead> Host<'_, R> {
     }
 
     fn begin(&self, visit: &Visit, practice: bool, unfinished: Option<&Path>) -> Result<Session, Stop> {
-        Ok(match unfinished {
+        let mut session = match unfinished {
             Some(folder) => Session::open(folder, Access::Write, true)?,
             None => Session::create(visit.new_run(practice, self.consent), self.configuration)?,
-        })
+        };
+        visit.watch(&mut session);
+        Ok(session)
     }
 
     /// Plays a run until it is over and its questions are answered, or the person leaves.

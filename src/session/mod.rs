@@ -6,6 +6,7 @@
 
 pub(crate) mod archive;
 mod ask;
+mod audit;
 mod error;
 mod figures;
 mod folder;
@@ -19,6 +20,7 @@ mod witness;
 
 pub use archive::{Export, Imported, Seal, import_run};
 pub use ask::{connection_to_file, rows_as_json};
+pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
 pub use error::RunError;
 pub use figures::alike_plans::AlikePlans;
 pub use figures::booked::Booked;
@@ -47,10 +49,12 @@ pub use folder::runs::{
     RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,
     participant_folder, run_folder,
 };
+pub use folder::world_log::{WORLDS, WorldLine, WorldLog, list_world, list_worlds_in};
 pub use play::act::Preview;
 pub use play::advance::{DayReport, Week};
 pub use play::afterwards::lines_afterwards;
-pub use play::presence::{Interface, Machine};
+pub use play::machine::Machine;
+pub use play::presence::Interface;
 pub use play::surroundings::Calculated;
 pub use play::undo::undone_calls;
 pub use playback::Playback;

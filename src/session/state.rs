@@ -11,6 +11,7 @@ use crate::session::figures::groups::GroupWeek;
 use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::WeekFigures;
 use crate::session::folder::manifest::Manifest;
+use crate::session::folder::world_log::list_world;
 use crate::session::play::history::History;
 use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
@@ -58,6 +59,13 @@ impl Session {
     /// What the run is.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
+    }
+
+    /// Puts the world of the run on the machine's list.
+    pub(in crate::session) fn list_as(&self, by: &str) {
+        let Manifest { id, seed, scenario, mode, study, .. } = &self.manifest;
+        let study = study.as_ref().map(|stamp| stamp.digest.as_str());
+        list_world(&format!("{by} {mode}"), (*seed, *seed), scenario, Some(id), study);
     }
 
     /// By which rules it is played.

@@ -1,5 +1,6 @@
 //! Stories of the built program: pipes, scripts, files, archives, terminals; and its figures beside recorded ones.
 
+mod audited;
 mod determinism;
 mod edges;
 mod exports;

@@ -31,10 +31,10 @@ pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
         Point { name: "characters", outcome: characters() },
         Point { name: "machine", outcome: Ok(Machine::here().id) },
     ];
-    if let Some(witness) = &study.protocol.integrity.witness {
+    if let Some(witness) = study.witness() {
         points.push(Point {
             name: "witness",
-            outcome: writable(witness).map(|()| witness.display().to_string()),
+            outcome: writable(&witness).map(|()| witness.display().to_string()),
         });
     }
     let failed = points.iter().filter(|point| point.outcome.is_err()).count();

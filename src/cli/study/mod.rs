@@ -1,6 +1,7 @@
 //! `novamind study`: what an experimenter does with a study.
 
 mod assign;
+mod audit;
 mod check;
 mod code;
 mod new;
@@ -30,6 +31,8 @@ enum Command {
     },
     /// Assign labels to conditions and seeds, in random order within blocks.
     Assign(assign::Options),
+    /// Look for what an honest session does not leave behind: lines that were changed or cut, rehearsals, clocks that were set.
+    Audit(audit::Options),
     /// Print the line of study.toml that asks for an experimenter's code.
     Code,
     /// Lead a participant through the study; as `novamind --study DIR`.
@@ -48,6 +51,7 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
         Command::New(options) => new::run(&options),
         Command::Check { folder } => check::run(&folder, context),
         Command::Assign(options) => assign::run(&options),
+        Command::Audit(options) => audit::run(&options, context),
         Command::Code => code::run(),
         Command::Start { folder, play } => play::lead(&folder, &play, context),
     }

@@ -13,6 +13,7 @@ use crate::session::archive::{DATABASE, FILES, MANIFEST, MEMO, SEAL, TRAJECTORY,
 use crate::session::error::RunError;
 use crate::session::folder::manifest::{Manifest, sync_folder};
 use crate::session::folder::runs::{all_run_folders, label_of, participant_folder};
+use crate::session::folder::world_log::list_world;
 use crate::session::resume::open::check_start;
 use crate::session::trajectory::Trajectory;
 
@@ -51,6 +52,10 @@ pub fn import_run(runs: &Path, archive: &Path) -> Result<(Seal, Imported), RunEr
     sync_folder(&draft)?;
     std::fs::rename(&draft, &place).map_err(RunError::io(&place))?;
     sync_folder(&folder)?;
+    if let Ok(Manifest { seed, scenario, study, .. }) = Manifest::read(&place) {
+        let study = study.as_ref().map(|stamp| stamp.digest.as_str());
+        list_world("import", (seed, seed), &scenario, Some(&seal.run), study);
+    }
     Ok((seal, Imported::New(place)))
 }
 

@@ -106,6 +106,9 @@ impl Session {
                 let folder = runs.join(&manifest.id);
                 std::fs::create_dir_all(&folder).map_err(RunError::io(&folder))?;
                 let begun = Session::begin(manifest, params, Some(folder.clone()), &new);
+                if let Ok(session) = &begun {
+                    session.list_as("play");
+                }
                 if begun.is_err() {
                     // A run that did not begin leaves nothing behind.
                     let _ = std::fs::remove_dir_all(&folder);

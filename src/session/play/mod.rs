@@ -9,6 +9,7 @@ pub(in crate::session) mod feed;
 pub(in crate::session) mod history;
 pub(in crate::session) mod irrevocable;
 pub(in crate::session) mod judging;
+pub(in crate::session) mod machine;
 pub(in crate::session) mod memo;
 pub(in crate::session) mod presence;
 pub(in crate::session) mod projection;

@@ -76,13 +76,16 @@ pub(in crate::session) fn branch_of(
         ..parent.clone()
     };
     let own = folder.with_file_name(&manifest.id);
-    write_branch(&own, &manifest, &shared).and_then(|()| Session::open(&own, Access::Write, true)).map_err(
-        |error| {
-            // A branch that cannot be opened is nobody's run.
-            let _ = std::fs::remove_dir_all(&own);
-            not_saved(error)
-        },
-    )
+    let opened =
+        write_branch(&own, &manifest, &shared).and_then(|()| Session::open(&own, Access::Write, true));
+    if let Ok(session) = &opened {
+        session.list_as("branch");
+    }
+    opened.map_err(|error| {
+        // A branch that cannot be opened is nobody's run.
+        let _ = std::fs::remove_dir_all(&own);
+        not_saved(error)
+    })
 }
 
 /// The lines before a decision day: those of the days before it and the week that ends on it, without what was

@@ -296,6 +296,11 @@ impl Study {
         Ok(Study { folder: folder.to_owned(), protocol, consent, questionnaires, assignment, digest })
     }
 
+    /// Folder that is told of every line; one that is named without its place lies in the folder of the study.
+    pub fn witness(&self) -> Option<PathBuf> {
+        self.protocol.integrity.witness.as_ref().map(|witness| self.folder.join(witness))
+    }
+
     /// By which rules its sessions are played.
     pub fn rules(&self) -> SessionRules {
         let Protocol { session, record, integrity, limits, .. } = &self.protocol;

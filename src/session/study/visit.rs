@@ -16,6 +16,7 @@ use crate::session::folder::create::{NewRun, Storage, StudyEntry};
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
 use crate::session::folder::runs::{RunSummary, list_runs, participant_folder};
+use crate::session::play::machine::Machine;
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
 use crate::session::trajectory::now;
@@ -190,6 +191,13 @@ impl Visit {
             study: Some(StudyEntry { stamp, rules: self.study.rules(), consent: self.consent_text() }),
             storage: Storage::Runs(self.runs.clone()),
             ..NewRun::default()
+        }
+    }
+
+    /// Tells the study's witness of every line of a run from now on.
+    pub fn watch(&self, session: &mut Session) {
+        if let Some(folder) = self.study.witness() {
+            session.tell_witness(&folder, &Machine::here().id);
         }
     }
 

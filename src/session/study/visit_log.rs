@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::definition::Study;
-use crate::session::play::presence::Machine;
+use crate::session::play::machine::Machine;
 use crate::session::trajectory::now;
 
 /// Name of the file.

@@ -22,7 +22,9 @@ pub use activity::{
 pub use answers::{Answered, Asked};
 pub use call::{Call, Outcome, RefusalRecord, Reversal, Via};
 pub use notes::{Memo, Note, Query, QuerySource};
-pub use presence::{Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent};
+pub use presence::{
+    Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent, WorldsSeen,
+};
 pub use start::{Parent, Start};
 pub use week::{Advance, Branch, Closing, End, Ended, FiledForecast, Override};
 

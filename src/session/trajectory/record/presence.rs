@@ -28,6 +28,18 @@ pub struct Presence {
     /// Milliseconds since the last key, where the person was found to be idle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub idle_ms: Option<u64>,
+    /// How long the machine's list of opened worlds was, and how it ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worlds: Option<WorldsSeen>,
+}
+
+/// How long a list of opened worlds was, and how it ended.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WorldsSeen {
+    /// Lines.
+    pub lines: u64,
+    /// First 16 hexadecimal digits of the hash of the last one; empty where there is none.
+    pub head: String,
 }
 
 /// What happened to the presence of program or person.

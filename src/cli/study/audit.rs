@@ -1,0 +1,115 @@
+//! `novamind study audit`: what an honest session does not leave behind.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::{Context, Failure, print};
+use crate::plain::table as aligned;
+use crate::session::{Audit, AuditFinding, Cell, Rows, RunFacts, Study, audit};
+
+/// Options of `study audit`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Folder of the study.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Folders of runs of its machines, or copies of them [default: that of this machine].
+    #[arg(value_name = "RUNS")]
+    machines: Vec<PathBuf>,
+    /// Folder of the witness, where it is not that of the protocol.
+    #[arg(long, value_name = "DIR")]
+    witness: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command; 1 where something was found.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let study = Study::read(&options.folder)?;
+    let machines = match options.machines.is_empty() {
+        true => vec![context.runs()?],
+        false => options.machines.clone(),
+    };
+    let audit = audit(&study, &machines, options.witness.as_deref())?;
+    if options.json {
+        print(&(serde_json::to_string_pretty(&audit).unwrap_or_default() + "\n"))?;
+    } else {
+        print(&in_words(&study, &audit))?;
+    }
+    match audit.findings.len() {
+        0 => Ok(()),
+        1 => Err(Failure::failed("1 finding")),
+        count => Err(Failure::failed(format!("{count} findings"))),
+    }
+}
+
+fn in_words(study: &Study, audit: &Audit) -> String {
+    let mut text = format!("{} · protocol {}\n\n", study.protocol.name, &study.digest[..16]);
+    text += &aligned(&facts(&audit.runs));
+    text += "\n\n";
+    if !audit.witnessed {
+        text +=
+            "No witness was asked: lines that were rewritten or cut with fitting hashes stay unnoticed.\n\n";
+    }
+    for finding in &audit.findings {
+        text += &told(finding);
+    }
+    if audit.findings.is_empty() {
+        text += "Nothing was found.\n";
+    }
+    text
+}
+
+fn told(finding: &AuditFinding) -> String {
+    let who = finding.participant.as_deref().unwrap_or("?");
+    let line = finding.line.map_or(String::new(), |line| format!(", line {line}"));
+    let at = if finding.at.is_empty() { String::new() } else { format!(", {}", finding.at) };
+    format!("{who}, run {}{line}{at}: {}\n  {}\n", finding.run, finding.kind.title(), finding.words)
+}
+
+/// The runs as a table.
+fn facts(runs: &[RunFacts]) -> Rows {
+    let columns = [
+        "participant",
+        "run",
+        "kind",
+        "condition",
+        "weeks",
+        "ended",
+        "sittings",
+        "unclosed",
+        "refusals",
+        "naive",
+        "fast",
+        "pasted",
+        "failed checks",
+        "longest gap, s",
+    ];
+    let row = |own: &RunFacts| {
+        let text = |text: &Option<String>| text.clone().map_or(Cell::Null, Cell::Text);
+        let number = |number: u32| Cell::Integer(i64::from(number));
+        vec![
+            text(&own.participant),
+            Cell::Text(own.run.clone()),
+            Cell::Text(if own.practice { "practice" } else { "session" }.to_owned()),
+            text(&own.condition),
+            number(own.weeks),
+            text(&own.ended),
+            number(own.sittings),
+            number(own.unclosed_sittings),
+            number(own.refusals),
+            number(own.naive_weeks),
+            number(own.fast_weeks),
+            Cell::Integer(own.pasted as i64),
+            number(own.failed_checks),
+            Cell::Integer(own.longest_gap.round() as i64),
+        ]
+    };
+    Rows {
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: runs.iter().map(row).collect(),
+        ..Rows::default()
+    }
+}

@@ -1,0 +1,110 @@
+//! What a referee would ask of a run that is no finding: how it was played, in numbers.
+
+use serde::Serialize;
+
+use crate::session::folder::manifest::Manifest;
+use crate::session::trajectory::record::{Activity, Outcome, PresenceEvent};
+use crate::session::trajectory::{Record, Trajectory, seconds};
+
+/// How a run of a study was played.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunFacts {
+    /// Run.
+    pub run: String,
+    /// Label.
+    pub participant: Option<String>,
+    /// Condition.
+    pub condition: Option<String>,
+    /// It is the practice.
+    pub practice: bool,
+    /// When it was created, RFC 3339.
+    pub created: String,
+    /// When its last line was written, RFC 3339.
+    pub last_at: String,
+    /// Lines.
+    pub lines: u64,
+    /// Weeks that ran.
+    pub weeks: u32,
+    /// How it ended, where it did.
+    pub ended: Option<String>,
+    /// Sittings.
+    pub sittings: u32,
+    /// Sittings that were not closed: the program was killed, or the machine lost power.
+    pub unclosed_sittings: u32,
+    /// Calls and weeks that were refused.
+    pub refusals: u32,
+    /// Weeks that were filed with the naive projection.
+    pub naive_weeks: u32,
+    /// Weeks that were decided in less than ten seconds.
+    pub fast_weeks: u32,
+    /// Characters that came from the clipboard.
+    pub pasted: u64,
+    /// Attention checks that were not answered as expected.
+    pub failed_checks: u32,
+    /// Longest time without a line, seconds.
+    pub longest_gap: f64,
+}
+
+/// Seconds below which deciding a week is implausibly fast.
+const FAST: f64 = 10.0;
+
+impl RunFacts {
+    pub(super) fn of(manifest: &Manifest, trajectory: &Trajectory) -> Option<RunFacts> {
+        let stamp = manifest.study.as_ref()?;
+        let mut facts = RunFacts {
+            run: manifest.id.clone(),
+            participant: manifest.participant.clone(),
+            condition: stamp.condition.clone(),
+            practice: stamp.practice,
+            created: manifest.created.clone(),
+            last_at: trajectory.lines.last().map(|line| line.at.clone()).unwrap_or_default(),
+            lines: trajectory.lines.len() as u64,
+            weeks: 0,
+            ended: None,
+            sittings: 0,
+            unclosed_sittings: 0,
+            refusals: 0,
+            naive_weeks: 0,
+            fast_weeks: 0,
+            pasted: 0,
+            failed_checks: 0,
+            longest_gap: 0.0,
+        };
+        let (mut began, mut before, mut open) = (seconds(&manifest.created), None::<f64>, false);
+        for line in &trajectory.lines {
+            let moment = line.moment();
+            facts.longest_gap = facts.longest_gap.max(before.map_or(0.0, |before| moment - before));
+            before = Some(moment);
+            match &line.record {
+                Record::Call(call) if matches!(call.outcome, Outcome::Refused(_)) => facts.refusals += 1,
+                Record::Advance(filed) => {
+                    facts.fast_weeks += u32::from(moment - began < FAST);
+                    let naive = filed.forecasts.iter().all(|forecast| forecast.filled_naively);
+                    facts.naive_weeks += u32::from(naive);
+                }
+                Record::Week(_) => {
+                    facts.weeks += 1;
+                    began = moment;
+                }
+                Record::End(end) => facts.ended = Some(end.reason.id().to_owned()),
+                Record::Activity(activity) => facts.note(activity, &mut open),
+                _ => {}
+            }
+        }
+        Some(facts)
+    }
+
+    fn note(&mut self, activity: &Activity, open: &mut bool) {
+        match activity {
+            Activity::Session(own) if own.event == PresenceEvent::Opened => {
+                self.sittings += 1;
+                self.unclosed_sittings += u32::from(*open);
+                *open = true;
+            }
+            Activity::Session(own) if own.event == PresenceEvent::Closed => *open = false,
+            Activity::Draft(draft) => self.pasted += draft.pasted,
+            Activity::Answer(answer) => self.failed_checks += u32::from(answer.as_expected == Some(false)),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! What an audit found.
+
+use serde::Serialize;
+
+/// Something that an honest session does not leave behind.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct AuditFinding {
+    /// What kind of thing it is.
+    pub kind: AuditKind,
+    /// Run.
+    pub run: String,
+    /// Label of the participant, where it is known.
+    pub participant: Option<String>,
+    /// Line of the trajectory, from 1, where it belongs to one.
+    pub line: Option<u64>,
+    /// Moment it belongs to, RFC 3339; empty where none is known.
+    pub at: String,
+    /// In words.
+    pub words: String,
+}
+
+/// Kinds of findings, the gravest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AuditKind {
+    /// The record is not there any more.
+    Missing,
+    /// The record is damaged.
+    Damaged,
+    /// Lines are not those that a witness was told of.
+    Changed,
+    /// A witness was told of lines that are gone.
+    Cut,
+    /// The run went on twice from the same line.
+    TwoHistories,
+    /// No witness was told of decisions.
+    Unseen,
+    /// The states that are recorded are not reached again.
+    NotReached,
+    /// Lines could not be written while the run was played.
+    Unsaved,
+    /// `run.toml` was edited.
+    Manifest,
+    /// Participant, seed, condition or rules are not those of the study.
+    Assignment,
+    /// The list of earlier runs is not what the machine knows.
+    EarlierRuns,
+    /// The same world was played, or looked at, outside the session.
+    Rehearsal,
+    /// The machine's list of opened worlds was edited, cut or removed.
+    WorldList,
+    /// The clock of the machine was set.
+    Clock,
+    /// The run went on on another machine.
+    OtherMachine,
+    /// A participant has two sessions.
+    SecondSession,
+}
+
+impl AuditKind {
+    /// In words.
+    pub fn title(self) -> &'static str {
+        match self {
+            AuditKind::Missing => "record missing",
+            AuditKind::Damaged => "record damaged",
+            AuditKind::Changed => "lines changed",
+            AuditKind::Cut => "lines cut",
+            AuditKind::TwoHistories => "two histories",
+            AuditKind::Unseen => "lines no witness saw",
+            AuditKind::NotReached => "states not reached again",
+            AuditKind::Unsaved => "lines not saved",
+            AuditKind::Manifest => "run.toml edited",
+            AuditKind::Assignment => "not as assigned",
+            AuditKind::EarlierRuns => "earlier runs edited",
+            AuditKind::Rehearsal => "rehearsal",
+            AuditKind::WorldList => "list of worlds edited",
+            AuditKind::Clock => "clock set",
+            AuditKind::OtherMachine => "other machine",
+            AuditKind::SecondSession => "second session",
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! `worlds.jsonl` in the folder of runs of a machine: every world that was opened on it, by whatever command, so that a
+//! rehearsal of a session is noticed.
+//!
+//! Each line names the hash of the one before, and every sitting of a run records how long the list was and how it ended:
+//! a list that was cut or edited contradicts the runs.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use serde::{Deserialize, Serialize};
+
+use crate::session::play::machine::Machine;
+use crate::session::trajectory::now;
+use crate::session::trajectory::record::WorldsSeen;
+
+/// Name of the file.
+pub const WORLDS: &str = "worlds.jsonl";
+
+/// A world that was opened.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WorldLine {
+    /// When, RFC 3339.
+    pub at: String,
+    /// The machine.
+    pub machine: String,
+    /// By what: `play`, `run`, `branch`, `rescue`, `import`, `replay`, `delete`.
+    pub by: String,
+    /// First seed.
+    pub seed: u64,
+    /// Last seed, of commands that play a range.
+    pub to_seed: u64,
+    /// Scenario.
+    pub scenario: String,
+    /// Run, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
+    /// Digest of the study's protocol, where the run belongs to one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub study: Option<String>,
+    /// Hash of the line before.
+    pub prev: String,
+}
+
+/// A list that was read.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct WorldLog {
+    /// Its lines.
+    pub lines: Vec<WorldLine>,
+    /// Hash of each, 16 digits.
+    pub heads: Vec<String>,
+    /// Line, from 1, that does not follow from the one before.
+    pub broken_at: Option<u64>,
+}
+
+static PLACE: OnceLock<PathBuf> = OnceLock::new();
+
+/// Keeps the list of this process in a folder of runs. Without it nothing is listed.
+pub fn list_worlds_in(runs: &Path) {
+    let _ = PLACE.set(runs.join(WORLDS));
+}
+
+/// Lists a world that is opened. A list that cannot be written keeps nobody from playing.
+pub fn list_world(by: &str, seeds: (u64, u64), scenario: &str, run: Option<&str>, study: Option<&str>) {
+    let Some(path) = PLACE.get() else { return };
+    let line = WorldLine {
+        at: now(),
+        machine: Machine::here().id,
+        by: by.to_owned(),
+        seed: seeds.0,
+        to_seed: seeds.1,
+        scenario: scenario.to_owned(),
+        run: run.map(str::to_owned),
+        study: study.map(str::to_owned),
+        prev: String::new(),
+    };
+    let _ = append(path, line);
+}
+
+fn append(path: &Path, line: WorldLine) -> std::io::Result<()> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
+    let mut file = File::options().create(true).read(true).append(true).open(path)?;
+    // Two programs at once write one after the other.
+    file.lock()?;
+    let mut text = String::new();
+    file.seek(SeekFrom::Start(0))?;
+    file.read_to_string(&mut text)?;
+    let prev = text.lines().last().map(head_of).unwrap_or_default();
+    let line = WorldLine { prev, ..line };
+    let text = serde_json::to_string(&line).unwrap_or_default() + "\n";
+    file.write_all(text.as_bytes())
+}
+
+fn head_of(line: &str) -> String {
+    blake3::hash(line.as_bytes()).to_hex()[..16].to_owned()
+}
+
+/// How long the list of this process is now, and how it ends; none where none is kept.
+pub(in crate::session) fn worlds_seen() -> Option<WorldsSeen> {
+    let log = WorldLog::read(PLACE.get()?);
+    Some(WorldsSeen { lines: log.lines.len() as u64, head: log.heads.last().cloned().unwrap_or_default() })
+}
+
+impl WorldLog {
+    /// Reads a list; a missing one is empty.
+    pub fn read(path: &Path) -> WorldLog {
+        let text = std::fs::read_to_string(path).unwrap_or_default();
+        let mut log = WorldLog::default();
+        let mut prev = String::new();
+        for (at, text) in text.lines().enumerate() {
+            let line: Option<WorldLine> = serde_json::from_str(text).ok();
+            let follows = line.as_ref().is_some_and(|line| line.prev == prev);
+            if !follows && log.broken_at.is_none() {
+                log.broken_at = Some(at as u64 + 1);
+            }
+            prev = head_of(text);
+            log.heads.push(prev.clone());
+            log.lines.extend(line);
+        }
+        log
+    }
+
+    /// Whether the list still holds what a sitting saw of it.
+    pub fn holds(&self, seen: &WorldsSeen) -> bool {
+        match seen.lines.checked_sub(1) {
+            None => true,
+            Some(last) => self.heads.get(last as usize) == Some(&seen.head),
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! The audit of a study: what people do to their records is found, with its line, and honest sessions raise nothing.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::{Map, Value, json};
+
+use crate::support::home::{Home, Said, said};
+
+/// A study with a witness, and machines that people play on.
+struct Study {
+    home: Home,
+}
+
+const WEEKS: [&str; 5] = [
+    "next \"one\" naive\n",
+    "next \"two\" naive\n",
+    "next \"three\" naive\n",
+    "next \"four\" naive\n",
+    "next \"five\" naive\n",
+];
+
+impl Study {
+    fn new() -> Study {
+        let study = Study { home: Home::new() };
+        assert_eq!(study.home.run(&["study", "new", &study.folder()]).code, 0);
+        let path = study.home.0.path().join("pilot/study.toml");
+        let text = fs::read_to_string(&path).expect("a protocol");
+        let text =
+            text.replace("# days = 84 ", "days = 42 #").replace("offer = \"required\"", "offer = \"none\"");
+        let text = text.replace("# witness = \"/mnt/lab/witness\"", "witness = \"witness\" #");
+        fs::write(path, text).expect("written");
+        fs::create_dir(study.home.0.path().join("pilot/witness")).expect("a folder");
+        for questions in ["1-before", "2-effort", "3-end"] {
+            fs::remove_file(study.home.0.path().join(format!("pilot/questions/{questions}.toml")))
+                .expect("gone");
+        }
+        assert_eq!(study.home.run(&["study", "assign", &study.folder(), "--participants", "4"]).code, 0);
+        study
+    }
+
+    fn folder(&self) -> String {
+        self.home.0.path().join("pilot").display().to_string()
+    }
+
+    fn machine(&self, name: &str) -> PathBuf {
+        self.home.0.path().join(name)
+    }
+
+    fn program(&self, machine: &str) -> Command {
+        let mut program = self.home.program();
+        program.env("NOVAMIND_RUNS", self.machine(machine));
+        program
+    }
+
+    fn visit(&self, machine: &str, lines: &str) -> Said {
+        let said = said(self.program(machine).args(["--study", &self.folder()]), lines);
+        assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+        said
+    }
+
+    fn run(&self, machine: &str, arguments: &[&str]) -> Said {
+        said(self.program(machine).args(arguments), "")
+    }
+
+    fn only_run(&self, machine: &str, label: &str) -> PathBuf {
+        let entries = fs::read_dir(self.machine(machine).join("participants").join(label)).expect("a folder");
+        let mut runs: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        runs.retain(|path| path.join("trajectory.jsonl").exists());
+        assert_eq!(runs.len(), 1);
+        runs.remove(0)
+    }
+
+    /// Kinds of findings, with the line of each.
+    fn audit(&self, machines: &[&str]) -> Vec<(String, Option<u64>, String)> {
+        let machines: Vec<String> =
+            machines.iter().map(|name| self.machine(name).display().to_string()).collect();
+        let folder = self.folder();
+        let mut arguments = vec!["study", "audit", "--json", &folder];
+        arguments.extend(machines.iter().map(String::as_str));
+        let said = self.home.run(&arguments);
+        let audit: Value =
+            serde_json::from_str(&said.out).unwrap_or_else(|_| panic!("{}{}", said.out, said.err));
+        let findings = audit["findings"].as_array().expect("findings");
+        assert_eq!(said.code, i32::from(!findings.is_empty()));
+        let of = |finding: &Value| {
+            let words = finding["words"].as_str().expect("words").to_owned();
+            (finding["kind"].as_str().expect("a kind").to_owned(), finding["line"].as_u64(), words)
+        };
+        findings.iter().map(of).collect()
+    }
+
+    fn kinds(&self, machines: &[&str]) -> Vec<String> {
+        self.audit(machines).into_iter().map(|(kind, ..)| kind).collect()
+    }
+}
+
+fn lines(run: &Path) -> Vec<Map<String, Value>> {
+    let text = fs::read_to_string(run.join("trajectory.jsonl")).expect("a trajectory");
+    text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+}
+
+fn hash(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+/// Writes lines with a correct chain and correct sums.
+fn forge(run: &Path, lines: Vec<Map<String, Value>>) {
+    let (mut text, mut prev) = (String::new(), hash(""));
+    for (seq, mut line) in lines.into_iter().enumerate() {
+        line.insert("seq".to_owned(), json!(seq));
+        line.insert("prev".to_owned(), json!(prev));
+        line.shift_remove("sum");
+        let bare = Value::Object(line.clone()).to_string();
+        line.insert("sum".to_owned(), json!(&hash(&bare)[..16]));
+        let whole = Value::Object(line).to_string();
+        prev = hash(&whole);
+        text += &(whole + "\n");
+    }
+    fs::write(run.join("trajectory.jsonl"), text).expect("written");
+    for derived in ["world.db", "world.db-wal", "world.db-shm", "snapshot.bin"] {
+        let _ = fs::remove_file(run.join(derived));
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder");
+    for entry in fs::read_dir(from).expect("a folder").flatten() {
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            fs::copy(entry.path(), target).expect("copied");
+        }
+    }
+}
+
+#[test]
+fn honest_sessions_raise_nothing() {
+    let study = Study::new();
+    study.visit("one", &format!("P01\nyes\nset_prices A=9 B=19 C=39\n{}quit\n", WEEKS.concat()));
+    study.visit("one", "P01\nnext \"six\" naive\n");
+    study.visit("one", "P99\nP02\nno\n");
+    study.visit("two", &format!("P03\nyes\n{}withdraw\nwithdraw\n", WEEKS[0]));
+    study.visit("two", &format!("P04\nyes\nsql SELECT 1\n{}", WEEKS.concat()));
+    study.visit("two", "P04\nnext \"six\" naive\n");
+    // What an experimenter does with finished runs is no rehearsal.
+    let run = study.only_run("one", "P01").file_name().expect("a name").to_string_lossy().into_owned();
+    assert_eq!(study.run("one", &["--as", "P01", "replay", &run, "--verify"]).code, 0);
+    assert_eq!(study.audit(&["one", "two"]), []);
+}
+
+#[test]
+fn a_session_that_was_rewritten_cut_or_played_twice_is_found() {
+    let study = Study::new();
+    study.visit("one", &format!("P01\nyes\n{}quit\n", WEEKS.concat()));
+    let run = study.only_run("one", "P01");
+    let good = study.machine("good");
+    copy(&study.machine("one"), &good);
+    let (witness, told_so_far) = (study.home.0.path().join("pilot/witness"), study.machine("witness"));
+    copy(&witness, &told_so_far);
+    let restore = || {
+        for (place, from) in [(&study.machine("one"), &good), (&witness, &told_so_far)] {
+            fs::remove_dir_all(place).expect("gone");
+            copy(from, place);
+        }
+    };
+    let advance = lines(&run).iter().position(|line| line["kind"] == "advance").expect("a week");
+    // Rationales and forecasts told anew, chain and sums correct.
+    let mut told = lines(&run);
+    told[advance].insert("rationale".to_owned(), json!("I knew it all along"));
+    told[advance]["forecasts"][0]["point"] = json!(998_000);
+    forge(&run, told);
+    assert_eq!(study.run("one", &["--as", "P01", "runs"]).code, 0);
+    let found = study.audit(&["one"]);
+    assert_eq!((found[0].0.as_str(), found[0].1), ("changed", Some(advance as u64 + 1)), "{found:?}");
+    restore();
+    // The last five weeks cut, and the database that remembers them removed.
+    let cut: Vec<_> = lines(&run).into_iter().take(advance).collect();
+    forge(&run, cut);
+    let found = study.audit(&["one"]);
+    assert!(
+        found.iter().any(|(kind, line, _)| kind == "cut" && *line == Some(advance as u64 + 1)),
+        "{found:?}"
+    );
+    // And played anew from there.
+    study.visit("one", "P01\nset_prices A=5\nnext \"better\" naive\nquit\n");
+    assert!(study.kinds(&["one"]).contains(&"two_histories".to_owned()));
+    restore();
+    // Copied aside, played on, copied back.
+    copy(&study.machine("one"), &study.machine("aside"));
+    study.visit("one", "P01\nset_prices A=1\nquit\n");
+    assert_eq!(study.audit(&["one"]), []);
+    fs::remove_dir_all(study.machine("one")).expect("gone");
+    copy(&study.machine("aside"), &study.machine("one"));
+    study.visit("one", "P01\nset_prices A=30\nnext \"six\" naive\n");
+    let kinds = study.kinds(&["one"]);
+    assert!(kinds.contains(&"two_histories".to_owned()), "{kinds:?}");
+    // The trajectory removed.
+    fs::remove_file(run.join("trajectory.jsonl")).expect("gone");
+    assert!(study.kinds(&["one"]).contains(&"missing".to_owned()));
+    fs::remove_dir_all(&run).expect("gone");
+    assert!(study.kinds(&["one"]).contains(&"missing".to_owned()));
+}
+
+#[test]
+fn edited_manifests_and_clocks_are_found() {
+    let study = Study::new();
+    study.visit("one", &format!("P01\nyes\n{}quit\n", WEEKS[..3].concat()));
+    let run = study.only_run("one", "P01");
+    let good = fs::read_to_string(run.join("run.toml")).expect("text");
+    for (from, to) in
+        [("participant = \"P01\"", "participant = \"P02\""), ("earlier_runs = 0", "earlier_runs = 4")]
+    {
+        assert!(good.contains(from));
+        fs::write(run.join("run.toml"), good.replace(from, to)).expect("written");
+        let found = study.audit(&["one"]);
+        assert!(
+            found.iter().any(|(kind, _, words)| kind == "manifest" && words.contains(&to[..8])),
+            "{found:?}"
+        );
+    }
+    fs::write(run.join("run.toml"), &good).expect("written");
+    assert_eq!(study.audit(&["one"]), []);
+    // The label in the first line and in the file, with a correct chain.
+    let mut told = lines(&run);
+    told[0].insert("participant".to_owned(), json!("P02"));
+    forge(&run, told.clone());
+    fs::write(run.join("run.toml"), good.replace("participant = \"P01\"", "participant = \"P02\""))
+        .expect("written");
+    let kinds = study.kinds(&["one"]);
+    assert!(kinds.contains(&"changed".to_owned()) && kinds.contains(&"assignment".to_owned()), "{kinds:?}");
+    fs::write(run.join("run.toml"), &good).expect("written");
+    // A clock that was set back between two lines, as the lines would tell it.
+    told[0].insert("participant".to_owned(), json!("P01"));
+    let at = told.len() - 2;
+    told[at].insert("at".to_owned(), json!("2026-01-01T00:00:00Z"));
+    forge(&run, told);
+    let found = study.audit(&["one"]);
+    assert!(found.iter().any(|(kind, line, _)| kind == "clock" && *line == Some(at as u64 + 1)), "{found:?}");
+}
+
+#[test]
+fn rehearsals_on_the_machine_are_found() {
+    let session = |study: &Study| {
+        study.visit("one", &format!("P01\nyes\n{}quit\n", WEEKS[..2].concat()));
+    };
+    let finish = |study: &Study| {
+        let run = study.only_run("one", "P01").display().to_string();
+        study.visit("one", &format!("P01\n{}", WEEKS[..4].concat()));
+        run
+    };
+    let rehearse: [(&str, fn(&Study)); 4] = [
+        ("run", |study| {
+            assert_eq!(
+                study.run("one", &["run", "--policy", "P0", "--seed", "2000..3000", "--until", "7"]).code,
+                0
+            );
+        }),
+        ("play debug", |study| {
+            let mut program = study.program("one");
+            let said = said(
+                program.args(["play", "--plain", "--seed", "2718", "--mode", "debug", "--days", "42"]),
+                "step\n",
+            );
+            assert_eq!(said.code, 0, "{}", said.err);
+        }),
+        ("run.toml gone", |study| {
+            // A rehearsal whose run was removed again.
+            let mut program = study.program("one");
+            said(
+                program.args(["play", "--plain", "--seed", "2718", "--mode", "sandbox", "--days", "42"]),
+                "",
+            );
+            for entry in fs::read_dir(study.machine("one")).expect("a folder").flatten() {
+                if entry.path().join("run.toml").exists() {
+                    fs::remove_dir_all(entry.path()).expect("gone");
+                }
+            }
+        }),
+        ("branch", |study| {
+            // The session copied, given up, and branched.
+            let run = study.only_run("one", "P01");
+            let id = run.file_name().expect("a name").to_owned();
+            copy(&run, &study.machine("one").join(&id));
+            let id = id.to_string_lossy().into_owned();
+            assert_eq!(study.run("one", &["runs", "end", &id]).code, 0);
+            let mut program = study.program("one");
+            said(program.args(["play", "--plain", "--run", &id]), "branch 2\nnext naive\n");
+            fs::remove_dir_all(study.machine("one").join(id)).expect("gone");
+        }),
+    ];
+    for (what, rehearse) in rehearse {
+        let study = Study::new();
+        session(&study);
+        rehearse(&study);
+        finish(&study);
+        let found = study.audit(&["one"]);
+        assert!(
+            found.iter().any(|(kind, line, _)| kind == "rehearsal" && line.is_some()),
+            "{what}: {found:?}"
+        );
+    }
+    // A list of worlds from which the rehearsal was taken out.
+    let study = Study::new();
+    session(&study);
+    assert_eq!(study.run("one", &["run", "--policy", "P0", "--seed", "2718", "--until", "7"]).code, 0);
+    study.visit("one", "P01\nquit\n");
+    let list = study.machine("one").join("worlds.jsonl");
+    let kept: String =
+        fs::read_to_string(&list).expect("a list").lines().take(1).map(|line| format!("{line}\n")).collect();
+    fs::write(&list, kept).expect("written");
+    let kinds = study.kinds(&["one"]);
+    assert!(kinds.contains(&"world_list".to_owned()), "{kinds:?}");
+}

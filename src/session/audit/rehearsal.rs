@@ -40,8 +40,7 @@ fn listed(
     let counts = |line: &&WorldLine| {
         let of_study = line.study.is_some() && line.study.as_deref() == study && line.by.starts_with("play");
         let itself = line.run.as_deref() == Some(manifest.id.as_str());
-        !of_study
-            && !(itself && line.by.starts_with("replay"))
+        !(of_study || itself && line.by.starts_with("replay"))
             && over.is_none_or(|end| seconds(&line.at) < end)
     };
     let lines = own.machine.worlds.lines.iter().filter(same_world).filter(counts);

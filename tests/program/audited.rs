@@ -241,6 +241,9 @@ fn edited_manifests_and_clocks_are_found() {
     assert!(found.iter().any(|(kind, line, _)| kind == "clock" && *line == Some(at as u64 + 1)), "{found:?}");
 }
 
+/// A way to rehearse a session, by its name.
+type Rehearsal = (&'static str, fn(&Study));
+
 #[test]
 fn rehearsals_on_the_machine_are_found() {
     let session = |study: &Study| {
@@ -251,7 +254,7 @@ fn rehearsals_on_the_machine_are_found() {
         study.visit("one", &format!("P01\n{}", WEEKS[..4].concat()));
         run
     };
-    let rehearse: [(&str, fn(&Study)); 4] = [
+    let rehearse: [Rehearsal; 4] = [
         ("run", |study| {
             assert_eq!(
                 study.run("one", &["run", "--policy", "P0", "--seed", "2000..3000", "--until", "7"]).code,

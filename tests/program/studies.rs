@@ -192,3 +192,33 @@ fn wrong_protocols_are_named_with_line_and_key() {
     lab.0.run(&["study", "assign", &lab.folder(), "--participants", "3"]).fails(1, &["exists"]);
     lab.0.run(&["study", "new", &lab.folder()]).fails(1, &["a study already"]);
 }
+
+#[test]
+fn an_experimenter_watches_and_notes() {
+    let lab = Lab::new();
+    lab.assign();
+    lab.visit(&format!("P01\nyes\n3\n{WEEKS}2\n2\nquit\n"));
+    lab.visit("P02\nyes\n3\n");
+    let watch = |options: &[&str]| lab.0.run(&[&["study", "watch", &lab.folder()], options].concat());
+    let shown = watch(&["--once"]).out;
+    assert!(shown.contains("0 running · 2 of 3 assigned have begun") && shown.contains("left"), "{shown}");
+    assert_eq!(watch(&["--note", "P01", "asked what a lead is"]).code, 0);
+    watch(&["--note", "P 01", "no label"]).fails(2, &["participant label"]);
+    assert!(watch(&["--once"]).out.contains("P01: asked what a lead is"));
+    // Somebody plays, and then the program is killed.
+    let mut child = lab.0.program().args(["--study", &lab.folder()]).spawn().expect("it starts");
+    use std::io::Write;
+    child.stdin.as_mut().expect("a pipe").write_all(b"P03\nyes\n3\nset_prices A=3\n").expect("written");
+    let state = || {
+        let said = watch(&["--json"]).out;
+        let lines = said.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON"));
+        let own = lines.into_iter().find(|line| line["participant"] == "P03");
+        own.map(|line| line["state"].as_str().expect("a state").to_owned())
+    };
+    while state().as_deref() != Some("plays") {
+        std::thread::yield_now();
+    }
+    child.kill().expect("killed");
+    child.wait().expect("it ends");
+    assert_eq!(state().as_deref(), Some("stopped"));
+}

@@ -5,6 +5,7 @@ mod audit;
 mod check;
 mod code;
 mod new;
+mod watch;
 
 use std::path::PathBuf;
 
@@ -33,6 +34,8 @@ enum Command {
     Assign(assign::Options),
     /// Look for what an honest session does not leave behind: lines that were changed or cut, rehearsals, clocks that were set.
     Audit(audit::Options),
+    /// Watch the sessions that are running.
+    Watch(watch::Options),
     /// Print the line of study.toml that asks for an experimenter's code.
     Code,
     /// Lead a participant through the study; as `novamind --study DIR`.
@@ -52,6 +55,7 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
         Command::Check { folder } => check::run(&folder, context),
         Command::Assign(options) => assign::run(&options),
         Command::Audit(options) => audit::run(&options, context),
+        Command::Watch(options) => watch::run(&options, context),
         Command::Code => code::run(),
         Command::Start { folder, play } => play::lead(&folder, &play, context),
     }

@@ -6,6 +6,12 @@ use std::path::Path;
 
 use crate::session::error::RunError;
 
+/// Whether a program plays the run at this moment.
+pub(in crate::session) fn is_locked(folder: &Path) -> bool {
+    let file = File::open(folder.join("lock"));
+    file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
 /// Claims a run for writing; the claim ends with the program, however it ends.
 pub(in crate::session) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
     let path = folder.join("lock");

@@ -175,7 +175,7 @@ fn unreadable(id: String, problem: String) -> RunSummary {
 ///
 /// # Errors
 /// The file cannot be read, or holds no line: then nobody knows how far the run has come.
-fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
+pub(in crate::session) fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
     let mut window: u64 = 64 << 10;
     loop {
         let (text, whole) = tail(path, window).map_err(|error| format!("{}: {error}", path.display()))?;

@@ -1,0 +1,123 @@
+//! `novamind study watch`: all running sessions of a machine, or of folders of runs that are shared.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::Args;
+
+use crate::cli::{Context, Failure, print};
+use crate::plain::table as aligned;
+use crate::session::{
+    Cell, Rows, Sitting, SittingState, Study, participant_folder, remarks, sittings, week_of, write_remark,
+};
+
+/// Options of `study watch`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Folder of the study.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Folders of runs [default: that of this machine].
+    #[arg(value_name = "RUNS")]
+    machines: Vec<PathBuf>,
+    /// Print once, and do not wait for changes.
+    #[arg(long)]
+    once: bool,
+    /// Print one JSON object per session, once.
+    #[arg(long)]
+    json: bool,
+    /// Note something about a participant instead: a label and a text.
+    #[arg(long, num_args = 2, value_names = ["LABEL", "TEXT"])]
+    note: Option<Vec<String>>,
+}
+
+/// Seconds between two looks.
+const BETWEEN_LOOKS: Duration = Duration::from_secs(2);
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let study = Study::read(&options.folder)?;
+    let machines = match options.machines.is_empty() {
+        true => vec![context.runs()?],
+        false => options.machines.clone(),
+    };
+    if let Some([label, text]) = options.note.as_deref() {
+        participant_folder(Path::new(""), label).map_err(Failure::usage)?;
+        return Ok(write_remark(&machines[0], label, text)?);
+    }
+    let look = || -> Vec<Sitting> { machines.iter().flat_map(|runs| sittings(&study, runs)).collect() };
+    if options.json {
+        let lines: Vec<String> =
+            look().iter().map(|sitting| serde_json::to_string(sitting).unwrap_or_default() + "\n").collect();
+        return print(&lines.concat());
+    }
+    if options.once || !std::io::stdout().is_terminal() {
+        return print(&shown(&study, &look(), &machines));
+    }
+    loop {
+        // Only the text changes: the terminal keeps its own scrolling and its own way to stop.
+        print(&format!("\x1b[H\x1b[2J{}\nctrl-c stops watching\n", shown(&study, &look(), &machines)))?;
+        std::thread::sleep(BETWEEN_LOOKS);
+    }
+}
+
+fn shown(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> String {
+    let running =
+        all.iter().filter(|own| !matches!(own.state, SittingState::Left | SittingState::Over)).count();
+    let places =
+        study.assignment.as_ref().map_or(String::new(), |own| format!(" of {} assigned", own.places.len()));
+    let mut people: Vec<&str> = all.iter().map(|own| own.participant.as_str()).collect();
+    people.dedup();
+    let mut text =
+        format!("{} · {running} running · {}{places} have begun\n\n", study.protocol.name, people.len());
+    text += &aligned(&table(all));
+    text += "\n";
+    for remark in machines.iter().flat_map(|runs| remarks(runs)) {
+        text += &format!("\n{} {}: {}", remark.at, remark.participant, remark.text);
+    }
+    text
+}
+
+fn table(all: &[Sitting]) -> Rows {
+    let columns = ["participant", "run", "kind", "state", "week", "day", "of", "quiet", "problems"];
+    let row = |own: &Sitting| {
+        vec![
+            Cell::Text(own.participant.clone()),
+            Cell::Text(own.run.clone()),
+            Cell::Text(if own.practice { "practice" } else { "session" }.to_owned()),
+            Cell::Text(in_words(own.state).to_owned()),
+            Cell::Integer(i64::from(week_of(own.day))),
+            Cell::Integer(i64::from(own.day)),
+            Cell::Integer(i64::from(own.days)),
+            Cell::Text(quiet(own.quiet_seconds)),
+            Cell::Text(own.problems.join("; ")),
+        ]
+    };
+    Rows {
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: all.iter().map(row).collect(),
+        ..Rows::default()
+    }
+}
+
+fn in_words(state: SittingState) -> &'static str {
+    match state {
+        SittingState::Plays => "plays",
+        SittingState::Idle => "idle",
+        SittingState::Paused => "clock stopped",
+        SittingState::Left => "left",
+        SittingState::Stopped => "ended without leaving",
+        SittingState::Over => "over",
+    }
+}
+
+/// Time without a line.
+fn quiet(seconds: f64) -> String {
+    match seconds as u64 {
+        0..=59 => format!("{seconds:.0} s"),
+        60..=3599 => format!("{:.0} min", seconds / 60.0),
+        3600..=86_399 => format!("{:.1} h", seconds / 3600.0),
+        _ => format!("{:.0} days", seconds / 86_400.0),
+    }
+}

@@ -1,0 +1,46 @@
+//! What an experimenter notes about a session: `remarks.jsonl` in the folder of runs, lines of their own.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::session::error::RunError;
+use crate::session::trajectory::now;
+
+/// Name of the file.
+pub const REMARKS: &str = "remarks.jsonl";
+
+/// A remark.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Remark {
+    /// When, RFC 3339.
+    pub at: String,
+    /// Whom it is about: a label.
+    pub participant: String,
+    /// What the experimenter says.
+    pub text: String,
+}
+
+/// Writes a remark.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_remark(runs: &Path, participant: &str, text: &str) -> Result<(), RunError> {
+    let path = runs.join(REMARKS);
+    let remark = Remark { at: now(), participant: participant.to_owned(), text: text.to_owned() };
+    let line = serde_json::to_string(&remark).unwrap_or_default() + "\n";
+    let written = File::options()
+        .create(true)
+        .append(true)
+        .open(&path)
+        .and_then(|mut file| file.write_all(line.as_bytes()).and_then(|()| file.sync_all()));
+    written.map_err(RunError::io(&path))
+}
+
+/// The remarks of a folder of runs; lines that cannot be read are left out.
+pub fn remarks(runs: &Path) -> Vec<Remark> {
+    let text = std::fs::read_to_string(runs.join(REMARKS)).unwrap_or_default();
+    text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+}

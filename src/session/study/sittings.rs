@@ -1,0 +1,127 @@
+//! The sessions of a study on a machine as they stand: for the experimenter who walks by.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::session::folder::lock::is_locked;
+use crate::session::folder::manifest::Manifest;
+use crate::session::folder::runs::{all_run_folders, last_lines};
+use crate::session::study::definition::Study;
+use crate::session::trajectory::record::{Activity, ClockEvent, Outcome, PresenceEvent};
+use crate::session::trajectory::{Line, Record, now, seconds};
+
+/// A run of a study as it stands.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sitting {
+    /// Label.
+    pub participant: String,
+    /// Run.
+    pub run: String,
+    /// It is the practice.
+    pub practice: bool,
+    /// What the person is doing.
+    pub state: SittingState,
+    /// Last simulated day.
+    pub day: u32,
+    /// Last day of the run.
+    pub days: u32,
+    /// Seconds since the last line.
+    pub quiet_seconds: f64,
+    /// What is wrong, as far as the record says so: the last refusal to save, a witness that is not reached.
+    pub problems: Vec<String>,
+}
+
+/// What a person is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SittingState {
+    /// The run is being played.
+    Plays,
+    /// It is open, and nobody has pressed a key for a while.
+    Idle,
+    /// The clock is stopped.
+    Paused,
+    /// The person has left it.
+    Left,
+    /// The program ended without leaving it.
+    Stopped,
+    /// It is over.
+    Over,
+}
+
+/// Name of the file with lines that a witness has not been told of yet.
+const QUEUE: &str = "witness-queue.jsonl";
+
+/// Every run of a study in a machine's folder of runs, by label and run.
+pub fn sittings(study: &Study, runs: &Path) -> Vec<Sitting> {
+    let folders = all_run_folders(runs);
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
+    let own = entries.filter_map(|entry| {
+        let folder = entry.path();
+        let manifest = Manifest::read(&folder).ok()?;
+        let is_own = manifest.study.as_ref().is_some_and(|stamp| stamp.digest == study.digest);
+        is_own.then(|| sitting(&folder, &manifest))
+    });
+    let mut own: Vec<Sitting> = own.collect();
+    own.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
+    own
+}
+
+fn sitting(folder: &Path, manifest: &Manifest) -> Sitting {
+    let (lines, damaged) = match last_lines(&folder.join("trajectory.jsonl")) {
+        Ok(lines) => (lines, None),
+        Err(problem) => (Vec::new(), Some(problem)),
+    };
+    let quiet = lines.last().map_or(0.0, |line| (seconds(&now()) - line.moment()).max(0.0));
+    let mut problems: Vec<String> = damaged.into_iter().collect();
+    problems.extend(not_saved(&lines));
+    if folder.join(QUEUE).exists() {
+        problems.push("the witness is not reached: lines wait on the machine".to_owned());
+    }
+    Sitting {
+        participant: manifest.participant.clone().unwrap_or_default(),
+        run: manifest.id.clone(),
+        practice: manifest.study.as_ref().is_some_and(|stamp| stamp.practice),
+        state: state(&lines, is_locked(folder)),
+        day: lines.iter().rev().find(|line| line.closes_days()).map_or(0, |line| line.day),
+        days: manifest.days,
+        quiet_seconds: quiet,
+        problems,
+    }
+}
+
+/// The last refusal to save, unless something was saved since.
+fn not_saved(lines: &[Line]) -> Option<String> {
+    lines.iter().rev().find_map(|line| match &line.record {
+        Record::Call(call) => Some(match &call.outcome {
+            Outcome::Refused(refusal) if refusal.code == "not_saved" => Some(refusal.message.clone()),
+            _ => None,
+        }),
+        Record::Week(_) => Some(None),
+        _ => None,
+    })?
+}
+
+fn state(lines: &[Line], locked: bool) -> SittingState {
+    let said = lines.iter().rev().find_map(|line| match &line.record {
+        Record::End(_) => Some(SittingState::Over),
+        Record::Activity(Activity::Clock(clock)) if clock.event == ClockEvent::Stopped => {
+            Some(SittingState::Paused)
+        }
+        Record::Activity(Activity::Session(own)) => match own.event {
+            PresenceEvent::Closed => Some(SittingState::Left),
+            PresenceEvent::Idle | PresenceEvent::Suspended => Some(SittingState::Idle),
+            _ => Some(SittingState::Plays),
+        },
+        Record::Call(_) | Record::Advance(_) | Record::Week(_) | Record::Query(_) => {
+            Some(SittingState::Plays)
+        }
+        _ => None,
+    });
+    match said.unwrap_or(SittingState::Plays) {
+        // Nobody holds the run any more, and no line says that it was left.
+        SittingState::Plays | SittingState::Idle | SittingState::Paused if !locked => SittingState::Stopped,
+        said => said,
+    }
+}

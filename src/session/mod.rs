@@ -77,7 +77,9 @@ pub use study::visit::{NextStep, Visit};
 pub use study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
 pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via};
 pub use trajectory::{Line, Record, Trajectory, record, seconds as moment_of};
-pub use witness::{Finding, FindingKind, Told, Witness, WitnessRecord, compare, read_witness};
+pub use witness::{
+    Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,
+};
 
 pub use crate::database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
 pub use crate::tools::{Numbers, PublicPost, Refusal, ToolId};

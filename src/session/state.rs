@@ -20,6 +20,7 @@ use crate::session::play::surroundings::RunSurroundings;
 use crate::session::study::answer_book::AnswerBook;
 use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::Ended;
+use crate::session::witness::code_words;
 use crate::tools::Numbers;
 use crate::voice::CompanyNames;
 use crate::world::identifiers::ByGroup;
@@ -156,6 +157,11 @@ impl Session {
     /// trajectory recorded.
     pub fn state_hash(&self) -> (String, BTreeMap<String, String>) {
         self.simulation.state_hash()
+    }
+
+    /// Four words for the trajectory as far as it has come: whoever notes them can later tell that it was this one.
+    pub fn code_words(&self) -> String {
+        code_words(&self.position.line_hash)
     }
 
     /// Whether everything that happened stands in the run's trajectory: not where a run is only read, or its file took no

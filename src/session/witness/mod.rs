@@ -5,10 +5,12 @@
 //! later the trajectory is compared with what was told.
 
 mod carrier;
+mod code_words;
 mod compare;
 mod queue;
 mod record;
 
 pub use carrier::Witness;
+pub use code_words::{code_words, line_of_code};
 pub use compare::{Finding, FindingKind, compare};
 pub use record::{Told, WitnessRecord, read_witness};

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use novamind::session::{
-    Access, Finding, FindingKind, Session, Trajectory, WitnessRecord, compare, read_witness,
+    Access, Finding, FindingKind, Session, Trajectory, WitnessRecord, compare, line_of_code, read_witness,
 };
 use serde_json::Value;
 
@@ -114,6 +114,26 @@ fn an_honest_session_is_told_line_by_line_and_gives_no_finding() {
     }
     assert_eq!(run.findings(), []);
     assert!(!run.folder.join("witness-queue.jsonl").exists(), "nothing waits");
+}
+
+#[test]
+fn a_code_on_paper_tells_which_line_a_trajectory_had_reached() {
+    let run = Played::weeks(2);
+    let mut session = open(&run.folder);
+    week(&mut session);
+    let (code, seq) = (session.code_words(), trajectory(&run.folder).lines.len() as u64 - 1);
+    session.save().expect("saved");
+    drop(session);
+    run.play_on(&run.folder, MACHINE, 1);
+    let line =
+        |code: &str| line_of_code(&trajectory(&run.folder).lines, code).expect("a code").map(|line| line.seq);
+    assert_eq!(line(&code), Some(seq));
+    forge(&run.folder, |at, line| {
+        if at == 0 {
+            line["participant"] = "P99".into();
+        }
+    });
+    assert_eq!(line(&code), None, "another history has other words");
 }
 
 #[test]

@@ -112,6 +112,7 @@ impl Options {
             storage: Storage::Runs(context.runs()?),
             projection: true,
             sync_calls: true,
+            seal_key: standard.seal_key,
         })
     }
 }

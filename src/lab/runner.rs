@@ -206,6 +206,7 @@ pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
         storage: spec.save.clone().map_or(Storage::Memory, Storage::Runs),
         projection: spec.projection,
         sync_calls: false,
+        seal_key: standard.seal_key,
     }
 }
 

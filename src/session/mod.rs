@@ -63,6 +63,7 @@ pub use playback::record_view::RecordView;
 pub use resume::open::Access;
 pub use resume::rebuild::rebuild_database;
 pub use resume::rescue::{Rescued, rescue};
+pub use resume::sealing::SealKey;
 pub use resume::verify::{Verification, verify};
 pub use state::Session;
 pub use study::assignment::{ASSIGNMENT_FILE, Assignment, Place};

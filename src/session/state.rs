@@ -18,6 +18,7 @@ use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::RunSurroundings;
 use crate::session::study::answer_book::AnswerBook;
+use crate::session::resume::sealing::SealKey;
 use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::Ended;
 use crate::session::witness::code_words;
@@ -48,6 +49,8 @@ pub struct Session {
     pub(super) projection: Projection,
     /// What the record says about questions of a study.
     pub(super) answers: AnswerBook,
+    /// What seals its snapshots.
+    pub(super) seal_key: SealKey,
     /// Notes of a run without a folder.
     pub(super) memo_in_memory: String,
     /// What the person should know about the opening of the run.

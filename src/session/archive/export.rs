@@ -16,6 +16,7 @@ use crate::session::play::afterwards::{AFTERWARDS, lines_afterwards};
 use crate::session::play::memo::notes_file;
 use crate::session::resume::integrity::Integrity;
 use crate::session::resume::open::{Access, check_start};
+use crate::session::resume::sealing::SealKey;
 use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
 
@@ -152,7 +153,7 @@ impl Export {
 /// whatever they remember is then in what is read.
 fn read_settled(folder: &Path, manifest: &Manifest) -> Result<(Vec<u8>, Trajectory), RunError> {
     let path = folder.join(TRAJECTORY);
-    let integrity = Integrity::of(folder, manifest);
+    let integrity = Integrity::of(folder, manifest, &SealKey::default());
     let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
     let trajectory = Trajectory::of_file(&path, &bytes)?;
     check_start(&path, trajectory.lines.first(), manifest)?;

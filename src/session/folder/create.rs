@@ -16,6 +16,7 @@ use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::RunSurroundings;
+use crate::session::resume::sealing::SealKey;
 use crate::session::state::Session;
 use crate::session::study::answer_book::AnswerBook;
 use crate::session::study::rules::SessionRules;
@@ -51,6 +52,8 @@ pub struct NewRun {
     pub projection: bool,
     /// Whether every call is on the disk before it is confirmed; otherwise once a week.
     pub sync_calls: bool,
+    /// What seals its snapshots.
+    pub seal_key: SealKey,
 }
 
 /// What a study lays down for a new run.
@@ -88,6 +91,7 @@ impl Default for NewRun {
             storage: Storage::Memory,
             projection: true,
             sync_calls: true,
+            seal_key: SealKey::default(),
         }
     }
 }
@@ -129,7 +133,8 @@ impl Session {
         let projector = start_projector(new.projection, folder.as_deref(), manifest.number(), &params)?;
         let simulation = Simulation::open(&manifest, params);
         let begun = Session::assemble(manifest, folder, simulation, Projection::of(projector));
-        let session = Session { position: recorder.position(), recorder: Some(recorder), ..begun };
+        let (position, seal_key) = (recorder.position(), new.seal_key.clone());
+        let session = Session { position, seal_key, recorder: Some(recorder), ..begun };
         session.project_opening();
         Ok(session)
     }
@@ -152,6 +157,7 @@ impl Session {
             position: Position { seq: 0, line_hash: String::new() },
             surroundings: RunSurroundings::default(),
             answers: AnswerBook::default(),
+            seal_key: SealKey::default(),
             memo_in_memory: String::new(),
             remarks: Vec::new(),
             recorder: None,

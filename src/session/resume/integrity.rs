@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use super::sealing::SealKey;
 use super::snapshot::{FILE, Snapshot};
 use crate::database::{
     Location, Position, file_digest, has_layout_of_now, is_consistent, owner_of, position_of,
@@ -27,9 +28,9 @@ pub(in crate::session) struct Integrity {
 
 impl Integrity {
     /// Asks them. Has to come before the trajectory is read, which may grow in between.
-    pub(in crate::session) fn of(folder: &Path, manifest: &Manifest) -> Integrity {
+    pub(in crate::session) fn of(folder: &Path, manifest: &Manifest, key: &SealKey) -> Integrity {
         let mut remarks = Vec::new();
-        let snapshot = Snapshot::read(folder).unwrap_or_else(|problem| {
+        let snapshot = Snapshot::read(folder, key).unwrap_or_else(|problem| {
             remarks
                 .push(format!("{FILE} {problem} and is not used: the run was simulated from its beginning."));
             None
@@ -112,7 +113,7 @@ fn location(folder: &Path) -> Location {
 /// Whether nobody has changed the database's file since the run was closed.
 pub(in crate::session) fn is_as_left(folder: &Path) -> bool {
     let Ok(manifest) = Manifest::read(folder) else { return false };
-    Integrity::of(folder, &manifest).is_as_closed(folder).unwrap_or(true)
+    Integrity::of(folder, &manifest, &SealKey::default()).is_as_closed(folder).unwrap_or(true)
 }
 
 /// Line, from 1, that a remembered position shows to be missing or changed.

@@ -33,7 +33,7 @@ impl Session {
         let sound = is_consistent(&Location::File(folder.join("world.db")));
         let run = (&self.manifest, &self.simulation.params);
         let database = open_projector(&folder, Access::Write, run, &read, sound)?;
-        let integrity = Integrity::of(&folder, &self.manifest);
+        let integrity = Integrity::of(&folder, &self.manifest, &self.seal_key);
         let rows = database.1.as_ref().map_or(0, |position| position.seq);
         let snapshot = usable(&integrity, &self.manifest, &read, Some(rows));
         let (manifest, params) = (self.manifest.clone(), Arc::clone(&self.simulation.params));

@@ -6,6 +6,7 @@ pub(in crate::session) mod mend;
 pub(in crate::session) mod open;
 pub(in crate::session) mod rebuild;
 pub(in crate::session) mod rescue;
+pub(in crate::session) mod sealing;
 pub(in crate::session) mod snapshot;
 pub(in crate::session) mod verify;
 

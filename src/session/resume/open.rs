@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::integrity::Integrity;
+use super::sealing::SealKey;
 use super::snapshot::{Recalled, Snapshot};
 use crate::database::{Location, Position, Projector};
 use crate::session::error::RunError;
@@ -33,6 +34,19 @@ impl Session {
     /// # Errors
     /// The run is missing, damaged, of another version, or in use; the error names the place and what is safe.
     pub fn open(folder: &Path, access: Access, projection: bool) -> Result<Session, RunError> {
+        Session::open_sealed(folder, access, projection, SealKey::default())
+    }
+
+    /// As [`Session::open`], for a run whose snapshots a key seals.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn open_sealed(
+        folder: &Path,
+        access: Access,
+        projection: bool,
+        key: SealKey,
+    ) -> Result<Session, RunError> {
         let manifest = Manifest::read(folder)?;
         let params = Arc::new(manifest.params()?);
         let lock = match access {
@@ -40,7 +54,7 @@ impl Session {
             Access::Read => None,
         };
         let path = folder.join("trajectory.jsonl");
-        let mut integrity = Integrity::of(folder, &manifest);
+        let mut integrity = Integrity::of(folder, &manifest, &key);
         let trajectory = Trajectory::read(&path)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;
         integrity.check(&path, &trajectory)?;
@@ -58,6 +72,7 @@ impl Session {
         let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
         let snapshot = usable(&integrity, &manifest, &trajectory, rows);
         let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, snapshot);
+        session.seal_key = key;
         session.remarks.append(&mut integrity.remarks);
         session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
         if let Some(location) = finished {

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use super::integrity::Integrity;
 use super::open::{Access, check_start, open_projector, usable};
+use super::sealing::SealKey;
+use super::snapshot::SnapshotPlace;
 use crate::session::error::RunError;
 use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::Manifest;
@@ -21,7 +23,8 @@ pub fn rebuild_database(folder: &Path, progress: &mut dyn FnMut(u32, u32)) -> Re
     let params = Arc::new(manifest.params()?);
     let _lock = lock_run(folder, &manifest.id)?;
     let path = folder.join("trajectory.jsonl");
-    let mut integrity = Integrity::of(folder, &manifest);
+    let key = SealKey::default();
+    let mut integrity = Integrity::of(folder, &manifest, &key);
     let trajectory = Trajectory::read(&path)?;
     check_start(&path, trajectory.lines.first(), &manifest)?;
     integrity.check(&path, &trajectory)?;
@@ -35,8 +38,8 @@ pub fn rebuild_database(folder: &Path, progress: &mut dyn FnMut(u32, u32)) -> Re
     session.projection.wait()?;
     // The file is another one now: what vouched for the old one would call it damaged.
     if let Some(closed) = integrity.snapshot.filter(|snapshot| snapshot.database().is_some()) {
-        let folder = folder.to_owned();
-        session.projection.then(true, move |digest| closed.vouch_for(&folder, digest));
+        let place = SnapshotPlace::of(folder, &key);
+        session.projection.then(true, move |digest| closed.vouch_for(&place, digest));
         session.projection.wait()?;
     }
     Ok(())

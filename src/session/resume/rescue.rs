@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::branch::branch_of;
 use super::integrity::Integrity;
 use super::open::check_start;
+use super::sealing::SealKey;
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
@@ -47,7 +48,8 @@ pub fn rescue(folder: &Path) -> Result<Rescued, RunError> {
     let words = match (&problem, unreadable) {
         (Some((line, problem)), _) => format!("line {line}: {problem}"),
         (None, Some(problem)) => problem,
-        (None, None) => match Integrity::of(folder, &manifest).check(&path, &trajectory) {
+        (None, None) => match Integrity::of(folder, &manifest, &SealKey::default()).check(&path, &trajectory)
+        {
             Err(problem) => problem.to_string(),
             Ok(()) => {
                 let message = format!("run {} is not damaged; there is nothing to rescue", manifest.id);

@@ -4,13 +4,13 @@
 //! parameters, and stands at a line that the trajectory still has. Otherwise the run is simulated from its
 //! beginning, which costs time and nothing else (docs/formats/snapshot.md).
 //!
-//! The file is a title line, the blake3 digest of the rest, and the rest as canonical bytes: header and notes as
-//! JSON texts, the notes deflated, then what the world and the session hold as numbers.
+//! The file is a title line, an envelope, and the sealed rest, which is canonical bytes: header and notes as JSON texts,
+//! the notes deflated, then what the world and the session hold as numbers.
 
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use flate2::Compression;
@@ -18,6 +18,7 @@ use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
 use serde::{Deserialize, Serialize};
 
+use super::sealing::{Envelope, RunKeys, SealKey};
 use crate::database::Position;
 use crate::session::figures::changes::Decisions;
 use crate::session::figures::journal::JournalEntry;
@@ -31,13 +32,18 @@ use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::Calculated;
 use crate::session::play::this_week::{Step, ThisWeek};
 use crate::session::state::Session;
+use crate::session::trajectory::hash_of_first_line;
 use crate::session::trajectory::record::Ended;
 use crate::tools::Notebook;
 use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
 use crate::world::params::Params;
 
-const TITLE: &[u8] = b"novamind snapshot 5\n";
-const DIGEST: usize = blake3::OUT_LEN;
+const TITLE: &[u8] = b"novamind snapshot 6\n";
+/// After the title: whether the secret of a study is needed to open it.
+const OF_RUN: u8 = b'r';
+const OF_STUDY: u8 = b's';
+/// The file whose first line the keys are made of.
+const TRAJECTORY: &str = "trajectory.jsonl";
 /// Name of the file in a run's folder.
 pub(in crate::session) const FILE: &str = "snapshot.bin";
 /// Room for a subscriber: columns and the facts of a day need 190 bytes or so. Room that nobody takes costs nothing;
@@ -104,7 +110,7 @@ impl Notes<'_> {
 /// A snapshot file that is whole.
 pub(in crate::session) struct Snapshot {
     header: Header,
-    /// Title, digest and everything after them.
+    /// Title, envelope and everything after them, opened.
     file: Vec<u8>,
     /// Where the notes begin.
     notes_at: usize,
@@ -122,18 +128,14 @@ impl Snapshot {
     ///
     /// # Errors
     /// What is wrong with the file.
-    pub(in crate::session) fn read(folder: &Path) -> Result<Option<Snapshot>, &'static str> {
-        let file = match std::fs::read(folder.join(FILE)) {
+    pub(in crate::session) fn read(folder: &Path, key: &SealKey) -> Result<Option<Snapshot>, &'static str> {
+        let mut file = match std::fs::read(folder.join(FILE)) {
             Ok(file) => file,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(_) => return Err("cannot be read"),
         };
-        let body = file.strip_prefix(TITLE).ok_or("is of another version or damaged")?;
-        let (digest, body) = body.split_at_checked(DIGEST).ok_or("is cut short")?;
-        if blake3::hash(body).as_bytes() != digest {
-            return Err("is damaged");
-        }
-        let mut reader = CanonicalReader::new(body);
+        let sealed = open_file(&mut file, folder, key)?;
+        let mut reader = CanonicalReader::new(&file[sealed..]);
         let header: Option<String> = reader.read();
         let header =
             header.and_then(|text| serde_json::from_str(&text).ok()).ok_or("is of another version")?;
@@ -152,9 +154,9 @@ impl Snapshot {
     }
 
     /// Vouches for a database that was made anew as of the same line.
-    pub(in crate::session) fn vouch_for(&self, folder: &Path, database: Option<String>) {
-        let header = Header { database, ..self.header.clone() };
-        write(&folder.join(FILE), &header, &self.file[self.notes_at..]);
+    pub(in crate::session) fn vouch_for(mut self, place: &SnapshotPlace, database: Option<String>) {
+        let header = Header { database, ..self.header };
+        place.write(&header, &mut self.file[self.notes_at..]);
     }
 
     /// Whether it is one of this run.
@@ -231,12 +233,12 @@ impl Session {
         let Some(folder) = self.folder.as_ref().filter(|_| self.recorder.is_some()) else {
             return self.commit_projection();
         };
-        let path = folder.join(FILE);
-        let (header, state) = (self.snapshot_header(state_hash()), self.state_bytes());
+        let place = SnapshotPlace::of(folder, &self.seal_key);
+        let (header, mut state) = (self.snapshot_header(state_hash()), self.state_bytes());
         // Lines without rows move the database on, too: a snapshot ahead of it could not be used.
         self.commit_projection();
         self.projection.then(closing, move |database| {
-            write(&path, &Header { database, ..header }, &state);
+            place.write(&Header { database, ..header }, &mut state);
         });
     }
 
@@ -287,18 +289,53 @@ impl Session {
     }
 }
 
-/// Writes a snapshot in place of the old one. Not synced: after a power cut its digest tells whether it is whole.
-fn write(path: &Path, header: &Header, state: &[u8]) {
-    let header = bytes_of(&serde_json::to_string(header).unwrap_or_default());
-    let digest = blake3::Hasher::new().update(&header).update(state).finalize();
-    let draft = path.with_extension("draft");
-    // Piece by piece: a large state is a good part of the memory already.
-    let pieces = [TITLE, digest.as_bytes(), &header, state];
-    let written = File::create(&draft)
-        .and_then(|mut file| pieces.iter().try_for_each(|piece| file.write_all(piece)))
-        .and_then(|()| std::fs::rename(&draft, path));
-    if written.is_err() {
-        // Half a file helps nobody, least of all on a disk that is full.
-        let _ = std::fs::remove_file(&draft);
+/// Opens the sealed part of a file in its place; returns where it begins.
+fn open_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &'static str> {
+    let rest = file.strip_prefix(TITLE).ok_or("is of another version or damaged")?;
+    let (&of, rest) = rest.split_first().ok_or("is cut short")?;
+    let (envelope, _) = rest.split_first_chunk().ok_or("is cut short")?;
+    let envelope = Envelope::of(envelope);
+    if of == OF_STUDY && !key.has_secret() {
+        return Err("is sealed with the key of a study");
+    }
+    let own = if of == OF_RUN { &SealKey::default() } else { key };
+    let first =
+        hash_of_first_line(&folder.join(TRAJECTORY)).ok_or("belongs to a trajectory that is not there")?;
+    let at = TITLE.len() + 1 + Envelope::LENGTH;
+    own.for_run(&first).open(&envelope, &mut file[at..]).then_some(at).ok_or("is damaged or of another run")
+}
+
+/// Where the snapshots of a run go, and what seals them.
+pub(in crate::session) struct SnapshotPlace {
+    path: PathBuf,
+    of: u8,
+    /// None where the trajectory is not in its place: then nothing is kept of the run.
+    keys: Option<RunKeys>,
+}
+
+impl SnapshotPlace {
+    /// That of the run in a folder.
+    pub(in crate::session) fn of(folder: &Path, key: &SealKey) -> SnapshotPlace {
+        let keys = hash_of_first_line(&folder.join(TRAJECTORY)).map(|first| key.for_run(&first));
+        let of = if key.has_secret() { OF_STUDY } else { OF_RUN };
+        SnapshotPlace { path: folder.join(FILE), of, keys }
+    }
+
+    /// Writes a snapshot in place of the old one; the state is sealed in its place. Not synced: after a power cut its tag
+    /// tells whether it is whole.
+    fn write(&self, header: &Header, state: &mut [u8]) {
+        let Some(keys) = &self.keys else { return };
+        let mut header = bytes_of(&serde_json::to_string(header).unwrap_or_default());
+        let envelope = keys.seal(&mut header, state).bytes();
+        let draft = self.path.with_extension("draft");
+        // Piece by piece: a large state is a good part of the memory already.
+        let pieces = [TITLE, &[self.of], &envelope, &header, state];
+        let written = File::create(&draft)
+            .and_then(|mut file| pieces.iter().try_for_each(|piece| file.write_all(piece)))
+            .and_then(|()| std::fs::rename(&draft, &self.path));
+        if written.is_err() {
+            // Half a file helps nobody, least of all on a disk that is full.
+            let _ = std::fs::remove_file(&draft);
+        }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::integrity::Integrity;
+use super::sealing::SealKey;
 use crate::session::error::RunError;
 use crate::session::playback::{Origin, read};
 use crate::session::state::Session;
@@ -31,7 +32,7 @@ pub fn verify(path: &Path) -> Result<Verification, RunError> {
     let (origin, trajectory) = read(path)?;
     let Origin { path, folder, manifest, params } = origin;
     if let Some(folder) = &folder {
-        Integrity::of(folder, &manifest).check(&path, &trajectory)?;
+        Integrity::of(folder, &manifest, &SealKey::default()).check(&path, &trajectory)?;
     }
     let run = manifest.id.clone();
     let mut session = Session::unwritten(manifest, None, params, None);

@@ -1,6 +1,9 @@
 //! A line: its frame, the sum at its end, and what it says.
 
 use std::borrow::Cow;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
 
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -114,6 +117,13 @@ impl Line {
 /// Hash of a line's bytes, in hexadecimal digits.
 pub(super) fn line_hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
+}
+
+/// Hash of the first line of a file; none if it cannot be read or has no whole line.
+pub(in crate::session) fn hash_of_first_line(path: &Path) -> Option<String> {
+    let mut line = Vec::new();
+    BufReader::new(File::open(path).ok()?).read_until(b'\n', &mut line).ok()?;
+    line.pop_if(|last| *last == b'\n').map(|_| line_hash(&line))
 }
 
 /// What stands before the sum of a line.

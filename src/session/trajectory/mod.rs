@@ -11,6 +11,7 @@ mod writer;
 
 use std::path::Path;
 
+pub(super) use line::hash_of_first_line;
 pub use line::{Line, now, seconds};
 #[cfg(test)]
 pub(super) use medium::Medium;

@@ -7,4 +7,5 @@ mod property;
 mod recorded;
 mod resume;
 mod run;
+mod sealed;
 mod witness;

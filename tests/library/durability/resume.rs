@@ -76,7 +76,7 @@ fn snapshots_that_cannot_be_used_cost_only_time() {
     for (name, bytes, told) in [
         ("none", None, None),
         ("an earlier one", Some(early), None),
-        ("one of another run", Some(foreign), None),
+        ("one of another run", Some(foreign), Some("of another run")),
         ("a damaged one", Some(changed), Some("is damaged")),
         ("half of one", Some(late[..late.len() / 2].to_vec()), Some("is damaged")),
         ("almost nothing", Some(late[..30].to_vec()), Some("is cut short")),

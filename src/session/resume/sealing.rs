@@ -1,0 +1,198 @@
+//! Sealing the state of a run: encrypted and authenticated, so that neither `strings` nor a parser reads what is hidden
+//! (docs/formats/snapshot.md#sealing).
+//!
+//! Keys are derived from the first line of the trajectory and, in a study, from a secret that stays with the experimenter.
+//! The nonce is a keyed hash of what is sealed, so no two states of a run share a key stream; the tag is a keyed hash of
+//! nonce and sealed bytes.
+
+use std::fmt;
+
+use rayon::prelude::*;
+
+/// Separates these keys from every other use of the same hash.
+const CONTEXT: &str = "novamind 2026-11 sealed state of a run";
+/// Bytes of a key stream that one thread makes at a time.
+const PIECE: usize = 1 << 20;
+/// Bytes of a nonce, a tag, a key.
+const SIZE: usize = 32;
+
+/// What seals the snapshots of a run besides the run itself.
+#[derive(Clone, Default, PartialEq, Eq)]
+pub struct SealKey {
+    study: Option<[u8; SIZE]>,
+}
+
+impl SealKey {
+    /// The secret of a study: without it nobody opens what was sealed with it.
+    pub fn of_study(secret: &[u8; SIZE]) -> SealKey {
+        SealKey { study: Some(*secret) }
+    }
+
+    /// Whether a secret of a study is part of it.
+    pub(super) fn has_secret(&self) -> bool {
+        self.study.is_some()
+    }
+
+    /// The keys of a run, by the hash of the first line of its trajectory.
+    pub(super) fn for_run(&self, first_line: &str) -> RunKeys {
+        let mut hasher = blake3::Hasher::new_derive_key(CONTEXT);
+        hasher.update(first_line.as_bytes());
+        if let Some(secret) = &self.study {
+            hasher.update(secret);
+        }
+        let mut keys = [0; 3 * SIZE];
+        hasher.finalize_xof().fill(&mut keys);
+        let key = |at: usize| std::array::from_fn(|byte| keys[at * SIZE + byte]);
+        RunKeys { nonce: key(0), stream: key(1), tag: key(2) }
+    }
+}
+
+impl fmt::Debug for SealKey {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(if self.study.is_some() { "SealKey(of a study)" } else { "SealKey(of the run)" })
+    }
+}
+
+/// Keys that seal and open the states of one run.
+pub(super) struct RunKeys {
+    nonce: [u8; SIZE],
+    stream: [u8; SIZE],
+    tag: [u8; SIZE],
+}
+
+/// What stands before sealed bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Envelope {
+    nonce: [u8; SIZE],
+    tag: [u8; SIZE],
+}
+
+impl Envelope {
+    /// Bytes of an envelope.
+    pub(super) const LENGTH: usize = 2 * SIZE;
+
+    /// As a file holds it.
+    pub(super) fn bytes(&self) -> [u8; Envelope::LENGTH] {
+        std::array::from_fn(|at| if at < SIZE { self.nonce[at] } else { self.tag[at - SIZE] })
+    }
+
+    /// From the bytes of a file.
+    pub(super) fn of(bytes: &[u8; Envelope::LENGTH]) -> Envelope {
+        let part = |from: usize| std::array::from_fn(|at| bytes[from + at]);
+        Envelope { nonce: part(0), tag: part(SIZE) }
+    }
+}
+
+impl RunKeys {
+    /// Seals two pieces, one after the other, in their place.
+    pub(super) fn seal(&self, header: &mut [u8], state: &mut [u8]) -> Envelope {
+        let mut hasher = blake3::Hasher::new_keyed(&self.nonce);
+        let nonce = *hasher.update(header).update(state).finalize().as_bytes();
+        self.stream_over(&nonce, 0, header);
+        self.stream_over(&nonce, header.len(), state);
+        Envelope { nonce, tag: *self.tag_of(&nonce, &[header, state]).as_bytes() }
+    }
+
+    /// Opens what was sealed with these keys, in its place; otherwise leaves it as it is and says so.
+    pub(super) fn open(&self, envelope: &Envelope, sealed: &mut [u8]) -> bool {
+        // Hashes are compared in constant time.
+        let genuine = self.tag_of(&envelope.nonce, &[sealed]) == blake3::Hash::from_bytes(envelope.tag);
+        if genuine {
+            self.stream_over(&envelope.nonce, 0, sealed);
+        }
+        genuine
+    }
+
+    fn tag_of(&self, nonce: &[u8; SIZE], pieces: &[&[u8]]) -> blake3::Hash {
+        let mut hasher = blake3::Hasher::new_keyed(&self.tag);
+        hasher.update(nonce);
+        for piece in pieces {
+            hasher.update(piece);
+        }
+        hasher.finalize()
+    }
+
+    /// Adds the key stream of a nonce, from a place of it on, to bytes: twice is never.
+    fn stream_over(&self, nonce: &[u8; SIZE], from: usize, bytes: &mut [u8]) {
+        let stream = blake3::Hasher::new_keyed(&self.stream).update(nonce).finalize_xof();
+        bytes.par_chunks_mut(PIECE).enumerate().for_each(|(at, piece)| {
+            let mut own = stream.clone();
+            own.set_position((from + at * PIECE) as u64);
+            let mut keys = [0; 4096];
+            for block in piece.chunks_mut(keys.len()) {
+                let keys = &mut keys[..block.len()];
+                own.fill(keys);
+                block.iter_mut().zip(keys).for_each(|(byte, key)| *byte ^= *key);
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINE: &str = "7c1f0d0a2b4e6f8091a3b5c7d9ebfd0f2143658799abbccddeef00112233445566";
+
+    fn plain() -> (Vec<u8>, Vec<u8>) {
+        let state = (0..3 * PIECE + 777).map(|at| (at % 251) as u8).collect();
+        (b"header".to_vec(), state)
+    }
+
+    #[test]
+    fn what_is_sealed_comes_back_with_the_same_keys_only() {
+        let (mut header, mut state) = plain();
+        let whole = [header.clone(), state.clone()].concat();
+        let keys = SealKey::default().for_run(LINE);
+        let envelope = keys.seal(&mut header, &mut state);
+        let sealed = [header, state].concat();
+        assert_eq!(Envelope::of(&envelope.bytes()), envelope);
+        let opened = |keys: &RunKeys, envelope: &Envelope, sealed: &[u8]| {
+            let mut bytes = sealed.to_vec();
+            let genuine = keys.open(envelope, &mut bytes);
+            assert!(genuine || bytes == sealed, "what is not genuine stays sealed");
+            genuine.then_some(bytes)
+        };
+        assert_eq!(opened(&keys, &envelope, &sealed).as_deref(), Some(whole.as_slice()));
+        let study = SealKey::of_study(&[7; 32]);
+        for other in [SealKey::default().for_run("another line"), study.for_run(LINE)] {
+            assert_eq!(opened(&other, &envelope, &sealed), None);
+        }
+        for at in [0, 5, 6, sealed.len() / 2, sealed.len() - 1] {
+            let mut changed = sealed.clone();
+            changed[at] ^= 1;
+            assert_eq!(opened(&keys, &envelope, &changed), None, "byte {at}");
+        }
+        for at in 0..Envelope::LENGTH {
+            let mut changed = envelope.bytes();
+            changed[at] ^= 1;
+            assert_eq!(opened(&keys, &Envelope::of(&changed), &sealed), None, "byte {at} of the envelope");
+        }
+        assert_eq!(opened(&keys, &envelope, &sealed[..sealed.len() - 1]), None);
+    }
+
+    #[test]
+    fn sealed_bytes_repeat_nothing() {
+        let keys = SealKey::default().for_run(LINE);
+        let seal = |first: u8| {
+            let (mut header, mut state) = (vec![first], vec![0; 2 * PIECE]);
+            let envelope = keys.seal(&mut header, &mut state);
+            (envelope, state)
+        };
+        let (one, two) = (seal(1), seal(2));
+        assert_ne!(one.0.nonce, two.0.nonce);
+        // Where nothing but zeros was sealed the key stream itself is left: no two of its blocks are equal.
+        let mut blocks: Vec<&[u8]> =
+            [&one.1, &two.1].into_iter().flat_map(|bytes| bytes.chunks(32)).collect();
+        let count = blocks.len();
+        blocks.sort_unstable();
+        blocks.dedup();
+        assert_eq!(blocks.len(), count);
+        assert_eq!(seal(1), one, "the same state is the same file");
+        assert_eq!(
+            format!("{:?}", SealKey::of_study(&[9; 32])),
+            "SealKey(of a study)",
+            "a secret is not printed"
+        );
+    }
+}

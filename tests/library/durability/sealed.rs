@@ -1,0 +1,91 @@
+//! Snapshots are sealed: a file alone tells nothing, and one that a study sealed opens with its secret only.
+
+use std::fs;
+
+use novamind::session::{Access, Configuration, NewRun, SealKey, Session, Storage};
+
+use super::games::week;
+use super::run::{copy, create, open, runs, view};
+use crate::support::company::open_shop;
+
+const TITLE: &[u8] = b"novamind snapshot 6\n";
+
+#[test]
+fn nothing_can_be_read_in_a_snapshot() {
+    let own = runs();
+    let mut session = create(own.path(), 5, 60);
+    open_shop(&mut session);
+    session.set_memo("content marketing").expect("notes");
+    let folder = session.folder().expect("a folder").to_owned();
+    let mut files = Vec::new();
+    for _ in 0..2 {
+        week(&mut session);
+        session.save().expect("saved");
+        files.push(fs::read(folder.join("snapshot.bin")).expect("a snapshot"));
+    }
+    for file in &files {
+        let sealed = file.strip_prefix(TITLE).expect("a title");
+        let text = |byte: &u8| byte.is_ascii_graphic() || *byte == b' ';
+        let longest = sealed.split(|byte| !text(byte)).map(<[u8]>::len).max().expect("bytes");
+        // Among so many random bytes chance makes runs of a dozen printable ones or two.
+        assert!(longest < 32, "{longest} printable bytes in a row");
+        let mut counts = [0usize; 256];
+        sealed.iter().for_each(|byte| counts[usize::from(*byte)] += 1);
+        let even = sealed.len() / 256;
+        assert!(even > 200, "enough bytes to count: {}", sealed.len());
+        assert!(
+            counts.iter().all(|count| (even / 2..even * 2).contains(count)),
+            "some bytes are more frequent"
+        );
+    }
+    let shared =
+        files[0].iter().zip(&files[1]).skip(TITLE.len() + 1).filter(|(one, other)| one == other).count();
+    assert!(shared * 100 < files[0].len(), "two states share a key stream: {shared} equal bytes");
+}
+
+#[test]
+fn a_snapshot_of_a_study_opens_with_its_secret_only() {
+    let (own, other) = (runs(), runs());
+    let key = SealKey::of_study(&[3; 32]);
+    let new = NewRun {
+        seed: Some(5),
+        days: Some(60),
+        storage: Storage::Runs(own.path().to_owned()),
+        seal_key: key.clone(),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    open_shop(&mut session);
+    week(&mut session);
+    session.save().expect("saved");
+    let expected = view(&mut session);
+    let folder = session.folder().expect("a folder").to_owned();
+    drop(session);
+    let with = |name: &str, key: &SealKey| {
+        let place = copy(&folder, &other.path().join(name));
+        let mut session =
+            Session::open_sealed(&place, Access::Write, true, key.clone()).expect("the run opens anyway");
+        assert_eq!(view(&mut session), expected, "{name}");
+        session.remarks().join(" ")
+    };
+    assert_eq!(with("the secret", &key), "");
+    let remark = with("none", &SealKey::default());
+    assert!(remark.contains("sealed with the key of a study and is not used"), "{remark}");
+    let remark = with("another", &SealKey::of_study(&[4; 32]));
+    assert!(remark.contains("damaged or of another run"), "{remark}");
+    // What is played on with the secret is sealed with it again.
+    let mut session = Session::open_sealed(&folder, Access::Write, true, key.clone()).expect("it opens");
+    week(&mut session);
+    session.save().expect("saved");
+    drop(session);
+    assert_eq!(fs::read(folder.join("snapshot.bin")).expect("a snapshot")[TITLE.len()], b's');
+    // A run of no study is opened by a study as well.
+    let mut plain = create(own.path(), 6, 60);
+    plain.save().expect("saved");
+    let folder = plain.folder().expect("a folder").to_owned();
+    drop(plain);
+    let session = Session::open_sealed(&folder, Access::Write, true, key).expect("it opens");
+    assert_eq!(session.remarks(), [""; 0]);
+    drop(session);
+    assert_eq!(open(&folder).day(), 0);
+}

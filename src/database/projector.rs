@@ -105,7 +105,7 @@ impl Projector {
         let opened = open_existing(&location, &store, known);
         let (mut connection, position) = match opened {
             Some(opened) => opened,
-            None => (make_anew(&location, owner, &params).map_err(told)?, None),
+            None => (make_anew(&location, owner).map_err(told)?, None),
         };
         let gate = Arc::new(RwLock::new(()));
         let (jobs, queue) = sync_channel(QUEUE);
@@ -414,7 +414,7 @@ fn stored_position(connection: &Connection) -> rusqlite::Result<Option<Position>
         .map(Option::flatten)
 }
 
-fn make_anew(location: &Location, owner: u32, params: &Params) -> rusqlite::Result<Connection> {
+fn make_anew(location: &Location, owner: u32) -> rusqlite::Result<Connection> {
     if let Some(path) = location.path() {
         for suffix in ["", "-wal", "-shm", "-journal"] {
             let mut file = path.as_os_str().to_owned();
@@ -424,7 +424,7 @@ fn make_anew(location: &Location, owner: u32, params: &Params) -> rusqlite::Resu
         }
     }
     let mut connection = location.open_writer()?;
-    create(&mut connection, params)?;
+    create(&mut connection)?;
     // Two's complement: the pragma takes a signed number.
     connection.pragma_update(None, "application_id", owner as i32)?;
     Ok(connection)

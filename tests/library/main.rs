@@ -9,4 +9,5 @@ mod session;
 #[path = "../support/mod.rs"]
 mod support;
 mod tables;
+mod undiscovered;
 mod wiring;

@@ -8,6 +8,7 @@ mod many;
 mod notices;
 mod posts;
 mod threads;
+mod words;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -28,6 +29,7 @@ use issues::IssueWriter;
 use ledger::LedgerWriter;
 use many::{NOTHING, insert_rows, or_nothing, real, text, whole};
 use notices::NoticeWriter;
+use words::WordWriter;
 
 /// What is to be written: the facts of a day or a call, and the words that belong to them.
 #[derive(Debug, Clone, Default)]
@@ -104,6 +106,7 @@ pub(super) struct RowWriter {
     notices: NoticeWriter,
     issues: IssueWriter,
     ledger: LedgerWriter,
+    words: WordWriter,
 }
 
 impl RowWriter {
@@ -122,6 +125,7 @@ impl RowWriter {
             notices: NoticeWriter::continuing(kept.inbox.clone()),
             issues: IssueWriter::continuing(&kept),
             ledger: LedgerWriter::continuing(params.clone(), kept.ledger.clone()),
+            words: WordWriter::default(),
             params,
         }
     }
@@ -129,6 +133,7 @@ impl RowWriter {
     /// Writes an entry; what may still change before the commit is kept back.
     pub fn write(&mut self, transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
         let facts = &entry.facts;
+        self.words.write(transaction, facts, &self.params)?;
         self.usage(transaction, facts)?;
         direct::service(transaction, facts)?;
         direct::research(transaction, facts)?;

@@ -6,6 +6,6 @@ mod kill;
 mod property;
 mod recorded;
 mod resume;
-mod run;
+pub mod run;
 mod sealed;
 mod witness;

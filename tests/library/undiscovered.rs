@@ -1,0 +1,135 @@
+//! The file of the database, read raw as any tool can: of groups that nobody has found it holds their identifiers, which
+//! players may see in `group_info_levels`, and nothing else.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use novamind::session::{Configuration, NewRun, Session, Storage};
+use novamind::world::identifiers::Group;
+use novamind::world::params::Params;
+use rusqlite::Connection;
+use rusqlite::types::Value;
+use serde_json::json;
+
+use crate::support::company::{call, open_shop, week, weeks};
+
+/// What would tell something of a group: its name, and the words of its trade that no group known from the start uses.
+fn telling(group: Group, params: &Params) -> BTreeSet<String> {
+    let words = |group: Group| {
+        let own = &params.personas.group[group.index()];
+        [
+            &own.industry,
+            &own.role,
+            &own.work_style,
+            &own.culture,
+            &own.company_size,
+            &own.decision_style,
+            &own.primary_concern,
+        ]
+        .into_iter()
+        .flatten()
+        .cloned()
+        .collect::<Vec<String>>()
+    };
+    let known: BTreeSet<String> =
+        Group::all().filter(|other| other.initially_known()).flat_map(words).collect();
+    let own = words(group).into_iter().filter(|word| !known.contains(word) && word.len() > 4);
+    own.chain([params.group(group).name.clone()]).collect()
+}
+
+/// The bytes of the database and of what was not merged into it yet.
+fn bytes(folder: &Path) -> Vec<u8> {
+    ["world.db", "world.db-wal"]
+        .iter()
+        .flat_map(|name| fs::read(folder.join(name)).unwrap_or_default())
+        .collect()
+}
+
+fn contains(bytes: &[u8], text: &str) -> bool {
+    let folded: Vec<u8> = bytes.iter().map(u8::to_ascii_lowercase).collect();
+    let wanted = text.to_ascii_lowercase();
+    folded.windows(wanted.len()).any(|window| window == wanted.as_bytes())
+}
+
+/// Every text of every table, those inside too, by table and column.
+fn texts(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
+    let connection = Connection::open(folder.join("world.db")).expect("a database");
+    let mut names =
+        connection.prepare("SELECT name FROM sqlite_master WHERE type = 'table'").expect("tables");
+    let names: Vec<String> =
+        names.query_map([], |row| row.get(0)).expect("names").collect::<Result<_, _>>().expect("names");
+    let mut all: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for name in names {
+        let mut rows = connection.prepare(&format!("SELECT * FROM \"{name}\"")).expect("a table");
+        let columns: Vec<String> =
+            rows.column_names().iter().map(|column| format!("{name}.{column}")).collect();
+        let mut rows = rows.query([]).expect("rows");
+        while let Some(row) = rows.next().expect("a row") {
+            for (at, column) in columns.iter().enumerate() {
+                if let Value::Text(text) = row.get(at).expect("a value") {
+                    all.entry(column.clone()).or_default().insert(text);
+                }
+            }
+        }
+    }
+    all
+}
+
+/// What the file says of groups that are not among these.
+fn check(session: &mut Session, found: &BTreeSet<Group>) {
+    session.save().expect("saved");
+    let folder = session.folder().expect("a folder").to_owned();
+    let (bytes, texts) = (bytes(&folder), texts(&folder));
+    let params = session.params();
+    let used: BTreeSet<String> = found.iter().flat_map(|group| telling(*group, params)).collect();
+    for group in Group::all().filter(|group| !group.initially_known()) {
+        let known = found.contains(&group);
+        for word in telling(group, params).difference(&used) {
+            assert!(known || !contains(&bytes, word), "{word} of {group} is in the file");
+        }
+        let places: Vec<&String> = texts
+            .iter()
+            .filter(|(_, texts)| texts.iter().any(|text| text.contains(group.id())))
+            .map(|(column, _)| column)
+            .collect();
+        let in_words = texts["words.group_id"].contains(group.id());
+        assert_eq!(in_words, known, "words of {group}");
+        assert!(known || places == ["group_info_levels.group_id"], "{group} is named in {places:?}");
+    }
+}
+
+#[test]
+fn the_file_tells_nothing_of_groups_that_nobody_has_found() {
+    let place = tempfile::tempdir().expect("a folder");
+    let new = NewRun {
+        seed: Some(11),
+        cash: Some(50_000_000.0),
+        storage: Storage::Runs(place.path().to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    open_shop(&mut session);
+    check(&mut session, &BTreeSet::new());
+    weeks(&mut session, 8);
+    check(&mut session, &BTreeSet::new());
+    let mut found = BTreeSet::new();
+    while found.len() < 2 {
+        let text = call(&mut session, "research_market", json!({})).to_string();
+        let new = Group::all().filter(|group| !group.initially_known() && text.contains(group.id()));
+        let before = found.len();
+        found.extend(new);
+        if found.len() > before {
+            check(&mut session, &found);
+        }
+        week(&mut session);
+    }
+    weeks(&mut session, 4);
+    check(&mut session, &found);
+    // Opened again it goes on with the same words.
+    let folder = session.folder().expect("a folder").to_owned();
+    drop(session);
+    let mut session = super::durability::run::open(&folder);
+    week(&mut session);
+    check(&mut session, &found);
+}

@@ -62,8 +62,7 @@ fn texts(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
     let mut all: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for name in names {
         let mut rows = connection.prepare(&format!("SELECT * FROM \"{name}\"")).expect("a table");
-        let columns: Vec<String> =
-            rows.column_names().iter().map(|column| format!("{name}.{column}")).collect();
+        let columns: Vec<String> = rows.column_names().map(|column| format!("{name}.{column}")).collect();
         let mut rows = rows.query([]).expect("rows");
         while let Some(row) = rows.next().expect("a row") {
             for (at, column) in columns.iter().enumerate() {

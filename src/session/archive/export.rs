@@ -11,6 +11,7 @@ use super::seal::{SEAL_FORMAT, Seal, SealedFile};
 use super::workshop::Workshop;
 use crate::session::archive::{DATABASE, MANIFEST, MEMO, SEAL, TRAJECTORY, is_compressed};
 use crate::session::error::RunError;
+use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::{Manifest, sync_folder};
 use crate::session::play::afterwards::{AFTERWARDS, lines_afterwards};
 use crate::session::play::memo::notes_file;
@@ -39,7 +40,8 @@ impl Export {
     /// The run is damaged or of another version; the error names the place and what is safe. Or `beside` cannot be
     /// written.
     pub fn prepare(folder: &Path, beside: &Path) -> Result<Export, RunError> {
-        let manifest = Manifest::read(folder)?;
+        let derived = Derived::of(folder)?;
+        let manifest = derived.manifest.clone();
         let (bytes, mut trajectory) = read_settled(folder, &manifest)?;
         let workshop = Workshop::within(beside)?;
         let own = &workshop.path().join(&manifest.id);
@@ -48,7 +50,13 @@ impl Export {
             let path = own.join(name);
             std::fs::write(&path, bytes).map_err(RunError::io(&path))
         };
-        put(MANIFEST, &std::fs::read(folder.join(MANIFEST)).map_err(RunError::io(&folder.join(MANIFEST)))?)?;
+        match derived.problem {
+            None => {
+                let own = folder.join(MANIFEST);
+                put(MANIFEST, &std::fs::read(&own).map_err(RunError::io(&own))?)?;
+            }
+            Some(_) => manifest.write(own)?,
+        }
         // A line without its end was never confirmed: it may be in the middle of being written.
         put(TRAJECTORY, bytes.get(..trajectory.length as usize).unwrap_or(&bytes))?;
         trajectory.unfinished = 0;

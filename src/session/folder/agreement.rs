@@ -5,7 +5,7 @@ use std::path::Path;
 use super::configuration::Configuration;
 use super::consent::{Consent, ConsentText};
 use super::create::{NewRun, Storage};
-use super::manifest::Manifest;
+use super::derived::Derived;
 use super::runs::all_run_folders;
 use crate::session::error::RunError;
 use crate::session::trajectory::now;
@@ -54,7 +54,8 @@ pub(in crate::session) fn agreed(
 fn earlier_consent(runs: &Path, participant: &str, digest: &str) -> Option<Consent> {
     let folders = all_run_folders(runs);
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
-    let manifests = entries.filter_map(|entry| Manifest::read(&entry.path()).ok());
+    let manifests = entries.filter_map(|entry| Derived::of(&entry.path()).ok());
+    let manifests = manifests.map(|derived| derived.manifest);
     let own = manifests.filter(|manifest| manifest.participant.as_deref() == Some(participant));
     own.filter_map(|manifest| manifest.consent)
         .filter(|consent| consent.digest == digest)

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::manifest::Manifest;
+use super::derived::Derived;
 use super::runs::run_folder;
 use crate::session::error::RunError;
 use crate::session::trajectory::{Line, Record};
@@ -31,7 +31,7 @@ pub struct RunPreview {
 /// The run or its files are not there.
 pub fn run_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
     let folder = run_folder(runs, id);
-    let manifest = Manifest::read(&folder)?;
+    let Derived { manifest, .. } = Derived::of(&folder)?;
     let path = folder.join("trajectory.jsonl");
     let file = std::fs::File::open(&path).map_err(RunError::io(&path))?;
     let mut preview = RunPreview { cash: vec![(0, manifest.cash)], ..RunPreview::default() };

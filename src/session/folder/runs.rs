@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::derived::Derived;
 use super::lock::lock_run;
-use super::manifest::Manifest;
 use super::mode::Mode;
 use crate::session::error::RunError;
 use crate::session::resume::open::Access;
@@ -111,8 +111,8 @@ pub fn list_runs(runs: &Path) -> Result<Vec<RunSummary>, RunError> {
 
 fn summarise(folder: &Path) -> RunSummary {
     let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let manifest = match Manifest::read(folder) {
-        Ok(manifest) => manifest,
+    let manifest = match Derived::of(folder) {
+        Ok(Derived { manifest, .. }) => manifest,
         Err(error) => return unreadable(id, error.to_string()),
     };
     let (last, problem) = match last_lines(&folder.join("trajectory.jsonl")) {
@@ -262,7 +262,8 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
 pub(in crate::session) fn earlier_runs_of(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
-    let manifests = entries.filter_map(|entry| Manifest::read(&entry.path()).ok());
+    let manifests = entries.filter_map(|entry| Derived::of(&entry.path()).ok());
+    let manifests = manifests.map(|derived| derived.manifest);
     let own = manifests.filter(|manifest| manifest.participant.as_deref() == participant);
     let mut earlier: Vec<EarlierRun> = own
         .map(|manifest| EarlierRun {

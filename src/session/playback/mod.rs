@@ -13,6 +13,7 @@ use std::sync::Arc;
 use crate::database::{Location, Projector};
 use crate::session::error::RunError;
 use crate::session::figures::week::week_of;
+use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
 use crate::session::play::projection::Projection;
@@ -378,7 +379,7 @@ pub(super) fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {
     };
     let trajectory = Trajectory::read(&file)?;
     let manifest = match &folder {
-        Some(folder) => Manifest::read(folder)?,
+        Some(folder) => Derived::of(folder)?.manifest,
         None => Manifest::of_start(&file, trajectory.lines.first())?,
     };
     check_start(&file, trajectory.lines.first(), &manifest)?;

@@ -11,6 +11,7 @@ use crate::database::{
     Location, Position, file_digest, has_layout_of_now, is_consistent, owner_of, position_of,
 };
 use crate::session::error::RunError;
+use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::Manifest;
 use crate::session::trajectory::{BRANCH_THEM, Record, Trajectory};
 
@@ -112,7 +113,7 @@ fn location(folder: &Path) -> Location {
 
 /// Whether nobody has changed the database's file since the run was closed.
 pub(in crate::session) fn is_as_left(folder: &Path) -> bool {
-    let Ok(manifest) = Manifest::read(folder) else { return false };
+    let Ok(Derived { manifest, .. }) = Derived::of(folder) else { return false };
     Integrity::of(folder, &manifest, &SealKey::default()).is_as_closed(folder).unwrap_or(true)
 }
 

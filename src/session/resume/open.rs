@@ -8,6 +8,7 @@ use super::sealing::SealKey;
 use super::snapshot::{Recalled, Snapshot};
 use crate::database::{Location, Position, Projector};
 use crate::session::error::RunError;
+use crate::session::folder::derived::Derived;
 use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::Manifest;
 use crate::session::play::facts_chain::StateHash;
@@ -47,11 +48,15 @@ impl Session {
         projection: bool,
         key: SealKey,
     ) -> Result<Session, RunError> {
-        let manifest = Manifest::read(folder)?;
+        let derived = Derived::of(folder)?;
+        let manifest = derived.manifest.clone();
         let params = Arc::new(manifest.params()?);
-        let lock = match access {
-            Access::Write => Some(lock_run(folder, &manifest.id)?),
-            Access::Read => None,
+        let (lock, restored) = match access {
+            Access::Write => (Some(lock_run(folder, &manifest.id)?), derived.restore(folder)?),
+            Access::Read => (
+                None,
+                derived.problem.map(|problem| format!("{problem}: the first line of the trajectory counts.")),
+            ),
         };
         let path = folder.join("trajectory.jsonl");
         let mut integrity = Integrity::of(folder, &manifest, &key);
@@ -73,6 +78,7 @@ impl Session {
         let snapshot = usable(&integrity, &manifest, &trajectory, rows);
         let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, snapshot);
         session.seal_key = key;
+        session.remarks.extend(restored);
         session.remarks.append(&mut integrity.remarks);
         session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
         if let Some(location) = finished {

@@ -8,8 +8,8 @@ use super::open::{Access, check_start, open_projector, usable};
 use super::sealing::SealKey;
 use super::snapshot::SnapshotPlace;
 use crate::session::error::RunError;
+use crate::session::folder::derived::Derived;
 use crate::session::folder::lock::lock_run;
-use crate::session::folder::manifest::Manifest;
 use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
 
@@ -19,7 +19,7 @@ use crate::session::trajectory::Trajectory;
 /// # Errors
 /// The run is damaged, of another version, or in use; its folder cannot be written.
 pub fn rebuild_database(folder: &Path, progress: &mut dyn FnMut(u32, u32)) -> Result<(), RunError> {
-    let manifest = Manifest::read(folder)?;
+    let Derived { manifest, .. } = Derived::of(folder)?;
     let params = Arc::new(manifest.params()?);
     let _lock = lock_run(folder, &manifest.id)?;
     let path = folder.join("trajectory.jsonl");

@@ -8,6 +8,7 @@ use super::integrity::Integrity;
 use super::open::check_start;
 use super::sealing::SealKey;
 use crate::session::error::RunError;
+use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;
@@ -39,17 +40,12 @@ pub fn rescue(folder: &Path) -> Result<Rescued, RunError> {
     let mut trajectory = Trajectory::default();
     let mut problem = trajectory.extend(&bytes).err();
     let first = trajectory.lines.first();
-    // The first line tells the same, should the manifest be what is damaged.
-    let manifest = Manifest::read(folder);
-    let unreadable = manifest.as_ref().err().map(ToString::to_string);
-    let manifest = manifest.or_else(|_| Manifest::of_start(&path, first))?;
+    let Derived { manifest, .. } = Derived::of(folder)?;
     check_start(&path, first, &manifest)?;
     let good = replayed(&path, &manifest, &trajectory.lines, &mut problem)?;
-    let words = match (&problem, unreadable) {
-        (Some((line, problem)), _) => format!("line {line}: {problem}"),
-        (None, Some(problem)) => problem,
-        (None, None) => match Integrity::of(folder, &manifest, &SealKey::default()).check(&path, &trajectory)
-        {
+    let words = match &problem {
+        Some((line, problem)) => format!("line {line}: {problem}"),
+        None => match Integrity::of(folder, &manifest, &SealKey::default()).check(&path, &trajectory) {
             Err(problem) => problem.to_string(),
             Ok(()) => {
                 let message = format!("run {} is not damaged; there is nothing to rescue", manifest.id);
@@ -158,12 +154,19 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_manifest_is_taken_from_the_first_line() {
+    fn without_a_manifest_a_damaged_run_is_rescued_all_the_same() {
         let run = recorded(Mode::Sandbox, 2);
         std::fs::write(run.folder.join("run.toml"), "seed = [").expect("written");
-        let found = rescue(&run.folder).expect("a branch");
-        assert_eq!(found.day, 14);
-        assert!(found.problem.contains("run.toml"), "{}", found.problem);
+        let whole = rescue(&run.folder).expect_err("the first line tells what it is").to_string();
+        assert!(whole.contains("not damaged"), "{whole}");
+        let found =
+            rescued(&run, |bytes| bytes.truncate(bytes.len() - 1)).err().map(|error| error.to_string());
+        assert!(found.is_some_and(|words| words.contains("not damaged")), "an unfinished line is no damage");
+        let found = rescued(&run, |bytes| {
+            let at = start_of(bytes, 9) + 20;
+            bytes[at] ^= 4;
+        });
+        assert_eq!(found.expect("a branch").lines, 9);
     }
 
     #[test]

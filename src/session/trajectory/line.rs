@@ -71,6 +71,11 @@ impl Line {
         Ok(Line { seq, day, at, record, hash: line_hash(text), text: text.into() })
     }
 
+    /// Reads the first line of a file; none if it is not whole.
+    pub(in crate::session) fn first(text: &[u8]) -> Option<Line> {
+        Line::read(text, 0, &line_hash(b""), true).ok()
+    }
+
     /// Reads a line whose place in its file does not matter, and whose sum nobody asks for; none if it cannot be read.
     pub(in crate::session) fn unchecked(text: &[u8]) -> Option<Line> {
         let frame: Frame<'_> = serde_json::from_slice(text).ok()?;

@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use novamind::session::{Access, Session, verify};
+use serde_json::{Value, json};
 
 use super::run::{copy, runs};
 
@@ -63,20 +64,25 @@ fn a_recorded_run_with_every_lever_reaches_the_same_states() {
 fn runs_of_other_mechanics_and_parameters_are_refused_with_the_version_that_can() {
     let place = runs();
     let folder = copy(&recorded("release"), place.path());
-    let manifest = fs::read_to_string(folder.join("run.toml")).expect("a manifest");
-    let digest = manifest.lines().find(|line| line.starts_with("parameters_digest")).expect("a digest");
-    let mechanics = manifest.lines().find(|line| line.starts_with("mechanics")).expect("mechanics");
-    for (old, new, told) in [
-        (mechanics, "mechanics = 9", "mechanics 9"),
-        (digest, "parameters_digest = \"0123\"", "parameters 0123"),
-        ("format = 1", "format = 7", "format 7"),
+    let path = folder.join("trajectory.jsonl");
+    let whole = fs::read_to_string(&path).expect("a trajectory");
+    let (first, rest) = whole.split_once('\n').expect("lines");
+    for (name, value, told) in [
+        ("mechanics", json!(9), "mechanics 9"),
+        ("parameters_digest", json!("0123"), "parameters 0123"),
+        ("format", json!(7), "format 7"),
     ] {
-        let changed = manifest.replace(old, new).replace("version = \"0.1.0\"", "version = \"0.9.3\"");
-        fs::write(folder.join("run.toml"), changed).expect("written");
+        let mut line: Value = serde_json::from_str(first).expect("JSON");
+        (line[name], line["version"]) = (value, json!("0.9.3"));
+        line.as_object_mut().expect("an object").shift_remove("sum");
+        let bare = line.to_string();
+        let sum = blake3::hash(bare.as_bytes()).to_hex()[..16].to_owned();
+        let changed = format!("{},\"sum\":\"{sum}\"}}\n{rest}", &bare[..bare.len() - 1]);
+        fs::write(&path, changed).expect("written");
         let error = Session::open(&folder, Access::Write, true).err().expect("it is refused").to_string();
         assert!(error.contains(told) && error.contains("Nothing was changed"), "{error}");
         assert!(error.contains("0.9.3") || error.contains("newer version"), "{error}");
     }
-    fs::write(folder.join("run.toml"), manifest).expect("written");
+    fs::write(&path, whole).expect("written");
     assert!(verify(&folder).is_ok(), "nothing was changed");
 }

@@ -1,0 +1,183 @@
+//! What a run is, as the first line of its trajectory says; `run.toml` repeats it, and is made anew where it does not.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use toml::{Table, Value};
+
+use super::manifest::Manifest;
+use crate::session::error::RunError;
+use crate::session::trajectory::Line;
+
+/// What a run is, and what is wrong with its `run.toml`.
+pub(in crate::session) struct Derived {
+    pub(in crate::session) manifest: Manifest,
+    /// Why `run.toml` has to be made anew; none where it says what the first line says.
+    pub(in crate::session) problem: Option<String>,
+}
+
+impl Derived {
+    /// What the run in a folder is. Where the first line cannot be read `run.toml` has to do: whoever then opens the run is
+    /// told what is wrong with the line.
+    ///
+    /// # Errors
+    /// The run is of another format or other mechanics; neither file can be read.
+    pub(in crate::session) fn of(folder: &Path) -> Result<Derived, RunError> {
+        let path = folder.join("trajectory.jsonl");
+        let own = Manifest::read(folder);
+        let Some(line) = first_line(&path) else {
+            return own.map(|manifest| Derived { manifest, problem: None });
+        };
+        let told = Manifest::of_start(&path, Some(&line))?;
+        let (manifest, problem) = match own {
+            Err(error) => (told, Some(unusable(&error))),
+            // Two files of different runs: which of them is in the wrong place the folder tells, or nobody.
+            Ok(own) if own.id != told.id && !folder.ends_with(&told.id) => (own, None),
+            Ok(own) => {
+                let manifest = with_what_no_line_says(told, &own);
+                let problem = difference(&own, &manifest);
+                (manifest, problem)
+            }
+        };
+        Ok(Derived { manifest, problem })
+    }
+
+    /// Makes `run.toml` anew if it has to be; returns what the person should know.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub(in crate::session) fn restore(&self, folder: &Path) -> Result<Option<String>, RunError> {
+        let Some(problem) = &self.problem else { return Ok(None) };
+        self.manifest.write(folder)?;
+        Ok(Some(format!("{problem} and was made anew from the first line of the trajectory.")))
+    }
+}
+
+/// The first line of a file, if it is whole.
+fn first_line(path: &Path) -> Option<Line> {
+    let mut bytes = Vec::new();
+    BufReader::new(File::open(path).ok()?).read_until(b'\n', &mut bytes).ok()?;
+    Line::first(bytes.strip_suffix(b"\n")?)
+}
+
+/// Takes from `run.toml` what the first line does not say.
+fn with_what_no_line_says(told: Manifest, own: &Manifest) -> Manifest {
+    // The first line is written a moment after the run was created; in format 1 it says nothing of earlier runs.
+    let earlier_runs = if told.format == 1 { own.earlier_runs } else { told.earlier_runs };
+    Manifest { created: own.created.clone(), earlier_runs, ..told }
+}
+
+fn unusable(error: &RunError) -> String {
+    match error {
+        RunError::Io { error, .. } if error.kind() == std::io::ErrorKind::NotFound => {
+            "run.toml was missing".to_owned()
+        }
+        RunError::Damaged { line, problem, .. } => {
+            format!("run.toml was damaged (line {line}: {})", problem.trim())
+        }
+        RunError::OtherFormat { .. } => "run.toml named another format".to_owned(),
+        RunError::OtherMechanics { .. } => "run.toml named other mechanics".to_owned(),
+        error => format!("run.toml could not be read ({error})"),
+    }
+}
+
+/// Names of the fields in which two manifests differ.
+fn difference(own: &Manifest, told: &Manifest) -> Option<String> {
+    if own == told {
+        return None;
+    }
+    let fields = |manifest: &Manifest| match Value::try_from(manifest) {
+        Ok(Value::Table(table)) => table,
+        _ => Table::new(),
+    };
+    let (own, told) = (fields(own), fields(told));
+    let mut names: Vec<&str> = own.keys().chain(told.keys()).map(String::as_str).collect();
+    names.sort_unstable();
+    names.dedup();
+    names.retain(|name| own.get(*name) != told.get(*name));
+    Some(format!("run.toml said otherwise ({})", names.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::folder::mode::Mode;
+    use crate::session::folder::runs::{find_run, list_runs};
+    use crate::session::playback::tests::recorded;
+    use crate::session::resume::open::Access;
+    use crate::session::resume::verify::verify;
+    use crate::session::state::Session;
+
+    /// Opens a run whose `run.toml` holds a text, or is missing; returns what the person is told.
+    fn opened(folder: &Path, text: Option<&str>) -> String {
+        let path = folder.join("run.toml");
+        match text {
+            Some(text) => std::fs::write(&path, text).expect("written"),
+            None => std::fs::remove_file(&path).expect("removed"),
+        }
+        let runs = folder.parent().expect("runs");
+        let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
+        let listed = list_runs(runs).expect("a list");
+        assert_eq!((listed.len(), &listed[0].id, listed[0].seed), (1, &id, 7));
+        assert_eq!((listed[0].problem.as_ref(), listed[0].participant.as_ref()), (None, None));
+        assert_eq!(find_run(runs, "latest").expect("a run"), folder);
+        assert!(verify(folder).is_ok(), "it verifies as it is");
+        assert_eq!(std::fs::read_to_string(&path).ok().as_deref(), text, "who only reads changes nothing");
+        let reader = Session::open(folder, Access::Read, false).expect("it opens");
+        assert!(reader.remarks().join(" ").contains("the first line of the trajectory counts"));
+        let session = Session::open(folder, Access::Write, true).expect("it opens");
+        assert_eq!(
+            (session.day(), session.manifest().mode, session.manifest().seed),
+            (14, Mode::Baseline, 7)
+        );
+        session.remarks().join(" ")
+    }
+
+    #[test]
+    fn whatever_is_done_to_the_manifest_the_first_line_counts() {
+        let run = recorded(Mode::Baseline, 2);
+        let path = run.folder.join("run.toml");
+        let good = std::fs::read_to_string(&path).expect("a manifest");
+        let edit = |from: &str, to: &str| {
+            assert!(good.contains(from), "{from} in {good}");
+            good.replacen(from, to, 1)
+        };
+        let cases = [
+            (Some(edit("seed = 7", "seed = 8")), "said otherwise (seed)"),
+            (
+                Some(edit("mode = \"baseline\"", "mode = \"debug\"\nparticipant = \"P99\"")),
+                "(mode, participant)",
+            ),
+            (Some(edit("days = 35", "days = 350")), "(days)"),
+            (Some(edit("cash = 1000000.0", "cash = 9000000.0")), "(cash)"),
+            (Some(edit(&format!("id = \"{}\"", run.id), "id = \"00000000\"")), "(id)"),
+            (Some(edit("parameters_digest = \"", "parameters_digest = \"0")), "(parameters_digest)"),
+            (Some("seed = [".to_owned()), "was damaged (line 1"),
+            (Some(String::new()), "was damaged"),
+            (None, "was missing"),
+        ];
+        for (text, told) in cases {
+            let remark = opened(&run.folder, text.as_deref());
+            assert!(remark.contains(told) && remark.contains("made anew"), "{told}: {remark}");
+            let restored: Table = std::fs::read_to_string(&path).expect("a manifest").parse().expect("TOML");
+            let mut expected: Table = good.parse().expect("TOML");
+            if text.is_none_or(|text| !text.contains("created")) {
+                // Nothing else tells the moment before the first line.
+                expected["created"] = restored["created"].clone();
+            }
+            assert_eq!(restored, expected, "{told}");
+            let again = Session::open(&run.folder, Access::Write, true).expect("it opens");
+            assert_eq!(again.remarks(), [""; 0], "it is told once");
+        }
+    }
+
+    #[test]
+    fn files_of_two_runs_are_not_taken_for_one() {
+        let (one, other) = (recorded(Mode::Sandbox, 1), recorded(Mode::Sandbox, 1));
+        std::fs::copy(other.folder.join("trajectory.jsonl"), one.folder.join("trajectory.jsonl"))
+            .expect("copied");
+        let error = Session::open(&one.folder, Access::Write, true).err().expect("it is refused").to_string();
+        assert!(error.contains("contradicts run.toml"), "{error}");
+    }
+}

@@ -11,7 +11,8 @@ use clap::{Args, Subcommand};
 use super::{Context, Failure, print};
 use crate::notation::dollars;
 use crate::session::{
-    RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs, rescue,
+    RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs, manifest_text,
+    rescue,
 };
 
 /// Options of `runs`.
@@ -91,8 +92,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         }
         Some(RunsCommand::Show { run }) => {
             let folder = find_in(&folders, run)?;
-            let text = std::fs::read_to_string(folder.join("run.toml"))
-                .map_err(|error| Failure::unreadable(format!("{}: {error}", folder.display())))?;
+            let text = manifest_text(&folder)?;
             let id = id_of(&folder);
             let summary = list_all(&folders)?.into_iter().map(|(_, run)| run).find(|run| run.id == id);
             if options.json {

@@ -54,6 +54,14 @@ impl Derived {
     }
 }
 
+/// `run.toml` of a run as the first line of its trajectory says, whatever the file holds.
+///
+/// # Errors
+/// The run is of another format or other mechanics; neither file can be read.
+pub fn manifest_text(folder: &Path) -> Result<String, RunError> {
+    Derived::of(folder).map(|derived| derived.manifest.text())
+}
+
 /// The first line of a file, if it is whole.
 fn first_line(path: &Path) -> Option<Line> {
     let mut bytes = Vec::new();

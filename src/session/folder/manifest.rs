@@ -165,8 +165,12 @@ impl Manifest {
     /// The folder cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), RunError> {
         let path = folder.join("run.toml");
-        let text = toml::to_string(self).expect("a manifest holds plain values");
-        write_whole(&path, text.as_bytes())
+        write_whole(&path, self.text().as_bytes())
+    }
+
+    /// The manifest as its file holds it.
+    pub(super) fn text(&self) -> String {
+        toml::to_string(self).expect("a manifest holds plain values")
     }
 
     /// By which rules it is played.

@@ -96,4 +96,6 @@ pub enum News {
     Closed(Option<String>),
     /// A thread behind the screen has failed for a reason that should not exist.
     Crashed(String),
+    /// The run's file is no longer the one it was: why, and what to do.
+    RecordLost(String),
 }

@@ -237,6 +237,11 @@ impl SessionThread {
     fn with_run(&mut self, work: impl FnOnce(&mut OpenRun<'_>) -> Option<News>) {
         let SessionThread { open: Some(open), company: shown, news, queries, .. } = self else { return };
         let news = work(&mut OpenRun { session: open.session(), shown, news, queries });
+        let loss = self.open.as_mut().and_then(|open| open.session().record_loss().map(str::to_owned));
+        if let Some(words) = loss {
+            // Before what came of the work: nothing goes on from here.
+            self.say(News::RecordLost(words));
+        }
         news.into_iter().for_each(|news| self.say(news));
         self.look_after_database();
     }

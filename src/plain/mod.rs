@@ -45,6 +45,8 @@ enum End {
     Quit,
     InputOver,
     Strict,
+    /// The run's file is no longer there.
+    RecordLost,
     Signal(i32),
     /// The run of a study is over, and its questions are answered.
     Over,
@@ -58,6 +60,7 @@ impl End {
             End::Quit => "quit",
             End::InputOver => "end_of_input",
             End::Strict => "strict",
+            End::RecordLost => "record_lost",
             End::Signal(_) => "signal",
             End::Over => "over",
             End::Withdrawn => "withdrawn",
@@ -69,6 +72,8 @@ impl End {
             End::Quit | End::Over => LeavingCause::Quit,
             End::InputOver => LeavingCause::EndOfInput,
             End::Strict => LeavingCause::Strict,
+            // No line can say it.
+            End::RecordLost => LeavingCause::Quit,
             End::Signal(_) => LeavingCause::Signal,
             End::Withdrawn => LeavingCause::Withdrawn,
         }
@@ -78,6 +83,7 @@ impl End {
         match self {
             End::Quit | End::InputOver | End::Over | End::Withdrawn => 0,
             End::Strict => 1,
+            End::RecordLost => 3,
             End::Signal(number) => 128u8.saturating_add(number as u8),
         }
     }
@@ -146,6 +152,9 @@ fn dialogue(
         answer(&mut out, style, number, style.echo.then_some(line.as_str()), &reply, day)?;
         if let Some(signal) = watch.caught() {
             break End::Signal(signal);
+        }
+        if interpreter.session.record_loss().is_some() {
+            break End::RecordLost;
         }
         if style.strict && !reply.is_ok() {
             break End::Strict;

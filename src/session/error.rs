@@ -93,12 +93,14 @@ pub enum RunError {
     },
     /// The file of a run that is played is not the one it was.
     #[error(
-        "{path} was moved or removed, or another program has written to it: from now on nothing is saved. \
-         Leave, and open the run again: it continues where its file ends", path = .path.display()
+        "your decisions are no longer on disk: {path} was moved, removed or linked, or another program has written to it. \
+         Nothing more is saved. {}", kept_words(.kept), path = .path.display()
     )]
     Astray {
         /// The trajectory.
         path: PathBuf,
+        /// The file that everything was written to, or why it could not be.
+        kept: Result<PathBuf, String>,
     },
     /// The folder of a run takes no changes.
     #[error(
@@ -149,6 +151,24 @@ pub enum RunError {
     /// The database cannot be written.
     #[error("{0}")]
     Projection(#[from] ProjectionError),
+}
+
+/// Where everything is that was confirmed, and what to do.
+fn kept_words(kept: &Result<PathBuf, String>) -> String {
+    match kept {
+        Ok(file) => format!(
+            "Everything confirmed so far is in {}. Leave. If trajectory.jsonl is gone, give this file its name and open the \
+             run again; if it is there, keep both files and tell whoever runs the session",
+            file.display()
+        ),
+        Err(problem) if problem.is_empty() => {
+            "Leave, and look for the file before you open the run again".to_owned()
+        }
+        Err(problem) => format!(
+            "It could not be written beside its place either ({problem}). Leave, and look for the file before you open the \
+             run again"
+        ),
+    }
 }
 
 impl RunError {

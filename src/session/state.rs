@@ -173,6 +173,11 @@ impl Session {
         self.recorder.as_ref().is_some_and(Recorder::is_complete)
     }
 
+    /// Why the run has to stop: its file is no longer the one it was, so nothing more is saved. None while all is well.
+    pub fn record_loss(&self) -> Option<&str> {
+        self.recorder.as_ref()?.loss()
+    }
+
     /// Puts everything on the disk.
     ///
     /// # Errors

@@ -168,6 +168,29 @@ fn a_run_that_cannot_be_opened_is_explained_in_the_menu() {
 }
 
 #[test]
+fn a_run_whose_file_is_deleted_stops_and_says_where_everything_is() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    open_shop(&mut console);
+    let folder =
+        std::fs::read_dir(runs.path()).expect("runs").next().expect("a run").expect("a folder").path();
+    let confirmed = std::fs::read(folder.join("trajectory.jsonl")).expect("a trajectory");
+    std::fs::remove_file(folder.join("trajectory.jsonl")).expect("deleted");
+    console.press("n enter 'test' enter f enter");
+    let (code, words) = console.left.clone().expect("the program has left");
+    let words = words.expect("last words");
+    assert_eq!(code, 3);
+    assert!(words.contains("your decisions are no longer on disk"), "{words}");
+    let aside = std::fs::read_dir(&folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").path())
+        .find(|path| path.file_name().is_some_and(|name| name.to_string_lossy().contains("-unsaved-")));
+    let aside = aside.expect("what was confirmed");
+    assert!(words.contains(&aside.display().to_string()), "{words}");
+    assert!(std::fs::read(aside).expect("a copy").starts_with(&confirmed));
+}
+
+#[test]
 fn a_post_is_published_from_the_feed_after_one_question() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));

@@ -78,6 +78,7 @@ impl App {
                     format!("an error of the program itself: {words}.{saved} `{}` continues.", self.again);
                 self.orders.push(Order::Exit(1, Some(text)));
             }
+            News::RecordLost(words) => self.orders.push(Order::Exit(3, Some(words))),
             News::QuerySaved(Ok((text, library))) => {
                 if let Stage::Run(run) = &mut self.stage {
                     run.screens.sql.learn(library.clone());

@@ -307,6 +307,9 @@ impl Session {
 
 /// A refusal that says the disk did not take a line.
 pub(in crate::session) fn not_saved(error: RunError) -> Refusal {
+    if matches!(error, RunError::Astray { .. }) {
+        return Refusal::new("not_saved", error.to_string());
+    }
     let message = format!(
         "{error}; nothing was changed and everything confirmed before is safe: free some disk space, then \
          try again"

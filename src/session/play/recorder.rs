@@ -132,6 +132,11 @@ impl Recorder {
         self.trajectory.witness()
     }
 
+    /// Why nothing is saved any more, from the moment on at which that was noticed.
+    pub(in crate::session) fn loss(&self) -> Option<&str> {
+        self.trajectory.loss()
+    }
+
     /// Whether the file still stands where it is looked for, and no line waits for it.
     pub(in crate::session) fn is_complete(&self) -> bool {
         self.trajectory.is_complete()

@@ -1,7 +1,7 @@
 //! What the lines of a trajectory are written to.
 
 use std::fs::{File, Metadata};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 /// Where lines end up: a file, or in tests one that forgets what was not synced.
@@ -14,26 +14,62 @@ pub(in crate::session) trait Medium: Send {
     fn cut(&mut self, length: u64) -> io::Result<()>;
     /// Whether it is still the one that stands at a path, as long as it was left.
     fn is_ours(&self, path: &Path, length: u64) -> bool;
+    /// What its first bytes are, wherever it has gone.
+    fn beginning(&mut self, length: u64) -> io::Result<Vec<u8>>;
 }
 
-impl Medium for File {
+/// A file, and how many names it had when it was opened.
+pub(super) struct NamedFile {
+    file: File,
+    names: u64,
+}
+
+impl NamedFile {
+    /// An open file, for reading and writing.
+    pub(super) fn of(file: File) -> io::Result<NamedFile> {
+        let names = names_of(&file.metadata()?);
+        Ok(NamedFile { file, names })
+    }
+}
+
+impl Medium for NamedFile {
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.write_all(bytes)
+        self.file.write_all(bytes)
     }
 
     fn sync(&self) -> io::Result<()> {
-        self.sync_data()
+        self.file.sync_data()
     }
 
     fn cut(&mut self, length: u64) -> io::Result<()> {
-        self.set_len(length)?;
-        self.seek(SeekFrom::Start(length)).map(|_| ())
+        self.file.set_len(length)?;
+        self.file.seek(SeekFrom::Start(length)).map(|_| ())
     }
 
     fn is_ours(&self, path: &Path, length: u64) -> bool {
-        let (Ok(own), Ok(there)) = (self.metadata(), std::fs::metadata(path)) else { return false };
-        own.len() == length && is_same(&own, &there)
+        let (Ok(own), Ok(there)) = (self.file.metadata(), std::fs::metadata(path)) else { return false };
+        own.len() == length && is_same(&own, &there) && names_of(&own) == self.names
     }
+
+    fn beginning(&mut self, length: u64) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.file.seek(SeekFrom::Start(0))?;
+        let read = (&mut self.file).take(length).read_to_end(&mut bytes);
+        self.file.seek(SeekFrom::End(0))?;
+        read.map(|_| bytes)
+    }
+}
+
+/// Hard links of a file: another one is another way to change it.
+#[cfg(unix)]
+fn names_of(file: &Metadata) -> u64 {
+    use std::os::unix::fs::MetadataExt;
+    file.nlink()
+}
+
+#[cfg(not(unix))]
+fn names_of(_file: &Metadata) -> u64 {
+    1
 }
 
 #[cfg(unix)]

@@ -209,6 +209,50 @@ mod tests {
     }
 
     #[test]
+    fn what_was_confirmed_is_written_beside_a_file_that_is_gone() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let folder = runs.path().join("0123abcd");
+        std::fs::create_dir(&folder).expect("a folder");
+        let path = written(&folder, 3);
+        let whole = std::fs::read(&path).expect("bytes");
+        let mut writer =
+            TrajectoryWriter::resume(&path, &Trajectory::read(&path).expect("it reads")).expect("it opens");
+        assert_eq!(writer.loss(), None);
+        let kept = |error: RunError| match error {
+            RunError::Astray { kept: Ok(file), .. } => file,
+            other => panic!("{other}"),
+        };
+        #[cfg(unix)]
+        {
+            std::fs::hard_link(&path, folder.join("another-name")).expect("a link");
+            let error = writer.append(9, &memo(), Durability::Synced).expect_err("it has another name");
+            let words = error.to_string();
+            assert!(words.contains("no longer on disk") && words.contains("linked"), "{words}");
+            assert_eq!(std::fs::read(kept(error)).expect("a copy"), whole);
+            std::fs::remove_file(folder.join("another-name")).expect("removed");
+            writer.append(9, &memo(), Durability::Synced).expect("it is as it was");
+        }
+        let confirmed = std::fs::read(&path).expect("bytes");
+        std::fs::remove_dir_all(&folder).expect("the whole folder is gone");
+        // A week that ran cannot be taken back: its line is kept with the others.
+        let aside = kept(writer.append_done(9, &memo()).expect_err("there is no file"));
+        assert_eq!(aside.parent(), Some(folder.as_path()));
+        let told = writer.loss().expect("it is lost").to_owned();
+        assert!(told.contains("trajectory-unsaved-") && told.contains("open the run again"), "{told}");
+        let saved = std::fs::read(&aside).expect("a copy");
+        assert!(saved.starts_with(&confirmed) && saved.len() > confirmed.len());
+        assert_eq!(
+            kept(writer.append(9, &memo(), Durability::Synced).expect_err("still")),
+            aside,
+            "one file"
+        );
+        // With the name of the trajectory it is one.
+        std::fs::rename(&aside, &path).expect("renamed");
+        let read = Trajectory::read(&path).expect("a whole chain");
+        assert_eq!(read.lines.last().map(Line::position), Some(writer.position()));
+    }
+
+    #[test]
     fn every_flipped_byte_and_every_missing_line_is_found() {
         let folder = tempfile::tempdir().expect("a folder");
         let bytes = std::fs::read(written(folder.path(), 4)).expect("bytes");

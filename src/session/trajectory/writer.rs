@@ -1,12 +1,13 @@
 //! Appending lines, and when they are on the disk.
 
 use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
 
 use super::line::{Line, line_hash, now, with_sum};
-use super::medium::Medium;
+use super::medium::{Medium, NamedFile};
 use super::record::Record;
 use crate::database::Position;
 use crate::session::error::RunError;
@@ -35,6 +36,10 @@ pub struct TrajectoryWriter {
     last_hash: String,
     /// The moment that the last line carries.
     last_at: String,
+    /// Why nothing is saved any more.
+    loss: Option<String>,
+    /// Where everything went when the file was no longer there.
+    aside: Option<PathBuf>,
     /// Who is told of lines once they are on the disk.
     witness: Option<Witness>,
     /// Number, hash and moment of lines that the witness has not been told of.
@@ -52,6 +57,8 @@ impl TrajectoryWriter {
             next_seq: 0,
             last_hash: line_hash(b""),
             last_at: String::new(),
+            loss: None,
+            aside: None,
             witness: None,
             untold: Vec::new(),
         }
@@ -62,7 +69,8 @@ impl TrajectoryWriter {
     /// # Errors
     /// It exists already, or cannot be made.
     pub fn create(path: &Path) -> Result<TrajectoryWriter, RunError> {
-        let file = File::options().create_new(true).append(true).open(path).map_err(RunError::io(path))?;
+        let file = File::options().create_new(true).read(true).append(true).open(path);
+        let file = file.and_then(NamedFile::of).map_err(RunError::io(path))?;
         let medium: Box<dyn Medium> = Box::new(file);
         Ok(TrajectoryWriter { medium: Some(medium), path: path.to_owned(), ..TrajectoryWriter::in_memory() })
     }
@@ -87,7 +95,8 @@ impl TrajectoryWriter {
     /// # Errors
     /// The file cannot be written.
     pub fn resume(path: &Path, read: &Trajectory) -> Result<TrajectoryWriter, RunError> {
-        let mut file = File::options().write(true).open(path).map_err(RunError::io(path))?;
+        let file = File::options().read(true).write(true).open(path);
+        let mut file = file.and_then(NamedFile::of).map_err(RunError::io(path))?;
         file.cut(read.length).map_err(RunError::io(path))?;
         Ok(TrajectoryWriter {
             medium: Some(Box::new(file)),
@@ -144,7 +153,7 @@ impl TrajectoryWriter {
         durability: Durability,
     ) -> Result<String, RunError> {
         let (bytes, hash, at) = self.line(kind, day, fields);
-        let written = self.write(&bytes, durability);
+        let written = self.write(&bytes, durability).map_err(|error| self.set_aside(error));
         if written.is_ok() {
             self.accept(hash, &at);
             self.tell_synced(durability);
@@ -165,7 +174,33 @@ impl TrajectoryWriter {
             Ok(()) => self.tell_synced(Durability::Synced),
             Err(_) => self.backlog.extend_from_slice(&bytes),
         }
-        written
+        written.map_err(|error| self.set_aside(error))
+    }
+
+    /// Where the file is no longer there, writes everything that was confirmed beside its place, and says so.
+    fn set_aside(&mut self, error: RunError) -> RunError {
+        let RunError::Astray { path, .. } = error else { return error };
+        let aside = self.aside.get_or_insert_with(|| unsaved_file(&path)).clone();
+        let error = RunError::Astray { kept: self.write_aside(&aside).map(|()| aside), path };
+        self.loss = Some(error.to_string());
+        error
+    }
+
+    fn write_aside(&mut self, aside: &Path) -> Result<(), String> {
+        let Some(medium) = &mut self.medium else { return Ok(()) };
+        let written = medium.beginning(self.length).and_then(|mut bytes| {
+            bytes.extend_from_slice(&self.backlog);
+            // The whole folder may be gone.
+            aside.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+            let mut file = File::create(aside)?;
+            file.write_all(&bytes).and_then(|()| file.sync_all())
+        });
+        written.map_err(|error| format!("{}: {error}", aside.display()))
+    }
+
+    /// Why nothing is saved any more, from the moment on at which that was noticed.
+    pub fn loss(&self) -> Option<&str> {
+        self.loss.as_deref()
     }
 
     fn accept(&mut self, hash: String, at: &str) {
@@ -207,7 +242,7 @@ impl TrajectoryWriter {
         let Some(medium) = &mut self.medium else { return Ok(()) };
         if !medium.is_ours(&self.path, self.length) {
             // Lines of another program are not overwritten, and nothing is told to be saved that nobody finds.
-            return Err(RunError::Astray { path: self.path.clone() });
+            return Err(RunError::Astray { path: self.path.clone(), kept: Err(String::new()) });
         }
         let mut all = self.backlog.clone();
         all.extend_from_slice(bytes);
@@ -219,6 +254,7 @@ impl TrajectoryWriter {
             Ok(()) => {
                 self.length += all.len() as u64;
                 self.backlog.clear();
+                self.loss = None;
                 Ok(())
             }
             Err(error) => {
@@ -254,8 +290,14 @@ impl TrajectoryWriter {
     /// # Errors
     /// The disk refuses.
     pub fn sync(&mut self) -> Result<(), RunError> {
-        self.write(b"", Durability::Synced)?;
+        self.write(b"", Durability::Synced).map_err(|error| self.set_aside(error))?;
         self.tell_synced(Durability::Synced);
         Ok(())
     }
+}
+
+/// A file beside a trajectory for what could not be written into it.
+fn unsaved_file(path: &Path) -> PathBuf {
+    let moment: String = now().chars().take(19).filter(|letter| letter.is_ascii_alphanumeric()).collect();
+    path.with_file_name(format!("trajectory-unsaved-{moment}Z.jsonl"))
 }

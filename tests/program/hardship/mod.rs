@@ -5,6 +5,7 @@
 
 #[cfg(unix)]
 mod full_disk;
+mod lost_file;
 
 use std::fs;
 use std::io::Write;

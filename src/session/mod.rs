@@ -18,7 +18,7 @@ mod study;
 mod trajectory;
 mod witness;
 
-pub use archive::{Export, Imported, Seal, import_run};
+pub use archive::{Export, Imported, LabKey, LabPublicKey, Seal, import_run};
 pub use ask::{connection_to_file, rows_as_json};
 pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
 pub use error::RunError;

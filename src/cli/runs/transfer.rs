@@ -11,7 +11,9 @@ use crate::cli::{Failure, print};
 use crate::report::Logbook;
 use crate::report::logbook::columns::{RUNS, Unread, WEEKS, runs_table, weeks_table};
 use crate::session::archive::close_workshops;
-use crate::session::{Export as Sealing, Imported, RunError, RunSummary, Seal, import_run};
+use crate::session::{
+    Export as Sealing, Imported, LabKey, LabPublicKey, RunError, RunSummary, Seal, import_run,
+};
 
 /// Options of `runs export`.
 #[derive(Debug, Args)]
@@ -28,6 +30,9 @@ pub struct Export {
     /// File of the archive, compressed when its name ends in .gz or .tgz; with --all a folder.
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
+    /// Sign the archives with this key of a lab.
+    #[arg(long, value_name = "FILE")]
+    lab_key: Option<PathBuf>,
 }
 
 /// Options of `runs import`.
@@ -42,13 +47,15 @@ impl Export {
     /// Runs the command.
     pub fn run(&self, folders: &[PathBuf], json: bool) -> Result<(), Failure> {
         tidy_up_on_signals();
+        // Before anything is simulated again.
+        let key = self.lab_key.as_deref().map(LabKey::read).transpose()?;
         match &self.run {
-            Some(run) => self.export_one(&find_in(folders, run)?, json),
-            None => self.export_all(folders, json),
+            Some(run) => self.export_one(&find_in(folders, run)?, key.as_ref(), json),
+            None => self.export_all(folders, key.as_ref(), json),
         }
     }
 
-    fn export_one(&self, folder: &Path, json: bool) -> Result<(), Failure> {
+    fn export_one(&self, folder: &Path, key: Option<&LabKey>, json: bool) -> Result<(), Failure> {
         let beside = match self.out.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
             _ => PathBuf::from("."),
@@ -65,7 +72,7 @@ impl Export {
             )));
         }
         let export = Sealing::prepare(folder, &beside)?;
-        let seal = export.write(&self.out, false)?;
+        let seal = export.write(&self.out, false, key)?;
         let remarks = export.session().remarks();
         if json {
             return print(&format!("{}\n", told(&seal, &self.out, export.session().day())));
@@ -74,7 +81,7 @@ impl Export {
         print(&format!("{remarks}{}", line(&seal, &self.out, export.session().day())))
     }
 
-    fn export_all(&self, folders: &[PathBuf], json: bool) -> Result<(), Failure> {
+    fn export_all(&self, folders: &[PathBuf], key: Option<&LabKey>, json: bool) -> Result<(), Failure> {
         let mut list = list_all(folders)?;
         // A damaged run does not say whose it is, so it is always named.
         let label = self.participant.as_deref();
@@ -87,7 +94,7 @@ impl Export {
         let progress = progress_bar(list.len() as u64, "runs");
         let (mut books, mut answers, mut worst) = (Vec::new(), Vec::new(), None);
         for (folder, run) in &list {
-            let exported = self.export_into(folder, run);
+            let exported = self.export_into(folder, run, key);
             progress.inc(1);
             match exported {
                 Ok((book, seal, archive)) => {
@@ -139,10 +146,15 @@ impl Export {
     }
 
     /// One run of many. An older archive of it makes room: trajectories only grow.
-    fn export_into(&self, folder: &Path, run: &RunSummary) -> Result<(Logbook, Seal, PathBuf), RunError> {
+    fn export_into(
+        &self,
+        folder: &Path,
+        run: &RunSummary,
+        key: Option<&LabKey>,
+    ) -> Result<(Logbook, Seal, PathBuf), RunError> {
         let export = Sealing::prepare(folder, &self.out)?;
         let archive = self.out.join(format!("{}.tar.gz", run.id));
-        let seal = export.write(&archive, true)?;
+        let seal = export.write(&archive, true, key)?;
         Ok((Logbook::of(export.session(), &export.trajectory().lines), seal, archive))
     }
 
@@ -234,7 +246,9 @@ impl Import {
         let mut failures: Vec<Failure> = Vec::new();
         for file in &self.files {
             match import_run(runs, file) {
-                Ok((seal, imported)) => print(&import_answer(&seal, &imported, json))?,
+                Ok((seal, signer, imported)) => {
+                    print(&import_answer(&seal, signer.as_ref(), &imported, json))?;
+                }
                 Err(error) => failures.push(error.into()),
             }
         }
@@ -254,7 +268,7 @@ impl Import {
     }
 }
 
-fn import_answer(seal: &Seal, imported: &Imported, json: bool) -> String {
+fn import_answer(seal: &Seal, signer: Option<&LabPublicKey>, imported: &Imported, json: bool) -> String {
     let (new, remark) = match imported {
         Imported::New(_) => (true, "imported; its database is built when it is first opened"),
         Imported::Same { other_memo: false } => (false, "already exists, line for line; nothing was changed"),
@@ -263,9 +277,12 @@ fn import_answer(seal: &Seal, imported: &Imported, json: bool) -> String {
         }
     };
     if json {
-        let answer =
-            json!({ "run": seal.run, "new": new, "lines": seal.last_seq + 1, "checksum": seal.checksum });
+        let answer = json!({ "run": seal.run, "new": new, "lines": seal.last_seq + 1, "checksum": seal.checksum, "signed_by": signer.map(LabPublicKey::fingerprint) });
         return format!("{answer}\n");
     }
-    format!("run {} {remark}\n  checksum {}\n", seal.run, seal.checksum)
+    let signed = match signer {
+        Some(key) => format!("signed by the lab key {}", key.fingerprint()),
+        None => "not signed".to_owned(),
+    };
+    format!("run {} {remark}\n  checksum {}\n  {signed}\n", seal.run, seal.checksum)
 }

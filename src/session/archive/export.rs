@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
+use super::lab_key::LabKey;
 use super::seal::{SEAL_FORMAT, Seal, SealedFile};
 use super::workshop::Workshop;
-use crate::session::archive::{DATABASE, MANIFEST, MEMO, SEAL, TRAJECTORY, is_compressed};
+use crate::session::archive::{DATABASE, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_compressed};
 use crate::session::error::RunError;
 use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::{Manifest, sync_folder};
@@ -86,11 +87,11 @@ impl Export {
         &self.trajectory
     }
 
-    /// Writes the archive: whole or not at all.
+    /// Writes the archive, signed if there is a key: whole or not at all.
     ///
     /// # Errors
     /// [`RunError::Exists`] when the file is there and may not be replaced; the disk refuses.
-    pub fn write(&self, archive: &Path, replace: bool) -> Result<Seal, RunError> {
+    pub fn write(&self, archive: &Path, replace: bool, key: Option<&LabKey>) -> Result<Seal, RunError> {
         if !replace && archive.exists() {
             let message = format!("{} already exists: choose another name, or remove it", archive.display());
             return Err(RunError::Exists(message));
@@ -106,7 +107,7 @@ impl Export {
         };
         let workshop = Workshop::within(&folder)?;
         let draft = workshop.path().join("archive");
-        let written = self.pack(&draft, is_compressed(archive), &seal);
+        let written = self.pack(&draft, is_compressed(archive), (&seal, key));
         let placed = written.and_then(|()| std::fs::rename(&draft, archive));
         placed.map_err(RunError::io(archive))?;
         sync_folder(&folder)?;
@@ -134,7 +135,7 @@ impl Export {
         Ok(seal.signed())
     }
 
-    fn pack(&self, draft: &Path, compressed: bool, seal: &Seal) -> std::io::Result<()> {
+    fn pack(&self, draft: &Path, compressed: bool, seal: (&Seal, Option<&LabKey>)) -> std::io::Result<()> {
         let file = BufWriter::new(File::create_new(draft)?);
         let file = if compressed {
             let packer = GzEncoder::new(file, Compression::default());
@@ -145,10 +146,13 @@ impl Export {
         file.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all()
     }
 
-    fn fill<W: Write>(&self, out: W, seal: &Seal) -> std::io::Result<W> {
+    fn fill<W: Write>(&self, out: W, (seal, key): (&Seal, Option<&LabKey>)) -> std::io::Result<W> {
         let mut archive = tar::Builder::new(out);
         let text = seal.text();
         archive.append(&header(&seal.run, SEAL, text.len() as u64)?, text.as_bytes())?;
+        if let Some(signature) = key.map(|key| key.sign(&text)) {
+            archive.append(&header(&seal.run, SIGNATURE, signature.len() as u64)?, signature.as_bytes())?;
+        }
         for sealed in &seal.file {
             let file = File::open(self.copies.join(&sealed.name))?;
             archive.append(&header(&seal.run, &sealed.name, sealed.bytes)?, file)?;

@@ -7,9 +7,12 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
+use super::lab_key::{LabPublicKey, signer_of};
 use super::seal::{CopyError, SEAL_FORMAT, Seal, SealedFile, copy_hashed};
 use super::workshop::Workshop;
-use crate::session::archive::{DATABASE, FILES, MANIFEST, MEMO, SEAL, TRAJECTORY, is_run_name, refused};
+use crate::session::archive::{
+    DATABASE, FILES, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_run_name, refused,
+};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::{Manifest, sync_folder};
 use crate::session::folder::runs::{all_run_folders, label_of, participant_folder};
@@ -29,16 +32,19 @@ pub enum Imported {
     },
 }
 
-/// Takes the run of an archive into a folder of runs. Everything is checked before anything is there: the seal, the hash
+/// Takes the run of an archive into a folder of runs; tells whose signature it has, if it has one. Everything is checked before anything is there: the seal, the hash
 /// of every file, the chain of the trajectory, and that nothing else is in the archive.
 ///
 /// # Errors
 /// [`RunError::Archive`] for what is damaged, foreign or dangerous, naming the file; [`RunError::Exists`] when another
 /// state of the run is there. Nothing has changed then.
-pub fn import_run(runs: &Path, archive: &Path) -> Result<(Seal, Imported), RunError> {
+pub fn import_run(runs: &Path, archive: &Path) -> Result<(Seal, Option<LabPublicKey>, Imported), RunError> {
     let workshop = Workshop::within(runs)?;
     let unpacked = unpack(archive, workshop.path())?;
     let seal = check_seal(archive, &unpacked)?;
+    let signer =
+        unpacked.signature.as_ref().map(|signature| signer_of(&unpacked.seal, signature)).transpose();
+    let signer = signer.map_err(|problem| refused(archive, problem))?;
     let draft = workshop.path().join(&seal.run);
     check_run(archive, &draft, &seal)?;
     let folder = folder_for(runs, &draft, &seal)?;
@@ -46,7 +52,7 @@ pub fn import_run(runs: &Path, archive: &Path) -> Result<(Seal, Imported), RunEr
     let there = all_run_folders(runs).into_iter().chain([folder.clone()]).map(|own| own.join(&seal.run));
     if let Some(place) = there.into_iter().find(|place| place.exists()) {
         let same = compare(&draft, &place, &seal)?;
-        return Ok((seal, same));
+        return Ok((seal, signer, same));
     }
     let place = folder.join(&seal.run);
     sync_folder(&draft)?;
@@ -56,7 +62,7 @@ pub fn import_run(runs: &Path, archive: &Path) -> Result<(Seal, Imported), RunEr
         let study = study.as_ref().map(|stamp| stamp.digest.as_str());
         list_world("import", (seed, seed), &scenario, Some(&seal.run), study);
     }
-    Ok((seal, Imported::New(place)))
+    Ok((seal, signer, Imported::New(place)))
 }
 
 /// The folder of runs that a run belongs in: that of its participant where they have one on this machine.
@@ -80,6 +86,7 @@ struct Unpacked {
     run: String,
     files: Vec<SealedFile>,
     seal: String,
+    signature: Option<String>,
 }
 
 /// Copies the files of an archive into `workshop/<run>/`, but for the database, which is only measured.
@@ -88,7 +95,7 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
         refused(archive, format!("this is not an archive of a run, or it is cut short ({error})"))
     };
     let mut tar = tar::Archive::new(open(archive)?);
-    let mut found = Unpacked { run: String::new(), files: Vec::new(), seal: String::new() };
+    let mut found = Unpacked { run: String::new(), files: Vec::new(), seal: String::new(), signature: None };
     // Raw: extensions that rename or enlarge the next file are not followed but refused.
     for entry in tar.entries().map_err(broken)?.raw(true) {
         let mut entry = entry.map_err(broken)?;
@@ -126,11 +133,11 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
             // The archive is as good as it was: there is no room for it here.
             CopyError::Write(error) => RunError::Io { path, error },
         })?;
-        if file == SEAL {
-            let path = workshop.join(run).join(SEAL);
-            found.seal =
-                std::fs::read_to_string(&path).map_err(|error| broken_file(archive, &name, &error))?;
+        if file == SEAL || file == SIGNATURE {
+            let path = workshop.join(run).join(file);
+            let text = std::fs::read_to_string(&path).map_err(|error| broken_file(archive, &name, &error))?;
             std::fs::remove_file(&path).map_err(RunError::io(&path))?;
+            if file == SEAL { found.seal = text } else { found.signature = Some(text) }
         }
         found.files.push(measured);
     }
@@ -203,7 +210,11 @@ fn check_seal(archive: &Path, found: &Unpacked) -> Result<Seal, RunError> {
         }
     }
     let sealed = |name: &str| seal.file.iter().any(|file| file.name == name);
-    match found.files.iter().find(|file| file.name != SEAL && !sealed(&file.name)) {
+    match found
+        .files
+        .iter()
+        .find(|file| ![SEAL, SIGNATURE].contains(&file.name.as_str()) && !sealed(&file.name))
+    {
         Some(stranger) => Err(refused(archive, format!("{} was added after sealing", stranger.name))),
         None => Ok(seal),
     }

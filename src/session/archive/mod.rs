@@ -6,6 +6,7 @@
 //! | file | |
 //! |---|---|
 //! | `seal.toml` | what the archive holds: length and BLAKE3 hash of every file, last line of the trajectory, a checksum over it all |
+//! | `seal.sig` | the signature of the seal, if a lab signed it |
 //! | `run.toml` | what the run is |
 //! | `trajectory.jsonl` | the truth, up to its last confirmed line |
 //! | `afterwards.jsonl` | what was done after the end, if anything was |
@@ -18,6 +19,7 @@
 
 mod export;
 mod import;
+mod lab_key;
 mod seal;
 mod workshop;
 
@@ -25,6 +27,7 @@ use std::path::Path;
 
 pub use export::Export;
 pub use import::{Imported, import_run};
+pub use lab_key::{LabKey, LabPublicKey};
 pub use seal::Seal;
 pub use workshop::close_workshops;
 
@@ -32,8 +35,9 @@ use crate::session::error::RunError;
 use crate::session::play::afterwards::AFTERWARDS;
 
 /// Files an archive may hold and the most bytes each may have: enough for any run, too few to fill a disk by surprise.
-const FILES: [(&str, u64); 6] = [
+const FILES: [(&str, u64); 7] = [
     (SEAL, 1 << 20),
+    (SIGNATURE, 1 << 10),
     (MANIFEST, 1 << 20),
     (TRAJECTORY, 4 << 30),
     (AFTERWARDS, 1 << 30),
@@ -42,6 +46,7 @@ const FILES: [(&str, u64); 6] = [
 ];
 
 const SEAL: &str = "seal.toml";
+const SIGNATURE: &str = "seal.sig";
 const MANIFEST: &str = "run.toml";
 const TRAJECTORY: &str = "trajectory.jsonl";
 const MEMO: &str = "memo.md";

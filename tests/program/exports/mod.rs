@@ -3,6 +3,7 @@
 
 mod handover;
 mod schema;
+mod signed;
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,0 +1,210 @@
+//! The key of a lab: archives that it signs come from whoever holds it, unchanged (docs/formats/archive.md#signature).
+
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::Path;
+
+use ed25519_dalek::{Signature, Signer, SigningKey, VerifyingKey};
+use serde::{Deserialize, Serialize};
+
+use crate::session::error::RunError;
+
+/// First line of the file of a private key.
+const PRIVATE: &str = "novamind lab key 1: keep it secret, and keep a copy";
+/// First line of the file of a public key.
+const PUBLIC: &str = "novamind lab public key 1";
+/// What is signed begins with this, so that no signature can stand for anything else.
+const PURPOSE: &[u8] = b"novamind seal of an archive 1\n";
+
+/// A private key.
+pub struct LabKey(SigningKey);
+
+/// The public key that belongs to a private one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LabPublicKey(VerifyingKey);
+
+/// `seal.sig`: who signed, and the signature.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SignatureFile {
+    algorithm: String,
+    /// Public key.
+    key: String,
+    signature: String,
+}
+
+impl LabKey {
+    /// A new key.
+    ///
+    /// # Errors
+    /// The system gives no random numbers.
+    pub fn generate() -> Result<LabKey, RunError> {
+        let mut secret = [0; 32];
+        getrandom::fill(&mut secret).map_err(|error| {
+            RunError::NotPossible(format!("no key can be made: the system gives no random numbers ({error})"))
+        })?;
+        Ok(LabKey(SigningKey::from_bytes(&secret)))
+    }
+
+    /// Reads `lab.key`.
+    ///
+    /// # Errors
+    /// It cannot be read, or is no key.
+    pub fn read(file: &Path) -> Result<LabKey, RunError> {
+        Ok(LabKey(SigningKey::from_bytes(&read_key(file, PRIVATE)?)))
+    }
+
+    /// Writes the key into a new file that only its owner can read.
+    ///
+    /// # Errors
+    /// It is there already, or cannot be written.
+    pub fn write(&self, file: &Path) -> Result<(), RunError> {
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+        let text = key_text(PRIVATE, &self.0.to_bytes());
+        let written = options
+            .open(file)
+            .and_then(|mut out| out.write_all(text.as_bytes()).and_then(|()| out.sync_all()));
+        written.map_err(RunError::io(file))
+    }
+
+    /// The public key.
+    pub fn public(&self) -> LabPublicKey {
+        LabPublicKey(self.0.verifying_key())
+    }
+
+    /// Signs the text of a seal; returns what `seal.sig` holds.
+    pub(super) fn sign(&self, seal: &str) -> String {
+        let file = SignatureFile {
+            algorithm: "ed25519".to_owned(),
+            key: hex(self.public().0.as_bytes()),
+            signature: hex(&self.0.sign(&purposeful(seal)).to_bytes()),
+        };
+        toml::to_string(&file).expect("a signature holds plain values")
+    }
+}
+
+impl LabPublicKey {
+    /// Reads `lab.pub`.
+    ///
+    /// # Errors
+    /// It cannot be read, or is no key.
+    pub fn read(file: &Path) -> Result<LabPublicKey, RunError> {
+        let bytes = read_key(file, PUBLIC)?;
+        VerifyingKey::from_bytes(&bytes).map(LabPublicKey).map_err(|_| no_key(file))
+    }
+
+    /// Writes the key into a new file.
+    ///
+    /// # Errors
+    /// It is there already, or cannot be written.
+    pub fn write(&self, file: &Path) -> Result<(), RunError> {
+        let text = key_text(PUBLIC, self.0.as_bytes());
+        let written = File::create_new(file).and_then(|mut out| out.write_all(text.as_bytes()));
+        written.map_err(RunError::io(file))
+    }
+
+    /// Sixteen digits that stand for the key, to be compared by eye.
+    pub fn fingerprint(&self) -> String {
+        let digits = blake3::hash(self.0.as_bytes()).to_hex();
+        [&digits[..4], &digits[4..8], &digits[8..12], &digits[12..16]].join("-")
+    }
+}
+
+/// Whose signature of a seal `seal.sig` holds.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn signer_of(seal: &str, signature: &str) -> Result<LabPublicKey, String> {
+    let file: SignatureFile = toml::from_str(signature)
+        .map_err(|error| format!("seal.sig cannot be read ({})", error.message()))?;
+    if file.algorithm != "ed25519" {
+        return Err(format!("seal.sig is of another kind: {}", file.algorithm));
+    }
+    let odd = || "seal.sig is no signature".to_owned();
+    let key = VerifyingKey::from_bytes(&bytes(&file.key).ok_or_else(odd)?).map_err(|_| odd())?;
+    let signature = Signature::from_bytes(&bytes(&file.signature).ok_or_else(odd)?);
+    key.verify_strict(&purposeful(seal), &signature)
+        .map(|()| LabPublicKey(key))
+        .map_err(|_| "seal.sig does not belong to seal.toml: one of them was changed".to_owned())
+}
+
+fn purposeful(seal: &str) -> Vec<u8> {
+    [PURPOSE, seal.as_bytes()].concat()
+}
+
+fn key_text(title: &str, key: &[u8; 32]) -> String {
+    format!("{title}\n{}\n", hex(key))
+}
+
+fn read_key(file: &Path, title: &str) -> Result<[u8; 32], RunError> {
+    let text = std::fs::read_to_string(file).map_err(RunError::io(file))?;
+    let digits = text.trim_end().strip_prefix(title).map(str::trim);
+    digits.and_then(bytes).ok_or_else(|| no_key(file))
+}
+
+fn no_key(file: &Path) -> RunError {
+    RunError::NotPossible(format!("{} is no key of this kind; nothing was done", file.display()))
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// So many bytes, from exactly as many pairs of digits.
+fn bytes<const COUNT: usize>(hex: &str) -> Option<[u8; COUNT]> {
+    let fits = hex.len() == 2 * COUNT && hex.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let mut bytes = [0; COUNT];
+    for (at, byte) in bytes.iter_mut().enumerate().filter(|_| fits) {
+        *byte = u8::from_str_radix(&hex[2 * at..2 * at + 2], 16).ok()?;
+    }
+    fits.then_some(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_come_back_from_their_files_and_are_kept_from_others() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (own, public) = (folder.path().join("lab.key"), folder.path().join("lab.pub"));
+        let key = LabKey::generate().expect("a key");
+        key.write(&own).expect("written");
+        key.public().write(&public).expect("written");
+        assert_eq!(LabKey::read(&own).expect("a key").public(), key.public());
+        assert_eq!(LabPublicKey::read(&public).expect("a key"), key.public());
+        assert!(key.write(&own).is_err(), "a key is not overwritten");
+        assert_ne!(LabKey::generate().expect("a key").public().fingerprint(), key.public().fingerprint());
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            let mode = std::fs::metadata(&own).expect("a file").permissions().mode();
+            assert_eq!(mode & 0o777, 0o600);
+        }
+        for text in ["", "novamind lab key 1", &std::fs::read_to_string(&public).expect("text")] {
+            std::fs::write(&own, text).expect("written");
+            let problem = LabKey::read(&own).err().expect("no key").to_string();
+            assert!(problem.contains("is no key of this kind"), "{problem}");
+        }
+    }
+
+    #[test]
+    fn a_signature_holds_for_one_seal_and_no_change() {
+        let key = LabKey::generate().expect("a key");
+        let (seal, signature) = ("format = 1\n", key.sign("format = 1\n"));
+        assert_eq!(signer_of(seal, &signature), Ok(key.public()));
+        assert!(signer_of("format = 2\n", &signature).is_err());
+        for (at, letter) in signature.char_indices().filter(|(_, letter)| letter.is_ascii_alphanumeric()) {
+            let other = if letter == '1' { "2" } else { "1" };
+            let mut changed = signature.clone();
+            changed.replace_range(at..=at, other);
+            assert!(signer_of(seal, &changed).is_err(), "character {at} was changed unseen");
+        }
+        // Somebody else's signature is theirs, and says so.
+        let other = LabKey::generate().expect("a key");
+        assert_eq!(signer_of(seal, &other.sign(seal)), Ok(other.public()));
+    }
+}

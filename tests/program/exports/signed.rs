@@ -1,0 +1,66 @@
+//! Archives that a lab signed: who signed is told, and what was changed since is refused.
+
+use std::fs;
+
+use novamind::session::{LabKey, Seal};
+
+use super::{contents, forged, import, played, text};
+use crate::support::home::{Home, id};
+
+#[test]
+fn a_signature_tells_who_exported_and_refuses_what_was_changed_since() {
+    let (home, other) = (Home::new(), Home::new());
+    let run = played(&home, "P01");
+    let key = LabKey::generate().expect("a key");
+    let file = home.0.path().join("lab.key");
+    key.write(&file).expect("written");
+    let archive = home.0.path().join("signed.tar");
+    let export = |out: &std::path::Path, key: &std::path::Path| {
+        home.run(&["runs", "export", &id(&run), "--out", &text(out), "--lab-key", &text(key)])
+    };
+    assert_eq!(export(&archive, &file).code, 0);
+    let whole = contents(&archive);
+    let name = |file: &str| format!("{}/{file}", id(&run));
+    assert!(whole.contains_key(&name("seal.sig")));
+    let fingerprint = key.public().fingerprint();
+
+    let bad = home.0.path().join("bad.tar");
+    let files = |change: &dyn Fn(&str, Vec<u8>) -> Option<Vec<u8>>| {
+        let changed =
+            whole.iter().filter_map(|(name, bytes)| Some((name.clone(), change(name, bytes.clone())?)));
+        forged(&bad, &changed.collect::<Vec<_>>());
+    };
+    // A seal that fits itself, but is not the one that was signed.
+    files(&|name, bytes| {
+        if !name.ends_with("seal.toml") {
+            return Some(bytes);
+        }
+        let seal: Seal = toml::from_str(&String::from_utf8(bytes).expect("text")).expect("a seal");
+        Some(Seal { created: "2026-01-01T00:00:00Z".to_owned(), ..seal }.signed().text().into_bytes())
+    });
+    import(&other, &bad).fails(3, &["seal.sig does not belong to seal.toml"]);
+    files(&|name, bytes| Some(if name.ends_with("seal.sig") { Vec::new() } else { bytes }));
+    import(&other, &bad).fails(3, &["seal.sig cannot be read"]);
+    files(&|name, bytes| Some(if name.ends_with("seal.sig") { vec![b'#'; 4096] } else { bytes }));
+    import(&other, &bad).fails(3, &["seal.sig is too large"]);
+
+    let said = import(&other, &archive);
+    assert!(
+        said.code == 0 && said.out.contains(&format!("signed by the lab key {fingerprint}")),
+        "{}",
+        said.out
+    );
+    // Without its signature it is a whole archive of nobody.
+    files(&|name, bytes| (!name.ends_with("seal.sig")).then_some(bytes));
+    let said = import(&other, &bad);
+    assert!(said.code == 0 && said.out.contains("not signed"), "{}{}", said.out, said.err);
+    // A key that is none is said before the run is simulated, and leaves nothing behind.
+    let nothing = home.0.path().join("nothing.tar");
+    fs::write(&file, "no key").expect("written");
+    let said = export(&nothing, &file);
+    assert!(
+        said.code != 0 && said.err.contains("is no key of this kind") && !nothing.exists(),
+        "{}",
+        said.err
+    );
+}

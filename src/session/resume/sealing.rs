@@ -7,12 +7,10 @@
 
 use std::fmt;
 
-use rayon::prelude::*;
-
 /// Separates these keys from every other use of the same hash.
 const CONTEXT: &str = "novamind 2026-11 sealed state of a run";
-/// Bytes of a key stream that one thread makes at a time.
-const PIECE: usize = 1 << 20;
+/// Bytes of a key stream that are made at a time.
+const PIECE: usize = 1 << 12;
 /// Bytes of a nonce, a tag, a key.
 const SIZE: usize = 32;
 
@@ -112,19 +110,17 @@ impl RunKeys {
         hasher.finalize()
     }
 
-    /// Adds the key stream of a nonce, from a place of it on, to bytes: twice is never.
+    /// Adds the key stream of a nonce, from a place of it on, to bytes: twice is never. On this thread alone: the writer
+    /// of the database seals, and a day that is simulated on all others may be waiting for it.
     fn stream_over(&self, nonce: &[u8; SIZE], from: usize, bytes: &mut [u8]) {
-        let stream = blake3::Hasher::new_keyed(&self.stream).update(nonce).finalize_xof();
-        bytes.par_chunks_mut(PIECE).enumerate().for_each(|(at, piece)| {
-            let mut own = stream.clone();
-            own.set_position((from + at * PIECE) as u64);
-            let mut keys = [0; 4096];
-            for block in piece.chunks_mut(keys.len()) {
-                let keys = &mut keys[..block.len()];
-                own.fill(keys);
-                block.iter_mut().zip(keys).for_each(|(byte, key)| *byte ^= *key);
-            }
-        });
+        let mut stream = blake3::Hasher::new_keyed(&self.stream).update(nonce).finalize_xof();
+        stream.set_position(from as u64);
+        let mut keys = [0; PIECE];
+        for piece in bytes.chunks_mut(PIECE) {
+            let keys = &mut keys[..piece.len()];
+            stream.fill(keys);
+            piece.iter_mut().zip(keys).for_each(|(byte, key)| *byte ^= *key);
+        }
     }
 }
 
@@ -135,7 +131,7 @@ mod tests {
     const LINE: &str = "7c1f0d0a2b4e6f8091a3b5c7d9ebfd0f2143658799abbccddeef00112233445566";
 
     fn plain() -> (Vec<u8>, Vec<u8>) {
-        let state = (0..3 * PIECE + 777).map(|at| (at % 251) as u8).collect();
+        let state = (0..30 * PIECE + 777).map(|at| (at % 251) as u8).collect();
         (b"header".to_vec(), state)
     }
 
@@ -175,7 +171,7 @@ mod tests {
     fn sealed_bytes_repeat_nothing() {
         let keys = SealKey::default().for_run(LINE);
         let seal = |first: u8| {
-            let (mut header, mut state) = (vec![first], vec![0; 2 * PIECE]);
+            let (mut header, mut state) = (vec![first], vec![0; 20 * PIECE]);
             let envelope = keys.seal(&mut header, &mut state);
             (envelope, state)
         };

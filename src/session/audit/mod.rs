@@ -21,6 +21,7 @@ pub use finding::{AuditFinding, AuditKind};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::resume::integrity::Integrity;
+use crate::session::resume::sealing::SealKey;
 use crate::session::resume::verify::verify;
 use crate::session::study::definition::Study;
 use crate::session::trajectory::record::{Activity, PresenceEvent};
@@ -160,7 +161,7 @@ impl Inspection<'_> {
     fn beside_database(&self, trajectory: &Trajectory) -> Option<AuditFinding> {
         let manifest = self.run.manifest.as_ref()?;
         let path = self.run.folder.join("trajectory.jsonl");
-        let integrity = Integrity::of(&self.run.folder, manifest);
+        let integrity = Integrity::of(&self.run.folder, manifest, &SealKey::default());
         match integrity.check(&path, trajectory).err()? {
             RunError::Damaged { line, problem, .. } => {
                 Some(self.finding(AuditKind::Cut, Some(line as u64), "", problem))

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use crate::session::folder::derived::Derived;
 use crate::session::folder::lock::is_locked;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::{all_run_folders, last_lines};
@@ -59,7 +60,7 @@ pub fn sittings(study: &Study, runs: &Path) -> Vec<Sitting> {
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
     let own = entries.filter_map(|entry| {
         let folder = entry.path();
-        let manifest = Manifest::read(&folder).ok()?;
+        let manifest = Derived::of(&folder).ok()?.manifest;
         let is_own = manifest.study.as_ref().is_some_and(|stamp| stamp.digest == study.digest);
         is_own.then(|| sitting(&folder, &manifest))
     });

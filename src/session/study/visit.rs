@@ -13,7 +13,7 @@ use super::visit_log::{VisitEvent, VisitLog};
 use crate::session::error::RunError;
 use crate::session::folder::consent::{ConsentGiven, ConsentText};
 use crate::session::folder::create::{NewRun, Storage, StudyEntry};
-use crate::session::folder::manifest::Manifest;
+use crate::session::folder::derived::Derived;
 use crate::session::folder::mode::Mode;
 use crate::session::folder::runs::{RunSummary, list_runs, participant_folder};
 use crate::session::play::machine::Machine;
@@ -247,7 +247,7 @@ impl Visit {
         let Some(text) = self.consent_text() else { return Ok(None) };
         let digest = text.digest();
         let has_agreed = own.iter().any(|(_, run)| {
-            let manifest = Manifest::read(&self.runs.join(&run.id)).ok();
+            let manifest = Derived::of(&self.runs.join(&run.id)).ok().map(|derived| derived.manifest);
             manifest.and_then(|manifest| manifest.consent).is_some_and(|consent| consent.digest == digest)
         });
         Ok((!has_agreed).then_some(text))
@@ -256,7 +256,7 @@ impl Visit {
     /// The participant's runs of this study with their stamps, the last played first.
     fn own_runs(&self) -> Result<Vec<(StudyStamp, RunSummary)>, RunError> {
         let stamped = |run: RunSummary| {
-            let stamp = Manifest::read(&self.runs.join(&run.id)).ok()?.study?;
+            let stamp = Derived::of(&self.runs.join(&run.id)).ok()?.manifest.study?;
             (stamp.digest == self.study.digest).then_some((stamp, run))
         };
         Ok(list_runs(&self.runs)?.into_iter().filter_map(stamped).collect())
@@ -265,7 +265,7 @@ impl Visit {
     /// A participant goes on under the protocol that they began with.
     fn refuse_other_protocol(&self) -> Result<(), RunError> {
         let other = list_runs(&self.runs)?.into_iter().find_map(|run| {
-            let stamp = Manifest::read(&self.runs.join(&run.id)).ok()?.study?;
+            let stamp = Derived::of(&self.runs.join(&run.id)).ok()?.manifest.study?;
             (stamp.name == self.study.protocol.name && stamp.digest != self.study.digest).then_some(run.id)
         });
         match other {

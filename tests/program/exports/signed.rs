@@ -7,6 +7,9 @@ use novamind::session::{LabKey, Seal};
 use super::{contents, forged, import, played, text};
 use crate::support::home::{Home, id};
 
+/// What becomes of each file of an archive; none leaves it out.
+type Change<'a> = &'a dyn Fn(&str, Vec<u8>) -> Option<Vec<u8>>;
+
 #[test]
 fn a_signature_tells_who_exported_and_refuses_what_was_changed_since() {
     let (home, other) = (Home::new(), Home::new());
@@ -25,7 +28,7 @@ fn a_signature_tells_who_exported_and_refuses_what_was_changed_since() {
     let fingerprint = key.public().fingerprint();
 
     let bad = home.0.path().join("bad.tar");
-    let files = |change: &dyn Fn(&str, Vec<u8>) -> Option<Vec<u8>>| {
+    let files = |change: Change<'_>| {
         let changed =
             whole.iter().filter_map(|(name, bytes)| Some((name.clone(), change(name, bytes.clone())?)));
         forged(&bad, &changed.collect::<Vec<_>>());

@@ -133,20 +133,40 @@ pub fn plain_numbers(value: Value) -> Value {
     }
 }
 
-/// Text as a terminal may get it: what would move the cursor, colour what follows or turn the direction of writing round
-/// is written out; line ends and tabs stay.
+/// Whether a letter, shown as it stands, would move the cursor, colour what follows or turn the direction of writing
+/// round. Line ends and tabs do not.
+pub fn acts(letter: char) -> bool {
+    (letter.is_control() && !['\n', '\t'].contains(&letter))
+        || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}' | '\u{feff}')
+        || ('\u{202a}'..='\u{202e}').contains(&letter)
+        || ('\u{2066}'..='\u{2069}').contains(&letter)
+}
+
+/// Text as a terminal may get it: letters that [act](acts) are written out; line ends and tabs stay.
 pub fn printable(text: &str) -> Cow<'_, str> {
-    let acts = |letter: char| {
-        (letter.is_control() && !['\n', '\t'].contains(&letter))
-            || ('\u{202a}'..='\u{202e}').contains(&letter)
-            || ('\u{2066}'..='\u{2069}').contains(&letter)
-    };
     if !text.contains(acts) {
         return Cow::Borrowed(text);
     }
     let written =
         |letter: char| if acts(letter) { letter.escape_unicode().to_string() } else { letter.to_string() };
     Cow::Owned(text.chars().map(written).collect())
+}
+
+/// Text as a cell of a table that other programs open: printable, and with `'` before what a spreadsheet would take for a
+/// formula. Numbers stay as they are.
+pub fn csv_cell(text: &str) -> Cow<'_, str> {
+    let text = printable(text);
+    // Blanks before it keep no formula from being one.
+    let first = text.chars().find(|letter| !letter.is_whitespace());
+    let is_number = text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte))
+        && text.parse::<f64>().is_ok();
+    let begins = |letter: char| {
+        matches!(letter, '=' | '+' | '-' | '@' | '\u{ff1d}' | '\u{ff0b}' | '\u{ff0d}' | '\u{ff20}')
+    };
+    if is_number || !first.is_some_and(begins) && !text.starts_with(['\t', '\n']) {
+        return text;
+    }
+    Cow::Owned(format!("'{text}"))
 }
 
 #[cfg(test)]
@@ -165,6 +185,30 @@ mod tests {
     fn nothing_that_is_printed_commands_the_terminal() {
         assert_eq!(printable("a\u{1b}[2J\u{202e}b\r"), "a\\u{1b}[2J\\u{202e}b\\u{d}");
         assert_eq!(printable("größer\t€\n😀"), "größer\t€\n😀");
+    }
+
+    #[test]
+    fn no_cell_is_a_formula_and_numbers_stay_numbers() {
+        for (text, cell) in [
+            ("=1+1", "'=1+1"),
+            ("+cmd|' /C calc'!A0", "'+cmd|' /C calc'!A0"),
+            ("-2+3", "'-2+3"),
+            ("@SUM(A1)", "'@SUM(A1)"),
+            ("  =1", "'  =1"),
+            ("\t=1", "'\t=1"),
+            ("\n=1", "'\n=1"),
+            ("\u{ff1d}1", "'\u{ff1d}1"),
+            ("\u{1b}]0;x\u{7}=1", "\\u{1b}]0;x\\u{7}=1"),
+            ("\u{202e}=1", "\\u{202e}=1"),
+            ("-5", "-5"),
+            ("-1.5e-7", "-1.5e-7"),
+            ("+4", "+4"),
+            ("-inf", "'-inf"),
+            ("a = b", "a = b"),
+            ("", ""),
+        ] {
+            assert_eq!(csv_cell(text), cell);
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::run::progress_bar;
 use super::{Context, Failure, print};
-use crate::notation::printable;
+use crate::notation::{csv_cell, printable};
 use crate::session::record::Outcome;
 use crate::session::{
     Access, Cell, Library, Line, Record, Refusal, Rows, RunError, Session, Trajectory, connection_to_file,
@@ -157,6 +157,7 @@ pub fn as_csv(rows: &Rows) -> Result<String, Failure> {
     for row in &rows.rows {
         let cells = row.iter().map(|cell| match cell {
             Cell::Null => String::new(),
+            Cell::Text(text) => csv_cell(text).into_owned(),
             other => crate::plain::cell_text(other),
         });
         writer.write_record(cells).map_err(|error| wrong(error.to_string()))?;

@@ -3,9 +3,9 @@
 use serde_json::{Map, Value, json};
 
 use super::policy::{CapacityRule, OperationsRule, RuleBased, Target};
-use crate::session::{Observation, Session};
+use crate::session::{Observation, Session, best_starting_channel};
 use crate::tools::ToolId;
-use crate::world::identifiers::{Channel, Group, Plan};
+use crate::world::identifiers::{Group, Plan};
 use crate::world::params::Params;
 
 /// Ads wait for this day.
@@ -70,14 +70,6 @@ fn targeted(rules: &RuleBased, seen: &Observation, on: bool, params: &Params) ->
         (ToolId::SetTargetedDevSpend, json!({ "targeted_spend": development })),
         (ToolId::SetTargetedAdSpend, json!({ "targeted_spend": ads })),
     ]
-}
-
-/// The channel with the highest starting yield for a group; the first in channel order on a tie.
-pub(super) fn best_starting_channel(group: Group, params: &Params) -> Channel {
-    let yields = params.starting_yields();
-    let better =
-        |best: Channel, next: Channel| if yields[next][group] > yields[best][group] { next } else { best };
-    Channel::ALL.into_iter().reduce(better).expect("there are five channels")
 }
 
 /// One tier towards the smallest that holds the mean usage of the week at 80 %.

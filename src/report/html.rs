@@ -2,6 +2,7 @@
 
 use super::page::{Bar, Block, Fact, Page, Table};
 use super::svg;
+use crate::notation::acts;
 
 /// The style of the page.
 const STYLE: &str = include_str!("../../assets/report.css");
@@ -145,7 +146,7 @@ pub fn escaped(text: &str) -> String {
             '"' => safe.push_str("&quot;"),
             '\'' => safe.push_str("&#39;"),
             '\n' | '\t' => safe.push(' '),
-            letter if letter.is_control() => {}
+            letter if acts(letter) => {}
             letter => safe.push(letter),
         }
     }

@@ -1,6 +1,7 @@
 //! A page as Markdown, readable as it stands and where Markdown is shown.
 
 use super::page::{Bar, Block, Chart, Curve, Page, Plot, Table};
+use crate::notation::acts;
 
 /// Characters of a full bar.
 const BAR: usize = 24;
@@ -130,7 +131,7 @@ fn trend(values: &[f64]) -> String {
 /// Text that means itself in Markdown: on one line, without markup of its own.
 pub fn escaped(text: &str) -> String {
     let flat: Vec<&str> = text.split_whitespace().collect();
-    let letters: Vec<char> = flat.join(" ").chars().filter(|letter| !letter.is_control()).collect();
+    let letters: Vec<char> = flat.join(" ").chars().filter(|letter| !acts(*letter)).collect();
     let mut safe = String::with_capacity(letters.len());
     for (at, letter) in letters.iter().enumerate() {
         let inside_word =

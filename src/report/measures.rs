@@ -5,8 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use super::books::ChannelRow;
-use crate::session::{Decisions, Ended, ForecastScore, JournalEntry, Session, SettingId};
-use crate::world::identifiers::Group;
+use crate::session::{
+    Decisions, Ended, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, filed_forecasts,
+};
+use crate::world::identifiers::{Channel, Group};
 
 /// Words that show somebody weighing what may come.
 pub const PLANNING_WORDS: [&str; 16] = [
@@ -43,6 +45,10 @@ pub struct Measures {
     pub forecasts: Vec<ForecastScore>,
     /// Weeks with forecasts that were filled by the naive projection, and all weeks.
     pub filled_naively: (u32, u32),
+    /// Forecasts filed before the first four weeks, by horizon.
+    pub first_forecasts: Vec<ForecastScore>,
+    /// Ad spend on the truly best channels; only of runs that are over, and none if nothing was spent.
+    pub truly_best: Option<TrulyBest>,
     /// Calls of tools.
     pub tools: ToolUse,
     /// What was written before the weeks.
@@ -56,10 +62,12 @@ impl Measures {
         Measures {
             survival_days: survival_days(session.ended(), day, session.manifest().days),
             cash: session.cash_by_day().last().copied().unwrap_or(session.manifest().cash),
-            channels: best_channel_share(channels),
+            channels: best_tried_channel_share(channels),
             targeted_development: targeted_development(session.decisions()),
             forecasts: session.forecast_scores(),
             filled_naively: filled_naively(journal),
+            first_forecasts: first_forecasts(journal, session.cash_by_day()),
+            truly_best: truly_best_channel_share(channels, |group| session.truly_best_channel(group)),
             tools: tool_use(journal),
             planning: planning(journal),
         }
@@ -110,9 +118,17 @@ pub struct ChannelSkill {
     pub groups: Vec<GroupAds>,
 }
 
+impl ChannelSkill {
+    /// Mean over the groups that were advertised to of the channels that were paid for.
+    pub fn channels_tried(&self) -> f64 {
+        let tried: usize = self.groups.iter().map(|group| group.tried).sum();
+        tried as f64 / self.groups.len().max(1) as f64
+    }
+}
+
 /// Share of ad spend on the best channel of each group, best by the leads per dollar that were measured. Only what was
 /// paid for can be measured, so a group counts if two channels or more were paid and the best brought enough leads.
-pub fn best_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
+pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
     let names: BTreeSet<&str> =
         rows.iter().filter(|row| row.spend > 0.0).map(|row| row.group.as_str()).collect();
     let mut groups: Vec<GroupAds> = names
@@ -144,6 +160,46 @@ fn best_of(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
         leads_per_thousand: yield_of(best) * 1000.0,
         share: best.spend / spend,
     })
+}
+
+/// Ad spend on the truly best channels: those with the highest yield of all five when the run began, which no player
+/// sees.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TrulyBest {
+    /// Share of all ad spend that went to the truly best channel of its group. By chance it is a fifth.
+    pub share: f64,
+    /// The share by group.
+    pub groups: BTreeMap<String, f64>,
+}
+
+/// Ad spend on the truly best channels; none if nothing was spent, or they are not known.
+pub fn truly_best_channel_share(
+    rows: &[ChannelRow],
+    best: impl Fn(Group) -> Option<Channel>,
+) -> Option<TrulyBest> {
+    let mut by_group: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
+    for row in rows.iter().filter(|row| row.spend > 0.0) {
+        let channel = best(Group::parse(&row.group)?)?;
+        let (all, on_best) = by_group.entry(&row.group).or_default();
+        *all += row.spend;
+        *on_best += if channel.id() == row.channel { row.spend } else { 0.0 };
+    }
+    let (all, on_best) = by_group.values().fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
+    let shares = by_group.iter().map(|(group, (all, on_best))| ((*group).to_owned(), on_best / all));
+    (all > 0.0).then(|| TrulyBest { share: on_best / all, groups: shares.collect() })
+}
+
+/// Weeks that count as the first ones.
+pub const FIRST_WEEKS: usize = 4;
+
+/// How the forecasts did that were filed before the first four weeks, by horizon.
+pub fn first_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ForecastScore> {
+    let filed = filed_forecasts(journal, cash_by_day);
+    let days: BTreeSet<u32> = filed.iter().map(|one| one.day).collect();
+    let last = days.iter().nth(FIRST_WEEKS - 1).or(days.last()).copied().unwrap_or(0);
+    let first: Vec<ScoredForecast> = filed.into_iter().filter(|one| one.day <= last).collect();
+    let horizons: BTreeSet<u32> = first.iter().map(|one| one.forecast.horizon_days).collect();
+    horizons.into_iter().map(|horizon| ForecastScore::of(horizon, &first)).collect()
 }
 
 /// Targeted share of development spend over the days that ran; none if nothing was spent.
@@ -178,6 +234,19 @@ pub struct ToolUse {
     pub per_week: f64,
     /// Tools by their calls, the most used first.
     pub tools: Vec<(String, u32)>,
+    /// How evenly the calls are spread over the tools that were used; none with fewer than two.
+    pub evenness: Option<f64>,
+}
+
+/// Entropy of shares over that of equal ones: 1 where all are used alike, near 0 where one has nearly everything; none
+/// with fewer than two.
+pub fn evenness(counts: &[u32]) -> Option<f64> {
+    let all: f64 = counts.iter().map(|count| f64::from(*count)).sum();
+    let used = counts.iter().filter(|count| **count > 0);
+    let entropy: f64 =
+        used.clone().map(|count| f64::from(*count) / all).map(|share| -share * libm::log(share)).sum();
+    let kinds = used.count();
+    (kinds > 1).then(|| entropy / libm::log(kinds as f64))
 }
 
 /// How often which tools were called.
@@ -195,7 +264,8 @@ pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
         counts.into_iter().map(|(tool, count)| (tool.to_owned(), count)).collect();
     tools.sort_by(|left, right| right.1.cmp(&left.1).then_with(|| left.0.cmp(&right.0)));
     let calls = tools.iter().map(|(_, count)| count).sum();
-    ToolUse { calls, per_week: f64::from(calls) / f64::from(weeks.max(1)), tools }
+    let evenness = evenness(&tools.iter().map(|(_, count)| *count).collect::<Vec<_>>());
+    ToolUse { calls, per_week: f64::from(calls) / f64::from(weeks.max(1)), tools, evenness }
 }
 
 /// What was written before the weeks.
@@ -286,7 +356,7 @@ mod tests {
             ads("E1", "linkedin", 0.0, 50.0),
             ads("E1", "search_ads", 1.0, 50.0),
         ];
-        let skill = best_channel_share(&rows).expect("money was spent");
+        let skill = best_tried_channel_share(&rows).expect("money was spent");
         assert_eq!(skill.share, Some(300.0 / 400.0), "one lead tells nothing of E1's channels");
         let first = &skill.groups[0];
         let best = first.best.as_ref().expect("two channels and thirty leads");
@@ -296,9 +366,48 @@ mod tests {
             ("content_marketing", 0.75, 100.0)
         );
         assert_eq!((skill.groups[1].tried, &skill.groups[1].best), (2, &None));
-        let alone = best_channel_share(&[ads("S1", "linkedin", 40.0, 10.0)]).expect("money was spent");
+        let alone = best_tried_channel_share(&[ads("S1", "linkedin", 40.0, 10.0)]).expect("money was spent");
         assert_eq!((alone.share, alone.groups[0].tried), (None, 1), "nothing to compare with");
-        assert_eq!(best_channel_share(&[ads("S1", "linkedin", 4.0, 0.0)]), None);
+        assert_eq!(best_tried_channel_share(&[ads("S1", "linkedin", 4.0, 0.0)]), None);
+    }
+
+    #[test]
+    fn money_on_the_truly_best_channel_is_told_from_the_rest() {
+        let best = |group: Group| {
+            Some(if group.id() == "S1" { Channel::ContentMarketing } else { Channel::ReferralProgram })
+        };
+        let rows = [
+            ads("S1", "content_marketing", 9.0, 30.0),
+            ads("S1", "linkedin", 0.0, 50.0),
+            ads("S3", "referral_program", 0.0, 20.0),
+        ];
+        let told = truly_best_channel_share(&rows, best).expect("money was spent");
+        assert_eq!((told.share, told.groups["S1"], told.groups["S3"]), (0.5, 0.375, 1.0));
+        // All on one wrong channel: nothing was compared, and nothing was right.
+        let wrong = [ads("S1", "linkedin", 50.0, 100.0)];
+        assert_eq!(truly_best_channel_share(&wrong, best).map(|told| told.share), Some(0.0));
+        assert_eq!(best_tried_channel_share(&wrong).and_then(|skill| skill.share), None);
+        assert_eq!(truly_best_channel_share(&rows, |_| None), None, "a run that is not over");
+        assert_eq!(truly_best_channel_share(&[], best), None);
+    }
+
+    #[test]
+    fn calls_on_equal_tools_are_even() {
+        assert_eq!(evenness(&[3, 3]), Some(1.0));
+        assert_eq!((evenness(&[3]), evenness(&[])), (None, None));
+        let uneven = evenness(&[9, 1]).expect("two tools");
+        assert!((uneven - 0.468_995_593_589_281).abs() < 1e-12, "{uneven}");
+    }
+
+    #[test]
+    fn the_first_forecasts_are_those_of_four_weeks() {
+        let session = test_kit::played(6);
+        let first = first_forecasts(session.journal(), session.cash_by_day());
+        assert_eq!(
+            first.iter().map(|score| (score.horizon_days, score.scored)).collect::<Vec<_>>(),
+            [(7, 4), (28, 3), (84, 0), (182, 0)]
+        );
+        assert_eq!(first_forecasts(&[], &[]), []);
     }
 
     #[test]

@@ -24,6 +24,7 @@ pub(crate) mod ranking;
 pub(crate) mod review;
 mod story;
 mod svg;
+pub(crate) mod tables;
 #[cfg(test)]
 pub(crate) mod test_kit;
 mod turn;

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::session::{Configuration, NewRun, Session, Storage, Via};
+use crate::session::{Configuration, Line, NewRun, Session, Storage, Trajectory, Via};
 
 /// A run in memory of some weeks, played by a sensible beginner who changes one thing in the third week.
 pub fn played(weeks: usize) -> Session {
@@ -70,4 +70,30 @@ fn run(days: u32, cash: f64, weeks: usize, calls: &[(&str, Value)]) -> Session {
         }
     }
     session
+}
+
+/// A short run on the disk with a bit of everything, and its lines.
+pub fn recorded() -> (Session, Vec<Line>) {
+    let runs = tempfile::tempdir().expect("a folder");
+    let new = NewRun {
+        days: Some(21),
+        participant: Some("P 07".to_owned()),
+        storage: Storage::Runs(runs.path().to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    session.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
+    session.call("set_prices", &json!({"A": -1}), Via::Form).expect_err("no price");
+    session.query("SELECT count(*) FROM ledger").expect("a count");
+    session.query("SELECT c_max FROM nowhere").expect_err("no table");
+    session.note_view("cash", "overview", 1500);
+    session.note_view("cash", "overview", 500);
+    for rationale in ["If it goes well, we wait", "as planned"] {
+        let forecasts = session.naive_forecasts();
+        session.advance(rationale, &forecasts, Via::Form, &mut |_| {}).expect("a week");
+    }
+    session.set_memo("watch costs").expect("a memo");
+    let path = session.folder().expect("a folder").join("trajectory.jsonl");
+    let lines = Trajectory::read(&path).expect("it reads").lines;
+    (session, lines)
 }

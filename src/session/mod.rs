@@ -23,6 +23,8 @@ pub use ask::{connection_to_file, rows_as_json};
 pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
 pub use error::RunError;
 pub use figures::alike_plans::AlikePlans;
+pub use figures::attendance::{Attendance, AttendedTime, Attention, BREAK_SECONDS, TimeSpent};
+pub use figures::best_channels::best_starting_channel;
 pub use figures::booked::Booked;
 pub use figures::changes::{Change, Decisions};
 pub use figures::dashboard::DeliveredQuality;
@@ -78,7 +80,7 @@ pub use study::stamp::{EarlierRun, StudyStamp};
 pub use study::visit::{NextStep, Visit};
 pub use study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
 pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via};
-pub use trajectory::{Line, Record, Trajectory, record, seconds as moment_of};
+pub use trajectory::{Line, Record, Trajectory, record, written_moment};
 pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,
 };

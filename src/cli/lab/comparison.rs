@@ -6,7 +6,9 @@ use serde_json::json;
 use crate::cli::run::progress_bar;
 use crate::cli::runs::as_csv;
 use crate::cli::{Context, Failure, print};
-use crate::lab::comparison::{Compared, as_rows, as_text, beside};
+use crate::lab::comparison::{as_rows, as_text, beside};
+use crate::notation::printable;
+use crate::report::Logbook;
 use crate::report::ranking::published;
 use crate::session::{Access, Session, Trajectory, find_run_to_read};
 
@@ -33,7 +35,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         let own = find_run_to_read(&folder, name)?;
         let session = Session::open(&own, Access::Read, true)?;
         let trajectory = Trajectory::read(&own.join("trajectory.jsonl"))?;
-        compared.push(Compared::of(&session, &trajectory.lines));
+        compared.push(Logbook::of(&session, &trajectory.lines));
         progress.inc(1);
     }
     progress.finish_and_clear();
@@ -42,9 +44,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         return print(&as_csv(&as_rows(&all))?);
     }
     if !options.json {
-        return print(&as_text(&all));
+        return print(&printable(&as_text(&all)));
     }
     let agents = json!({ "source": published().source, "agents": published().agent });
-    let object = json!({ "comparison": all, "runs": compared, "published": agents });
+    let runs: Vec<_> = compared.iter().map(|logbook| json!({ "logbook": logbook })).collect();
+    let object = json!({ "comparison": all, "runs": runs, "published": agents });
     print(&(serde_json::to_string_pretty(&object).unwrap_or_default() + "\n"))
 }

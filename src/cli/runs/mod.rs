@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 
 use super::{Context, Failure, print};
-use crate::notation::dollars;
+use crate::notation::{dollars, printable};
 use crate::session::{
     RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs, manifest_text,
     rescue,
@@ -98,7 +98,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             if options.json {
                 return print(&(serde_json::to_string_pretty(&summary).unwrap_or_default() + "\n"));
             }
-            print(&format!("{}\n{text}", summary.as_ref().map(line).unwrap_or_default()))
+            print(&format!("{}\n{}", summary.as_ref().map(line).unwrap_or_default(), printable(&text)))
         }
         Some(RunsCommand::Path { run }) => print(&format!("{}\n", find_in(&folders, run)?.display())),
         Some(RunsCommand::End { run }) => {
@@ -174,10 +174,10 @@ fn list(runs: &Path, folders: &[PathBuf], participant: Option<&str>, json: bool)
 
 fn line(run: &RunSummary) -> String {
     if let Some(problem) = &run.problem {
-        return format!("{}  cannot be read: {problem}\n", run.id);
+        return format!("{}  cannot be read: {}\n", printable(&run.id), printable(problem));
     }
     let state = run.ended.map_or("open", |ended| ended.id());
-    let who = run.participant.as_deref().map(|who| format!("  {who}")).unwrap_or_default();
+    let who = run.participant.as_deref().map(|who| format!("  {}", printable(who))).unwrap_or_default();
     format!(
         "{}  {}  {:<8}  {:<10}  day {:>3}/{}  {:>14}  seed {:<6} {}{who}\n",
         run.id,

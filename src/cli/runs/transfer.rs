@@ -8,8 +8,9 @@ use serde_json::{Value, json};
 use super::{find_in, list_all};
 use crate::cli::run::progress_bar;
 use crate::cli::{Failure, print};
+use crate::notation::csv_cell;
 use crate::report::Logbook;
-use crate::report::logbook::columns::{RUNS, Unread, WEEKS, runs_table, weeks_table};
+use crate::report::tables::{StudyTables, columns_table, headings};
 use crate::session::archive::close_workshops;
 use crate::session::{
     Export as Sealing, Imported, LabKey, LabPublicKey, RunError, RunSummary, Seal, import_run,
@@ -21,7 +22,7 @@ pub struct Export {
     /// Run, or `latest`: the newest.
     #[arg(required_unless_present = "all", conflicts_with = "all")]
     run: Option<String>,
-    /// Every run, with the tables runs.csv, weeks.csv and columns.csv.
+    /// Every run, with the tables of their runs, weeks, forecasts, queries, events, answers and notes.
     #[arg(long)]
     all: bool,
     /// With --all: only runs of this participant.
@@ -92,18 +93,20 @@ impl Export {
         std::fs::create_dir_all(&self.out)
             .map_err(|error| Failure::failed(format!("{}: {error}", self.out.display())))?;
         let progress = progress_bar(list.len() as u64, "runs");
-        let (mut books, mut answers, mut worst) = (Vec::new(), Vec::new(), None);
+        let (mut tables, mut answers, mut worst, mut good) = (StudyTables::default(), Vec::new(), None, 0);
         for (folder, run) in &list {
             let exported = self.export_into(folder, run, key);
             progress.inc(1);
             match exported {
-                Ok((book, seal, archive)) => {
+                Ok((export, seal, archive)) => {
+                    let book = Logbook::of(export.session(), &export.trajectory().lines);
+                    tables.add(&book, &export.trajectory().lines, export.afterwards());
                     answers.push(if json {
                         told(&seal, &archive, book.day).to_string() + "\n"
                     } else {
                         line(&seal, &archive, book.day)
                     });
-                    books.push(Ok(book));
+                    good += 1;
                 }
                 Err(error) => {
                     let problem = error.to_string();
@@ -114,17 +117,14 @@ impl Export {
                     } else {
                         format!("{}  not exported: {problem}\n", run.id)
                     });
-                    books.push(Err(Unread { run: run.id.clone(), problem }));
+                    tables.add_unread(&run.id, &problem);
                     worst = Some(worst.map_or(failure.code, |code: u8| code.max(failure.code)));
                 }
             }
         }
         progress.finish_and_clear();
-        self.write_table("runs.csv", &runs_table(&books))?;
-        self.write_table("weeks.csv", &weeks_table(books.iter().flatten()))?;
-        self.write_table("columns.csv", &columns_table())?;
+        write_tables(tables, &self.out)?;
         print(&answers.concat())?;
-        let good = books.iter().filter(|book| book.is_ok()).count();
         if !json {
             print(&format!(
                 "{good} of {} runs and their tables are in {}\n",
@@ -151,18 +151,22 @@ impl Export {
         folder: &Path,
         run: &RunSummary,
         key: Option<&LabKey>,
-    ) -> Result<(Logbook, Seal, PathBuf), RunError> {
+    ) -> Result<(Sealing, Seal, PathBuf), RunError> {
         let export = Sealing::prepare(folder, &self.out)?;
         let archive = self.out.join(format!("{}.tar.gz", run.id));
         let seal = export.write(&archive, true, key)?;
-        Ok((Logbook::of(export.session(), &export.trajectory().lines), seal, archive))
+        Ok((export, seal, archive))
     }
+}
 
-    fn write_table(&self, name: &str, rows: &[Vec<String>]) -> Result<(), Failure> {
-        let path = self.out.join(name);
-        std::fs::write(&path, as_csv(rows)?)
-            .map_err(|error| Failure::failed(format!("{}: {error}", path.display())))
+/// Writes every table into a folder, as comma-separated values.
+pub fn write_tables(tables: StudyTables, folder: &Path) -> Result<(), Failure> {
+    for (name, rows) in tables.into_files() {
+        let path = folder.join(format!("{name}.csv"));
+        std::fs::write(&path, as_csv(&rows)?)
+            .map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
     }
+    Ok(())
 }
 
 /// A signal that ends the program takes with it what is half made: nothing hidden stays on a stick.
@@ -181,32 +185,24 @@ fn tidy_up_on_signals() {
     }
 }
 
-/// Rows as comma-separated values.
+/// Rows as comma-separated values, whose texts no reader takes for formulas or commands.
 pub fn as_csv(rows: &[Vec<String>]) -> Result<String, Failure> {
     let wrong = |error: String| Failure::failed(format!("the table cannot be written as CSV: {error}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
-        writer.write_record(row).map_err(|error| wrong(error.to_string()))?;
+        writer
+            .write_record(row.iter().map(|cell| csv_cell(cell).into_owned()))
+            .map_err(|error| wrong(error.to_string()))?;
     }
     let bytes = writer.into_inner().map_err(|error| wrong(error.to_string()))?;
     String::from_utf8(bytes).map_err(|error| wrong(error.to_string()))
 }
 
-/// Table, column, unit and meaning of everything that is exported.
-fn columns_table() -> Vec<Vec<String>> {
-    let row = |table: &str, name: &str, unit: &str, meaning: &str| {
-        [table, name, unit, meaning].map(str::to_owned).to_vec()
-    };
-    let mut rows = vec![row("table", "column", "unit", "meaning")];
-    rows.extend(RUNS.iter().map(|column| row("runs", column.name, column.unit, column.meaning)));
-    rows.extend(WEEKS.iter().map(|column| row("weeks", column.name, column.unit, column.meaning)));
-    rows
-}
-
 /// Prints what every column means.
 pub fn explain_columns(json: bool) -> Result<(), Failure> {
     if json {
-        let all = json!({ "runs": RUNS, "weeks": WEEKS });
+        let all: serde_json::Map<String, Value> =
+            headings().into_iter().map(|(table, columns)| (table.to_owned(), json!(columns))).collect();
         return print(&(serde_json::to_string_pretty(&all).unwrap_or_default() + "\n"));
     }
     print(&markdown_table(&columns_table()))

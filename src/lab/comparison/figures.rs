@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::{Compared, Range, Row, range};
+use super::{Range, Row, range};
+use crate::report::Logbook;
 use crate::report::ranking::published;
 use crate::session::ForecastScore;
 
@@ -11,12 +12,12 @@ pub struct ComparedFigure {
     name: &'static str,
     of: &'static str,
     unit: &'static str,
-    value: fn(&Compared) -> Option<f64>,
+    value: fn(&Logbook) -> Option<f64>,
     published: fn() -> Option<Range>,
 }
 
 impl ComparedFigure {
-    pub(super) fn row(&self, runs: &[Compared]) -> Row {
+    pub(super) fn row(&self, runs: &[Logbook]) -> Row {
         Row {
             figure: self.name.to_owned(),
             of: self.of.to_owned(),
@@ -31,7 +32,7 @@ const fn figure(
     name: &'static str,
     of: &'static str,
     unit: &'static str,
-    value: fn(&Compared) -> Option<f64>,
+    value: fn(&Logbook) -> Option<f64>,
     published: fn() -> Option<Range>,
 ) -> ComparedFigure {
     ComparedFigure { name, of, unit, value, published }
@@ -41,8 +42,8 @@ fn nothing() -> Option<Range> {
     None
 }
 
-fn forecast(run: &Compared, horizon: u32, of: fn(&ForecastScore) -> f64) -> Option<f64> {
-    let mut scores = run.logbook.measures.forecasts.iter();
+fn forecast(run: &Logbook, horizon: u32, of: fn(&ForecastScore) -> f64) -> Option<f64> {
+    let mut scores = run.measures.forecasts.iter();
     scores.find(|score| score.horizon_days == horizon && score.scored > 0).map(of)
 }
 
@@ -54,8 +55,8 @@ fn coverage(score: &ForecastScore) -> f64 {
     f64::from(score.covered) / f64::from(score.scored)
 }
 
-fn per_week(run: &Compared, count: u32) -> Option<f64> {
-    let weeks = run.logbook.weeks.len();
+fn per_week(run: &Logbook, count: u32) -> Option<f64> {
+    let weeks = run.weeks.len();
     (weeks > 0).then(|| f64::from(count) / weeks as f64)
 }
 
@@ -68,14 +69,14 @@ pub const FIGURES: &[ComparedFigure] = &[
         "final cash",
         "",
         "dollars",
-        |run| Some(run.logbook.cash),
+        |run| Some(run.cash),
         || range("best of three runs of each agent", |agent| Some(agent.best_cash)),
     ),
     figure(
         "score",
         "",
         "dollars",
-        |run| run.logbook.score,
+        |run| run.score,
         || {
             let cash = published().rule_based_baseline;
             Some(Range { least: cash, most: cash, what: "rule-based baseline" })
@@ -85,48 +86,54 @@ pub const FIGURES: &[ComparedFigure] = &[
         "survival",
         "",
         "days",
-        |run| Some(f64::from(run.logbook.measures.survival_days)),
+        |run| Some(f64::from(run.measures.survival_days)),
         || range("mean of three runs of each agent", |agent| Some(agent.mean_survival_days)),
     ),
-    figure("minutes played", "", "minutes", |run| Some(run.logbook.total.active_seconds / 60.0), nothing),
-    figure("seconds for a week, median", "", "seconds", |run| run.logbook.median_week_seconds, nothing),
+    figure("minutes played", "", "minutes", |run| Some(run.total.time.active_seconds() / 60.0), nothing),
+    figure("seconds for a week, median", "", "seconds", |run| run.median_week_seconds, nothing),
     figure(
         "calls that act, a week",
         "",
         "per week",
-        |run| per_week(run, run.logbook.measures.tools.calls),
+        |run| per_week(run, run.measures.tools.calls),
         || range("turns a week of each agent", |agent| Some(agent.turns_per_week)),
     ),
-    figure("all calls, a week", "", "per week", |run| per_week(run, run.logbook.total.calls), nothing),
-    figure("queries, a week", "", "per week", |run| per_week(run, run.logbook.total.queries), nothing),
-    figure("refused calls", "", "count", |run| Some(f64::from(run.logbook.total.refused)), nothing),
+    figure("all calls, a week", "", "per week", |run| per_week(run, run.total.calls), nothing),
+    figure("queries, a week", "", "per week", |run| per_week(run, run.total.queries), nothing),
+    figure("refused calls", "", "count", |run| Some(f64::from(run.total.refused)), nothing),
     figure(
         "decisions",
         "",
         "count",
-        |run| Some(run.logbook.weeks.iter().map(|week| week.decisions.len()).sum::<usize>() as f64),
+        |run| Some(run.weeks.iter().map(|week| week.decisions.len()).sum::<usize>() as f64),
         nothing,
     ),
     figure(
         "weeks with a decision",
         "",
         "count",
-        |run| Some(run.logbook.weeks.iter().filter(|week| !week.decisions.is_empty()).count() as f64),
+        |run| Some(run.weeks.iter().filter(|week| !week.decisions.is_empty()).count() as f64),
         nothing,
     ),
     figure(
         "ad spend on the best channel, as measured",
         "",
         "share",
-        |run| run.logbook.measures.channels.as_ref().and_then(|skill| skill.share),
+        |run| run.measures.channels.as_ref().and_then(|skill| skill.share),
         nothing,
     ),
-    figure("ad spend on the truly best channel", "", "share", |run| run.truly_best_share, chance),
+    figure(
+        "ad spend on the truly best channel",
+        "",
+        "share",
+        |run| run.measures.truly_best.as_ref().map(|best| best.share),
+        chance,
+    ),
     figure(
         "targeted share of development",
         "",
         "share",
-        |run| run.logbook.measures.targeted_development,
+        |run| run.measures.targeted_development,
         || range("agents it was published of", |agent| agent.targeted_development_share),
     ),
     figure("forecast error", "7", "share", |run| forecast(run, 7, error), nothing),
@@ -141,24 +148,18 @@ pub const FIGURES: &[ComparedFigure] = &[
         "weeks with naive forecasts",
         "",
         "count",
-        |run| Some(f64::from(run.logbook.measures.filled_naively.0)),
+        |run| Some(f64::from(run.measures.filled_naively.0)),
         nothing,
     ),
-    figure(
-        "words of a rationale",
-        "",
-        "words",
-        |run| Some(run.logbook.measures.planning.words_each),
-        nothing,
-    ),
+    figure("words of a rationale", "", "words", |run| Some(run.measures.planning.words_each), nothing),
     figure(
         "words of planning in 100",
         "",
         "per 100 words",
-        |run| run.logbook.wording.planning_per_hundred(),
+        |run| run.wording.planning_per_hundred(),
         nothing,
     ),
-    figure("\"if\" in rationales", "", "count", |run| Some(run.logbook.wording.ifs as f64), nothing),
+    figure("\"if\" in rationales", "", "count", |run| Some(run.wording.ifs as f64), nothing),
 ];
 
 fn chance() -> Option<Range> {
@@ -167,9 +168,8 @@ fn chance() -> Option<Range> {
 }
 
 /// Share of each group's ad spend on the channel that brought it most leads per dollar.
-pub(super) fn by_group(runs: &[Compared]) -> Vec<Row> {
-    let ads =
-        |run: &Compared| run.logbook.measures.channels.clone().map(|skill| skill.groups).unwrap_or_default();
+pub(super) fn by_group(runs: &[Logbook]) -> Vec<Row> {
+    let ads = |run: &Logbook| run.measures.channels.clone().map(|skill| skill.groups).unwrap_or_default();
     let by_run: Vec<_> = runs.iter().map(ads).collect();
     let groups: BTreeSet<&str> = by_run.iter().flatten().map(|own| own.group.as_str()).collect();
     let row = |group: &str| Row {
@@ -188,16 +188,15 @@ pub(super) fn by_group(runs: &[Compared]) -> Vec<Row> {
 }
 
 /// Cash at the end of each week that any of the runs has.
-pub(super) fn cash(runs: &[Compared]) -> Vec<Row> {
-    let cash_of = |run: &Compared, day: u32| {
+pub(super) fn cash(runs: &[Logbook]) -> Vec<Row> {
+    let cash_of = |run: &Logbook, day: u32| {
         if day == 0 {
-            return Some(run.logbook.start_cash);
+            return Some(run.start_cash);
         }
-        let mut weeks = run.logbook.weeks.iter();
+        let mut weeks = run.weeks.iter();
         weeks.find(|week| week.day == day)?.figures.get("cash")?.as_f64()
     };
-    let mut days: Vec<u32> =
-        runs.iter().flat_map(|run| run.logbook.weeks.iter().map(|week| week.day)).collect();
+    let mut days: Vec<u32> = runs.iter().flat_map(|run| run.weeks.iter().map(|week| week.day)).collect();
     days.push(0);
     days.sort_unstable();
     days.dedup();

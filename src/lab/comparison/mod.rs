@@ -8,43 +8,8 @@ use serde::Serialize;
 pub use figures::FIGURES;
 pub use table::{as_rows, as_text};
 
-use super::routine::best_starting_channel;
 use crate::report::Logbook;
-use crate::report::books::ChannelRow;
 use crate::report::ranking::{Agent, published};
-use crate::session::{Line, Session};
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
-
-/// A run that is compared.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Compared {
-    /// How it was played.
-    pub logbook: Logbook,
-    /// Share of ad spend on the channel of each group that is truly the best when a run starts. It says what a player
-    /// may not know, so only runs that are over have it.
-    pub truly_best_share: Option<f64>,
-}
-
-impl Compared {
-    /// A run as it is compared. Asks its database.
-    pub fn of(session: &Session, lines: &[Line]) -> Compared {
-        let logbook = Logbook::of(session, lines);
-        let over = logbook.ended.is_some();
-        let truly_best_share = over.then(|| share_on_truly_best(&logbook.ads, session.params())).flatten();
-        Compared { logbook, truly_best_share }
-    }
-}
-
-/// Share of ad spend on the channels with the highest starting yield; none if nothing was spent.
-fn share_on_truly_best(ads: &[ChannelRow], params: &Params) -> Option<f64> {
-    let is_best = |row: &&ChannelRow| {
-        Group::parse(&row.group).is_some_and(|group| best_starting_channel(group, params).id() == row.channel)
-    };
-    let all: f64 = ads.iter().map(|row| row.spend).sum();
-    let best: f64 = ads.iter().filter(is_best).map(|row| row.spend).sum();
-    (all > 0.0).then(|| best / all)
-}
 
 /// A figure of all runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -99,12 +64,12 @@ pub struct Decided {
 }
 
 /// Puts runs side by side.
-pub fn beside(runs: &[Compared]) -> Comparison {
+pub fn beside(runs: &[Logbook]) -> Comparison {
     let mut figures: Vec<Row> = FIGURES.iter().map(|figure| figure.row(runs)).collect();
     figures.extend(figures::by_group(runs));
     Comparison {
-        runs: runs.iter().map(|run| run.logbook.run.clone()).collect(),
-        participants: runs.iter().map(|run| run.logbook.participant.clone()).collect(),
+        runs: runs.iter().map(|run| run.run.clone()).collect(),
+        participants: runs.iter().map(|run| run.participant.clone()).collect(),
         figures,
         cash: figures::cash(runs),
         decisions: decisions(runs),
@@ -112,13 +77,13 @@ pub fn beside(runs: &[Compared]) -> Comparison {
     }
 }
 
-fn decisions(runs: &[Compared]) -> Vec<Decided> {
+fn decisions(runs: &[Logbook]) -> Vec<Decided> {
     let mut days: Vec<u32> =
-        runs.iter().flat_map(|run| run.logbook.weeks.iter().map(|week| week.decision_day)).collect();
+        runs.iter().flat_map(|run| run.weeks.iter().map(|week| week.decision_day)).collect();
     days.sort_unstable();
     days.dedup();
-    let of = |run: &Compared, day: u32| {
-        let weeks = run.logbook.weeks.iter().filter(|week| week.decision_day == day);
+    let of = |run: &Logbook, day: u32| {
+        let weeks = run.weeks.iter().filter(|week| week.decision_day == day);
         weeks.flat_map(|week| week.decisions.iter().cloned()).collect::<Vec<_>>()
     };
     let decided =
@@ -127,7 +92,7 @@ fn decisions(runs: &[Compared]) -> Vec<Decided> {
 }
 
 /// What keeps runs from being compared figure by figure.
-fn caveats(runs: &[Compared]) -> Vec<String> {
+fn caveats(runs: &[Logbook]) -> Vec<String> {
     let Some(first) = runs.first() else { return Vec::new() };
     let mut caveats = Vec::new();
     let mut note = |differ: bool, what: &str| {
@@ -135,16 +100,14 @@ fn caveats(runs: &[Compared]) -> Vec<String> {
             caveats.push(format!("The runs differ in their {what}."));
         }
     };
-    let any = |differs: &dyn Fn(&Logbook, &Logbook) -> bool| {
-        runs.iter().any(|run| differs(&run.logbook, &first.logbook))
-    };
+    let any = |differs: &dyn Fn(&Logbook, &Logbook) -> bool| runs.iter().any(|run| differs(run, first));
     note(any(&|own, first| own.seed != first.seed), "seed");
     note(any(&|own, first| own.days != first.days), "days");
     note(any(&|own, first| own.start_cash != first.start_cash), "cash at the start");
     note(any(&|own, first| own.parameters_digest != first.parameters_digest), "parameters");
     note(any(&|own, first| own.mode != first.mode), "mode");
     let as_published = |book: &Logbook| book.seed == 42 && book.days == 500 && book.start_cash == 1e6;
-    if runs.iter().any(|run| !as_published(&run.logbook)) {
+    if runs.iter().any(|run| !as_published(run)) {
         caveats.push("The published runs have seed 42, 500 days and $1,000,000 at the start.".to_owned());
     }
     caveats
@@ -161,24 +124,6 @@ fn range(what: &'static str, of: impl Fn(&Agent) -> Option<f64>) -> Option<Range
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn money_on_the_truly_best_channel_is_told_from_the_rest() {
-        let params = Params::shipped();
-        let row = |group: &str, channel: &str, spend: f64| ChannelRow {
-            group: group.to_owned(),
-            channel: channel.to_owned(),
-            leads: 0.0,
-            spend,
-        };
-        let ads = [
-            row("S1", "content_marketing", 30.0),
-            row("S1", "linkedin", 50.0),
-            row("S3", "referral_program", 20.0),
-        ];
-        assert_eq!(share_on_truly_best(&ads, &params), Some(0.5));
-        assert_eq!(share_on_truly_best(&[], &params), None);
-    }
 
     #[test]
     fn published_ranges_are_those_of_the_paper() {

@@ -1,25 +1,26 @@
 //! How a run was played, for researchers: the time it took, what was looked at, asked and called, week by week.
 //!
-//! Everything is derived from the lines of the trajectory and from the run simulated again; nothing is hidden state.
-//! [`columns`] lists every figure of the two tables that are exported, with its unit and meaning.
+//! Everything is derived from the lines of the trajectory and from the run simulated again. Of hidden state only
+//! [`Measures::truly_best`] is made, of runs that are over.
 
-pub mod columns;
+mod effort;
 mod summary;
 mod timeline;
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+pub use effort::Effort;
 pub use summary::page_of;
-pub use timeline::{BREAK_SECONDS, Pause};
+pub use timeline::Pause;
 
 use super::books::{Books, ChannelRow};
 use super::chapters::change_in_words;
 use super::measures::{Measures, Wording};
-use crate::session::record::FiledForecast;
-use crate::session::{Consent, Ended, Line, Mode, Record, ScoredForecast, Session};
+use crate::session::record::{ClockEvent, FiledForecast, PresenceEvent};
+use crate::session::{Activity, Consent, Ended, Line, Mode, Record, ScoredForecast, Session, StudyStamp};
 use timeline::{Span, Timeline};
 
 /// How a run was played.
@@ -41,6 +42,10 @@ pub struct Logbook {
     pub days: u32,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
+    /// Format of its trajectory.
+    pub format: u32,
+    /// The study it belongs to.
+    pub study: Option<StudyStamp>,
     /// Version that recorded it.
     pub version: String,
     /// Digest of the effective parameters.
@@ -67,10 +72,16 @@ pub struct Logbook {
     pub weeks: Vec<WeekLog>,
     /// What was done after the last of them.
     pub open_week: Effort,
-    /// Breaks: times without a line that are longer than ten minutes.
+    /// Breaks: times of more than ten minutes in which nobody played.
     pub breaks: Vec<Pause>,
     /// How often the clock of the machine was set back while the run was played.
     pub clock_set_back: u32,
+    /// How often the program took it up, as its lines tell.
+    pub sittings: Sittings,
+    /// Its notes.
+    pub notes: NotesLog,
+    /// Weeks that were decided in less than ten active seconds.
+    pub fast_weeks: u32,
     /// Sums over the whole run.
     pub total: Effort,
     /// Seconds that a week took to decide, breaks left out: the median; none before the first week.
@@ -89,33 +100,30 @@ pub struct Logbook {
     pub last_hash: String,
 }
 
-/// What was done between two weeks.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Effort {
-    /// Seconds from the first moment to the last, breaks included.
-    pub elapsed_seconds: f64,
-    /// Seconds without the breaks.
-    pub active_seconds: f64,
-    /// Breaks.
-    pub breaks: u32,
-    /// Calls that were accepted.
-    pub calls: u32,
-    /// Calls that were refused.
-    pub refused: u32,
-    /// Calls that took back another.
-    pub undone: u32,
-    /// Accepted calls by tool.
-    pub tools: BTreeMap<String, u32>,
-    /// SQL queries.
-    pub queries: u32,
-    /// Queries that were refused or failed.
-    pub queries_failed: u32,
-    /// Views of screens.
-    pub views: u32,
-    /// Seconds on each screen, breaks left out.
-    pub screens: BTreeMap<String, f64>,
-    /// Changes of the notes.
-    pub memos: u32,
+/// Active seconds below which a week was decided implausibly fast: nobody reads a week in them.
+pub const FAST_WEEK_SECONDS: f64 = 10.0;
+
+/// How often the program took up the run.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Sittings {
+    /// How often; 0 where lines do not tell.
+    pub opened: u32,
+    /// How often it did not leave the run before it took it up again, or, of an unfinished run, at all: it was killed, or
+    /// still plays.
+    pub not_closed: u32,
+    /// How often the clock was stopped.
+    pub clock_stopped: u32,
+    /// Machines it was played on.
+    pub machines: u32,
+}
+
+/// The notes of a run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct NotesLog {
+    /// How often they were kept.
+    pub versions: u32,
+    /// Words of the text that was kept last; none where lines do not hold it.
+    pub wording: Option<Wording>,
 }
 
 /// A week, or single days, and what was done before it.
@@ -144,7 +152,9 @@ pub struct WeekLog {
     pub decisions: Vec<String>,
     /// Forecasts.
     pub forecasts: Vec<ScoredForecast>,
-    /// They were filled by the naive projection.
+    /// Which of them the naive projection filled in.
+    pub naive_forecasts: Vec<bool>,
+    /// At least one was filled by the naive projection; none if none was filed.
     pub filled_naively: Option<bool>,
     /// Figures of the week as its line has them.
     pub figures: Map<String, Value>,
@@ -164,7 +174,7 @@ impl Logbook {
             total.add(&week.effort);
             wording += week.wording;
         }
-        let own = weeks.iter().filter(|week| !week.inherited).map(|week| week.effort.active_seconds);
+        let own = weeks.iter().filter(|week| !week.inherited).map(|week| week.effort.time.active_seconds());
         let ads = Books::channels_of(session);
         let (manifest, last) = (session.manifest(), lines.last());
         let end = lines.iter().rev().find(|line| matches!(line.record, Record::End(_)));
@@ -190,6 +200,11 @@ impl Logbook {
             score: session.score(),
             median_week_seconds: median(own.collect()),
             open_week: timeline.open.effort,
+            format: manifest.format,
+            study: manifest.study.clone(),
+            sittings: Sittings::of(lines),
+            notes: NotesLog::of(lines),
+            fast_weeks: weeks.iter().filter(|week| week.is_implausibly_fast()).count() as u32,
             breaks: timeline.breaks,
             clock_set_back: timeline.clock_set_back,
             total,
@@ -201,6 +216,55 @@ impl Logbook {
             last_seq: last.map_or(0, |line| line.seq),
             last_hash: last.map(|line| line.hash.clone()).unwrap_or_default(),
         }
+    }
+}
+
+impl WeekLog {
+    /// Whether it was decided here, in less than ten active seconds.
+    pub fn is_implausibly_fast(&self) -> bool {
+        !self.inherited && self.effort.time.active_seconds() < FAST_WEEK_SECONDS
+    }
+}
+
+impl Sittings {
+    fn of(lines: &[Line]) -> Sittings {
+        let (mut sittings, mut machines, mut is_open) = (Sittings::default(), BTreeSet::new(), false);
+        for line in lines {
+            let presence = match &line.record {
+                Record::Activity(Activity::Session(presence)) => presence,
+                Record::Activity(Activity::Clock(clock)) => {
+                    sittings.clock_stopped += u32::from(clock.event == ClockEvent::Stopped);
+                    continue;
+                }
+                _ => continue,
+            };
+            machines.insert(presence.machine.as_str());
+            match presence.event {
+                PresenceEvent::Opened => {
+                    sittings.opened += 1;
+                    sittings.not_closed += u32::from(is_open);
+                    is_open = true;
+                }
+                PresenceEvent::Closed => is_open = false,
+                _ => {}
+            }
+        }
+        // What closes the sitting in which a run ends stands after its end.
+        let is_over = lines.last().is_some_and(|line| matches!(line.record, Record::End(_)));
+        sittings.not_closed += u32::from(is_open && !is_over);
+        sittings.machines = machines.len() as u32;
+        sittings
+    }
+}
+
+impl NotesLog {
+    fn of(lines: &[Line]) -> NotesLog {
+        let kept = lines.iter().filter(|line| line.record.notes_digest().is_some());
+        let text = kept.clone().next_back().and_then(|line| match &line.record {
+            Record::Note(note) => note.text.as_deref(),
+            _ => None,
+        });
+        NotesLog { versions: kept.count() as u32, wording: text.map(Wording::of) }
     }
 }
 
@@ -223,31 +287,11 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
         wording: span.rationale.as_deref().map(Wording::of).unwrap_or_default(),
         decisions,
         forecasts: span.forecasts.iter().map(scored).collect(),
+        naive_forecasts: span.forecasts.iter().map(|forecast| forecast.filled_naively).collect(),
         filled_naively: (!span.forecasts.is_empty())
             .then(|| span.forecasts.iter().any(|forecast| forecast.filled_naively)),
         figures: span.figures.clone(),
         state_hash: span.state_hash.clone(),
-    }
-}
-
-impl Effort {
-    fn add(&mut self, other: &Effort) {
-        self.elapsed_seconds += other.elapsed_seconds;
-        self.active_seconds += other.active_seconds;
-        self.breaks += other.breaks;
-        self.calls += other.calls;
-        self.refused += other.refused;
-        self.undone += other.undone;
-        self.queries += other.queries;
-        self.queries_failed += other.queries_failed;
-        self.views += other.views;
-        self.memos += other.memos;
-        for (tool, count) in &other.tools {
-            *self.tools.entry(tool.clone()).or_default() += count;
-        }
-        for (screen, seconds) in &other.screens {
-            *self.screens.entry(screen.clone()).or_default() += seconds;
-        }
     }
 }
 
@@ -265,44 +309,17 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Configuration, NewRun, Storage, Trajectory, Via};
-    use serde_json::json;
-
-    /// A short run on the disk with a bit of everything, and its lines.
-    pub(super) fn played() -> (Session, Vec<Line>) {
-        let runs = tempfile::tempdir().expect("a folder");
-        let new = NewRun {
-            days: Some(21),
-            participant: Some("P 07".to_owned()),
-            storage: Storage::Runs(runs.path().to_owned()),
-            ..NewRun::default()
-        };
-        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-        session.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
-        session.call("set_prices", &json!({"A": -1}), Via::Form).expect_err("no price");
-        session.query("SELECT count(*) FROM ledger").expect("a count");
-        session.query("SELECT c_max FROM nowhere").expect_err("no table");
-        session.note_view("cash", "overview", 1500);
-        session.note_view("cash", "overview", 500);
-        for rationale in ["If it goes well, we wait", "as planned"] {
-            let forecasts = session.naive_forecasts();
-            session.advance(rationale, &forecasts, Via::Form, &mut |_| {}).expect("a week");
-        }
-        session.set_memo("watch costs").expect("a memo");
-        let path = session.folder().expect("a folder").join("trajectory.jsonl");
-        let lines = Trajectory::read(&path).expect("it reads").lines;
-        (session, lines)
-    }
+    use crate::report::test_kit;
 
     #[test]
     fn a_logbook_counts_what_was_done() {
-        let (session, lines) = played();
+        let (session, lines) = test_kit::recorded();
         let book = Logbook::of(&session, &lines);
         assert_eq!((book.weeks.len(), book.day, book.participant.as_deref()), (2, 14, Some("P 07")));
         let first = &book.weeks[0];
         let effort = &first.effort;
         assert_eq!((effort.calls, effort.refused, effort.queries, effort.queries_failed), (1, 1, 2, 1));
-        assert_eq!((effort.views, effort.screens.get("cash")), (2, Some(&2.0)));
+        assert_eq!((effort.views, effort.screens.len()), (2, 1));
         assert_eq!((first.wording.words, first.wording.ifs, first.wording.planning), (6, 1, 1));
         assert_eq!(first.decisions.len(), 3, "{:?}", first.decisions);
         assert_eq!((first.filled_naively, first.forecasts.len()), (Some(true), 4));

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::{BREAK_SECONDS, Effort, Logbook, WeekLog};
+use super::{Effort, Logbook, WeekLog};
 use crate::report::page::{Block, Fact, Page, Table};
 use crate::report::words::{count, money, whole};
-use crate::session::Ended;
+use crate::session::{BREAK_SECONDS, Ended, TimeSpent};
 
 /// The page that tells how a run was played.
 pub fn page_of(book: &Logbook) -> Page {
@@ -19,7 +19,8 @@ pub fn page_of(book: &Logbook) -> Page {
     blocks.push(Block::Heading("Weeks"));
     blocks.push(weeks(book));
     blocks.push(Block::Note(format!(
-        "Time is the time before each week was run, without breaks (gaps of more than {:.0} minutes).",
+        "Time is the active time before each week was run. A break is a time of more than {:.0} minutes in which \
+         nobody played.",
         BREAK_SECONDS / 60.0
     )));
     blocks.push(Block::Heading("Breaks"));
@@ -52,7 +53,7 @@ pub fn page_of(book: &Logbook) -> Page {
 fn headline(book: &Logbook) -> String {
     let who = book.participant.as_deref().unwrap_or("An unnamed participant");
     let weeks = count(book.weeks.iter().filter(|week| !week.inherited).count() as u32, "week");
-    let minutes = whole(book.total.active_seconds / 60.0);
+    let minutes = whole(book.total.time.active_seconds() / 60.0);
     let how = match book.ended {
         Some(Ended::Horizon) => "to the last day",
         Some(Ended::Bankruptcy) => "into bankruptcy",
@@ -80,8 +81,13 @@ fn facts(book: &Logbook) -> Vec<Fact> {
         Fact::new("Last line", minute(&book.last_at), ""),
         Fact::new(
             "Time played",
-            time(total.active_seconds),
-            format!("{} with {}", time(total.elapsed_seconds), count(book.breaks.len() as u32, "break")),
+            time(total.time.active_seconds()),
+            format!(
+                "idle {}, away {}; {}",
+                time(total.time.idle_seconds()),
+                time(total.time.away_seconds()),
+                count(book.breaks.len() as u32, "break")
+            ),
         ),
         Fact::new("Time for a week", book.median_week_seconds.map_or("none".to_owned(), time), "median"),
         Fact::new("Calls", whole(f64::from(total.calls)), failed(total.refused, "refused")),
@@ -127,7 +133,7 @@ fn week_row(week: &WeekLog) -> Vec<String> {
     vec![
         week.week.to_string(),
         if week.inherited { "in the parent run".to_owned() } else { minute(&week.decided_at) },
-        played(time(effort.active_seconds)),
+        played(time(effort.time.active_seconds())),
         played(effort.breaks.to_string()),
         effort.calls.to_string(),
         played(effort.refused.to_string()),
@@ -155,11 +161,11 @@ fn screens(total: &Effort) -> Block {
     if total.screens.is_empty() {
         return Block::Text("None were recorded: only the console has screens.".to_owned());
     }
-    let mut sorted: Vec<(&String, &f64)> = total.screens.iter().collect();
-    sorted.sort_by(|left, right| right.1.total_cmp(left.1).then(left.0.cmp(right.0)));
-    let all: f64 = total.screens.values().sum();
-    let row = |(name, seconds): (&String, &f64)| {
-        vec![name.clone(), time(*seconds), crate::notation::percent(seconds / all.max(f64::MIN_POSITIVE), 0)]
+    let sorted = by_length(&total.screens);
+    let all: f64 = sorted.iter().map(|(_, seconds)| seconds).sum();
+    let row = |(name, seconds): (&str, f64)| {
+        let share = crate::notation::percent(seconds / all.max(f64::MIN_POSITIVE), 0);
+        vec![name.to_owned(), time(seconds), share]
     };
     Block::Table(Table {
         columns: vec![("screen", false), ("time", true), ("share", true)],
@@ -193,11 +199,18 @@ fn decisions(book: &Logbook) -> Vec<Block> {
 }
 
 /// The screens that were looked at longest.
-fn longest(screens: &BTreeMap<String, f64>, most: usize) -> String {
-    let mut sorted: Vec<(&String, &f64)> = screens.iter().collect();
-    sorted.sort_by(|left, right| right.1.total_cmp(left.1).then(left.0.cmp(right.0)));
-    let told = sorted.iter().take(most).map(|(name, seconds)| format!("{name} {}", time(**seconds)));
+fn longest(screens: &BTreeMap<String, TimeSpent>, most: usize) -> String {
+    let sorted = by_length(screens);
+    let told = sorted.iter().take(most).map(|(name, seconds)| format!("{name} {}", time(*seconds)));
     told.collect::<Vec<_>>().join(", ")
+}
+
+/// Screens with their active seconds, the longest first.
+fn by_length(screens: &BTreeMap<String, TimeSpent>) -> Vec<(&str, f64)> {
+    let mut sorted: Vec<(&str, f64)> =
+        screens.iter().map(|(name, spent)| (name.as_str(), spent.active_seconds())).collect();
+    sorted.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(right.0)));
+    sorted
 }
 
 /// A length of time: `45 s`, `12:05`, `1:02:05`.
@@ -222,13 +235,13 @@ mod tests {
 
     #[test]
     fn a_session_is_told_on_a_page() {
-        let (session, lines) = super::super::tests::played();
+        let (session, lines) = crate::report::test_kit::recorded();
         let book = Logbook::of(&session, &lines);
         let text = crate::report::markdown::write(&page_of(&book));
         for part in [
             "P 07 played 2 weeks",
             "none was asked for",
-            "cash 2 s",
+            "cash 0 s",
             "set\\_prices",
             "There were none.",
             "price A: 0 → 12",

@@ -5,12 +5,11 @@ use serde_json::{Map, Value};
 
 use super::Effort;
 use crate::session::record::{Closing, FiledForecast, Outcome, View};
-use crate::session::{Activity, Line, Record, Reversal};
+use crate::session::{
+    Activity, Attendance, Attention, BREAK_SECONDS, Line, Record, Reversal, written_moment,
+};
 
-/// Seconds without a line after which somebody is taken to be away: ten minutes.
-pub const BREAK_SECONDS: f64 = 600.0;
-
-/// A time without a line.
+/// A time of more than ten minutes in which nobody played.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Pause {
     /// Day of the run.
@@ -37,6 +36,9 @@ pub(super) struct Span {
     pub forecasts: Vec<FiledForecast>,
     pub figures: Map<String, Value>,
     pub state_hash: String,
+    /// Where it begins and ends on the axis of the run.
+    from: i64,
+    to: i64,
 }
 
 /// All spans of a run.
@@ -57,44 +59,74 @@ impl Timeline {
         // What a branch took over was played in another run, at another time.
         let copied = lines.iter().position(|line| matches!(line.record, Record::Branch(_))).unwrap_or(0);
         let mut before: Option<&Line> = None;
+        let mut attendance = Attendance::default();
+        let mut places = Vec::with_capacity(lines.len());
+        let mut views = Vec::new();
         for (at, line) in lines.iter().enumerate() {
             if timeline.open.began_at.is_empty() {
                 timeline.open.began_at = before.unwrap_or(line).at.clone();
                 timeline.open.decision_day = before.unwrap_or(line).day;
+                timeline.open.from = attendance.place();
             }
+            attendance.note(line.nanoseconds(), &line.record);
+            places.push(attendance.place());
             timeline.open.inherited = at < copied;
-            if let Some(before) = before.filter(|_| at > copied) {
-                timeline.pass_time(before, line);
+            timeline.open.to = attendance.place();
+            if let Record::Activity(Activity::View(view)) = &line.record {
+                views.push((timeline.spans.len(), attendance.place(), view));
             }
             timeline.count(line);
             before = Some(line);
         }
+        timeline.clock_set_back = attendance.clock_set_back();
+        // Idleness is told by a line that comes after it began: only now is known what the time was.
+        for span in timeline.spans.iter_mut().chain([&mut timeline.open]) {
+            span.effort.time = attendance.between(span.from, span.to);
+        }
+        timeline.tell_breaks(&attendance, lines, &places);
+        for (week, place, view) in views {
+            timeline.share_view(week, place, view, &attendance);
+        }
         timeline
     }
 
-    /// Counts the time between two lines. The time before a week's closing line is the simulator's.
-    fn pass_time(&mut self, before: &Line, line: &Line) {
-        if line.closes_days() {
-            return;
+    /// Times in which nobody played that are longer than ten minutes; each belongs to the week in which it ended.
+    fn tell_breaks(&mut self, attendance: &Attendance, lines: &[Line], places: &[i64]) {
+        let mut apart: Vec<(i64, i64)> = Vec::new();
+        for time in attendance.times() {
+            match (time.attention, apart.last_mut()) {
+                (Attention::Active | Attention::Simulating, _) => {}
+                (_, Some((_, to))) if *to == time.from => *to = time.to,
+                _ => apart.push((time.from, time.to)),
+            }
         }
-        let passed = line.moment() - before.moment();
-        if passed < 0.0 {
-            self.clock_set_back += 1;
-            return;
+        for (from, to) in apart {
+            let seconds = attendance.between(from, to).elapsed_seconds();
+            let last = places.partition_point(|place| *place < to).min(lines.len() - 1);
+            if seconds <= BREAK_SECONDS {
+                continue;
+            }
+            let began = places.partition_point(|place| *place <= from).saturating_sub(1);
+            self.breaks.push(Pause {
+                day: lines[last].day,
+                from: written_moment(lines[began].nanoseconds() + from - places[began]),
+                to: lines[last].at.clone(),
+                seconds,
+            });
+            let own = self.spans.iter_mut().find(|span| span.from < to && to <= span.to);
+            own.unwrap_or(&mut self.open).effort.breaks += 1;
         }
-        let effort = &mut self.open.effort;
-        effort.elapsed_seconds += passed;
-        if passed <= BREAK_SECONDS {
-            effort.active_seconds += passed;
-            return;
+    }
+
+    /// Gives each week the active time of a view that fell into it. A view ends where its line stands.
+    fn share_view(&mut self, week: usize, place: i64, view: &View, attendance: &Attendance) {
+        let length = i64::try_from(view.for_ms).unwrap_or(i64::MAX).saturating_mul(1_000_000);
+        let began = place.saturating_sub(length).max(0);
+        let spans = self.spans.iter_mut().chain([&mut self.open]).take(week + 1);
+        for span in spans.filter(|span| span.to > began && !span.inherited) {
+            let time = attendance.between(began.max(span.from), place.min(span.to));
+            *span.effort.screens.entry(view.screen.clone()).or_default() += time;
         }
-        effort.breaks += 1;
-        self.breaks.push(Pause {
-            day: line.day,
-            from: before.at.clone(),
-            to: line.at.clone(),
-            seconds: passed,
-        });
     }
 
     fn count(&mut self, line: &Line) {
@@ -110,12 +142,7 @@ impl Timeline {
                 effort.queries += 1;
                 effort.queries_failed += u32::from(query.error.is_some());
             }
-            Record::Activity(Activity::View(view)) => {
-                let seconds = self.seconds_looked(line, view);
-                let effort = &mut self.open.effort;
-                effort.views += 1;
-                *effort.screens.entry(view.screen.clone()).or_default() += seconds;
-            }
+            Record::Activity(activity) => effort.count(activity),
             Record::Memo(_) | Record::Note(_) => effort.memos += 1,
             Record::Advance(filed) => {
                 self.open.decided_at.clone_from(&line.at);
@@ -124,25 +151,11 @@ impl Timeline {
             }
             Record::Week(closing) | Record::Step(closing) => self.close(line, closing),
             Record::Start(_)
-            | Record::Activity(_)
             | Record::Branch(_)
             | Record::Override(_)
             | Record::End(_)
             | Record::Unknown(_) => {}
         }
-    }
-
-    /// Seconds of a view without the breaks that fall into it.
-    fn seconds_looked(&self, line: &Line, view: &View) -> f64 {
-        let looked = view.for_ms as f64 / 1e3;
-        let away = self.breaks.iter().rev().map_while(|pause| {
-            // Only the break that this line ended, and older ones as far as the view reaches back.
-            let until = crate::session::moment_of(&pause.to);
-            (until > line.moment() - looked).then_some((until, pause.seconds))
-        });
-        let from = line.moment() - looked;
-        let away: f64 = away.map(|(until, seconds)| seconds.min(until - from)).sum();
-        (looked - away).max(0.0)
     }
 
     fn close(&mut self, line: &Line, closing: &Closing) {
@@ -220,11 +233,30 @@ mod tests {
             ("10:33:00", Record::Query(query)),
         ]));
         let effort = &timeline.spans[0].effort;
-        assert_eq!((effort.elapsed_seconds, effort.active_seconds, effort.breaks), (1860.0, 360.0, 1));
+        let time = effort.time;
+        assert_eq!((time.elapsed_seconds(), time.active_seconds(), effort.breaks), (1860.0, 360.0, 1));
+        assert_eq!((time.idle_seconds(), time.away_seconds()), (0.0, 1500.0));
         assert_eq!(timeline.breaks[0].seconds, 1500.0);
-        assert_eq!(effort.screens["cash"], 60.0, "26 minutes less the break of 25");
+        assert_eq!(effort.screens["cash"].active_seconds(), 60.0, "26 minutes less the break of 25");
         assert_eq!((timeline.open.effort.queries, timeline.open.effort.queries_failed), (1, 0));
-        assert_eq!(timeline.open.effort.active_seconds, 60.0);
+        assert_eq!(timeline.open.effort.time.active_seconds(), 60.0);
+    }
+
+    #[test]
+    fn a_view_belongs_to_the_weeks_in_which_it_was_open() {
+        let view = |for_ms| {
+            Record::Activity(Activity::View(View { screen: "cash".to_owned(), from: String::new(), for_ms }))
+        };
+        let timeline = Timeline::of(&lines(&[
+            ("10:00:00", start()),
+            ("10:01:00", advance()),
+            ("10:01:30", week()),
+            ("10:03:30", view(180_000)),
+            ("10:04:00", view(20_000)),
+        ]));
+        let seconds = |effort: &Effort| effort.screens["cash"].active_seconds();
+        assert_eq!(seconds(&timeline.spans[0].effort), 30.0, "what the week was simulated in is nobody's");
+        assert_eq!(seconds(&timeline.open.effort), 120.0 + 20.0);
     }
 
     #[test]
@@ -235,7 +267,7 @@ mod tests {
             ("09:00:00", memo()),
             ("09:02:00", memo()),
         ]));
-        assert_eq!((timeline.open.effort.active_seconds, timeline.clock_set_back), (180.0, 1));
+        assert_eq!((timeline.open.effort.time.active_seconds(), timeline.clock_set_back), (180.0, 1));
     }
 
     #[test]
@@ -249,7 +281,7 @@ mod tests {
             ("10:01:04", week()),
         ]));
         let seen: Vec<(bool, f64)> =
-            timeline.spans.iter().map(|span| (span.inherited, span.effort.active_seconds)).collect();
+            timeline.spans.iter().map(|span| (span.inherited, span.effort.time.active_seconds())).collect();
         assert_eq!(seen, [(true, 0.0), (false, 60.0)]);
     }
 }

@@ -20,7 +20,7 @@ use crate::session::resume::integrity::Integrity;
 use crate::session::resume::open::{Access, check_start};
 use crate::session::resume::sealing::SealKey;
 use crate::session::state::Session;
-use crate::session::trajectory::Trajectory;
+use crate::session::trajectory::{Line, Trajectory};
 
 /// A run that was read, simulated again and found whole: ready to be sealed, and to be looked at.
 ///
@@ -28,6 +28,7 @@ use crate::session::trajectory::Trajectory;
 pub struct Export {
     session: Session,
     trajectory: Trajectory,
+    afterwards: Vec<Line>,
     /// Copies of the files, in a folder that must outlive the session.
     copies: PathBuf,
     _workshop: Workshop,
@@ -74,7 +75,7 @@ impl Export {
             Err(error) => return Err(RunError::Io { path: memo, error }),
         }
         let session = Session::open(own, Access::Read, true).map_err(|error| moved(error, own, folder))?;
-        Ok(Export { session, trajectory, copies: own.clone(), _workshop: workshop })
+        Ok(Export { session, trajectory, afterwards: after.lines, copies: own.clone(), _workshop: workshop })
     }
 
     /// The run, open to read.
@@ -85,6 +86,11 @@ impl Export {
     /// Its lines.
     pub fn trajectory(&self) -> &Trajectory {
         &self.trajectory
+    }
+
+    /// Lines of what was done after its end.
+    pub fn afterwards(&self) -> &[Line] {
+        &self.afterwards
     }
 
     /// Writes the archive, signed if there is a key: whole or not at all.

@@ -1,6 +1,8 @@
 //! What a player sees of a run, in figures: at a glance, by week and by group, what was decided, and what is expected.
 
 pub(in crate::session) mod alike_plans;
+pub(in crate::session) mod attendance;
+pub(in crate::session) mod best_channels;
 pub(in crate::session) mod booked;
 pub(in crate::session) mod changes;
 pub(in crate::session) mod dashboard;

@@ -1,11 +1,12 @@
 //! Who is there, and when: the program taking up and leaving a run, on which machine, by which clocks.
 
+use crate::session::figures::attendance::TimeSpent;
 use crate::session::folder::world_log::worlds_seen;
 use crate::session::play::machine::Machine;
+use crate::session::play::recorder::Recorder;
 use crate::session::state::Session;
-use crate::session::trajectory::Durability;
-use crate::session::trajectory::Record;
-use crate::session::trajectory::record::{Activity, LeavingCause, Presence, PresenceEvent};
+use crate::session::trajectory::record::{Activity, LeavingCause, LimitScope, Presence, PresenceEvent};
+use crate::session::trajectory::{Durability, Record, nanoseconds, now};
 
 /// What a person plays with, and in which window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +40,12 @@ impl Session {
     pub fn note_presence(&mut self, event: PresenceEvent, idle_ms: Option<u64>, window: Option<(u16, u16)>) {
         let presence = Presence { idle_ms, window, ..presence(event) };
         self.note_activity(Activity::Session(Box::new(presence)));
+    }
+
+    /// What was spent of what a time limit is on, up to now; nothing of a run that is only read.
+    pub fn time_spent(&self, scope: LimitScope) -> TimeSpent {
+        let attendance = self.recorder.as_ref().map(Recorder::attendance);
+        attendance.map(|time| time.so_far(scope, nanoseconds(&now()))).unwrap_or_default()
     }
 
     /// Records something that a person did besides acting, unless the rules leave it out. It changes nothing, so a disk

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use crate::database::Position;
 use crate::session::error::RunError;
+use crate::session::figures::attendance::Attendance;
 use crate::session::folder::first_line::start_of;
 use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::{Manifest, sync_folder};
 use crate::session::play::afterwards::AFTERWARDS;
-use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, now};
+use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, nanoseconds, now};
 use crate::session::witness::Witness;
 
 /// What a run has that is played, and a run that is only read has not.
@@ -22,6 +23,8 @@ pub(in crate::session) struct Recorder {
     folder: Option<PathBuf>,
     /// What is done once the run is over, from the first line of it on.
     afterwards: Option<TrajectoryWriter>,
+    /// Where the time went, line by line.
+    attendance: Attendance,
     /// Held while the run may be written; none in memory.
     _lock: Option<File>,
 }
@@ -43,10 +46,13 @@ impl Recorder {
                 (trajectory, Some(lock))
             }
         };
-        trajectory.append(0, &start_of(manifest), Durability::Synced)?;
+        let start = start_of(manifest);
+        let at = trajectory.append(0, &start, Durability::Synced)?;
+        let mut attendance = Attendance::default();
+        attendance.note(nanoseconds(&at), &start);
         let calls = if sync_calls { Durability::Synced } else { Durability::Written };
         let folder = folder.map(Path::to_owned);
-        Ok(Recorder { trajectory, calls, folder, afterwards: None, _lock: lock })
+        Ok(Recorder { trajectory, calls, folder, afterwards: None, attendance, _lock: lock })
     }
 
     /// Goes on with the trajectory of a run whose lock is held.
@@ -57,7 +63,14 @@ impl Recorder {
     ) -> Result<Recorder, RunError> {
         let trajectory = TrajectoryWriter::resume(path, read)?;
         let folder = path.parent().map(Path::to_owned);
-        Ok(Recorder { trajectory, calls: Durability::Synced, folder, afterwards: None, _lock: Some(lock) })
+        Ok(Recorder {
+            trajectory,
+            calls: Durability::Synced,
+            folder,
+            afterwards: None,
+            attendance: Attendance::of(&read.lines),
+            _lock: Some(lock),
+        })
     }
 
     /// Number and hash of the last line.
@@ -85,7 +98,9 @@ impl Recorder {
         record: &Record,
         durability: Durability,
     ) -> Result<String, RunError> {
-        self.trajectory.append(day, record, durability)
+        let at = self.trajectory.append(day, record, durability)?;
+        self.attendance.note(nanoseconds(&at), record);
+        Ok(at)
     }
 
     /// Appends a line about something that is done once the run is over, to a file of its own. In memory it is not kept.
@@ -109,7 +124,14 @@ impl Recorder {
 
     /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
     pub(in crate::session) fn append_done(&mut self, day: u32, record: &Record) -> Option<String> {
-        self.trajectory.append_done(day, record).err().map(|error| error.to_string())
+        let problem = self.trajectory.append_done(day, record).err().map(|error| error.to_string());
+        self.attendance.note(nanoseconds(self.trajectory.last_at()), record);
+        problem
+    }
+
+    /// Where the time went, up to the last line.
+    pub(in crate::session) fn attendance(&self) -> &Attendance {
+        &self.attendance
     }
 
     /// Puts everything on the disk, also lines that it has refused so far.

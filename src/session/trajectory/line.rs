@@ -104,6 +104,11 @@ impl Line {
         seconds(&self.at)
     }
 
+    /// When it was written, nanoseconds since 1970; 0 if that cannot be read.
+    pub fn nanoseconds(&self) -> i64 {
+        nanoseconds(&self.at)
+    }
+
     /// Every field of what it says, those that this version does not know included.
     pub(super) fn own_fields(&self) -> Map<String, Value> {
         let mut fields: Map<String, Value> = serde_json::from_slice(&self.text).unwrap_or_default();
@@ -157,6 +162,18 @@ fn sum_of(line: &[u8]) -> Option<bool> {
 /// The present moment, RFC 3339.
 pub fn now() -> String {
     OffsetDateTime::now_utc().format(&Rfc3339).unwrap_or_default()
+}
+
+/// A moment in nanoseconds since 1970, RFC 3339.
+pub fn written_moment(nanoseconds: i64) -> String {
+    let moment = OffsetDateTime::from_unix_timestamp_nanos(i128::from(nanoseconds)).ok();
+    moment.and_then(|moment| moment.format(&Rfc3339).ok()).unwrap_or_default()
+}
+
+/// Nanoseconds since 1970 of a moment of a line; 0 if it cannot be read.
+pub fn nanoseconds(at: &str) -> i64 {
+    let moment = OffsetDateTime::parse(at, &Rfc3339).map_or(0, OffsetDateTime::unix_timestamp_nanos);
+    i64::try_from(moment).unwrap_or(0)
 }
 
 /// Seconds since 1970 of a moment of a line.

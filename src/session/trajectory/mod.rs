@@ -12,7 +12,7 @@ mod writer;
 use std::path::Path;
 
 pub(super) use line::hash_of_first_line;
-pub use line::{Line, now, seconds};
+pub use line::{Line, nanoseconds, now, seconds, written_moment};
 #[cfg(test)]
 pub(super) use medium::Medium;
 pub use record::Record;

@@ -128,6 +128,11 @@ impl TrajectoryWriter {
         Position { seq: self.next_seq.saturating_sub(1), line_hash: self.last_hash.clone() }
     }
 
+    /// The moment that the last line carries; empty before the first.
+    pub fn last_at(&self) -> &str {
+        &self.last_at
+    }
+
     /// Appends a line and returns the moment it carries.
     ///
     /// # Errors

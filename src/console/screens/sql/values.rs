@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell as Shown, Column};
-use crate::notation::grouped;
+use crate::notation::{csv_cell, grouped, printable};
 use crate::session::{Cell, Rows, rows_as_json};
 
 /// Widest column on the screen; longer values can be opened.
@@ -125,7 +125,7 @@ pub fn whole(cell: &Cell) -> String {
 
 /// A row with tabs between its values, as spreadsheets take it.
 pub fn tabbed(row: &[Cell]) -> String {
-    let clean = |cell: &Cell| whole(cell).replace(['\t', '\n', '\r'], " ");
+    let clean = |cell: &Cell| harmless(cell).replace(['\t', '\n', '\r'], " ");
     row.iter().map(clean).collect::<Vec<_>>().join("\t")
 }
 
@@ -140,7 +140,7 @@ pub fn all_tabbed(rows: &Rows) -> String {
 
 /// A result as a table of Markdown; numbers stand right.
 pub fn markdown(rows: &Rows) -> String {
-    let clean = |text: &str| text.replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r', '\t'], " ");
+    let clean = |text: &str| printable(text).replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r', '\t'], " ");
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let mut text = line(rows.columns.iter().map(|name| clean(name)).collect());
     let side = |at: usize| if is_numeric(rows, at) { "---:" } else { "---" }.to_owned();
@@ -159,9 +159,17 @@ pub fn csv(rows: &Rows) -> Result<Vec<u8>, String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&rows.columns).map_err(|error| error.to_string())?;
     for row in &rows.rows {
-        writer.write_record(row.iter().map(whole)).map_err(|error| error.to_string())?;
+        writer.write_record(row.iter().map(harmless)).map_err(|error| error.to_string())?;
     }
     writer.into_inner().map_err(|error| error.to_string())
+}
+
+/// A value whole, as a file holds it that other programs open.
+fn harmless(cell: &Cell) -> String {
+    match cell {
+        Cell::Text(text) => csv_cell(text).into_owned(),
+        other => whole(other),
+    }
 }
 
 /// A result as a JSON list with an object for each row.

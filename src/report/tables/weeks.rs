@@ -1,6 +1,6 @@
 //! The columns of `weeks.csv`.
 
-use super::{WeekColumn, maybe, pairs, rounded};
+use super::{Column, WeekColumn, flag, heading, maybe, number, screens, tools};
 use crate::report::logbook::{Logbook, WeekLog};
 use crate::session::ScoredForecast;
 
@@ -39,7 +39,7 @@ const fn column(
     meaning: &'static str,
     cell: fn(&Logbook, &WeekLog) -> String,
 ) -> WeekColumn {
-    WeekColumn { name, unit, meaning, cell }
+    Column { heading: heading(name, unit, meaning), cell }
 }
 
 /// The columns, in their order.
@@ -59,7 +59,7 @@ pub const WEEKS: &[WeekColumn] = &[
         "inherited",
         "0 or 1",
         "1: taken over from the run that this one branched from; nobody played it here",
-        |_, week| u8::from(week.inherited).to_string(),
+        |_, week| flag(week.inherited),
     ),
     column(
         "began_at",
@@ -70,29 +70,69 @@ pub const WEEKS: &[WeekColumn] = &[
     column("decided_at", "RFC 3339", "when rationale and forecasts were filed", |_, week| {
         week.decided_at.clone()
     }),
-    column("seconds_elapsed", "seconds", "time from the one to the other, breaks included", |_, week| {
-        rounded(week.effort.elapsed_seconds)
+    column(
+        "elapsed_seconds",
+        "seconds",
+        "active, idle and away together, of the time before the week",
+        |_, week| number(week.effort.time.elapsed_seconds()),
+    ),
+    column("active_seconds", "seconds", "time played", |_, week| number(week.effort.time.active_seconds())),
+    column("idle_seconds", "seconds", "time without a key, the program in front", |_, week| {
+        number(week.effort.time.idle_seconds())
     }),
     column(
-        "seconds_active",
+        "away_seconds",
         "seconds",
-        "the same without breaks (more than ten minutes without a line)",
-        |_, week| rounded(week.effort.active_seconds),
+        "time in which the run was closed, suspended, in the background, or its clock stopped",
+        |_, week| number(week.effort.time.away_seconds()),
     ),
-    column("breaks", "count", "breaks", |_, week| week.effort.breaks.to_string()),
+    column("paused_seconds", "seconds", "of it, time with the clock stopped", |_, week| {
+        number(week.effort.time.paused_seconds())
+    }),
+    column("breaks", "count", "times of more than ten minutes in which nobody played", |_, week| {
+        week.effort.breaks.to_string()
+    }),
+    column("implausibly_fast", "0 or 1", "1: decided in less than ten active seconds", |_, week| {
+        flag(week.is_implausibly_fast())
+    }),
     column("calls", "count", "calls of tools that were accepted", |_, week| week.effort.calls.to_string()),
     column("refused", "count", "calls of tools that were refused", |_, week| week.effort.refused.to_string()),
     column("undone", "count", "accepted calls that took back another", |_, week| {
         week.effort.undone.to_string()
     }),
-    column("tools", "tool=count", "accepted calls by tool", |_, week| pairs(&week.effort.tools)),
+    column("tools", "tool=count", "accepted calls by tool", |_, week| tools(&week.effort)),
     column("queries", "count", "SQL queries", |_, week| week.effort.queries.to_string()),
     column("queries_failed", "count", "queries that were refused or failed", |_, week| {
         week.effort.queries_failed.to_string()
     }),
     column("views", "count", "views of screens (console only)", |_, week| week.effort.views.to_string()),
-    column("screens", "screen=seconds", "time on each screen, breaks left out (console only)", |_, week| {
-        pairs(&week.effort.screens)
+    column("screens", "screen=seconds", "active time on each screen (console only)", |_, week| {
+        screens(&week.effort)
+    }),
+    column(
+        "selects",
+        "count",
+        "objects that were opened: groups, threads, tools, posts, studies",
+        |_, week| week.effort.selects.to_string(),
+    ),
+    column("dialogs_confirmed", "count", "dialogs whose question was confirmed", |_, week| {
+        week.effort.dialogs_confirmed.to_string()
+    }),
+    column("dialogs_cancelled", "count", "dialogs that were left", |_, week| {
+        week.effort.dialogs_cancelled.to_string()
+    }),
+    column("helps", "count", "terms that were explained", |_, week| week.effort.helps.to_string()),
+    column("drafts_left", "count", "texts that were edited and left behind", |_, week| {
+        week.effort.drafts_left.to_string()
+    }),
+    column("typed_characters", "count", "characters typed into texts", |_, week| {
+        week.effort.typed.to_string()
+    }),
+    column("deleted_characters", "count", "characters deleted from them", |_, week| {
+        week.effort.deleted.to_string()
+    }),
+    column("pasted_characters", "count", "characters of them that came from the clipboard", |_, week| {
+        week.effort.pasted.to_string()
     }),
     column("memos", "count", "changes of the notes", |_, week| week.effort.memos.to_string()),
     column(
@@ -110,7 +150,7 @@ pub const WEEKS: &[WeekColumn] = &[
         "filled_naively",
         "0 or 1",
         "1: at least one forecast was filled by the naive projection",
-        |_, week| week.filled_naively.map(|naive| u8::from(naive).to_string()).unwrap_or_default(),
+        |_, week| week.filled_naively.map(flag).unwrap_or_default(),
     ),
     column("forecast_7_point", "dollars", "cash expected 7 days ahead", point::<7>),
     column("forecast_7_lower", "dollars", LOWER, lower::<7>),

@@ -1,0 +1,243 @@
+//! The tables of a study: runs, weeks, forecasts, queries, events, answers and notes, each column with its unit and
+//! meaning.
+//!
+//! Cells hold texts as people wrote them; [`crate::notation::csv_cell`] makes them harmless when a file is written.
+
+mod answers;
+mod events;
+mod forecasts;
+mod notes;
+mod place;
+mod queries;
+mod runs;
+mod weeks;
+
+use serde::Serialize;
+
+use super::logbook::{Logbook, WeekLog};
+use crate::session::{ForecastScore, Line};
+
+pub use runs::RUNS;
+pub use weeks::WEEKS;
+
+/// What a column is called, and what its values mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Heading {
+    /// Name, as it stands in the first line.
+    pub name: &'static str,
+    /// Unit or kind of its values.
+    pub unit: &'static str,
+    /// What they mean.
+    pub meaning: &'static str,
+}
+
+const fn heading(name: &'static str, unit: &'static str, meaning: &'static str) -> Heading {
+    Heading { name, unit, meaning }
+}
+
+/// A column whose values are read from a logbook.
+#[derive(Debug, Clone, Copy)]
+pub struct Column<F> {
+    /// What it is called and means.
+    pub heading: Heading,
+    /// Where its values come from.
+    pub cell: F,
+}
+
+/// A column of the table of runs.
+pub type RunColumn = Column<fn(&Logbook) -> String>;
+
+/// A column of the table of weeks.
+pub type WeekColumn = Column<fn(&Logbook, &WeekLog) -> String>;
+
+/// Columns by table, in the order of the tables.
+pub fn headings() -> Vec<(&'static str, Vec<Heading>)> {
+    vec![
+        ("runs", RUNS.iter().map(|column| column.heading).collect()),
+        ("weeks", WEEKS.iter().map(|column| column.heading).collect()),
+        ("forecasts", forecasts::HEADINGS.to_vec()),
+        ("queries", queries::HEADINGS.to_vec()),
+        ("events", events::HEADINGS.to_vec()),
+        ("answers", answers::HEADINGS.to_vec()),
+        ("notes", notes::HEADINGS.to_vec()),
+    ]
+}
+
+/// Table, column, unit and meaning of every column there is.
+pub fn columns_table() -> Vec<Vec<String>> {
+    let mut rows = vec![["table", "column", "unit", "meaning"].map(str::to_owned).to_vec()];
+    for (table, columns) in headings() {
+        rows.extend(
+            columns.iter().map(|own| [table, own.name, own.unit, own.meaning].map(str::to_owned).to_vec()),
+        );
+    }
+    rows
+}
+
+/// The tables of runs, filled run by run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StudyTables {
+    /// Rows by table, the names of the columns first.
+    tables: Vec<(&'static str, Vec<Vec<String>>)>,
+}
+
+impl Default for StudyTables {
+    fn default() -> Self {
+        let head = |columns: Vec<Heading>| columns.iter().map(|own| own.name.to_owned()).collect();
+        let tables = headings().into_iter().map(|(name, columns)| (name, vec![head(columns)]));
+        StudyTables { tables: tables.collect() }
+    }
+}
+
+impl StudyTables {
+    /// Adds a run: its logbook, its lines, and those of what was done after its end.
+    pub fn add(&mut self, book: &Logbook, lines: &[Line], afterwards: &[Line]) {
+        let lines = place::placed(book, lines, afterwards);
+        self.extend("runs", [RUNS.iter().map(|column| (column.cell)(book)).collect()]);
+        let week = |week: &WeekLog| WEEKS.iter().map(|column| (column.cell)(book, week)).collect();
+        self.extend("weeks", book.weeks.iter().map(week));
+        self.extend("forecasts", forecasts::rows(book));
+        self.extend("queries", queries::rows(&lines));
+        self.extend("events", events::rows(&lines));
+        self.extend("answers", answers::rows(&lines));
+        self.extend("notes", notes::rows(&lines));
+    }
+
+    /// Adds a run that could not be read: its name and the reason, nothing else.
+    pub fn add_unread(&mut self, run: &str, problem: &str) {
+        let cell = |column: &RunColumn| match column.heading.name {
+            "run" => run.to_owned(),
+            "problem" => problem.to_owned(),
+            _ => String::new(),
+        };
+        self.extend("runs", [RUNS.iter().map(cell).collect()]);
+    }
+
+    /// Every table with its name and rows, the names of the columns first; that of the columns is the last.
+    pub fn into_files(self) -> Vec<(&'static str, Vec<Vec<String>>)> {
+        let mut files = self.tables;
+        files.push(("columns", columns_table()));
+        files
+    }
+
+    fn extend(&mut self, name: &str, rows: impl IntoIterator<Item = Vec<String>>) {
+        if let Some((_, table)) = self.tables.iter_mut().find(|(own, _)| *own == name) {
+            table.extend(rows);
+        }
+    }
+}
+
+/// A number in the shortest form that reads back to the same one.
+fn number(value: impl Into<f64>) -> String {
+    let value: f64 = value.into();
+    format!("{}", value + 0.0)
+}
+
+/// A number that may not exist: an empty cell.
+fn maybe(value: Option<f64>) -> String {
+    value.map(number).unwrap_or_default()
+}
+
+/// A number with few decimals, for what is measured in seconds or as a mean.
+fn rounded(value: f64) -> String {
+    number((value * 1000.0).round() / 1000.0)
+}
+
+fn flag(is: bool) -> String {
+    u8::from(is).to_string()
+}
+
+/// A word of a closed list, as lines have it.
+fn word(value: &impl Serialize) -> String {
+    match serde_json::to_value(value) {
+        Ok(serde_json::Value::String(word)) => word,
+        _ => String::new(),
+    }
+}
+
+/// The score of a horizon, if a forecast of it has come due.
+fn score(scores: &[ForecastScore], horizon_days: u32) -> Option<&ForecastScore> {
+    scores.iter().find(|score| score.horizon_days == horizon_days && score.scored > 0)
+}
+
+/// Names with numbers in one cell: `cash=12.5;overview=3`.
+fn pairs<N: AsRef<str>>(all: impl IntoIterator<Item = (N, f64)>) -> String {
+    let one = |(name, value): (N, f64)| format!("{}={}", name.as_ref(), rounded(value));
+    all.into_iter().map(one).collect::<Vec<_>>().join(";")
+}
+
+/// Accepted calls by tool in one cell.
+fn tools(effort: &super::logbook::Effort) -> String {
+    pairs(effort.tools.iter().map(|(tool, count)| (tool, f64::from(*count))))
+}
+
+/// Active seconds by screen in one cell.
+fn screens(effort: &super::logbook::Effort) -> String {
+    pairs(effort.screens.iter().map(|(screen, time)| (screen, time.active_seconds())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::{BTreeMap, BTreeSet};
+
+    #[test]
+    fn names_are_there_once_and_every_column_is_explained() {
+        for (table, columns) in headings() {
+            let names: BTreeSet<&str> = columns.iter().map(|column| column.name).collect();
+            assert_eq!(names.len(), columns.len(), "{table}");
+            for Heading { name, unit, meaning } in columns {
+                assert!(!unit.is_empty() && meaning.len() > 5, "{table} {name}");
+                assert!(name.bytes().all(|byte| matches!(byte, b'a'..=b'z' | b'0'..=b'9' | b'_')), "{name}");
+            }
+        }
+    }
+
+    /// Rows by the names of their columns.
+    fn named(rows: &[Vec<String>]) -> Vec<BTreeMap<&str, &str>> {
+        let mut named = Vec::new();
+        for row in &rows[1..] {
+            assert_eq!(row.len(), rows[0].len());
+            named.push(rows[0].iter().map(String::as_str).zip(row.iter().map(String::as_str)).collect());
+        }
+        named
+    }
+
+    #[test]
+    fn cells_hold_what_the_logbook_says() {
+        let (session, lines) = crate::report::test_kit::recorded();
+        let book = Logbook::of(&session, &lines);
+        let mut tables = StudyTables::default();
+        tables.add(&book, &lines, &[]);
+        tables.add_unread("0123abcd", "line 3 is damaged");
+        let files: BTreeMap<&str, Vec<Vec<String>>> = tables.into_files().into_iter().collect();
+        let runs = named(&files["runs"]);
+        assert_eq!([runs[0]["participant"], runs[0]["weeks"], runs[0]["if_words"]], ["P 07", "2", "1"]);
+        assert_eq!(runs[0]["cash"], number(book.cash));
+        assert_eq!([runs[0]["forecasts_scored_7"], runs[0]["forecasts_scored_28"]], ["2", "0"]);
+        assert_eq!([runs[0]["forecast_error_28"], runs[0]["truly_best_channel_share"]], ["", ""]);
+        assert_eq!([runs[0]["note_versions"], runs[0]["note_words"]], ["1", "2"]);
+        assert_eq!(
+            [runs[1]["run"], runs[1]["cash"], runs[1]["problem"]],
+            ["0123abcd", "", "line 3 is damaged"]
+        );
+        let weeks = named(&files["weeks"]);
+        assert_eq!(weeks.len(), 2);
+        assert!(weeks[0]["screens"].starts_with("cash="), "{}", weeks[0]["screens"]);
+        assert_eq!(weeks[0]["tools"], "set_prices=1");
+        assert_eq!(weeks[1]["cash"], number(session.cash_by_day()[14]));
+        assert_eq!(weeks[0]["forecast_7_outcome"], number(session.cash_by_day()[7]));
+        assert_eq!(weeks[0]["individual_subscribers"], session.weeks()[0].individual_subscribers.to_string());
+        let forecasts = named(&files["forecasts"]);
+        assert_eq!(forecasts.len(), 8);
+        assert_eq!([forecasts[0]["horizon_days"], forecasts[0]["filled_naively"]], ["7", "1"]);
+        assert_eq!(forecasts[0]["outcome"], weeks[0]["forecast_7_outcome"]);
+        let queries = named(&files["queries"]);
+        assert_eq!(queries.iter().map(|row| row["error"]).collect::<Vec<_>>(), ["", "sql_error"]);
+        let events = named(&files["events"]);
+        assert_eq!(events.len(), lines.len());
+        assert_eq!((events[0]["kind"], events[0]["t"]), ("start", "0"));
+        let notes = named(&files["notes"]);
+        assert_eq!([notes[0]["text"], notes[0]["version"], notes[0]["week"]], ["watch costs", "1", "3"]);
+    }
+}

@@ -1,0 +1,478 @@
+//! Where the time of a run went: active, idle, away. The one definition, for tables and for time limits.
+//!
+//! Time is what passes between two lines. Where `session` and `clock` lines say who was there, they decide; before the
+//! first of them, and in runs that have none, a gap of more than ten minutes is a break. The days that the program
+//! simulates are nobody's time. Everything is counted in whole nanoseconds, so that whoever adds it up again gets the
+//! same.
+
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+
+use crate::session::trajectory::record::{Activity, ClockEvent, LimitScope, Presence, PresenceEvent};
+use crate::session::trajectory::{Line, Record};
+
+/// Seconds without a line that are a break where nothing else tells whether somebody was there: ten minutes.
+pub const BREAK_SECONDS: f64 = 600.0;
+
+const BREAK: i64 = BREAK_SECONDS as i64 * SECOND;
+const SECOND: i64 = 1_000_000_000;
+const MILLISECOND: i64 = 1_000_000;
+
+/// The interface that watches every key and records when there was none for a while.
+const WATCHES_KEYS: &str = "console";
+
+/// What a person did with a stretch of time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Attention {
+    /// They played.
+    Active,
+    /// They were there, without a key since before the program found them idle; or, where keys are not watched, without
+    /// a line for more than ten minutes.
+    Idle,
+    /// The run was not open, or suspended, or another window had the focus.
+    Away,
+    /// The clock was stopped.
+    Paused,
+    /// The program simulated days.
+    Simulating,
+}
+
+/// Seconds by what they were spent on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct TimeSpent {
+    /// Nanoseconds played.
+    active: i64,
+    /// Nanoseconds idle.
+    idle: i64,
+    /// Nanoseconds away, the stopped clock among them.
+    away: i64,
+    /// Nanoseconds with the clock stopped.
+    paused: i64,
+}
+
+impl TimeSpent {
+    /// Seconds played, to the millisecond.
+    pub fn active_seconds(&self) -> f64 {
+        to_seconds(self.active)
+    }
+
+    /// Seconds idle, to the millisecond.
+    pub fn idle_seconds(&self) -> f64 {
+        to_seconds(self.idle)
+    }
+
+    /// Seconds away, those with the clock stopped among them, to the millisecond.
+    pub fn away_seconds(&self) -> f64 {
+        to_seconds(self.away)
+    }
+
+    /// Seconds with the clock stopped, to the millisecond.
+    pub fn paused_seconds(&self) -> f64 {
+        to_seconds(self.paused)
+    }
+
+    /// Seconds of all kinds, to the millisecond.
+    pub fn elapsed_seconds(&self) -> f64 {
+        to_seconds(self.active + self.idle + self.away)
+    }
+
+    /// Milliseconds played, as time limits count them.
+    pub fn active_ms(&self) -> u64 {
+        (self.active / MILLISECOND).max(0) as u64
+    }
+
+    fn add(&mut self, attention: Attention, passed: i64) {
+        match attention {
+            Attention::Active => self.active += passed,
+            Attention::Idle => self.idle += passed,
+            Attention::Away => self.away += passed,
+            Attention::Paused => {
+                self.away += passed;
+                self.paused += passed;
+            }
+            Attention::Simulating => {}
+        }
+    }
+}
+
+/// Its seconds by kind.
+impl Serialize for TimeSpent {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut fields = serializer.serialize_struct("TimeSpent", 5)?;
+        fields.serialize_field("elapsed_seconds", &self.elapsed_seconds())?;
+        fields.serialize_field("active_seconds", &self.active_seconds())?;
+        fields.serialize_field("idle_seconds", &self.idle_seconds())?;
+        fields.serialize_field("away_seconds", &self.away_seconds())?;
+        fields.serialize_field("paused_seconds", &self.paused_seconds())?;
+        fields.end()
+    }
+}
+
+impl std::ops::AddAssign for TimeSpent {
+    fn add_assign(&mut self, other: TimeSpent) {
+        self.active += other.active;
+        self.idle += other.idle;
+        self.away += other.away;
+        self.paused += other.paused;
+    }
+}
+
+/// Nanoseconds as seconds with three decimals, halves up.
+fn to_seconds(nanoseconds: i64) -> f64 {
+    ((nanoseconds + MILLISECOND / 2) / MILLISECOND) as f64 / 1e3
+}
+
+/// A time of one kind, from and to on the axis of the run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AttendedTime {
+    /// Where it begins, nanoseconds.
+    pub from: i64,
+    /// Where it ends, nanoseconds.
+    pub to: i64,
+    /// What was done with it.
+    pub attention: Attention,
+}
+
+/// Whether the run is open, as far as lines tell.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Openness {
+    /// No line has told it: time is told by its gaps.
+    #[default]
+    Untold,
+    /// The program has left the run.
+    Left,
+    /// The program has the run.
+    Open {
+        /// It records when there was no key for a while.
+        watches_keys: bool,
+    },
+}
+
+/// The time of a run, line after line.
+///
+/// Places on its axis are nanoseconds since the first line. A wall clock that was set back takes none of it away.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Attendance {
+    times: Vec<AttendedTime>,
+    /// Where the last line stands.
+    place: i64,
+    /// Its moment, nanoseconds since 1970.
+    moment: Option<i64>,
+    sitting: Openness,
+    is_paused: bool,
+    is_idle: bool,
+    is_suspended: bool,
+    has_focus_elsewhere: bool,
+    clock_set_back: u32,
+    week_from: i64,
+    sitting_from: i64,
+}
+
+impl Attendance {
+    /// The time of lines in their order.
+    pub fn of(lines: &[Line]) -> Attendance {
+        let mut attendance = Attendance::default();
+        lines.iter().for_each(|line| attendance.note(line.nanoseconds(), &line.record));
+        attendance
+    }
+
+    /// Takes the line that follows, written at a moment in nanoseconds since 1970.
+    pub fn note(&mut self, moment: i64, record: &Record) {
+        let passed = moment - self.moment.unwrap_or(moment);
+        if passed < 0 {
+            self.clock_set_back += 1;
+        }
+        self.moment = Some(moment);
+        let passed = passed.max(0);
+        self.push(passed, self.attention(passed, Some(record)));
+        match record {
+            Record::Activity(Activity::Session(presence)) => self.take_presence(presence),
+            Record::Activity(Activity::Clock(clock)) => self.is_paused = clock.event == ClockEvent::Stopped,
+            // What a branch took over was played in another run, at another time.
+            Record::Branch(_) => {
+                self.times.clear();
+                (self.week_from, self.sitting_from) = (self.place, self.place);
+            }
+            record if record.closing().is_some() => self.week_from = self.place,
+            record if is_act(record) => (self.is_idle, self.has_focus_elsewhere) = (false, false),
+            _ => {}
+        }
+    }
+
+    /// Where the last line stands.
+    pub fn place(&self) -> i64 {
+        self.place
+    }
+
+    /// How often the wall clock was set back between two lines.
+    pub fn clock_set_back(&self) -> u32 {
+        self.clock_set_back
+    }
+
+    /// Its times in order, without gaps but for what was taken over from another run.
+    pub fn times(&self) -> &[AttendedTime] {
+        &self.times
+    }
+
+    /// What the time between two places was spent on.
+    pub fn between(&self, from: i64, to: i64) -> TimeSpent {
+        let mut spent = TimeSpent::default();
+        let first = self.times.partition_point(|time| time.to <= from);
+        for time in self.times[first..].iter().take_while(|time| time.from < to) {
+            spent.add(time.attention, time.to.min(to) - time.from.max(from));
+        }
+        spent
+    }
+
+    /// What was spent so far of what a limit is on, at a moment in nanoseconds since 1970 at which no line is written.
+    /// Time without a key counts as active until the program finds the person idle.
+    pub fn so_far(&self, scope: LimitScope, moment: i64) -> TimeSpent {
+        let from = match scope {
+            LimitScope::Week => self.week_from,
+            LimitScope::Session => self.sitting_from,
+            LimitScope::Study => 0,
+        };
+        let mut spent = self.between(from, self.place);
+        let passed = (moment - self.moment.unwrap_or(moment)).max(0);
+        spent.add(self.attention(passed, None), passed);
+        spent
+    }
+
+    /// What the time since the last line was, given the line that ends it.
+    fn attention(&self, passed: i64, record: Option<&Record>) -> Attention {
+        let long = passed > BREAK;
+        if record.is_some_and(|record| record.closing().is_some()) {
+            return Attention::Simulating;
+        }
+        if self.is_paused {
+            return Attention::Paused;
+        }
+        let is_opened_again = record.and_then(presence_of) == Some(PresenceEvent::Opened);
+        match self.sitting {
+            Openness::Untold if long => Attention::Away,
+            Openness::Untold => Attention::Active,
+            Openness::Left => Attention::Away,
+            // It was not closed: nobody knows when the program was stopped.
+            Openness::Open { .. } if is_opened_again => Attention::Away,
+            Openness::Open { .. } if self.is_suspended || self.has_focus_elsewhere => Attention::Away,
+            Openness::Open { .. } if self.is_idle => Attention::Idle,
+            Openness::Open { watches_keys: false } if long => Attention::Idle,
+            Openness::Open { .. } => Attention::Active,
+        }
+    }
+
+    fn push(&mut self, passed: i64, attention: Attention) {
+        let from = self.place;
+        self.place += passed;
+        match self.times.last_mut() {
+            Some(last) if last.attention == attention && last.to == from => last.to = self.place,
+            _ if passed == 0 => {}
+            _ => self.times.push(AttendedTime { from, to: self.place, attention }),
+        }
+    }
+
+    fn take_presence(&mut self, presence: &Presence) {
+        match presence.event {
+            PresenceEvent::Opened => {
+                let watches_keys = presence.interface.as_deref() == Some(WATCHES_KEYS);
+                self.sitting = Openness::Open { watches_keys };
+                self.sitting_from = self.place;
+                (self.is_idle, self.is_suspended, self.has_focus_elsewhere) = (false, false, false);
+            }
+            PresenceEvent::Closed => self.sitting = Openness::Left,
+            PresenceEvent::Idle => {
+                self.is_idle = true;
+                let since = presence.idle_ms.unwrap_or(0).min(i64::MAX as u64 / MILLISECOND as u64);
+                self.was_idle_since(self.place - since as i64 * MILLISECOND);
+            }
+            PresenceEvent::Active => self.is_idle = false,
+            PresenceEvent::FocusLost => self.has_focus_elsewhere = true,
+            PresenceEvent::FocusGained => self.has_focus_elsewhere = false,
+            PresenceEvent::Suspended => self.is_suspended = true,
+            PresenceEvent::Resumed => self.is_suspended = false,
+            PresenceEvent::Resized => {}
+        }
+    }
+
+    /// Whoever is found idle has been since the last key.
+    fn was_idle_since(&mut self, since: i64) {
+        let first = self.times.partition_point(|time| time.to <= since);
+        let found = self.times.split_off(first);
+        for time in found {
+            let cut = since.clamp(time.from, time.to);
+            let later = match time.attention {
+                Attention::Active => Attention::Idle,
+                other => other,
+            };
+            let parts = [(time.from, cut, time.attention), (cut, time.to, later)];
+            for (from, to, attention) in parts.into_iter().filter(|(from, to, _)| from < to) {
+                match self.times.last_mut() {
+                    Some(last) if last.attention == attention && last.to == from => last.to = to,
+                    _ => self.times.push(AttendedTime { from, to, attention }),
+                }
+            }
+        }
+    }
+}
+
+fn presence_of(record: &Record) -> Option<PresenceEvent> {
+    match record {
+        Record::Activity(Activity::Session(presence)) => Some(presence.event),
+        _ => None,
+    }
+}
+
+/// Whether a line can only come of a person who is there. A week may be filed by a time limit.
+fn is_act(record: &Record) -> bool {
+    match record {
+        Record::Call(_) | Record::Query(_) | Record::Note(_) | Record::Memo(_) => true,
+        Record::Activity(activity) => matches!(
+            activity,
+            Activity::Select(_)
+                | Activity::Dialog(_)
+                | Activity::Help(_)
+                | Activity::Draft(_)
+                | Activity::Answer(_)
+        ),
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::trajectory::record::{
+        Branch, Clock, Closing, Help, LeavingCause, PresenceEvent, View,
+    };
+
+    /// Notes records at seconds.
+    fn attendance(lines: &[(i64, Record)]) -> Attendance {
+        let mut attendance = Attendance::default();
+        lines.iter().for_each(|(seconds, record)| attendance.note(seconds * SECOND, record));
+        attendance
+    }
+
+    fn session(event: PresenceEvent, interface: Option<&str>, idle_ms: Option<u64>) -> Record {
+        Record::Activity(Activity::Session(Box::new(Presence {
+            event,
+            cause: (event == PresenceEvent::Closed).then_some(LeavingCause::Quit),
+            interface: interface.map(str::to_owned),
+            machine: String::new(),
+            boot: String::new(),
+            monotonic_ms: 0,
+            window: None,
+            version: None,
+            idle_ms,
+            worlds: None,
+        })))
+    }
+
+    fn on(event: PresenceEvent) -> Record {
+        session(event, None, None)
+    }
+
+    fn opened(interface: &str) -> Record {
+        session(PresenceEvent::Opened, Some(interface), None)
+    }
+
+    fn clock(event: ClockEvent) -> Record {
+        Record::Activity(Activity::Clock(Clock { event, reason: None, stood_ms: None }))
+    }
+
+    fn help() -> Record {
+        Record::Activity(Activity::Help(Help { term: String::new(), place: String::new() }))
+    }
+
+    fn look() -> Record {
+        Record::Activity(Activity::View(View { screen: String::new(), from: String::new(), for_ms: 0 }))
+    }
+
+    fn week() -> Record {
+        let (figures, state_hash, parts) = Default::default();
+        Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts })
+    }
+
+    /// Active, idle, away, paused.
+    fn all(attendance: &Attendance) -> [f64; 4] {
+        let spent = attendance.between(0, attendance.place());
+        [spent.active_seconds(), spent.idle_seconds(), spent.away_seconds(), spent.paused_seconds()]
+    }
+
+    #[test]
+    fn without_lines_of_presence_a_long_gap_is_a_break() {
+        let run = attendance(&[(0, help()), (600, help()), (1201, help()), (1200, help()), (1230, help())]);
+        assert_eq!(all(&run), [630.0, 0.0, 601.0, 0.0]);
+        assert_eq!(run.clock_set_back(), 1);
+    }
+
+    #[test]
+    fn reading_is_no_break_and_whoever_is_found_idle_was_since_the_last_key() {
+        let run = attendance(&[
+            (0, opened("console")),
+            (660, look()),
+            (760, session(PresenceEvent::Idle, None, Some(120_000))),
+            (1000, on(PresenceEvent::Active)),
+            (1010, help()),
+        ]);
+        assert_eq!(all(&run), [650.0, 360.0, 0.0, 0.0]);
+        let plain = attendance(&[(0, opened("plain")), (660, help()), (700, help())]);
+        assert_eq!(all(&plain), [40.0, 660.0, 0.0, 0.0], "plain mode watches no keys");
+    }
+
+    #[test]
+    fn the_program_left_stopped_or_in_the_background_is_away() {
+        let run = attendance(&[
+            (0, opened("console")),
+            (10, on(PresenceEvent::FocusLost)),
+            (20, on(PresenceEvent::FocusGained)),
+            (25, on(PresenceEvent::Suspended)),
+            (125, on(PresenceEvent::Resumed)),
+            (130, clock(ClockEvent::Stopped)),
+            (330, clock(ClockEvent::Started)),
+            (335, on(PresenceEvent::Closed)),
+            (1335, opened("console")),
+            (1340, look()),
+            // Killed.
+            (1400, opened("console")),
+            (1401, on(PresenceEvent::FocusLost)),
+            (1403, help()),
+            (1405, help()),
+        ]);
+        assert_eq!(all(&run), [10.0 + 5.0 + 5.0 + 5.0 + 5.0 + 1.0 + 2.0, 0.0, 1372.0, 200.0]);
+        assert_eq!(run.between(0, run.place()).elapsed_seconds(), 1405.0);
+    }
+
+    #[test]
+    fn a_clock_that_stands_while_the_program_is_left_is_found_forgotten() {
+        let run = attendance(&[
+            (0, opened("console")),
+            (5, clock(ClockEvent::Stopped)),
+            (9, on(PresenceEvent::Closed)),
+            (100, opened("console")),
+            (101, clock(ClockEvent::Forgotten)),
+            (105, look()),
+        ]);
+        assert_eq!(all(&run), [9.0, 0.0, 96.0, 96.0]);
+    }
+
+    #[test]
+    fn simulated_days_and_those_of_a_parent_are_nobodys_time() {
+        let run = attendance(&[
+            (0, help()),
+            (60, week()),
+            (70, Record::Branch(Branch { from: None })),
+            (75, opened("console")),
+            (80, look()),
+            (100, week()),
+            (103, look()),
+        ]);
+        assert_eq!(all(&run), [13.0, 0.0, 0.0, 0.0]);
+        let at = |scope| run.so_far(scope, 110 * SECOND).active_ms();
+        let scopes = [LimitScope::Week, LimitScope::Session, LimitScope::Study].map(at);
+        assert_eq!(scopes, [10_000, 15_000, 20_000]);
+    }
+
+    #[test]
+    fn seconds_are_rounded_once() {
+        assert_eq!([499_999, 500_000, 1_499_999].map(to_seconds), [0.0, 0.001, 0.001]);
+    }
+}

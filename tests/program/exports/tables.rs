@@ -1,0 +1,241 @@
+//! The tables of a study: texts in them are harmless, and an independent script gets the same figures.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
+
+use novamind::session::record::{
+    Answered, Asked, Clock, ClockEvent, DialogOutcome, DialogStep, DialogUse, Draft, DraftOutcome, Help,
+    LeavingCause, LimitScope, PresenceEvent, Select,
+};
+use novamind::session::{Access, Activity, Configuration, Interface, NewRun, Session, Storage, Via};
+
+use super::{folders, played, table, text};
+use crate::support::home::{Home, id};
+
+/// A run of four weeks that ends, with much of what the measures count.
+const FOUR_WEEKS: &str = "set_prices A=12 B=25 C=55
+set_usage_quotas A=60000 B=250000 C=1200000
+set_model_tiers B=2 C=4
+set_daily_spend development=1000
+set_targeted_dev_spend {\"S1\": 500}
+set_targeted_ad_spend {\"content_marketing\": {\"S1\": 750, \"S2\": 200}, \"linkedin\": {\"S1\": 100}}
+get_cost_info
+memo If leads are dear, we plan to stop
+next \"If it goes well, we wait; otherwise we should stop\" naive
+set_daily_spend development=0
+undo
+redo
+sql SELECT count(*) FROM ledger
+sql SELECT nothing FROM nowhere
+set_prices A=-1
+next \"as planned\" 900000 800000 1000000 800000 700000 1000000 700000 1 2000000 1 0 2
+next \"likely fine\" naive
+memo =HYPERLINK(\"http://x\")
+next \"because\" naive
+";
+
+/// What a spreadsheet or a terminal would obey.
+const HOSTILE: &[&str] = &["=1+1", "+1+cmd", "-1+cmd", "@SUM(A1)", "\u{1b}[31mred", "\u{202e}evil", "\t=1"];
+
+fn export(home: &Home) -> std::path::PathBuf {
+    let out = home.0.path().join("study");
+    let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    out
+}
+
+/// What the script says of an export, and its exit code; none on a machine without Python 3.11.
+fn recompute(tables: &Path) -> Option<(String, Option<i32>)> {
+    let fits = Command::new("python3").args(["-c", "import tomllib"]).output();
+    if !fits.is_ok_and(|done| done.status.success()) {
+        return None;
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut script = Command::new("python3");
+    script.arg(root.join("tests/python/recompute.py")).args([tables, &root.join("configs/world")]);
+    let done = script.output().expect("it runs");
+    let told = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+    Some((told, done.status.code()))
+}
+
+/// A run with lines of every kind that tells of a person, by somebody who comes and goes.
+fn watched(home: &Home) {
+    let storage = Storage::Runs(home.runs());
+    let new = NewRun {
+        days: Some(14),
+        seed: Some(9),
+        storage,
+        participant: Some("P 3".to_owned()),
+        ..NewRun::default()
+    };
+    let mut run = Session::create(new, &Configuration::shipped()).expect("a run");
+    let folder = run.folder().expect("a folder").to_owned();
+    let wait = || std::thread::sleep(Duration::from_millis(12));
+    let console = Interface { name: "console", window: Some((120, 40)) };
+    for week in 0..2 {
+        run.take_up(console);
+        wait();
+        run.note_view("overview", "", 11);
+        run.note_activity(Activity::Question(Asked {
+            questionnaire: "mood".to_owned(),
+            occasion: format!("week {week}"),
+            id: "q1".to_owned(),
+            text: "How are you?".to_owned(),
+            form: "choice".to_owned(),
+            options: vec!["well".to_owned(), "=badly".to_owned()],
+        }));
+        wait();
+        if week == 1 {
+            run.note_activity(Activity::Answer(Answered {
+                questionnaire: "mood".to_owned(),
+                occasion: format!("week {week}"),
+                id: "q1".to_owned(),
+                value: serde_json::json!(["well", "=badly"]),
+                as_expected: Some(true),
+                for_ms: 12,
+                changes: 1,
+            }));
+        }
+        run.note_presence(PresenceEvent::FocusLost, None, None);
+        wait();
+        run.note_presence(PresenceEvent::FocusGained, None, None);
+        let select =
+            Select { screen: "customers".to_owned(), what: "group".to_owned(), which: "S2".to_owned() };
+        run.note_activity(Activity::Select(select));
+        run.note_activity(Activity::Help(Help { term: "churn".to_owned(), place: "customers".to_owned() }));
+        wait();
+        run.note_presence(PresenceEvent::Idle, Some(9), None);
+        wait();
+        run.note_presence(PresenceEvent::Active, None, None);
+        for event in [ClockEvent::Stopped, ClockEvent::Started] {
+            run.note_activity(Activity::Clock(Clock { event, reason: None, stood_ms: None }));
+            wait();
+        }
+        for outcome in [DraftOutcome::Sent, DraftOutcome::Left] {
+            run.note_activity(Activity::Draft(Draft {
+                place: "rationale".to_owned(),
+                outcome,
+                length: 20,
+                typed: 11,
+                deleted: 2,
+                pasted: 11,
+                pauses: 1,
+                for_ms: 900,
+                text: None,
+            }));
+        }
+        for outcome in [DialogOutcome::Confirmed, DialogOutcome::Cancelled] {
+            let steps = vec![DialogStep { step: "review".to_owned(), for_ms: 5 }];
+            run.note_activity(Activity::Dialog(DialogUse {
+                what: "next week".to_owned(),
+                outcome,
+                for_ms: 9,
+                steps,
+            }));
+        }
+        let spent = run.time_spent(LimitScope::Week);
+        assert!(spent.active_ms() >= 12 && spent.idle_seconds() > 0.009, "{spent:?}");
+        run.set_memo("if S2 grows,\nwe should follow").expect("notes");
+        run.note_view("cash", "overview", 40);
+        let forecasts = run.naive_forecasts();
+        run.advance("until then", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+        run.leave(LeavingCause::Quit);
+        drop(run);
+        run = Session::open(&folder, Access::Write, true).expect("it opens");
+    }
+    run.set_memo("afterwards").expect("notes");
+}
+
+#[test]
+fn an_independent_script_computes_every_measure_alike() {
+    let home = Home::new();
+    let said = home.play(&["--days", "28", "--seed", "7"], FOUR_WEEKS);
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    played(&home, "P01");
+    watched(&home);
+    let out = export(&home);
+    let runs = table(&out.join("runs.csv"));
+    let over = runs.iter().find(|row| row["ended"] == "horizon").expect("a run that is over");
+    let person = runs.iter().find(|row| row["participant"] == "P 3").expect("a run that was watched");
+    for (column, value) in [
+        ("sittings", "2"),
+        ("sittings_not_closed", "0"),
+        ("clock_stopped", "2"),
+        ("pasted_characters", "44"),
+        ("selects", "2"),
+        ("dialogs_cancelled", "2"),
+        ("note_versions", "2"),
+        ("note_if_words", "1"),
+    ] {
+        assert_eq!(person[column], value, "{column}");
+    }
+    for column in ["idle_seconds", "away_seconds", "paused_seconds", "active_seconds"] {
+        assert!(person[column].parse::<f64>().expect("a number") > 0.0, "{column}");
+    }
+    let answers = table(&out.join("answers.csv"));
+    assert_eq!([&*answers[0]["answered"], &*answers[1]["value"]], ["0", "well\n=badly"]);
+    for column in
+        ["truly_best_channel_share", "channels_tried", "targeted_development_share", "tool_evenness"]
+    {
+        assert!(!over[column].is_empty(), "{column}");
+    }
+    let Some((told, code)) = recompute(&out) else { return };
+    assert!(code == Some(0) && told.contains("3 runs") && told.contains(" 0 differences"), "{told}");
+    // The comparison notices what is wrong.
+    let weeks = out.join("weeks.csv");
+    let changed =
+        std::fs::read_to_string(&weeks).expect("a table").replacen("set_prices=1", "set_prices=2", 1);
+    std::fs::write(&weeks, changed).expect("a change");
+    let (told, code) = recompute(&out).expect("it ran before");
+    assert!(code == Some(1) && told.contains(" 1 differences"), "{told}");
+}
+
+#[test]
+fn what_people_write_becomes_no_formula_and_commands_no_terminal() {
+    let home = Home::new();
+    let mut lines = String::from("set_prices A=12\n");
+    for hostile in HOSTILE {
+        lines += &format!("sql {hostile}\nmemo {hostile}\nnext {:?} naive\n", hostile.replace('\t', " "));
+    }
+    lines += "post_social_media \"=1+1 \u{1b}[31m\u{202e}\"\n";
+    let said = home.play(&["--days", "70", "--participant", "=cmd|' /C calc'!A0"], &lines);
+    let acts = |text: &str| text.contains(['\u{1b}', '\u{202e}']);
+    assert!(!acts(&said.out) && !acts(&said.err), "{}", said.out);
+    let out = export(&home);
+    for name in ["runs", "weeks", "forecasts", "queries", "events", "answers", "notes"] {
+        let path = out.join(format!("{name}.csv"));
+        assert!(!acts(&std::fs::read_to_string(&path).expect("a table")), "{name}");
+        for row in table(&path) {
+            for (column, cell) in row {
+                let begins = cell.trim_start().starts_with(['=', '+', '-', '@']);
+                assert!(!begins || cell.parse::<f64>().is_ok(), "{name} {column}: {cell:?}");
+            }
+        }
+    }
+    let notes = table(&out.join("notes.csv"));
+    assert_eq!(notes[0]["text"].trim_end(), "'=1+1");
+    assert!(notes.iter().any(|row| row["text"].contains("\\u{1b}[31mred")), "{notes:?}");
+    let run = id(&folders(&home.runs())[0]);
+    for arguments in [
+        vec!["report", &run],
+        vec!["report", &run, "--format", "html"],
+        vec!["report", &run, "--session"],
+        vec!["report", &run, "--session", "--format", "html"],
+        vec!["runs", "list"],
+        vec!["runs", "show", &run],
+        vec!["replay", &run],
+        vec!["lab", "compare", &run],
+        vec!["lab", "compare", &run, "--csv"],
+        vec!["query", &run, "SELECT content FROM agent_social_media_posts"],
+        vec!["query", &run, "SELECT content FROM agent_social_media_posts", "--format", "csv"],
+        vec!["query", &run, "SELECT content FROM agent_social_media_posts", "--format", "md"],
+    ] {
+        let said = home.run(&arguments);
+        assert!(!acts(&said.out) && !acts(&said.err), "{arguments:?}: {}", said.out);
+        if arguments.contains(&"csv") || arguments.contains(&"--csv") {
+            let formula = |line: &str| line.starts_with(['=', '@', '+']) || line.contains(",=");
+            assert!(!said.out.lines().any(formula), "{arguments:?}: {}", said.out);
+        }
+    }
+}

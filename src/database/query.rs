@@ -9,10 +9,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use rusqlite::Connection;
-use rusqlite::ffi;
 use rusqlite::hooks::{AuthContext, Authorization};
 use rusqlite::types::ValueRef;
+use rusqlite::{Connection, ffi};
 
 use super::block_table;
 use super::blocks::{BlockStore, Seen};

@@ -81,10 +81,14 @@ fn check(session: &mut Session, found: &BTreeSet<Group>) {
     let folder = session.folder().expect("a folder").to_owned();
     let (bytes, texts) = (bytes(&folder), texts(&folder));
     let params = session.params();
-    let used: BTreeSet<String> = found.iter().flat_map(|group| telling(*group, params)).collect();
+    let is_open = |group: &Group| found.contains(group) || group.initially_known();
+    let used: BTreeSet<String> =
+        Group::all().filter(is_open).flat_map(|group| telling(group, params)).collect();
     for group in Group::all().filter(|group| !group.initially_known()) {
         let known = found.contains(&group);
-        for word in telling(group, params).difference(&used) {
+        let own = telling(group, params);
+        // A known group's word may have another's in it: Chief Compliance Officer, Compliance Officer.
+        for word in own.iter().filter(|word| !used.iter().any(|known| known.contains(word.as_str()))) {
             assert!(known || !contains(&bytes, word), "{word} of {group} is in the file");
         }
         let places: Vec<&String> = texts

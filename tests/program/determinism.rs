@@ -160,9 +160,10 @@ fn states(folder: &Path) -> Vec<(u32, String)> {
 }
 
 fn only_run(runs: &Path) -> PathBuf {
-    let folders: Vec<_> = fs::read_dir(runs).expect("a folder").flatten().collect();
+    let entries = fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
+    let folders: Vec<_> = entries.filter(|path| path.is_dir()).collect();
     assert_eq!(folders.len(), 1);
-    folders[0].path()
+    folders[0].clone()
 }
 
 const OPENING: &str = "set_prices A=12 B=25 C=55\nset_usage_quotas A=60000 B=250000 C=1200000\n\

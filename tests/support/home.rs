@@ -63,9 +63,10 @@ impl Home {
     }
 
     pub fn only_run(&self) -> PathBuf {
-        let folders: Vec<_> = fs::read_dir(self.runs()).expect("a folder").flatten().collect();
+        let entries = fs::read_dir(self.runs()).expect("a folder").flatten().map(|entry| entry.path());
+        let folders: Vec<_> = entries.filter(|path| path.is_dir()).collect();
         assert_eq!(folders.len(), 1);
-        folders[0].path()
+        folders[0].clone()
     }
 }
 

@@ -59,7 +59,8 @@ fn a_full_disk_is_told_and_forgotten_once_there_is_room() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
     terminal.wait_for("Needs you");
-    let run = std::fs::read_dir(runs.path()).expect("a folder").next().expect("a run").expect("a run").path();
+    let entries = std::fs::read_dir(runs.path()).expect("a folder").flatten().map(|entry| entry.path());
+    let run = entries.into_iter().find(|path| path.is_dir()).expect("a run");
     let written = std::fs::metadata(run.join("world.db-wal")).expect("a database").len();
     terminal.bound_files(&written.to_string());
     terminal.type_keys("n");

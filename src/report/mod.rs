@@ -20,6 +20,7 @@ mod movement;
 pub(crate) mod needs;
 mod outline;
 mod page;
+pub mod protocol;
 pub(crate) mod ranking;
 pub(crate) mod review;
 mod story;

@@ -191,7 +191,10 @@ fn kill_in_a_week(mut child: Child, runs: &Path, complete: usize) {
     let deadline = Instant::now() + Duration::from_secs(60);
     let is_there = || {
         let mut entries = fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
-        entries.find(|path| path.is_dir()).and_then(|folder| in_a_week(&folder)).is_some_and(|weeks| weeks >= complete)
+        entries
+            .find(|path| path.is_dir())
+            .and_then(|folder| in_a_week(&folder))
+            .is_some_and(|weeks| weeks >= complete)
     };
     while !is_there() {
         let ended = child.try_wait().expect("a state");

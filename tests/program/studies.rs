@@ -222,3 +222,34 @@ fn an_experimenter_watches_and_notes() {
     child.wait().expect("it ends");
     assert_eq!(state().as_deref(), Some("stopped"));
 }
+
+#[test]
+fn the_protocol_tells_every_measure_and_every_rule() {
+    let lab = Lab::new();
+    lab.assign();
+    let said = lab.0.run(&["study", "protocol", &lab.folder()]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let digest = lab.0.run(&["study", "check", &lab.folder()]).out;
+    let digest = digest.lines().find_map(|line| line.trim().strip_prefix("digest ")).expect("a digest");
+    let parts = [
+        digest,
+        "35 days",
+        "3 labels are assigned",
+        "seed 2718",
+        "`effort`: How hard",
+        "two histories",
+        "> # Taking part",
+    ];
+    for part in parts {
+        assert!(said.out.contains(part), "{part} is missing in\n{}", said.out);
+    }
+    let columns = lab.0.run(&["runs", "columns", "--json"]).out;
+    let columns: serde_json::Value = serde_json::from_str(&columns).expect("JSON");
+    for (table, columns) in columns.as_object().expect("tables") {
+        assert!(said.out.contains(&format!("### {table}")), "{table}");
+        for column in columns.as_array().expect("columns") {
+            let name = column["name"].as_str().expect("a name");
+            assert!(said.out.contains(&format!("| {name} |")), "{name}");
+        }
+    }
+}

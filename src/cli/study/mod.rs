@@ -5,6 +5,7 @@ mod audit;
 mod check;
 mod code;
 mod new;
+mod protocol;
 mod watch;
 
 use std::path::PathBuf;
@@ -17,11 +18,11 @@ use super::{Context, Failure, play};
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
-    command: Command,
+    command: StudyCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum StudyCommand {
     /// Write the folder of a new study, with a protocol to edit.
     New(new::Options),
     /// Check the protocol of a study, and whether this machine is fit for it.
@@ -36,6 +37,12 @@ enum Command {
     Audit(audit::Options),
     /// Watch the sessions that are running.
     Watch(watch::Options),
+    /// Print the protocol in words, with every measure and its definition, ready to be preregistered.
+    Protocol {
+        /// Folder of the study.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
     /// Print the line of study.toml that asks for an experimenter's code.
     Code,
     /// Lead a participant through the study; as `novamind --study DIR`.
@@ -51,12 +58,13 @@ enum Command {
 /// Runs the command.
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     match options.command {
-        Command::New(options) => new::run(&options),
-        Command::Check { folder } => check::run(&folder, context),
-        Command::Assign(options) => assign::run(&options),
-        Command::Audit(options) => audit::run(&options, context),
-        Command::Watch(options) => watch::run(&options, context),
-        Command::Code => code::run(),
-        Command::Start { folder, play } => play::lead(&folder, &play, context),
+        StudyCommand::New(options) => new::run(&options),
+        StudyCommand::Check { folder } => check::run(&folder, context),
+        StudyCommand::Assign(options) => assign::run(&options),
+        StudyCommand::Audit(options) => audit::run(&options, context),
+        StudyCommand::Watch(options) => watch::run(&options, context),
+        StudyCommand::Protocol { folder } => protocol::run(&folder, context),
+        StudyCommand::Code => code::run(),
+        StudyCommand::Start { folder, play } => play::lead(&folder, &play, context),
     }
 }

@@ -58,6 +58,26 @@ pub enum AuditKind {
 }
 
 impl AuditKind {
+    /// Every kind, the gravest first.
+    pub const ALL: [AuditKind; 16] = [
+        AuditKind::Missing,
+        AuditKind::Damaged,
+        AuditKind::Changed,
+        AuditKind::Cut,
+        AuditKind::TwoHistories,
+        AuditKind::Unseen,
+        AuditKind::NotReached,
+        AuditKind::Unsaved,
+        AuditKind::Manifest,
+        AuditKind::Assignment,
+        AuditKind::EarlierRuns,
+        AuditKind::Rehearsal,
+        AuditKind::WorldList,
+        AuditKind::Clock,
+        AuditKind::OtherMachine,
+        AuditKind::SecondSession,
+    ];
+
     /// In words.
     pub fn title(self) -> &'static str {
         match self {

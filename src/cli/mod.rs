@@ -134,6 +134,19 @@ impl Context {
         words.join(" ")
     }
 
+    /// Checks that a participant who is named is the one whose runs these are.
+    ///
+    /// # Errors
+    /// They are two.
+    pub fn check_participant(&self, named: Option<&str>) -> Result<(), Failure> {
+        match (&self.participant, named) {
+            (Some(whose), Some(named)) if whose != named => Err(Failure::usage(format!(
+                "--as {whose} and --participant {named} name two people: give one label, with --as"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     /// Folder of the runs.
     ///
     /// # Errors

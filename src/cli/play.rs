@@ -99,7 +99,8 @@ impl Options {
 
     fn new_run(&self, context: &Context) -> Result<NewRun, Failure> {
         let standard = NewRun::default();
-        Ok(NewRun {
+        context.check_participant(self.participant.as_deref())?;
+        let new = NewRun {
             seed: self.seed,
             days: self.days,
             cash: self.cash,
@@ -113,14 +114,20 @@ impl Options {
             projection: true,
             sync_calls: true,
             seal_key: standard.seal_key,
-        })
+        };
+        new.check_baseline(&context.configuration)?;
+        Ok(new)
     }
 }
 
 /// Runs the command.
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
-    let plain = options.plain || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal();
-    if plain { play_plain(&options, context) } else { play_console(&options, context) }
+    if asks_for_lines(&options) { play_plain(&options, context) } else { play_console(&options, context) }
+}
+
+/// Whether the game is played line by line.
+fn asks_for_lines(options: &Options) -> bool {
+    options.plain || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal()
 }
 
 /// Leads a participant through a study. What is played follows from its protocol, so no other option says so.
@@ -130,7 +137,16 @@ pub fn lead(folder: &Path, options: &Options, context: &Context) -> Result<(), F
             "in a study the protocol says what is played: no --run, and no option of a new run",
         ));
     }
+    if let Some(label) = &context.participant {
+        return Err(Failure::usage(format!(
+            "in a study every participant gives their label on the first page: leave out --as {label}"
+        )));
+    }
     let study = Study::read(folder)?;
+    if !asks_for_lines(options) {
+        let again = format!("novamind --study {}", folder.display());
+        return show_console_again(options, Some(Effect::Receive(Box::new(study))), context, again);
+    }
     let style = crate::plain::Style { json: options.json, echo: options.echo, strict: options.strict };
     let base = context.runs()?;
     match crate::plain::visit(study, &base, &context.configuration, style)? {
@@ -213,6 +229,16 @@ fn theme(
 
 /// Opens the console with something to begin with.
 pub fn show_console(options: &Options, start: Option<Effect>, context: &Context) -> Result<(), Failure> {
+    show_console_again(options, start, context, context.again())
+}
+
+/// The same, with the command that goes on later.
+fn show_console_again(
+    options: &Options,
+    start: Option<Effect>,
+    context: &Context,
+    again: String,
+) -> Result<(), Failure> {
     let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let chosen = Preferences::of(&context.configuration);
     let theme = theme(options, no_colour, &chosen, &context.configuration)?;
@@ -223,7 +249,7 @@ pub fn show_console(options: &Options, start: Option<Effect>, context: &Context)
         glyphs: if options.ascii { Glyphs::Ascii } else { chosen.marker.unwrap_or(Glyphs::Braille) },
         configuration: context.configuration.clone(),
         runs: context.runs()?,
-        again: context.again(),
+        again,
     };
     let (code, farewell) = crate::console::play(settings, start)
         .map_err(|error| Failure::failed(format!("the terminal: {error}")))?;

@@ -39,11 +39,13 @@ pub enum Scope {
     Market,
     /// A recorded run that is played again.
     Viewer,
+    /// The pages of a participant of a study.
+    Visit,
 }
 
 impl Scope {
     /// All scopes, in the order of the help.
-    pub const ALL: [Scope; 18] = [
+    pub const ALL: [Scope; 19] = [
         Scope::Global,
         Scope::List,
         Scope::Form,
@@ -62,6 +64,7 @@ impl Scope {
         Scope::Menu,
         Scope::Final,
         Scope::Viewer,
+        Scope::Visit,
     ];
 
     /// Name in the key file.
@@ -85,6 +88,7 @@ impl Scope {
             Scope::Social => "social",
             Scope::Market => "market",
             Scope::Viewer => "viewer",
+            Scope::Visit => "visit",
         }
     }
 
@@ -109,6 +113,7 @@ impl Scope {
             Scope::Social => "Social",
             Scope::Market => "Market",
             Scope::Viewer => "Replay of a run",
+            Scope::Visit => "Pages of a participant",
         }
     }
 
@@ -339,6 +344,16 @@ actions! {
         DecisionsDown "decisions-down" "decisions down" "Scroll the decisions down."
         TakeOver "take-over" "take over" "Continue from this moment in a branch of your own."
         LeaveViewer "leave-viewer" "leave" "Leave the replay for the start menu; nothing is changed."
+    }
+    Visit {
+        GoOn "go-on" "go on" "Go on to the next question or page; after the last question, send the answers."
+        GoBack "go-back" "question before" "Go back to the question before; its answer can be changed until the page is sent."
+        MarkOption "mark-option" "mark" "Mark or unmark the option; several can be marked."
+        Agree "agree" "agree" "Agree to the text, once its end was on the screen."
+        Decline "decline" "do not agree" "Do not agree to the text."
+        PassPractice "pass-practice" "pass over" "Pass over the practice."
+        Withdraw "withdraw" "withdraw" "Withdraw from the study: erase everything you did in it, after two confirmations."
+        Experimenter "experimenter" "experimenter" "Give the experimenter's code, which opens the start menu."
     }
 }
 

@@ -7,6 +7,7 @@ mod input;
 mod news;
 mod orders;
 mod viewer;
+mod visit;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -30,6 +31,7 @@ use super::screens::{Look, Screen, ScreenId, Screens};
 use super::theme::Theme;
 use super::tour::Tour;
 use super::viewer::Viewer;
+use super::visit::{VisitPage, VisitState};
 use super::worker::{Job, Question};
 use crate::console::request::Request;
 use crate::report::Story;
@@ -94,6 +96,8 @@ pub enum Stage {
     Menu(Box<Menu>),
     /// In a run.
     Run(Box<Run>),
+    /// On a page of a study.
+    Visit(Box<VisitPage>),
 }
 
 /// A run on the screen.
@@ -182,6 +186,8 @@ pub struct App {
     closing: Option<Closing>,
     /// The run that is being started shows the tour.
     tour_planned: bool,
+    /// The study whose participants are led.
+    visit: Option<VisitState>,
     /// What could be clicked in the last frame.
     pub clicks: Vec<(Rect, Click)>,
     /// Rows that the focused list showed in the last frame.
@@ -239,6 +245,7 @@ impl App {
             rows_question: 0,
             closing: None,
             tour_planned: false,
+            visit: None,
             clicks: Vec::new(),
             page: 10,
             window: (0, 0),
@@ -259,6 +266,7 @@ impl App {
             Message::Signal(number) => self.leave(Closing::ToShell(128u8.saturating_add(number as u8))),
         }
         self.settle_tour();
+        self.settle_visit();
     }
 
     /// What has to be done outside since the last time.
@@ -270,7 +278,7 @@ impl App {
     pub fn run(&self) -> Option<&Run> {
         match &self.stage {
             Stage::Run(run) => Some(run),
-            Stage::Menu(_) => None,
+            Stage::Menu(_) | Stage::Visit(_) => None,
         }
     }
 
@@ -285,6 +293,7 @@ impl App {
             (Some(Layer::Dialog(dialog)), _) => return dialog.scopes(),
             (Some(Layer::Filing), Stage::Run(run)) => return run.filing.scopes(),
             (_, Stage::Menu(menu)) => return menu.scopes(),
+            (_, Stage::Visit(page)) => return page.scopes(),
             (None, Stage::Run(run)) => run.scopes(),
         };
         scopes.push(Scope::Global);
@@ -297,6 +306,7 @@ impl App {
             (Some(Layer::Dialog(dialog)), _) => dialog.hints(),
             (Some(Layer::Filing), Stage::Run(run)) => run.filing.hints(),
             (_, Stage::Menu(menu)) => menu.hints(),
+            (_, Stage::Visit(page)) => page.hints(),
             (None, Stage::Run(run)) => run.hints(),
         }
     }
@@ -316,6 +326,10 @@ impl App {
         }
         self.note_view();
         self.stop_on_the_way();
+        // A participant who leaves a run is still at the study.
+        let at_study = self.leads_participant() && matches!(self.stage, Stage::Run(_));
+        let quits = closing == Closing::ToShell(0);
+        let closing = if at_study && quits { Closing::ToMenu } else { closing };
         self.closing = Some(closing);
         match &self.stage {
             Stage::Run(_) => {
@@ -323,7 +337,7 @@ impl App {
                 self.orders.push(Order::CancelQuery);
                 self.orders.push(Order::Job(Job::Close));
             }
-            Stage::Menu(_) => self.closed(None),
+            Stage::Menu(_) | Stage::Visit(_) => self.closed(None),
         }
     }
 
@@ -332,6 +346,7 @@ impl App {
         let was_replay = self.is_replay();
         let code = match self.closing.take() {
             Some(Closing::ToShell(code)) => code,
+            Some(Closing::ToMenu) | None if self.leads_participant() => return self.after_run(problem),
             Some(Closing::ToMenu) | None => {
                 self.layers.clear();
                 self.stage = Stage::Menu(Box::new(Menu::new(&self.configuration)));

@@ -14,7 +14,7 @@ use crate::report::lead_costs::{PairCost, pair_costs};
 use crate::report::needs::{Need, needs};
 use crate::session::{
     CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, Mode, Numbers,
-    Observation, RunningStudy, Session, ToolLimits, WeekFigures,
+    Observation, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits, WeekFigures,
 };
 use crate::tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,
@@ -87,6 +87,10 @@ pub struct Company {
     pub remarks: Vec<String>,
     /// It is a moment of a recorded run that is played again: nothing can be done.
     pub replayed: bool,
+    /// By which rules it is played.
+    pub rules: SessionRules,
+    /// The study it belongs to.
+    pub study: Option<StudyStamp>,
 }
 
 impl Company {
@@ -130,6 +134,8 @@ impl Company {
             studies: session.running_studies(),
             remarks: session.remarks().to_vec(),
             replayed: false,
+            rules: session.rules(),
+            study: session.manifest().study.clone(),
         }
     }
 
@@ -141,6 +147,12 @@ impl Company {
     /// Whether the run is a baseline.
     pub fn is_baseline(&self) -> bool {
         self.seen.mode == Mode::Baseline
+    }
+
+    /// Whether the person may see how their own forecasts have done: where that is no part of the session, once it is
+    /// over.
+    pub fn shows_calibration(&self) -> bool {
+        self.rules.calibration || !self.is_running()
     }
 
     /// A known group beside the plans.

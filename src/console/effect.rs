@@ -7,7 +7,7 @@ use super::readings::Reading;
 use super::request::Request;
 use super::screens::ScreenId;
 use crate::glossary::Subject;
-use crate::session::Goal;
+use crate::session::{Goal, Study};
 use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
@@ -102,6 +102,8 @@ pub enum Effect {
     Explain(Subject),
     /// Start a run for practice with the tour in it.
     StartTour,
+    /// Lead participants through a study; nothing else can be reached.
+    Receive(Box<Study>),
     /// Save and leave, whatever is half typed.
     LeaveNow,
     /// Do what a key would do.

@@ -62,6 +62,7 @@ fn draw_all(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
     let last = Rect { y: area.bottom() - 1, height: 1, ..area };
     match &app.stage {
         Stage::Menu(menu) => menu.draw(canvas, Rect { height: area.height - 1, ..area }),
+        Stage::Visit(page) => page.draw(canvas, Rect { height: area.height - 1, ..area }, &app.keys),
         Stage::Run(run) => draw_run(app, run, canvas, area),
     }
     draw_last_line(app, canvas, last);
@@ -172,7 +173,10 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
     ];
     let state = match seen.ended {
         _ if company.replayed => "REPLAY".to_owned(),
-        None => seen.mode.id().to_uppercase(),
+        None => match &company.study {
+            Some(study) => if study.practice { "PRACTICE" } else { "SESSION" }.to_owned(),
+            None => seen.mode.id().to_uppercase(),
+        },
         Some(Ended::Horizon) => "FINISHED".to_owned(),
         Some(Ended::Bankruptcy) => "BANKRUPT".to_owned(),
         Some(Ended::Abandoned) => "GIVEN UP".to_owned(),

@@ -14,10 +14,10 @@ use super::effect::Effect;
 use super::files;
 use super::frame;
 use super::keys::Chord;
-use super::message::{Message, News};
-use super::request::{Recorded, Request};
+use super::message::{Message, News, VisitNews};
+use super::request::{Recorded, Request, VisitRequest};
 use super::worker::{Job, Workers};
-use crate::session::{Access, Goal};
+use crate::session::{Access, Goal, Study};
 
 /// An answer that takes longer than this does not come.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -65,6 +65,24 @@ impl Headless {
     /// It does not open.
     pub fn open(&mut self, run: &str) -> io::Result<()> {
         self.open_with(Effect::Request(Request::Open(run.to_owned(), Access::Write)))
+    }
+
+    /// Receives participants of a study, and waits for the first page.
+    ///
+    /// # Errors
+    /// It does not come.
+    pub fn lead(&mut self, study: Study) -> io::Result<()> {
+        self.app.start_with(Effect::Receive(Box::new(study)));
+        self.settle()
+    }
+
+    /// Asks for something as a screen would, and waits for what follows.
+    ///
+    /// # Errors
+    /// An answer does not come.
+    pub fn request(&mut self, request: Request) -> io::Result<()> {
+        self.app.start_with(Effect::Request(request));
+        self.settle()
     }
 
     /// Opens a run, to look at it, and waits until everything about it is known.
@@ -165,7 +183,14 @@ impl Headless {
 
     fn count(&mut self, message: &Message) {
         let unasked = |news: &News| {
-            matches!(news, News::Day(..) | News::WentOn(_) | News::DatabaseBehind(_) | News::DatabaseWhole(_))
+            matches!(
+                news,
+                News::Day(..)
+                    | News::WentOn(_)
+                    | News::DatabaseBehind(_)
+                    | News::DatabaseWhole(_)
+                    | News::Visit(VisitNews::Due(_))
+            )
         };
         let answers = matches!(message, Message::News(news) if !unasked(news));
         self.waiting -= u32::from(answers).min(self.waiting);
@@ -178,7 +203,12 @@ impl Headless {
                 Order::Job(job) => {
                     let silent = matches!(
                         job,
-                        Job::NoteQuery(..) | Job::NoteView(..) | Job::GoOn(_) | Job::Hold | Job::Remember(_)
+                        Job::NoteQuery(..)
+                            | Job::NoteView(..)
+                            | Job::GoOn(_)
+                            | Job::Hold
+                            | Job::Remember(_)
+                            | Job::Do(Request::Visit(VisitRequest::Ask(_)))
                     );
                     self.waiting += u32::from(!silent);
                     self.workers.send(job);

@@ -8,7 +8,9 @@ use crossterm::event::Event;
 use super::company::Company;
 use super::readings::Reading;
 use crate::report::Story;
-use crate::session::{Change, Interrupt, Library, PlaybackPosition, Preview, Refusal, Rows, Week};
+use crate::session::{
+    Change, DueQuestion, Interrupt, Library, NextStep, PlaybackPosition, Preview, Refusal, Rows, Week,
+};
 use crate::tools::{Answer, ToolId};
 
 /// Something that arrives.
@@ -40,8 +42,8 @@ pub enum Instead {
     Watch(String),
     /// It is damaged: its good beginning can be opened as a branch.
     Rescue(String),
-    /// A participant has to agree to a text before this run begins; and the first line of it that is shown.
-    Agree(Box<crate::session::NewRun>, usize),
+    /// A participant has to agree to a text before this run begins.
+    Agree(Box<crate::session::NewRun>),
 }
 
 /// What a thread behind the screen reports.
@@ -94,8 +96,32 @@ pub enum News {
     Written(Result<String, String>),
     /// The run was saved and closed; what went wrong, if something did.
     Closed(Option<String>),
+    /// Of a participant's way through a study.
+    Visit(VisitNews),
     /// A thread behind the screen has failed for a reason that should not exist.
     Crashed(String),
     /// The run's file is no longer the one it was: why, and what to do.
     RecordLost(String),
+}
+
+/// What is reported of a participant's way through a study.
+pub enum VisitNews {
+    /// Participants can come.
+    Ready,
+    /// The label was refused, and why.
+    LabelRefused(String),
+    /// What comes next for the participant.
+    Next(NextStep),
+    /// The participant does not agree.
+    Declined,
+    /// What is due has changed; it comes before the news of what has changed it.
+    Due(Vec<DueQuestion>),
+    /// Answers were recorded; what is due now.
+    Answered(Vec<DueQuestion>),
+    /// What the participant did was erased.
+    Withdrawn,
+    /// Whether the code was the experimenter's; none: the study has no code.
+    Code(Option<bool>),
+    /// Something cannot be read or written; what is safe.
+    Failed(String),
 }

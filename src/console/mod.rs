@@ -5,6 +5,7 @@
 //! Everything shown comes from tool results, the weekly dashboard or guarded queries.
 
 mod action;
+mod agreement;
 pub mod app;
 mod ascii;
 mod canvas;
@@ -33,6 +34,7 @@ mod text;
 pub mod theme;
 mod tour;
 mod viewer;
+mod visit;
 mod widgets;
 pub mod worker;
 
@@ -137,7 +139,7 @@ impl Console {
         }
         let folder = match &self.app.stage {
             Stage::Run(run) => run.company.folder.as_ref().map(|folder| folder.display().to_string()),
-            Stage::Menu(_) => None,
+            Stage::Menu(_) | Stage::Visit(_) => None,
         };
         terminal::remember_run(folder);
         Ok(None)

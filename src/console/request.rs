@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
-use crate::session::{Access, Forecasts, Goal, Mode, NewRun};
+use crate::session::{Access, ConsentGiven, DueQuestion, Forecasts, Goal, Mode, NewRun, Study};
 use crate::tools::ToolId;
 
 /// Work that a person asked for.
@@ -59,6 +59,53 @@ pub enum Request {
     TellStory,
     /// Put the report of the run into words.
     WriteReport,
+    /// Lead a participant through a study.
+    Visit(VisitRequest),
+}
+
+/// What a participant's way through a study asks for.
+#[derive(Debug, Clone)]
+pub enum VisitRequest {
+    /// Participants of this study come.
+    Receive(Box<Study>),
+    /// A participant has given a label.
+    Begin {
+        /// The label.
+        label: String,
+        /// How many labels were refused before.
+        refused: u32,
+    },
+    /// They agree to the text of the study.
+    Agree(ConsentGiven),
+    /// They do not.
+    Decline,
+    /// They pass over the practice.
+    PassPractice,
+    /// They play what comes next.
+    Play,
+    /// They ask what comes next.
+    GoOn,
+    /// A question is shown to them.
+    Ask(Box<DueQuestion>),
+    /// They send the answers of a page.
+    Answer(Vec<GivenAnswer>),
+    /// They withdraw, and have confirmed it.
+    Withdraw,
+    /// Somebody gives the experimenter's code.
+    TryCode(String),
+}
+
+/// The answer to a question, and how it came to be.
+#[derive(Debug, Clone)]
+pub struct GivenAnswer {
+    /// The question.
+    pub due: DueQuestion,
+    /// The answer; null where it was passed over.
+    pub value: Value,
+    /// Milliseconds on the screen.
+    pub for_ms: u64,
+    /// How often it was changed before it was sent.
+    pub changes: u32,
 }
 
 /// A run that was recorded.
@@ -81,6 +128,29 @@ impl Request {
         matches!(self, Request::Call { .. } | Request::Undo | Request::Redo)
     }
 
+    /// Whether participants of a study cannot ask for it: it reaches beyond their own run.
+    pub fn is_kept_from_participants(&self) -> bool {
+        match self {
+            Request::ListRuns
+            | Request::PreviewRun(_)
+            | Request::EndRun(_)
+            | Request::DeleteRun(_)
+            | Request::Create(_)
+            | Request::Open(..)
+            | Request::Rescue(_)
+            | Request::Replay { .. }
+            | Request::TakeOver(_)
+            | Request::WriteReport => true,
+            Request::Call { .. }
+            | Request::Undo
+            | Request::Redo
+            | Request::Advance { .. }
+            | Request::SetMemo(_)
+            | Request::TellStory
+            | Request::Visit(_) => false,
+        }
+    }
+
     /// What the screen is busy with until it is answered; none where the person goes on meanwhile.
     pub fn busy_with(&self) -> Option<&'static str> {
         Some(match self {
@@ -90,6 +160,7 @@ impl Request {
             Request::Replay { .. } => "opening the record",
             Request::TakeOver(_) => "starting a run from here",
             Request::Advance { .. } => "the week runs",
+            Request::Visit(VisitRequest::Play) => "opening the run",
             _ => return None,
         })
     }

@@ -9,6 +9,7 @@ mod mending;
 mod player;
 mod queries;
 mod run;
+mod visit;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -28,6 +29,7 @@ use crate::session::{Configuration, Goal, Playback, QuerySource, Refusal, Rows, 
 use crate::tools::ToolId;
 use queries::QueryThreads;
 use run::OpenRun;
+use visit::Desk;
 
 pub use queries::Question;
 
@@ -77,6 +79,7 @@ impl Workers {
                 due: None,
                 looked: Instant::now(),
                 mending: None,
+                desk: None,
                 news,
                 runs,
                 queries: for_session,
@@ -134,6 +137,8 @@ struct SessionThread {
     looked: Instant,
     /// The database could not be written: when it is tried again.
     mending: Option<Instant>,
+    /// The study whose participants are led.
+    desk: Option<Desk>,
     news: Sender<Message>,
     queries: QueryThreads,
     configuration: Configuration,
@@ -230,6 +235,7 @@ impl SessionThread {
             Request::SetMemo(text) => self.with_run(|run| run.set_memo(&text)),
             Request::TellStory => self.with_run(|run| run.tell_story()),
             Request::WriteReport => self.with_run(|run| run.write_report()),
+            Request::Visit(request) => self.lead(request),
         }
     }
 
@@ -242,6 +248,7 @@ impl SessionThread {
             // Before what came of the work: nothing goes on from here.
             self.say(News::RecordLost(words));
         }
+        self.tell_due();
         news.into_iter().for_each(|news| self.say(news));
         self.look_after_database();
     }

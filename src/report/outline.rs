@@ -22,11 +22,13 @@ pub fn page_of(story: &Story) -> Page {
     blocks.push(Block::Heading("Cash"));
     blocks.extend(charts::cash(story));
     blocks.extend(charts::income_and_costs(story));
-    blocks.extend(rank(story));
+    if story.shows_published() {
+        blocks.extend(rank(story));
+    }
     blocks.extend(highlights(story));
     blocks.extend(customers(story));
     blocks.extend(forecasts(story));
-    blocks.extend(behaviour(&story.measures));
+    blocks.extend(behaviour(&story.measures, story.shows_published()));
     blocks.extend(decisions(story));
     let mut tags = vec![
         format!("run {}", seen.run),
@@ -214,6 +216,12 @@ fn forecasts(story: &Story) -> Vec<Block> {
         blocks.push(Block::Text("No forecast has come due yet.".to_owned()));
         return blocks;
     }
+    if !story.shows_calibration() {
+        let due: u32 = scored.iter().map(|score| score.scored).sum();
+        let text = format!("{} came due. How they did is told once the run is over.", count(due, "forecast"));
+        blocks.push(Block::Text(text));
+        return blocks;
+    }
     let row = |score: &&crate::session::ForecastScore| {
         vec![
             count(score.horizon_days / 7, "week"),
@@ -253,7 +261,7 @@ fn per_thousand(leads: f64) -> String {
     grouped(leads, if leads < 1.0 { 3 } else { 1 })
 }
 
-fn behaviour(measures: &Measures) -> Vec<Block> {
+fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("How it was played")];
     let none = || "–".to_owned();
     let (least, most) = published_targeted_shares();
@@ -273,7 +281,10 @@ fn behaviour(measures: &Measures) -> Vec<Block> {
         Fact::new(
             "Targeted development",
             measures.targeted_development.map_or_else(none, |share| percent(share, 0)),
-            format!("published agents {} to {}", percent(least, 0), percent(most, 0)),
+            match published {
+                true => format!("published agents {} to {}", percent(least, 0), percent(most, 0)),
+                false => String::new(),
+            },
         ),
         Fact::new(
             "Calls a week",

@@ -147,7 +147,7 @@ fn caveat(seen: &Observation, start_cash: f64) -> Option<String> {
     let (seed, days) = PUBLISHED_RUN;
     let mut other = Vec::new();
     if seen.seed != Some(seed) {
-        other.push(seen.seed.map_or("another seed".to_owned(), |own| format!("seed {own}")));
+        other.push(seen.seed.map_or("a seed that is not shown".to_owned(), |own| format!("seed {own}")));
     }
     if seen.last_day != days {
         other.push(format!("{} days", whole(f64::from(seen.last_day))));

@@ -6,7 +6,9 @@ use super::highlights::{Highlight, highlights};
 use super::measures::Measures;
 use super::ranking::{Standing, standing};
 use super::turn::{Cost, costs, turned};
-use crate::session::{Ended, Observation, ScoredForecast, Session, WeekFigures, filed_forecasts};
+use crate::session::{
+    Ended, Observation, ResultsShown, ScoredForecast, Session, SessionRules, WeekFigures, filed_forecasts,
+};
 
 /// How a company went under.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +48,8 @@ pub struct Story {
     pub measures: Measures,
     /// How it went under, if it did.
     pub ruin: Option<Ruin>,
+    /// By which rules it is played.
+    pub rules: SessionRules,
 }
 
 impl Story {
@@ -72,9 +76,20 @@ impl Story {
             highlights: highlights(weeks, session.cash_by_day(), &books.outages, seen.ended),
             measures,
             ruin,
+            rules: session.rules(),
             books,
             seen,
         }
+    }
+
+    /// Whether published results stand beside it: where they are no part of the session, once it is over.
+    pub fn shows_published(&self) -> bool {
+        self.rules.results == ResultsShown::Published || self.seen.ended.is_some()
+    }
+
+    /// Whether it tells how the person's forecasts have done; likewise.
+    pub fn shows_calibration(&self) -> bool {
+        self.rules.calibration || self.seen.ended.is_some()
     }
 
     /// What came of the run, in one sentence.

@@ -41,7 +41,7 @@ fn the_tour_goes_on_by_doing_and_is_resumed_where_it_stopped() {
 fn a_baseline_run_explains_but_has_no_tour() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::start(runs.path(), (120, 40));
-    console.press("n up up up up up left down down down down down enter");
+    console.press("n up up up up up up left down down down down down 'P01' down enter");
     console.shows("BASELINE");
     console.press(": 'tour' enter");
     console.shows("baseline runs have no tour");

@@ -15,3 +15,4 @@ mod stories;
 #[path = "../support/mod.rs"]
 mod support;
 mod tasks;
+mod visits;

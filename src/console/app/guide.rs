@@ -7,6 +7,7 @@ use crate::console::dialogs::glossary::Glossary;
 use crate::console::effect::Effect;
 use crate::console::request::Request;
 use crate::console::tour::{Tour, TourFacts};
+use crate::console::visit::VisitState;
 use crate::glossary::Subject;
 use crate::session::NewRun;
 
@@ -49,8 +50,12 @@ impl App {
 
     /// Shows the tour in the run, from the first step that is not done.
     pub(super) fn show_tour(&mut self) {
+        let of_practice = self.visit.as_ref().is_some_and(VisitState::has_tour);
+        if self.leads_participant() && !of_practice {
+            return self.complain("this session has no tour");
+        }
         let Stage::Run(run) = &mut self.stage else { return };
-        if run.company.is_baseline() {
+        if run.company.is_baseline() && !of_practice {
             return self.complain("baseline runs have no tour; start a practice run from the start menu");
         }
         run.tour.get_or_insert_default();
@@ -78,7 +83,7 @@ impl App {
     fn tour(&mut self) -> Option<&mut Tour> {
         match &mut self.stage {
             Stage::Run(run) => run.tour.as_mut(),
-            Stage::Menu(_) => None,
+            Stage::Menu(_) | Stage::Visit(_) => None,
         }
     }
 

@@ -106,6 +106,10 @@ impl App {
                     let effects = menu.key(key);
                     self.follow(effects);
                 }
+                Stage::Visit(page) => {
+                    let effects = page.key(key);
+                    self.follow(effects);
+                }
                 Stage::Run(_) => {
                     let effects = self.with_screen(|screen, look| screen.key(key, look)).unwrap_or_default();
                     self.follow(effects);
@@ -122,6 +126,7 @@ impl App {
         }
         match &mut self.stage {
             Stage::Menu(menu) => menu.paste(text),
+            Stage::Visit(page) => page.paste(text),
             Stage::Run(_) => {
                 let effects = self.with_screen(|screen, look| screen.paste(text, look)).unwrap_or_default();
                 self.follow(effects);
@@ -186,8 +191,15 @@ impl App {
             let effects = menu.act(action);
             return self.follow(effects);
         }
+        if let Stage::Visit(page) = &mut self.stage {
+            let effects = page.act(action);
+            return self.follow(effects);
+        }
         if self.refuses_in_replay(action) {
             return;
+        }
+        if action == Action::Withdraw {
+            return self.withdraw();
         }
         if action.entry().scope == Scope::Viewer {
             return self.act_in_viewer(action);
@@ -226,6 +238,10 @@ impl App {
             Action::Palette => {
                 if let Stage::Run(run) = &self.stage {
                     let palette = Palette::new(&self.keys, &run.company, &self.library);
+                    let palette = match &self.visit {
+                        Some(visit) => palette.of_participant(visit.has_tour()),
+                        None => palette,
+                    };
                     self.open(palette);
                 }
             }
@@ -322,6 +338,10 @@ impl App {
     }
 
     fn file(&mut self) {
+        if self.owes_answers() {
+            // They come as soon as nothing lies over the run.
+            return;
+        }
         let Stage::Run(run) = &mut self.stage else { return };
         if self.busy.is_some() {
             return self.complain("a week is running; its report opens when it is done");

@@ -58,7 +58,7 @@ impl App {
                 if let Stage::Menu(menu) = &mut self.stage {
                     menu.refused(problem.clone(), instead);
                 }
-                if !asked {
+                if !asked && !self.complain_on_page(problem.clone()) {
                     self.complain(problem);
                 }
             }
@@ -99,6 +99,7 @@ impl App {
             }
             News::Written(Ok(text)) => self.say(text),
             News::Written(Err(problem)) => self.complain(problem),
+            News::Visit(news) => self.visited(news),
             other => self.heard(other),
         }
     }
@@ -214,7 +215,8 @@ impl App {
             run.screens.sql.learn(self.library.clone());
         }
         self.renew();
-        if over {
+        // The questions at the end come at once.
+        if over && !self.leads_participant() {
             self.show_end();
         }
     }
@@ -226,7 +228,9 @@ impl App {
         if story.is_none() {
             self.follow(vec![Effect::Request(Request::TellStory)]);
         }
-        self.layers.push(Layer::Dialog(Box::new(FinalPage::new(story))));
+        let page = FinalPage::new(story);
+        let page = if self.leads_participant() { page.leading_on() } else { page };
+        self.layers.push(Layer::Dialog(Box::new(page)));
     }
 
     fn told(&mut self, story: &Arc<Story>) {

@@ -99,7 +99,7 @@ impl App {
             Effect::RunSql(sql) => {
                 let effects = match &mut self.stage {
                     Stage::Run(run) => run.screens.sql.edit_and_run(&sql),
-                    Stage::Menu(_) => Vec::new(),
+                    Stage::Menu(_) | Stage::Visit(_) => Vec::new(),
                 };
                 self.show(ScreenId::Sql);
                 self.follow(effects);
@@ -111,6 +111,7 @@ impl App {
             }
             Effect::Explain(subject) => self.explain_subject(subject),
             Effect::StartTour => self.start_tour(),
+            Effect::Receive(study) => self.receive(study),
             Effect::LeaveNow => self.leave(Closing::ToShell(0)),
             Effect::Do(action) => self.act(action),
         }
@@ -130,6 +131,10 @@ impl App {
 
     /// Hands over work for the session's thread, unless it has to wait for a week.
     pub(super) fn request(&mut self, request: Request) {
+        if self.keeps_from_participant(&request) {
+            return;
+        }
+        self.note_request(&request);
         if request.waits_for_week() && self.busy.is_some() {
             return self.complain("a week is running; nothing was sent: try again when it is done");
         }
@@ -153,6 +158,10 @@ impl App {
     }
 
     fn save_query(&mut self, query: [String; 3]) {
+        if self.leads_participant() {
+            // The next participant would find it.
+            return self.complain_of_visit();
+        }
         match self.configuration.folder {
             Some(_) => self.orders.push(Order::SaveQuery(self.configuration.clone(), query)),
             None => self.complain("there is no configuration folder to save queries in"),

@@ -71,7 +71,7 @@ impl App {
     fn viewer(&mut self) -> Option<&mut Viewer> {
         match &mut self.stage {
             Stage::Run(run) => run.viewer.as_mut(),
-            Stage::Menu(_) => None,
+            Stage::Menu(_) | Stage::Visit(_) => None,
         }
     }
 

@@ -22,7 +22,7 @@ use crate::notation::{dollars, grouped, percent};
 use crate::report::Story;
 use crate::report::measures::{ChannelSkill, ENOUGH_LEADS, Measures};
 use crate::report::ranking::{Standing, Whose, published_targeted_shares, standing};
-use crate::session::{Ended, ForecastScore, Goal};
+use crate::session::{Ended, ForecastScore, Goal, ResultsShown};
 
 /// Widest that reads well.
 const WIDEST: u16 = 124;
@@ -54,22 +54,33 @@ fn replay(company: &Company, goal: Goal) -> Outcome {
 pub struct FinalPage {
     /// What was told of the run; none while its books are read.
     story: Option<Arc<Story>>,
+    /// A participant of a study is led on from here.
+    led: bool,
 }
 
 impl FinalPage {
     /// The page of a run that is over.
     pub fn new(story: Option<Arc<Story>>) -> FinalPage {
-        FinalPage { story }
+        FinalPage { story, led: false }
+    }
+
+    /// The same for a participant of a study: it only leads on.
+    pub fn leading_on(self) -> FinalPage {
+        FinalPage { led: true, ..self }
+    }
+
+    fn keys(&self) -> &'static [Action] {
+        if self.led { &[Action::GoOn] } else { &KEYS }
     }
 }
 
 impl Dialog for FinalPage {
     fn scopes(&self) -> Vec<Scope> {
-        vec![Scope::Final]
+        if self.led { vec![Scope::Visit] } else { vec![Scope::Final] }
     }
 
     fn hints(&self) -> Vec<Action> {
-        KEYS.to_vec()
+        self.keys().to_vec()
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
@@ -78,7 +89,7 @@ impl Dialog for FinalPage {
             // The last decision: the week that ended the run is not run yet.
             Action::WhatIf => replay(look.company, Goal::Week(look.company.seen.week.saturating_sub(1))),
             Action::ToMenu => Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
-            Action::StayInRun => Outcome::close(),
+            Action::StayInRun | Action::GoOn => Outcome::close(),
             Action::ReportOfRun => Outcome::with(vec![Effect::Request(Request::WriteReport)]),
             _ => Outcome::stay(),
         }
@@ -92,6 +103,9 @@ impl Dialog for FinalPage {
         let company = look.company;
         let own = centered(area, WIDEST.min(area.width), 42.min(area.height));
         canvas.clear(own, Role::Text);
+        if company.rules.results == ResultsShown::None {
+            return self.draw_over(canvas, area, look);
+        }
         let inside = canvas.pane(own, &headline(company), "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         if inside.width >= TWO_COLUMNS.0 && inside.height >= TWO_COLUMNS.1 {
@@ -108,11 +122,21 @@ impl Dialog for FinalPage {
             let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
             draw_cash(canvas, below, company);
         }
-        canvas.pane_keys(own, &look.hints(&KEYS));
+        canvas.pane_keys(own, &look.hints(self.keys()));
     }
 }
 
 impl FinalPage {
+    /// The page where no result is shown.
+    fn draw_over(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        canvas.clear(area, Role::Text);
+        let own = centered(area, 60, 5);
+        let inside = canvas.pane(own, "The run is over", "", true);
+        let row = Rect { x: inside.x + 1, y: inside.y + 1, width: inside.width.saturating_sub(2), height: 1 };
+        canvas.text(row.intersection(inside), "The result is not shown in this study.", Role::Text);
+        canvas.pane_keys(own, &look.hints(self.keys()));
+    }
+
     /// Result, rank and how the run was played.
     fn lines<'a>(
         &self,
@@ -132,12 +156,18 @@ impl FinalPage {
             (true, _) => 8,
             (false, _) => 3,
         };
-        parts.push(ranking(canvas, &standing, width, best, roomy));
+        let published = company.rules.results == ResultsShown::Published;
+        if published {
+            parts.push(ranking(canvas, &standing, width, best, roomy));
+        }
         parts.push(match &self.story {
-            Some(story) => facts(canvas, &story.measures, width, roomy),
+            Some(story) => facts(canvas, &story.measures, width, roomy, published),
             None => vec![TextLine::from(canvas.span("reading the ledger …", Role::Dim))],
         });
-        if roomy && let Some(folder) = &company.folder {
+        if roomy
+            && !self.led
+            && let Some(folder) = &company.folder
+        {
             let text = format!("The report goes to {}", folder.display());
             let lines = wrapped(&text, width as usize).into_iter();
             parts.push(lines.map(|line| TextLine::from(canvas.span(line, Role::Dim))).collect());
@@ -253,12 +283,21 @@ fn ranking<'a>(
 }
 
 /// How the run was played.
-fn facts<'a>(canvas: &Canvas<'_>, measures: &Measures, width: u16, roomy: bool) -> Vec<TextLine<'a>> {
+fn facts<'a>(
+    canvas: &Canvas<'_>,
+    measures: &Measures,
+    width: u16,
+    roomy: bool,
+    published: bool,
+) -> Vec<TextLine<'a>> {
     let room = (width as usize).saturating_sub(NAMES);
     let long = if roomy { 2 * room } else { room };
     let (least, most) = published_targeted_shares();
-    let targeted = measures.targeted_development.map_or("–".to_owned(), |share| {
-        format!("{} · published agents {} to {}", percent(share, 0), percent(least, 0), percent(most, 0))
+    let targeted = measures.targeted_development.map_or("–".to_owned(), |share| match published {
+        true => {
+            format!("{} · published agents {} to {}", percent(share, 0), percent(least, 0), percent(most, 0))
+        }
+        false => percent(share, 0),
     });
     let named: [(&str, String); 5] = [
         ("forecasts", calibration(&measures.forecasts, long)),

@@ -114,6 +114,27 @@ impl Palette {
         palette
     }
 
+    /// The same for a participant of a study: what is not theirs is left out, and they can withdraw.
+    pub fn of_participant(mut self, has_tour: bool) -> Palette {
+        let kept = |action: Action| match action {
+            Action::LeaveRun | Action::WriteReport => false,
+            Action::Tour | Action::TourSkip | Action::TourClose => has_tour,
+            _ => true,
+        };
+        self.entries.retain(|entry| !matches!(entry.effect, Effect::Do(action) if !kept(action)));
+        let entry = Action::Withdraw.entry();
+        self.entries.push(PaletteEntry {
+            kind: "command",
+            code: "",
+            title: entry.title.to_owned(),
+            doc: entry.doc.to_owned(),
+            keys: String::new(),
+            effect: Effect::Do(Action::Withdraw),
+        });
+        self.find();
+        self
+    }
+
     fn find(&mut self) {
         let typed = self.field.text().trim();
         let all = self.entries.iter().map(|entry| (entry.title.as_str(), entry.doc.as_str()));

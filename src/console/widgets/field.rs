@@ -44,6 +44,12 @@ impl Field {
         self.text.is_empty()
     }
 
+    /// The same with a dot for every letter: nobody who looks on reads it.
+    pub fn masked(&self) -> Field {
+        let dots = "•".repeat(self.text.graphemes(true).count());
+        Field { text: dots, cursor: self.cursor, selected: self.selected }
+    }
+
     /// Takes a key; false if it means nothing here.
     pub fn key(&mut self, key: &KeyEvent) -> bool {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);

@@ -38,9 +38,10 @@ impl SessionThread {
     pub(super) fn create(&mut self, new: NewRun) {
         let storage = Storage::Runs(self.runs.clone());
         let new = NewRun { storage, projection: true, sync_calls: true, ..new };
-        match Session::create(new.clone(), &self.configuration) {
+        let created = new.check_baseline(&self.configuration);
+        match created.and_then(|()| Session::create(new.clone(), &self.configuration)) {
             Err(RunError::ConsentNeeded(text)) => {
-                self.say(News::NotOpened(text.text, Some(Instead::Agree(Box::new(new), 0))));
+                self.say(News::NotOpened(text.text, Some(Instead::Agree(Box::new(new)))));
             }
             made => self.take(made, "", None),
         }
@@ -93,6 +94,7 @@ impl SessionThread {
         let company = Arc::new(company);
         self.company = Some(company.clone());
         (self.open, self.due) = (Some(Open::Played(Box::new(session))), None);
+        self.tell_due();
         self.say(News::Opened(company, interrupt));
     }
 }

@@ -1,6 +1,7 @@
 //! The folder of runs: what a run is, how one begins, what is kept of it, and where scenarios, consent and queries lie.
 
 pub(in crate::session) mod agreement;
+pub(in crate::session) mod baseline;
 pub(in crate::session) mod configuration;
 pub(in crate::session) mod consent;
 pub(in crate::session) mod create;

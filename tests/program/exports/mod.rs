@@ -31,7 +31,7 @@ next \"as planned\" naive
 /// A baseline run of three weeks by a participant; its folder.
 fn played(home: &Home, participant: &str) -> PathBuf {
     let before: Vec<PathBuf> = folders(&home.runs());
-    let options = ["--days", "28", "--mode", "baseline", "--participant", participant, "--seed", "7"];
+    let options = ["--mode", "baseline", "--participant", participant, "--seed", "7"];
     let said = home.play(&options, PLAY);
     assert_eq!(said.code, 0, "{}", said.err);
     folders(&home.runs()).into_iter().find(|folder| !before.contains(folder)).expect("a new run")

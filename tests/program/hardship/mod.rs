@@ -97,7 +97,7 @@ fn own_parameters_are_checked_and_baseline_runs_do_without_them() {
     home.write("world/own.toml", "[quality]\n# far too good\nbase_product_quality = 7000\n");
     home.play(&["--days", "7"], "")
         .fails(3, &["own.toml, line 3, quality.base_product_quality", "at most 100"]);
-    assert_eq!(home.play(&["--days", "7", "--mode", "baseline"], "").code, 0);
+    assert_eq!(home.play(&["--mode", "baseline", "--participant", "P01"], "").code, 0);
     let options = ["--days", "7", "--mode", "debug", "--set", "quality.base_product_quality=900"];
     fs::remove_file(home.0.path().join("configuration/world/own.toml")).expect("gone");
     home.play(&options, "").fails(3, &["--set quality.base_product_quality=900", "at most 100"]);

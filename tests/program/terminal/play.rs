@@ -187,3 +187,28 @@ fn a_recorded_run_is_played_again_and_taken_over() {
     assert_eq!(code, 0);
     assert!(screen.contains("is saved at day 7"), "{screen}");
 }
+
+#[test]
+fn a_participant_sees_the_study_and_nothing_else_until_the_code_is_given() {
+    let place = tempfile::tempdir().expect("a folder");
+    let folder = place.path().join("pilot");
+    let made = std::process::Command::new(env!("CARGO_BIN_EXE_novamind"))
+        .args(["study", "new"])
+        .arg(&folder)
+        .output()
+        .expect("it starts");
+    assert!(made.status.success());
+    let protocol = std::fs::read_to_string(folder.join("study.toml")).expect("a protocol");
+    let code = novamind::session::CodeDigest::of("open", "salt");
+    let protocol = protocol.replace("# code = \"…\"", &format!("code = \"{}\"", code.as_text()));
+    std::fs::write(folder.join("study.toml"), protocol).expect("written");
+    let study = folder.display().to_string();
+    let mut terminal = Terminal::start(&place.path().join("runs"), &["--study", &study], (80, 24));
+    terminal.wait_for("Type the label");
+    terminal.type_keys("\x05guess\r");
+    terminal.wait_for("this is not the experimenter's code");
+    terminal.type_keys("\x15open\r");
+    terminal.wait_for("New run");
+    terminal.type_keys("\x03");
+    assert_eq!(terminal.end().0, 0);
+}

@@ -386,11 +386,10 @@ impl FilingDialog {
                 canvas.aligned(cell_area(row, at), title, Role::Header, Align::Right);
             }
             let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
-            canvas.text(
-                record,
-                if record.width < 18 { "so far" } else { "your record so far" },
-                Role::Header,
-            );
+            let title = if record.width < 18 { "so far" } else { "your record so far" };
+            if company.shows_calibration() {
+                canvas.text(record, title, Role::Header);
+            }
         }
         for (at, row) in rows.by_ref().take(4).enumerate() {
             self.draw_horizon(canvas, row, at, company);
@@ -425,6 +424,9 @@ impl FilingDialog {
             let text = if field.is_empty() { "–" } else { field.text() };
             canvas.aligned(place, text, role, Align::Right);
             canvas.click(place, Click::Row(0, at * 3 + column));
+        }
+        if !company.shows_calibration() {
+            return;
         }
         let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
         let text = match company.scores.get(at) {

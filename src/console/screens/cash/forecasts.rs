@@ -145,6 +145,7 @@ impl Outlook {
 
     fn score(&self, company: &Company) -> String {
         match company.scores.get(self.horizon).filter(|score| score.scored > 0) {
+            Some(score) if !company.shows_calibration() => format!("{} came due", score.scored),
             Some(score) => format!(
                 "{} of {} inside · typical miss {}",
                 score.covered,

@@ -73,30 +73,38 @@ impl Pane<Journal> for ScoresPane {
         Vec::new()
     }
 
-    fn border(&self, _: &Journal, _: Rect, _: &Look<'_>) -> Border {
-        Border { title: "Forecasts".to_owned(), note: "95 % coverage".to_owned(), ..Border::default() }
+    fn border(&self, _: &Journal, _: Rect, look: &Look<'_>) -> Border {
+        let note = if look.company.shows_calibration() { "95 % coverage" } else { "" };
+        Border { title: "Forecasts".to_owned(), note: note.to_owned(), ..Border::default() }
     }
 
     fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let company = look.company;
-        let head = format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "miss", "width");
+        let summary = company.shows_calibration();
+        let head = match summary {
+            true => format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "miss", "width"),
+            false => format!("{:<9}{:>10}", "", "came due"),
+        };
         let mut rows = rows_of(seat.area);
         if let Some(row) = rows.next() {
             canvas.text(row, &head, Role::Header);
         }
         for ((at, score), row) in company.scores.iter().enumerate().zip(rows.by_ref()) {
-            let role = if seat.focused && at == journal.horizon { Role::Selection } else { role_of(score) };
+            let own = if summary { role_of(score) } else { Role::Text };
+            let role = if seat.focused && at == journal.horizon { Role::Selection } else { own };
+            let counted = || format!("{:<9}{:>10}", weeks(score.horizon_days), score.scored);
             canvas.clear(row, role);
-            canvas.text(row, &line_of(score), role);
+            canvas.text(row, &if summary { line_of(score) } else { counted() }, role);
             canvas.click(row, Click::Row(seat.number, at));
         }
         if let Some(row) = rows.next() {
             let none = company.scores.iter().all(|score| score.scored == 0);
-            canvas.text(
-                row,
-                if none { "no forecast has come due yet" } else { "miss, width: share of cash" },
-                Role::Dim,
-            );
+            let text = match (none, summary) {
+                (true, _) => "no forecast has come due yet",
+                (false, true) => "miss, width: share of cash",
+                (false, false) => "miss: share of cash",
+            };
+            canvas.text(row, text, Role::Dim);
         }
         let Some(score) = company.scores.get(journal.horizon) else { return };
         let single = outcomes(company, score.horizon_days);

@@ -33,12 +33,12 @@ pub(super) struct RunForm {
 
 /// Rows of the form: name and what it means.
 pub(super) const ROWS: [(&str, &str); 7] = [
-    ("Scenario", "The rules of the world; left and right change it."),
     ("Mode", "What the run is for; left and right change it. Fixed once the run starts."),
+    ("Scenario", "The rules of the world; left and right change it."),
     ("Seed", "The same seed gives the same chance events."),
     ("Days", "Last day of the run, at least 7. Published results ran for 500."),
     ("Starting cash", "Dollars on day 0."),
-    ("Participant", "A label for the record; optional."),
+    ("Participant", "A label for the record; a baseline run needs one."),
     ("Start", "enter starts the run"),
 ];
 
@@ -111,8 +111,8 @@ impl RunForm {
             if forward { (at + 1) % count } else { (at + count - 1) % count }
         };
         match self.at {
-            0 => self.scenario = step(self.scenario, self.scenarios.len()),
-            1 => self.mode = step(self.mode, Mode::OFFERED.len()),
+            0 => self.mode = step(self.mode, Mode::OFFERED.len()),
+            1 => self.scenario = step(self.scenario, self.scenarios.len()),
             _ => {}
         }
     }
@@ -176,16 +176,17 @@ impl RunForm {
             text => (text.to_owned(), Role::Text),
         };
         match row {
-            0 => {
+            0 => (format!("‹ {} ›", Mode::OFFERED[self.mode].id()), Role::Text),
+            1 => {
                 let chosen = self.scenarios.get(self.scenario);
                 (chosen.map_or(String::new(), |(name, _)| format!("‹ {name} ›")), Role::Text)
             }
-            1 => (format!("‹ {} ›", Mode::OFFERED[self.mode].id()), Role::Text),
             2 => or(&self.seed, "random"),
             3 => or(&self.days, &standard(self.terms.map(|(days, _)| whole(days)))),
             4 => or(&self.cash, &standard(self.terms.map(|(_, cash)| dollars(cash)))),
             5 => or(&self.participant, "none"),
-            _ => (String::new(), Role::Text),
+            // What would be started: the mode is chosen at the top.
+            _ => (format!("a {} run", Mode::OFFERED[self.mode].id()), Role::Text),
         }
     }
 

@@ -14,6 +14,7 @@ use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
 use crate::console::action::{Action, Scope};
+use crate::console::agreement::Agreement;
 use crate::console::canvas::{Align, Canvas};
 use crate::console::effect::Effect;
 use crate::console::message::Instead;
@@ -114,7 +115,10 @@ impl Menu {
     pub fn refused(&mut self, problem: String, instead: Option<Instead>) {
         // What somebody has to agree to is no refusal.
         let refused = (!matches!(instead, Some(Instead::Agree(..)))).then(|| problem.clone());
-        self.asked = instead.map(|instead| Asked::Instead(instead, problem));
+        self.asked = instead.map(|instead| match instead {
+            Instead::Agree(new) => Asked::Agree(new, Agreement::new(problem)),
+            instead => Asked::Instead(instead, problem),
+        });
         self.form.refused = refused;
     }
 
@@ -152,6 +156,7 @@ impl Menu {
     /// Scopes of the page.
     pub fn scopes(&self) -> Vec<Scope> {
         match self.page {
+            _ if matches!(self.asked, Some(Asked::Agree(..))) => vec![Scope::Visit, Scope::List],
             _ if self.asked.is_some() => vec![Scope::Dialog],
             MenuPage::Runs if self.table.is_typing() => vec![Scope::Field],
             MenuPage::NewRun if self.form.is_typing() => vec![Scope::Field],
@@ -163,6 +168,7 @@ impl Menu {
     /// Actions worth showing.
     pub fn hints(&self) -> Vec<Action> {
         match self.page {
+            _ if matches!(self.asked, Some(Asked::Agree(..))) => vec![Action::Agree, Action::Decline],
             _ if self.asked.is_some() => vec![Action::Confirm, Action::Cancel],
             MenuPage::Home if self.latest().is_none() => vec![Action::Open, Action::NewRun, Action::Quit],
             MenuPage::Home => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],

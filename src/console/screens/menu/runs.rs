@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 use super::home::draw_run;
 use super::{Menu, Previews};
 use crate::console::action::Action;
+use crate::console::agreement::{Agreement, READ_FIRST};
 use crate::console::canvas::{Canvas, centered, rows_of};
 use crate::console::effect::Effect;
 use crate::console::message::Instead;
@@ -15,7 +16,7 @@ use crate::console::theme::Role;
 use crate::console::widgets::chart::zero_if_near;
 use crate::console::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
 use crate::notation::{dollars, grouped};
-use crate::session::{Access, ConsentGiven, ConsentMeans, Ended, Goal, Mode, NewRun, RunPreview, RunSummary};
+use crate::session::{Access, Ended, Goal, Mode, NewRun, RunPreview, RunSummary};
 
 /// Something that cannot be taken back and is asked about first.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +25,8 @@ pub(super) enum Asked {
     Delete(String),
     /// What can be done with a run that does not open, and why it does not.
     Instead(Instead, String),
+    /// Whether a participant agrees to a text, before their run begins.
+    Agree(Box<NewRun>, Agreement),
 }
 
 /// Most runs that are compared.
@@ -172,17 +175,21 @@ impl Menu {
             (Action::Confirm, Some(Asked::Instead(Instead::Rescue(id), _))) => {
                 vec![Effect::Request(Request::Rescue(id))]
             }
-            (Action::Confirm, Some(Asked::Instead(Instead::Agree(new, _), _))) => {
-                let given = ConsentGiven { means: ConsentMeans::Screen, scrolled_to_end: false, read_ms: 0 };
-                vec![Effect::Request(Request::Create(Box::new(NewRun { agreed: Some(given), ..*new })))]
+            (Action::Agree, Some(Asked::Agree(new, text))) => match text.given() {
+                Some(given) => {
+                    vec![Effect::Request(Request::Create(Box::new(NewRun { agreed: Some(given), ..*new })))]
+                }
+                None => {
+                    self.asked = Some(Asked::Agree(new, text));
+                    vec![Effect::Complain(READ_FIRST.to_owned())]
+                }
+            },
+            (Action::Decline | Action::Close, Some(Asked::Agree(..))) => {
+                vec![Effect::Say("no run was started; nothing was recorded".to_owned())]
             }
-            (Action::ScrollUp, Some(Asked::Instead(Instead::Agree(new, from), text))) => {
-                self.asked = Some(Asked::Instead(Instead::Agree(new, from.saturating_sub(1)), text));
-                Vec::new()
-            }
-            (Action::ScrollDown, Some(Asked::Instead(Instead::Agree(new, from), text))) => {
-                let from = (from + 1).min(text.len() / 20);
-                self.asked = Some(Asked::Instead(Instead::Agree(new, from), text));
+            (action, Some(Asked::Agree(new, mut text))) => {
+                text.scroll(action);
+                self.asked = Some(Asked::Agree(new, text));
                 Vec::new()
             }
             (Action::Cancel, _) => Vec::new(),
@@ -196,7 +203,7 @@ impl Menu {
     fn question(&self) -> Option<(&'static str, String)> {
         let id = match self.asked.as_ref()? {
             Asked::GiveUp(id) | Asked::Delete(id) => id,
-            Asked::Instead(..) => return None,
+            Asked::Instead(..) | Asked::Agree(..) => return None,
         };
         let run = self.list().iter().find(|run| run.id == *id)?;
         let stand = format!("day {} of {}, {}", run.day, run.days, dollars(run.cash));
@@ -219,9 +226,17 @@ impl Menu {
 
     /// The question what to do with a run that does not open, over any page.
     pub(super) fn draw_instead(&self, canvas: &mut Canvas<'_>, area: Rect) {
-        let Some(Asked::Instead(instead, problem)) = &self.asked else { return };
+        let (instead, problem) = match &self.asked {
+            Some(Asked::Instead(instead, problem)) => (instead, problem),
+            Some(Asked::Agree(_, text)) => {
+                let (agree, decline) = ("y I agree, the session begins", "n I do not, nothing is recorded");
+                return text.draw(canvas, area, "Before the session", agree, decline);
+            }
+            _ => return,
+        };
         let (title, offer) = match instead {
-            Instead::Agree(_, from) => return draw_text_to_agree_to(canvas, area, problem, *from),
+            // It is asked about as a text.
+            Instead::Agree(_) => return,
             Instead::Watch(_) => {
                 ("To read only", "Watch it from here, read-only? What is played elsewhere appears here.")
             }
@@ -367,24 +382,4 @@ pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, previews: &[(usiz
 /// A preview that is known.
 pub(super) fn known<'a>(previews: &'a Previews, id: &str) -> Option<&'a RunPreview> {
     previews.get(id)?.as_ref()?.as_ref().ok()
-}
-
-/// A text that a participant agrees to or not.
-fn draw_text_to_agree_to(canvas: &mut Canvas<'_>, area: Rect, text: &str, from: usize) {
-    let width = 84.min(area.width);
-    let lines = wrapped(text.trim_end(), width.saturating_sub(4) as usize);
-    let own = centered(area, width, (lines.len() as u16).saturating_add(5));
-    canvas.clear(own, Role::Text);
-    let inside = canvas.pane(own, "Before the session", "", true);
-    let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-    let room = inside.height.saturating_sub(2) as usize;
-    let from = from.min(lines.len().saturating_sub(room));
-    for (row, line) in rows_of(Rect { height: room as u16, ..inside }).zip(lines.iter().skip(from)) {
-        canvas.text(row, line, Role::Text);
-    }
-    let question = Rect { y: inside.bottom().saturating_sub(1), height: inside.height.min(1), ..inside };
-    canvas.text(question, "y I agree, the session begins   esc I do not, nothing is recorded", Role::Strong);
-    if lines.len() > room {
-        canvas.pane_keys(own, "up/down scroll");
-    }
 }

@@ -215,7 +215,7 @@ fn the_form_says_what_is_wrong_while_it_is_typed() {
     menu.form.at = ROWS.len() - 1;
     assert!(menu.act(Action::Open).is_empty() && menu.form.at == 3, "the form goes to what is wrong");
     type_text(&mut menu, "0");
-    menu.form.at = 1;
+    menu.form.at = 0;
     menu.act(Action::Left);
     assert!(shown(&menu, 80, 23).contains("No branches, no rewinding"));
     menu.form.at = ROWS.len() - 1;
@@ -232,7 +232,7 @@ fn the_form_shows_what_the_chosen_scenario_is_and_says() {
     let mut menu = menu(Vec::new());
     menu.act(Action::NewRun);
     let configuration = Configuration::shipped();
-    menu.form.at = 0;
+    menu.form.at = 1;
     for name in configuration.scenarios() {
         let screen = shown(&menu, 120, 39);
         let scenario = configuration.scenario(&name).expect("a scenario");
@@ -256,7 +256,7 @@ fn the_form_shows_what_the_chosen_scenario_is_and_says() {
 fn modes_without_anything_to_them_are_not_offered() {
     let mut menu = menu(Vec::new());
     menu.act(Action::NewRun);
-    menu.form.at = 1;
+    menu.form.at = 0;
     for _ in Mode::ALL {
         menu.act(Action::Right);
         let screen = shown(&menu, 120, 39);
@@ -352,20 +352,28 @@ fn a_participant_agrees_or_nothing_begins() {
     let text = "We keep what you do for a year.\n".repeat(40) + "You can stop at any time.";
     let asked = || {
         let mut menu = three();
-        menu.refused(text.clone(), Some(Instead::Agree(Box::default(), 0)));
+        menu.refused(text.clone(), Some(Instead::Agree(Box::default())));
         menu
     };
     let mut menu = asked();
     let screen = shown(&menu, 80, 23);
-    for part in ["Before the session", "We keep what you do", "y I agree", "esc I do not", "scroll"] {
+    for part in ["Before the session", "We keep what you do", "n I do not", "scroll to its end to agree"] {
         assert!(screen.contains(part), "{part} is missing in\n{screen}");
     }
     assert!(!screen.contains("stop at any time"));
-    (0..60).for_each(|_| drop(menu.act(Action::ScrollDown)));
-    assert!(shown(&menu, 80, 23).contains("You can stop at any time."));
-    assert!(menu.act(Action::Cancel).is_empty() && !shown(&menu, 80, 23).contains("Before the session"));
-    match &asked().act(Action::Confirm)[..] {
-        [Effect::Request(Request::Create(new))] => assert!(new.agreed.is_some()),
+    assert!(matches!(menu.act(Action::Agree)[..], [Effect::Complain(_)]), "the end was not on the screen");
+    (0..60).for_each(|_| drop(menu.act(Action::Down)));
+    let end = shown(&menu, 80, 23);
+    assert!(end.contains("You can stop at any time.") && end.contains("y I agree"), "{end}");
+    match &menu.act(Action::Agree)[..] {
+        [Effect::Request(Request::Create(new))] => {
+            assert!(new.agreed.is_some_and(|given| given.scrolled_to_end));
+        }
         other => panic!("{other:?}"),
+    }
+    for no in [Action::Decline, Action::Close] {
+        let mut menu = asked();
+        assert!(matches!(menu.act(no)[..], [Effect::Say(_)]));
+        assert!(!shown(&menu, 80, 23).contains("Before the session"));
     }
 }

@@ -1,0 +1,147 @@
+//! A text that somebody agrees to, or not: it has to be on the screen to its end first.
+
+use std::cell::Cell;
+use std::time::Instant;
+
+use ratatui::layout::Rect;
+
+use super::action::Action;
+use super::canvas::{Canvas, rows_of};
+use super::text::wrapped;
+use super::theme::Role;
+use crate::session::{ConsentGiven, ConsentMeans};
+
+/// Widest lines that read well.
+const WIDEST: u16 = 100;
+
+/// Said where somebody agrees before the end was on the screen.
+pub const READ_FIRST: &str = "the text goes on: scroll to its end first";
+
+/// A text to agree to, and how far it was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    text: String,
+    from: usize,
+    shown: Instant,
+    /// Rows of text in the last frame.
+    room: Cell<usize>,
+    /// The farthest that shows anything new, as it was drawn last.
+    last: Cell<usize>,
+    /// The last line was on the screen.
+    read: Cell<bool>,
+}
+
+impl Agreement {
+    /// A text that is shown from now on.
+    pub fn new(text: impl Into<String>) -> Agreement {
+        Agreement {
+            text: text.into(),
+            from: 0,
+            shown: Instant::now(),
+            room: Cell::new(1),
+            last: Cell::new(0),
+            read: Cell::new(false),
+        }
+    }
+
+    /// How the person agrees; none while the end of the text was not on the screen.
+    pub fn given(&self) -> Option<ConsentGiven> {
+        let read_ms = self.shown.elapsed().as_millis() as u64;
+        let given = ConsentGiven { means: ConsentMeans::Screen, scrolled_to_end: true, read_ms };
+        self.read.get().then_some(given)
+    }
+
+    /// Moves through the text; true if the action does that.
+    pub fn scroll(&mut self, action: Action) -> bool {
+        let page = self.room.get().max(1);
+        let to = match action {
+            Action::Up | Action::ScrollUp => self.from.saturating_sub(1),
+            Action::Down | Action::ScrollDown => self.from + 1,
+            Action::PageUp => self.from.saturating_sub(page),
+            Action::PageDown => self.from + page,
+            Action::First => 0,
+            Action::Last => usize::MAX,
+            _ => return false,
+        };
+        self.from = to.min(self.last.get());
+        true
+    }
+
+    /// Draws the text, and below it what can be done: `agree` and `decline` in words with their keys.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, title: &str, agree: &str, decline: &str) {
+        canvas.clear(area, Role::Text);
+        let width = area.width.saturating_sub(4).clamp(1, WIDEST);
+        let lines = wrapped(self.text.trim_end(), width as usize);
+        let room = area.height.saturating_sub(4) as usize;
+        let last = lines.len().saturating_sub(room);
+        let from = self.from.min(last);
+        self.room.set(room);
+        self.last.set(last);
+        if from == last && room > 0 {
+            self.read.set(true);
+        }
+        let note = match last {
+            0 => String::new(),
+            _ => format!("lines {} to {} of {}", from + 1, (from + room).min(lines.len()), lines.len()),
+        };
+        let inside = canvas.pane(area, title, &note, true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        canvas.page = (room as u16).max(1);
+        let text = Rect { height: (room as u16).min(inside.height), ..inside };
+        for (row, line) in rows_of(text).zip(lines.iter().skip(from)) {
+            canvas.text(row, line, Role::Text);
+        }
+        let below = Rect { y: inside.bottom().saturating_sub(1), height: inside.height.min(1), ..inside };
+        match self.read.get() {
+            true => canvas.text(below, &format!("{agree}   {decline}"), Role::Strong),
+            false => canvas.text(
+                below,
+                &format!("the text goes on: scroll to its end to agree   {decline}"),
+                Role::Warning,
+            ),
+        }
+        if last > 0 {
+            canvas.pane_keys(area, "up/down/page down scroll");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::painted;
+
+    fn drawn(agreement: &Agreement, height: u16) -> String {
+        painted(60, height, |canvas, area| agreement.draw(canvas, area, "Consent", "y agree", "n not"))
+            .join("\n")
+    }
+
+    #[test]
+    fn nobody_agrees_before_the_end_was_on_the_screen() {
+        let text = (1..=30).map(|line| format!("line {line}.")).collect::<Vec<_>>().join("\n");
+        let mut long = Agreement::new(text);
+        assert!(drawn(&long, 16).contains("scroll to its end"));
+        assert_eq!(long.given(), None);
+        for _ in 0..2 {
+            long.scroll(Action::PageDown);
+            drawn(&long, 16);
+        }
+        assert!(long.given().is_some_and(|given| given.scrolled_to_end), "{}", drawn(&long, 16));
+        assert!(drawn(&long, 16).contains("line 30.") && drawn(&long, 16).contains("y agree"));
+        long.scroll(Action::First);
+        assert!(drawn(&long, 16).contains("line 1."));
+        assert!(long.given().is_some(), "what was read stays read");
+    }
+
+    #[test]
+    fn what_fits_is_read_and_what_was_not_drawn_is_not() {
+        let short = Agreement::new("One line.");
+        assert_eq!(short.given(), None);
+        for (width, height) in [(0, 0), (1, 1), (3, 2), (20, 3)] {
+            painted(width, height, |canvas, area| short.draw(canvas, area, "Consent", "y", "n"));
+        }
+        assert_eq!(short.given(), None, "no line was on the screen");
+        drawn(&short, 10);
+        assert!(short.given().is_some());
+    }
+}

@@ -1,0 +1,160 @@
+//! A participant's way through a study: the pages around the runs, and what cannot be reached meanwhile.
+
+use super::{App, Closing, Layer, Order, Stage};
+use crate::console::message::VisitNews;
+use crate::console::request::{Request, VisitRequest};
+use crate::console::screens::menu::Menu;
+use crate::console::visit::questions::QuestionPage;
+use crate::console::visit::{VisitPage, VisitState};
+use crate::console::worker::Job;
+use crate::session::{NextStep, Study};
+
+/// Said where something is not for participants.
+const KEPT: &str = "in a study only your own session is open";
+
+impl App {
+    /// Receives participants of a study from now on.
+    pub(super) fn receive(&mut self, study: Box<Study>) {
+        let visit = VisitState::of(&study);
+        self.stage = Stage::Visit(Box::new(VisitPage::wait(&visit.title)));
+        self.visit = Some(visit);
+        self.ask_visit(VisitRequest::Receive(study));
+    }
+
+    fn ask_visit(&mut self, request: VisitRequest) {
+        self.request(Request::Visit(request));
+    }
+
+    /// Whether something is kept from participants; says so.
+    pub(super) fn keeps_from_participant(&mut self, request: &Request) -> bool {
+        let kept = self.visit.is_some() && request.is_kept_from_participants();
+        if kept {
+            self.complain(KEPT);
+        }
+        kept
+    }
+
+    /// Whether a participant is led: nothing but their own session can be reached.
+    pub(super) fn leads_participant(&self) -> bool {
+        self.visit.is_some()
+    }
+
+    pub(super) fn complain_of_visit(&mut self) {
+        self.complain(KEPT);
+    }
+
+    /// Whether questions have to be answered before the participant does anything else.
+    pub(super) fn owes_answers(&self) -> bool {
+        self.visit.as_ref().is_some_and(|visit| !visit.due.is_empty())
+    }
+
+    /// Takes note of what a request means for the visit before it is sent.
+    pub(super) fn note_request(&mut self, request: &Request) {
+        let Some(visit) = &mut self.visit else { return };
+        match request {
+            Request::Visit(VisitRequest::Answer(answers)) => {
+                visit.due.retain(|due| answers.iter().all(|answer| answer.due != *due));
+            }
+            Request::Visit(VisitRequest::Play) => self.tour_planned = visit.has_tour(),
+            _ => {}
+        }
+    }
+
+    fn turn_to(&mut self, page: impl FnOnce(&str) -> VisitPage) {
+        let Some(visit) = &self.visit else { return };
+        self.layers.clear();
+        self.stage = Stage::Visit(Box::new(page(&visit.title)));
+    }
+
+    /// Takes news of the visit.
+    pub(super) fn visited(&mut self, news: VisitNews) {
+        let Some(visit) = &mut self.visit else { return };
+        match news {
+            VisitNews::Ready => self.turn_to(VisitPage::label),
+            VisitNews::LabelRefused(problem) => {
+                if let Stage::Visit(page) = &mut self.stage {
+                    page.refuse_label(problem);
+                }
+            }
+            VisitNews::Next(step) => {
+                visit.due.clear();
+                visit.practises = matches!(step, NextStep::Practice { .. });
+                let opens = matches!(step, NextStep::Questions(_));
+                self.turn_to(|title| VisitPage::next(title, step));
+                if opens {
+                    self.ask_visit(VisitRequest::Play);
+                }
+            }
+            VisitNews::Declined => self.turn_to(VisitPage::declined),
+            VisitNews::Withdrawn => self.turn_to(VisitPage::withdrawn),
+            VisitNews::Due(due) | VisitNews::Answered(due) => visit.due = due,
+            VisitNews::Code(Some(true)) => {
+                self.visit = None;
+                self.stage = Stage::Menu(Box::new(Menu::new(&self.configuration)));
+                self.orders.push(Order::Job(Job::Do(Request::ListRuns)));
+            }
+            VisitNews::Code(right) => {
+                let problem = match right {
+                    None => "this study has no code: nothing else opens",
+                    Some(_) => "this is not the experimenter's code",
+                };
+                self.complain_on_page(problem.to_owned());
+            }
+            VisitNews::Failed(problem) => {
+                self.complain_on_page(problem);
+            }
+        }
+    }
+
+    /// Says on the page of the visit what went wrong. True if there is one.
+    pub(super) fn complain_on_page(&mut self, problem: String) -> bool {
+        if let Stage::Visit(page) = &mut self.stage {
+            page.complain(problem);
+            return true;
+        }
+        false
+    }
+
+    /// A run of the participant was left; what comes next.
+    pub(super) fn after_run(&mut self, problem: Option<String>) {
+        let over = self.run().is_some_and(|run| !run.company.is_running());
+        let answered = !self.owes_answers();
+        let Some(visit) = &mut self.visit else { return };
+        if std::mem::take(&mut visit.withdraws) {
+            self.turn_to(VisitPage::withdraw);
+        } else if over && answered {
+            self.turn_to(VisitPage::wait);
+            self.ask_visit(VisitRequest::GoOn);
+        } else {
+            self.turn_to(VisitPage::left);
+        }
+        if let Some(problem) = problem {
+            self.complain(problem);
+        }
+    }
+
+    /// Leaves the run to withdraw.
+    pub(super) fn withdraw(&mut self) {
+        let Some(visit) = &mut self.visit else { return self.complain("this run belongs to no study") };
+        visit.withdraws = true;
+        self.leave(Closing::ToMenu);
+    }
+
+    /// Shows questions that are due once nothing lies over the run; goes on once it is over.
+    pub(super) fn settle_visit(&mut self) {
+        let Some(visit) = &self.visit else { return };
+        let Stage::Run(run) = &self.stage else { return };
+        if !self.layers.is_empty() || self.busy.is_some() || self.closing.is_some() {
+            return;
+        }
+        let over = !run.company.is_running();
+        match QuestionPage::first_of(&visit.due) {
+            Some((page, shown)) => {
+                self.layers.push(Layer::Dialog(Box::new(page)));
+                self.follow(vec![shown]);
+            }
+            None if over => self.leave(Closing::ToMenu),
+            None => {}
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! The answer to a question of a study, while it is given.
+
+use std::time::Instant;
+
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use serde_json::Value;
+
+use crate::console::action::Action;
+use crate::console::request::GivenAnswer;
+use crate::console::widgets::{Editor, Field};
+use crate::session::{DueQuestion, Form};
+
+/// What was entered so far.
+#[derive(Debug, Clone)]
+pub enum Entered {
+    /// A point of a scale, or one of some options: its place from 0.
+    One(Option<usize>),
+    /// Some of several options, and the one that the next mark is for.
+    Several(Vec<bool>, usize),
+    /// A number, as it is typed.
+    Number(Field),
+    /// Words.
+    Words(Box<Editor>),
+}
+
+/// A question with what was entered so far.
+pub struct AnswerDraft {
+    /// The question.
+    pub due: DueQuestion,
+    /// What was entered.
+    pub entered: Entered,
+    /// It was shown before.
+    pub asked: bool,
+    /// The answer the person went on with last.
+    confirmed: Option<Value>,
+    changes: u32,
+    /// Milliseconds on the screen before it was shown last.
+    shown_ms: u64,
+    shown: Instant,
+}
+
+impl AnswerDraft {
+    /// A question nobody has seen yet.
+    pub fn new(due: DueQuestion) -> AnswerDraft {
+        let entered = match &due.question.form {
+            Form::Likert { .. } | Form::Choice { several: false, .. } | Form::Attention { .. } => {
+                Entered::One(None)
+            }
+            Form::Choice { options, several: true } => Entered::Several(vec![false; options.len()], 0),
+            Form::Number { .. } => Entered::Number(Field::default()),
+            Form::Text { .. } => Entered::Words(Box::default()),
+        };
+        AnswerDraft {
+            due,
+            entered,
+            asked: false,
+            confirmed: None,
+            changes: 0,
+            shown_ms: 0,
+            shown: Instant::now(),
+        }
+    }
+
+    /// It is on the screen from now on.
+    pub fn show(&mut self) {
+        (self.asked, self.shown) = (true, Instant::now());
+    }
+
+    /// It is no longer on the screen.
+    pub fn hide(&mut self) {
+        self.shown_ms += self.shown.elapsed().as_millis() as u64;
+    }
+
+    /// What was entered, as plain mode would have it typed.
+    fn typed(&self) -> String {
+        let number = |at: usize| (at + 1).to_string();
+        match &self.entered {
+            Entered::One(chosen) => chosen.map(number).unwrap_or_default(),
+            Entered::Several(marked, _) => {
+                let chosen = marked.iter().enumerate().filter(|(_, marked)| **marked);
+                chosen.map(|(at, _)| number(at)).collect::<Vec<_>>().join(",")
+            }
+            Entered::Number(field) => field.text().trim().to_owned(),
+            Entered::Words(editor) => editor.text().trim().to_owned(),
+        }
+    }
+
+    /// Takes what was entered for the answer.
+    ///
+    /// # Errors
+    /// It is none; what would be one.
+    pub fn confirm(&mut self) -> Result<(), String> {
+        let form = &self.due.question.form;
+        let typed = self.typed();
+        let value = match typed.is_empty() {
+            true if !self.due.question.required => Value::Null,
+            true => return Err(format!("an answer is needed: {}", form.value("").err().unwrap_or_default())),
+            false => form.value(&typed).map_err(|expected| format!("needed: {expected}"))?,
+        };
+        let chosen_live = matches!(self.entered, Entered::One(_));
+        let differs = self.confirmed.as_ref().is_some_and(|before| *before != value);
+        self.changes += u32::from(differs && !chosen_live);
+        self.confirmed = Some(value);
+        Ok(())
+    }
+
+    /// The answer that was given.
+    pub fn given(&self) -> GivenAnswer {
+        GivenAnswer {
+            due: self.due.clone(),
+            value: self.confirmed.clone().unwrap_or(Value::Null),
+            for_ms: self.shown_ms,
+            changes: self.changes,
+        }
+    }
+
+    /// How many options there are to choose from.
+    fn options(&self) -> usize {
+        self.due.question.form.options().len()
+    }
+
+    /// Chooses an option: the only one, or marks it or not among several.
+    pub fn choose(&mut self, at: usize) {
+        if at >= self.options() {
+            return;
+        }
+        match &mut self.entered {
+            Entered::One(chosen) => {
+                // The first choice is no change.
+                self.changes += u32::from(chosen.is_some_and(|before| before != at));
+                *chosen = Some(at);
+            }
+            Entered::Several(marked, here) => {
+                marked[at] = !marked[at];
+                *here = at;
+            }
+            Entered::Number(_) | Entered::Words(_) => {}
+        }
+    }
+
+    /// Does an action on what is entered.
+    pub fn act(&mut self, action: Action) {
+        let last = self.options().saturating_sub(1);
+        let step = |at: usize| match action {
+            Action::Up | Action::Left => Some(at.saturating_sub(1)),
+            Action::Down | Action::Right => Some((at + 1).min(last)),
+            Action::First => Some(0),
+            Action::Last => Some(last),
+            _ => None,
+        };
+        match &mut self.entered {
+            Entered::One(chosen) => {
+                let to = match (*chosen, action) {
+                    (Some(at), _) => step(at),
+                    (None, Action::Down | Action::Right | Action::First | Action::MarkOption) => Some(0),
+                    (None, Action::Up | Action::Left | Action::Last) => Some(last),
+                    (None, _) => None,
+                };
+                if let Some(at) = to {
+                    self.choose(at);
+                }
+            }
+            Entered::Several(_, here) => {
+                let at = *here;
+                match (action, step(at)) {
+                    (Action::MarkOption, _) => self.choose(at),
+                    (_, Some(to)) => *here = to,
+                    _ => {}
+                }
+            }
+            Entered::Number(_) | Entered::Words(_) => {}
+        }
+    }
+
+    /// Takes a key that is typed.
+    pub fn key(&mut self, key: &KeyEvent) {
+        let plain = !key.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT);
+        match (&mut self.entered, key.code) {
+            (Entered::Number(field), _) => {
+                field.number_key(key);
+            }
+            (Entered::Words(editor), _) => editor.key(key),
+            (_, KeyCode::Char(letter)) if plain => {
+                if let Some(at) = letter.to_digit(10).and_then(|digit| digit.checked_sub(1)) {
+                    self.choose(at as usize);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Takes pasted text.
+    pub fn paste(&mut self, text: &str) {
+        match &mut self.entered {
+            Entered::Number(field) => field.insert(text.trim()),
+            Entered::Words(editor) => editor.insert(text),
+            _ => {}
+        }
+    }
+}

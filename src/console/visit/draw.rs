@@ -1,0 +1,163 @@
+//! How the pages of a visit look.
+
+use ratatui::layout::Rect;
+
+use super::{PageKind, VisitPage, WITHDRAW};
+use crate::console::action::Action;
+use crate::console::canvas::{Canvas, centered, rows_of};
+use crate::console::keys::Keys;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+
+/// Widest page that reads well.
+const WIDEST: u16 = 84;
+
+impl VisitPage {
+    /// Draws the page below the title of the study.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, keys: &Keys) {
+        let head = Rect { x: area.x + 2, width: area.width.saturating_sub(4), height: 1, ..area };
+        canvas.text(head, &self.title, Role::Title);
+        let body = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
+        let key = |action: Action| keys.label(action).unwrap_or_default();
+        if let PageKind::Consent(text) = &self.kind {
+            let agree = format!("{} I agree", key(Action::Agree));
+            let decline = format!("{} I do not agree", key(Action::Decline));
+            return text.draw(canvas, body, "Consent", &agree, &decline);
+        }
+        let (title, said) = self.said(&key);
+        let width = WIDEST.min(body.width);
+        let mut lines: Vec<(String, Role)> = Vec::new();
+        for (text, role) in said {
+            if !lines.is_empty() {
+                lines.push((String::new(), Role::Text));
+            }
+            let told = wrapped(&text, width.saturating_sub(4) as usize);
+            lines.extend(told.into_iter().map(|line| (line, role)));
+        }
+        let own = centered(body, width, (lines.len() as u16 + 6).max(9));
+        let inside = canvas.pane(own, title, "", true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let text = Rect { y: inside.y + u16::from(inside.height > 10), ..inside }.intersection(inside);
+        for (row, (line, role)) in rows_of(text).zip(&lines) {
+            canvas.text(row, line, *role);
+        }
+        self.draw_field(canvas, inside);
+        if let Some(problem) = &self.problem {
+            self.draw_problem(canvas, inside, problem);
+        }
+    }
+
+    fn draw_field(&self, canvas: &mut Canvas<'_>, inside: Rect) {
+        let row = Rect { y: inside.bottom().saturating_sub(3), height: inside.height.min(1), ..inside };
+        let row = Rect { width: 32.min(row.width), ..row };
+        match &self.kind {
+            PageKind::Label(field) | PageKind::Withdraw(Some(field)) => field.draw(canvas, row),
+            PageKind::Code(field) => field.masked().draw(canvas, row),
+            _ => {}
+        }
+    }
+
+    /// What went wrong, below the field; in as many rows as there are.
+    fn draw_problem(&self, canvas: &mut Canvas<'_>, inside: Rect, problem: &str) {
+        let rows = inside.height.min(2);
+        let below = Rect { y: inside.bottom().saturating_sub(rows), height: rows, ..inside };
+        for (row, line) in rows_of(below).zip(wrapped(&format!("! {problem}"), inside.width as usize)) {
+            canvas.text(row, &line, Role::Bad);
+        }
+    }
+
+    /// Title and paragraphs.
+    fn said(&self, key: &dyn Fn(Action) -> String) -> (&'static str, Vec<(String, Role)>) {
+        let text = |words: &str| (words.to_owned(), Role::Text);
+        let strong = |words: String| (words, Role::Strong);
+        let go = key(Action::GoOn);
+        let next_person = strong(format!("{go} the next participant"));
+        match &self.kind {
+            PageKind::Label(_) => {
+                ("Label", vec![strong("Type the label that the experimenter gave you.".to_owned())])
+            }
+            PageKind::Code(_) => ("Experimenter", vec![strong("The experimenter's code:".to_owned())]),
+            PageKind::Wait | PageKind::Consent(_) => ("", vec![text("One moment …")]),
+            PageKind::Practice { resumed, may_pass } => {
+                let first = match resumed {
+                    false => {
+                        "The practice comes first: another company, to learn the controls. It does not count."
+                    }
+                    true => "The practice goes on where you left it. It does not count.",
+                };
+                let mut said = vec![text(first)];
+                said.push(text("It ends by itself after its last day. Then the session begins with a company of its own."));
+                said.push(strong(format!("{go} begins the practice")));
+                if *may_pass {
+                    let pass = key(Action::PassPractice);
+                    said.push(strong(format!("{pass} passes over it: the session comes next")));
+                }
+                ("Practice", said)
+            }
+            PageKind::Session { resumed } => {
+                let first = match resumed {
+                    false => "The session begins now.",
+                    true => "The session goes on where you left it.",
+                };
+                let kept = "Everything you confirm is kept. You can leave at any time and go on later with your label.";
+                let palette = key(Action::Palette);
+                let withdraw = format!(
+                    "You can withdraw at any time: {palette} {}. That erases everything you did in this study.",
+                    Action::Withdraw.entry().title
+                );
+                ("Session", vec![text(first), text(kept), text(&withdraw), strong(format!("{go} begins"))])
+            }
+            PageKind::Left => (
+                "Left",
+                vec![
+                    text(
+                        "Everything is kept. You can go on later: come back to this machine and give your label again.",
+                    ),
+                    next_person,
+                ],
+            ),
+            PageKind::Withdraw(None) => {
+                let (yes, no) = (key(Action::Confirm), key(Action::Cancel));
+                let erased =
+                    "Withdrawing erases everything you did in this study, for good. It cannot be undone.";
+                (
+                    "Withdraw",
+                    vec![
+                        text(erased),
+                        strong(format!("{yes} withdraw, after one more question")),
+                        strong(format!("{no} go on with the study")),
+                    ],
+                )
+            }
+            PageKind::Withdraw(Some(_)) => (
+                "Withdraw",
+                vec![strong(format!("Type {WITHDRAW} to erase everything you did in this study."))],
+            ),
+            PageKind::Declined => (
+                "Not agreed",
+                vec![
+                    text("You did not agree. No run of yours was recorded. Please tell the experimenter."),
+                    next_person,
+                ],
+            ),
+            PageKind::Withdrawn => (
+                "Withdrawn",
+                vec![
+                    text(
+                        "You have withdrawn. What you did in this study was erased; a note of the withdrawal stays. Please tell the experimenter.",
+                    ),
+                    next_person,
+                ],
+            ),
+            PageKind::Thanks => (
+                "Thank you",
+                vec![
+                    text(
+                        "This was all. Thank you for taking part. Everything is recorded; please tell the experimenter.",
+                    ),
+                    next_person,
+                ],
+            ),
+        }
+    }
+}

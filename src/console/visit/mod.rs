@@ -1,0 +1,281 @@
+//! The way of a participant through a study: label, consent, practice, session, questions, thanks.
+//!
+//! While it lasts, nothing else of the console can be reached; the experimenter's code opens the rest.
+
+mod answer;
+mod draw;
+pub mod questions;
+
+use crossterm::event::{KeyCode, KeyEvent};
+
+use super::action::{Action, Scope};
+use super::agreement::{Agreement, READ_FIRST};
+use super::effect::Effect;
+use super::request::{Request, VisitRequest};
+use super::widgets::Field;
+use crate::session::{DueQuestion, NextStep, Study};
+
+/// What the console knows of the visit, on pages and in runs.
+pub struct VisitState {
+    /// What participants are shown as the title of the study.
+    pub title: String,
+    /// The practice shows the tour.
+    tour: bool,
+    /// What is due and was not answered yet.
+    pub due: Vec<DueQuestion>,
+    /// The run that is open, or is being opened, is the practice.
+    pub practises: bool,
+    /// The person left the run to withdraw.
+    pub withdraws: bool,
+}
+
+impl VisitState {
+    /// A visit to a study, before anybody has come.
+    pub fn of(study: &Study) -> VisitState {
+        VisitState {
+            title: study.protocol.title.clone(),
+            tour: study.protocol.session.tour,
+            due: Vec::new(),
+            practises: false,
+            withdraws: false,
+        }
+    }
+
+    /// Whether the tour belongs to the run that is open.
+    pub fn has_tour(&self) -> bool {
+        self.tour && self.practises
+    }
+}
+
+/// A page outside of a run.
+pub struct VisitPage {
+    /// Title of the study.
+    title: String,
+    kind: PageKind,
+    /// What went wrong.
+    problem: Option<String>,
+    /// Labels that were refused at this page.
+    refused: u32,
+}
+
+/// What the page is about.
+enum PageKind {
+    /// The participant gives their label.
+    Label(Field),
+    /// The experimenter gives their code.
+    Code(Field),
+    /// Something is being looked up.
+    Wait,
+    /// The participant agrees, or not.
+    Consent(Agreement),
+    /// The practice comes next.
+    Practice { resumed: bool, may_pass: bool },
+    /// The session comes next.
+    Session { resumed: bool },
+    /// The participant has left a run that is not over.
+    Left,
+    /// The participant withdraws: they were asked once, and type the word at the second time.
+    Withdraw(Option<Field>),
+    /// The participant does not agree.
+    Declined,
+    /// The participant has withdrawn.
+    Withdrawn,
+    /// Everything is done.
+    Thanks,
+}
+
+/// The word that confirms a withdrawal.
+const WITHDRAW: &str = "withdraw";
+
+impl VisitPage {
+    fn new(title: &str, kind: PageKind) -> VisitPage {
+        VisitPage { title: title.to_owned(), kind, problem: None, refused: 0 }
+    }
+
+    /// The page that asks for a label.
+    pub fn label(title: &str) -> VisitPage {
+        VisitPage::new(title, PageKind::Label(Field::default()))
+    }
+
+    /// The page while something is looked up.
+    pub fn wait(title: &str) -> VisitPage {
+        VisitPage::new(title, PageKind::Wait)
+    }
+
+    /// The page after a run was left before its end.
+    pub fn left(title: &str) -> VisitPage {
+        VisitPage::new(title, PageKind::Left)
+    }
+
+    /// The page on which somebody withdraws.
+    pub fn withdraw(title: &str) -> VisitPage {
+        VisitPage::new(title, PageKind::Withdraw(None))
+    }
+
+    /// The page after somebody has not agreed.
+    pub fn declined(title: &str) -> VisitPage {
+        VisitPage::new(title, PageKind::Declined)
+    }
+
+    /// The page after somebody has withdrawn.
+    pub fn withdrawn(title: &str) -> VisitPage {
+        VisitPage::new(title, PageKind::Withdrawn)
+    }
+
+    /// The page of what comes next.
+    pub fn next(title: &str, step: NextStep) -> VisitPage {
+        let kind = match step {
+            NextStep::Consent(text) => PageKind::Consent(Agreement::new(text.text)),
+            NextStep::Practice { unfinished, may_pass } => {
+                PageKind::Practice { resumed: unfinished.is_some(), may_pass }
+            }
+            NextStep::Session(unfinished) => PageKind::Session { resumed: unfinished.is_some() },
+            // The run opens by itself, with its questions over it.
+            NextStep::Questions(_) => PageKind::Wait,
+            NextStep::Thanks => PageKind::Thanks,
+            NextStep::Withdrawn => PageKind::Withdrawn,
+        };
+        VisitPage::new(title, kind)
+    }
+
+    /// The label was refused; how many were by now.
+    pub fn refuse_label(&mut self, problem: String) {
+        self.refused += 1;
+        let field = Field::default();
+        (self.kind, self.problem) = (PageKind::Label(field), Some(problem));
+    }
+
+    /// Something went wrong.
+    pub fn complain(&mut self, problem: String) {
+        self.problem = Some(problem);
+    }
+
+    /// Scopes of the page.
+    pub fn scopes(&self) -> Vec<Scope> {
+        match self.kind {
+            PageKind::Label(_) | PageKind::Code(_) | PageKind::Withdraw(Some(_)) => {
+                vec![Scope::Field, Scope::Visit]
+            }
+            PageKind::Consent(_) => vec![Scope::Visit, Scope::List],
+            PageKind::Withdraw(None) => vec![Scope::Dialog],
+            _ => vec![Scope::Visit],
+        }
+    }
+
+    /// Actions worth showing. The one for experimenters is not.
+    pub fn hints(&self) -> Vec<Action> {
+        match &self.kind {
+            PageKind::Label(_) => vec![Action::GoOn],
+            PageKind::Code(_) => vec![Action::GoOn, Action::Discard],
+            PageKind::Wait => Vec::new(),
+            PageKind::Consent(text) if text.given().is_none() => vec![Action::Down, Action::Decline],
+            PageKind::Consent(_) => vec![Action::Agree, Action::Decline],
+            PageKind::Practice { may_pass: true, .. } => {
+                vec![Action::GoOn, Action::PassPractice, Action::Withdraw]
+            }
+            PageKind::Practice { .. } | PageKind::Session { .. } | PageKind::Left | PageKind::Thanks => {
+                vec![Action::GoOn, Action::Withdraw]
+            }
+            PageKind::Withdraw(None) => vec![Action::Confirm, Action::Cancel],
+            PageKind::Withdraw(Some(_)) => vec![Action::GoOn, Action::Discard],
+            PageKind::Declined | PageKind::Withdrawn => vec![Action::GoOn],
+        }
+    }
+
+    /// Does an action.
+    pub fn act(&mut self, action: Action) -> Vec<Effect> {
+        let withdraws = action == Action::Withdraw && self.hints().contains(&action);
+        match (&mut self.kind, action) {
+            (PageKind::Consent(text), Action::Agree) => match text.given() {
+                Some(given) => self.ask(VisitRequest::Agree(given)),
+                None => vec![Effect::Complain(READ_FIRST.to_owned())],
+            },
+            (PageKind::Consent(_), Action::Decline) => self.ask(VisitRequest::Decline),
+            (PageKind::Consent(text), _) => {
+                text.scroll(action);
+                Vec::new()
+            }
+            (PageKind::Practice { may_pass: true, .. }, Action::PassPractice) => {
+                self.ask(VisitRequest::PassPractice)
+            }
+            (PageKind::Label(_), Action::Experimenter) => self.turn_to(PageKind::Code(Field::default())),
+            (PageKind::Withdraw(None), Action::Confirm) => {
+                self.turn_to(PageKind::Withdraw(Some(Field::default())))
+            }
+            (PageKind::Withdraw(None), Action::Cancel) => self.ask(VisitRequest::GoOn),
+            (PageKind::Withdraw(Some(_)), Action::Discard) => self.ask(VisitRequest::GoOn),
+            (PageKind::Code(_), Action::Discard) => self.turn_to(PageKind::Label(Field::default())),
+            _ if withdraws => self.turn_to(PageKind::Withdraw(None)),
+            (_, Action::GoOn | Action::Commit | Action::CommitNext) => self.go_on(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn turn_to(&mut self, kind: PageKind) -> Vec<Effect> {
+        (self.kind, self.problem) = (kind, None);
+        Vec::new()
+    }
+
+    fn go_on(&mut self) -> Vec<Effect> {
+        match &self.kind {
+            PageKind::Label(field) if !field.text().trim().is_empty() => {
+                let (label, refused) = (field.text().trim().to_owned(), self.refused);
+                vec![Effect::Request(Request::Visit(VisitRequest::Begin { label, refused }))]
+            }
+            PageKind::Code(field) => {
+                let code = field.text().to_owned();
+                vec![Effect::Request(Request::Visit(VisitRequest::TryCode(code)))]
+            }
+            PageKind::Practice { .. } | PageKind::Session { .. } => {
+                vec![Effect::Request(Request::Visit(VisitRequest::Play))]
+            }
+            PageKind::Withdraw(Some(field)) if field.text().trim() == WITHDRAW => {
+                self.ask(VisitRequest::Withdraw)
+            }
+            PageKind::Withdraw(Some(_)) => {
+                self.problem = Some(format!("nothing was erased: type {WITHDRAW}, or esc to go on"));
+                Vec::new()
+            }
+            // The next participant.
+            PageKind::Left | PageKind::Declined | PageKind::Withdrawn | PageKind::Thanks => {
+                self.refused = 0;
+                self.turn_to(PageKind::Label(Field::default()))
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Asks the session's thread for something and waits.
+    fn ask(&mut self, request: VisitRequest) -> Vec<Effect> {
+        self.turn_to(PageKind::Wait);
+        vec![Effect::Request(Request::Visit(request))]
+    }
+
+    /// The field that is typed into.
+    fn field(&mut self) -> Option<&mut Field> {
+        match &mut self.kind {
+            PageKind::Label(field) | PageKind::Code(field) | PageKind::Withdraw(Some(field)) => Some(field),
+            _ => None,
+        }
+    }
+
+    /// Takes a typed key.
+    pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
+        match self.field() {
+            Some(field) => {
+                field.key(key);
+                self.problem = None;
+            }
+            None if key.code == KeyCode::Char('q') => return vec![Effect::Do(Action::Quit)],
+            None => {}
+        }
+        Vec::new()
+    }
+
+    /// Takes pasted text.
+    pub fn paste(&mut self, text: &str) {
+        if let Some(field) = self.field() {
+            field.insert(text.trim());
+        }
+    }
+}

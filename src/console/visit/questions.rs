@@ -1,0 +1,412 @@
+//! A page of questions: one after the other, with a way back, until all answers are sent together.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
+
+use super::answer::{AnswerDraft, Entered};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::dialogs::{Dialog, Outcome};
+use crate::console::effect::Effect;
+use crate::console::request::{Request, VisitRequest};
+use crate::console::screens::Look;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::session::{DueQuestion, Form};
+
+/// Widest lines that read well.
+const WIDEST: u16 = 92;
+
+/// The questions of a questionnaire on one occasion.
+pub struct QuestionPage {
+    drafts: Vec<AnswerDraft>,
+    at: usize,
+    /// First line of what is asked, where it is longer than the window.
+    from: usize,
+    problem: Option<String>,
+}
+
+impl QuestionPage {
+    /// The first page of what is due, and what follows from showing it; none if nothing is due.
+    pub fn first_of(due: &[DueQuestion]) -> Option<(QuestionPage, Effect)> {
+        let first = due.first()?;
+        let same = |one: &&DueQuestion| {
+            (&one.questionnaire, &one.occasion) == (&first.questionnaire, &first.occasion)
+        };
+        let drafts = due.iter().filter(same).cloned().map(AnswerDraft::new).collect();
+        let mut page = QuestionPage { drafts, at: 0, from: 0, problem: None };
+        let shown = page.show(0)?;
+        Some((page, shown))
+    }
+
+    fn draft(&self) -> &AnswerDraft {
+        &self.drafts[self.at]
+    }
+
+    /// Whether the answer is chosen, not typed.
+    fn chooses(&self) -> bool {
+        matches!(self.draft().entered, Entered::One(_) | Entered::Several(..))
+    }
+
+    /// Shows a question; what is recorded of that the first time.
+    fn show(&mut self, at: usize) -> Option<Effect> {
+        self.at = at.min(self.drafts.len().saturating_sub(1));
+        (self.from, self.problem) = (0, None);
+        let draft = self.drafts.get_mut(self.at)?;
+        let fresh = !draft.asked;
+        draft.show();
+        let question = Box::new(draft.due.clone());
+        fresh.then_some(Effect::Request(Request::Visit(VisitRequest::Ask(question))))
+    }
+
+    fn go_on(&mut self) -> Outcome {
+        let last = self.at + 1 == self.drafts.len();
+        let draft = &mut self.drafts[self.at];
+        if let Err(problem) = draft.confirm() {
+            self.problem = Some(problem);
+            return Outcome::stay();
+        }
+        draft.hide();
+        if last {
+            let answers = self.drafts.iter().map(AnswerDraft::given).collect();
+            return Outcome::close_with(vec![Effect::Request(Request::Visit(VisitRequest::Answer(answers)))]);
+        }
+        Outcome::with(self.show(self.at + 1).into_iter().collect())
+    }
+
+    fn go_back(&mut self) -> Outcome {
+        let Some(before) = self.at.checked_sub(1) else {
+            self.problem = Some("this is the first question of the page".to_owned());
+            return Outcome::stay();
+        };
+        self.drafts[self.at].hide();
+        Outcome::with(self.show(before).into_iter().collect())
+    }
+
+    /// Title, introduction and question, a line each with its role.
+    fn asked(&self, width: usize) -> Vec<(String, Role)> {
+        let due = &self.draft().due;
+        let mut lines: Vec<(String, Role)> = Vec::new();
+        let introduction = due.introduction.trim();
+        if self.at == 0 && !introduction.is_empty() {
+            lines.extend(wrapped(introduction, width).into_iter().map(|line| (line, Role::Text)));
+            lines.push((String::new(), Role::Text));
+        }
+        lines.extend(wrapped(&due.question.text, width).into_iter().map(|line| (line, Role::Strong)));
+        lines
+    }
+}
+
+impl Dialog for QuestionPage {
+    fn scopes(&self) -> Vec<Scope> {
+        match self.draft().entered {
+            Entered::One(_) | Entered::Several(..) => vec![Scope::Visit, Scope::List],
+            Entered::Number(_) => vec![Scope::Field, Scope::Visit],
+            Entered::Words(_) => vec![Scope::Editor, Scope::Visit],
+        }
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        let mut hints = vec![Action::GoOn];
+        if matches!(self.draft().entered, Entered::Several(..)) {
+            hints.push(Action::MarkOption);
+        }
+        if self.at > 0 {
+            hints.push(Action::GoBack);
+        }
+        if self.chooses() {
+            hints.push(Action::Quit);
+        }
+        hints
+    }
+
+    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
+        match action {
+            Action::GoOn | Action::Commit | Action::CommitNext | Action::Open => return self.go_on(),
+            Action::GoBack | Action::CommitPrevious => return self.go_back(),
+            Action::PageUp => self.from = self.from.saturating_sub(4),
+            Action::PageDown => self.from += 4,
+            other => {
+                self.problem = None;
+                self.drafts[self.at].act(other);
+            }
+        }
+        Outcome::stay()
+    }
+
+    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Outcome {
+        let words = matches!(self.draft().entered, Entered::Words(_));
+        match key.code {
+            KeyCode::Tab if words => return self.go_on(),
+            KeyCode::PageUp if words => self.from = self.from.saturating_sub(4),
+            KeyCode::PageDown if words => self.from += 4,
+            KeyCode::Char('q') if self.chooses() && key.modifiers.is_empty() => {
+                return Outcome::with(vec![Effect::Do(Action::Quit)]);
+            }
+            _ => {
+                self.problem = None;
+                self.drafts[self.at].key(key);
+            }
+        }
+        Outcome::stay()
+    }
+
+    fn paste(&mut self, text: &str, _: &Look<'_>) -> Outcome {
+        self.drafts[self.at].paste(text);
+        Outcome::stay()
+    }
+
+    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+        self.problem = None;
+        self.drafts[self.at].choose(row);
+        Outcome::stay()
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let draft = self.draft();
+        canvas.clear(area, Role::Text);
+        let note = format!("question {} of {}", self.at + 1, self.drafts.len());
+        let inside = canvas.pane(area, &draft.due.title, &note, true);
+        let width = inside.width.saturating_sub(2).min(WIDEST);
+        let inside = Rect { x: inside.x + 1, width, ..inside };
+        let [asked, form, last] = self.parts(inside);
+        self.draw_asked(canvas, asked);
+        draw_form(canvas, form, draft);
+        match &self.problem {
+            Some(problem) => canvas.text(last, &format!("! {problem}"), Role::Bad),
+            None => canvas.text(last, &said_below(draft), Role::Dim),
+        }
+        canvas.pane_keys(area, &self.keys_in_words(look));
+    }
+}
+
+impl QuestionPage {
+    /// Rooms of what is asked, of the answer, and of a line below.
+    fn parts(&self, inside: Rect) -> [Rect; 3] {
+        let wanted = self.asked(inside.width as usize).len() as u16;
+        let rows = form_rows(self.draft(), inside.width).min(inside.height / 2);
+        let room = inside.height.saturating_sub(2);
+        let above = wanted.min(room.saturating_sub(rows)).max(room.min(1));
+        let asked = Rect { height: above.min(inside.height), ..inside };
+        let gap = u16::from(above + rows < room);
+        let top = (asked.bottom() + gap).min(inside.bottom());
+        let form = Rect { y: top, height: inside.bottom().saturating_sub(top + 1), ..inside };
+        let last = Rect { y: inside.bottom().saturating_sub(1), height: inside.height.min(1), ..inside };
+        [asked, form, last]
+    }
+
+    fn draw_asked(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let lines = self.asked(area.width as usize);
+        let room = area.height as usize;
+        let from = self.from.min(lines.len().saturating_sub(room));
+        let more = lines.len() - from > room;
+        for (at, (row, (line, role))) in rows_of(area).zip(lines.iter().skip(from)).enumerate() {
+            match more && at + 1 == room {
+                true => canvas.text(row, "↓ page down shows more of the question", Role::Warning),
+                false => canvas.text(row, line, *role),
+            }
+        }
+    }
+
+    fn keys_in_words(&self, look: &Look<'_>) -> String {
+        let key = |action| look.keys.label(action).unwrap_or_default();
+        let last = self.at + 1 == self.drafts.len();
+        let on = match self.draft().entered {
+            // enter is a new line there.
+            Entered::Words(_) => "tab".to_owned(),
+            _ => key(Action::GoOn),
+        };
+        let what = if last { "sends the answers" } else { "goes on" };
+        let back = if self.at > 0 { format!(" · {} back", key(Action::GoBack)) } else { String::new() };
+        format!("{on} {what}{back}")
+    }
+}
+
+/// What an answer is, in a line.
+fn said_below(draft: &AnswerDraft) -> String {
+    let question = &draft.due.question;
+    let expected = match &question.form {
+        Form::Likert { points, .. } => format!("1 to {} or the arrows choose", (*points).min(9)),
+        Form::Choice { several: true, .. } => "space or a number marks; several can be marked".to_owned(),
+        Form::Choice { .. } | Form::Attention { .. } => "a number or the arrows choose".to_owned(),
+        form => form.value("").err().unwrap_or_default(),
+    };
+    match question.required {
+        true => format!("{expected}; an answer is needed"),
+        false => format!("{expected}; can be left empty"),
+    }
+}
+
+/// Rows that an answer needs.
+fn form_rows(draft: &AnswerDraft, width: u16) -> u16 {
+    match &draft.entered {
+        Entered::Number(_) => 1,
+        Entered::Words(_) => 5,
+        Entered::One(_) if matches!(draft.due.question.form, Form::Likert { .. }) => 2,
+        Entered::One(_) | Entered::Several(..) => option_lines(draft, width).len() as u16,
+    }
+}
+
+fn draw_form(canvas: &mut Canvas<'_>, area: Rect, draft: &AnswerDraft) {
+    match (&draft.entered, &draft.due.question.form) {
+        (Entered::One(chosen), Form::Likert { points, low, high }) => {
+            draw_scale(canvas, area, *points as usize, *chosen, [low, high]);
+        }
+        (Entered::Number(field), Form::Number { unit, .. }) => {
+            let row = Rect { height: area.height.min(1), ..area };
+            let place = Rect { width: 20.min(row.width), ..row };
+            field.draw(canvas, place);
+            let after =
+                Rect { x: place.right() + 1, width: row.width.saturating_sub(place.width + 1), ..row };
+            canvas.text(after, unit, Role::Dim);
+        }
+        (Entered::Words(editor), _) => {
+            canvas.clear(area, Role::Field);
+            editor.draw(canvas, area, true, "");
+        }
+        _ => draw_options(canvas, area, draft),
+    }
+}
+
+/// A scale with what its ends mean.
+fn draw_scale(canvas: &mut Canvas<'_>, area: Rect, points: usize, chosen: Option<usize>, ends: [&str; 2]) {
+    let mut rows = rows_of(area);
+    let Some(row) = rows.next() else { return };
+    let each: u16 = if row.width as usize >= points * 5 { 5 } else { 4 };
+    for at in 0..points {
+        let place = Rect { x: row.x + at as u16 * each, width: each - 1, ..row }.intersection(row);
+        let here = chosen == Some(at);
+        // With a sign that needs no colour.
+        let text = if here { format!("[{}]", at + 1) } else { format!(" {} ", at + 1) };
+        canvas.text(place, &text, if here { Role::Selection } else { Role::Strong });
+        canvas.click(place, Click::Row(0, at));
+    }
+    let meant = |point: usize, words: &str| format!("{point} = {words}");
+    let words: Vec<String> = [(1, ends[0]), (points, ends[1])]
+        .into_iter()
+        .filter(|(_, words)| !words.is_empty())
+        .map(|(point, words)| meant(point, words))
+        .collect();
+    let beside = words.join("   ");
+    let told = if beside.width() <= row.width as usize { vec![beside] } else { words };
+    for (row, line) in rows.zip(told) {
+        canvas.text(row, &line, Role::Dim);
+    }
+}
+
+/// Lines of the options: the number of the option, and the line.
+fn option_lines(draft: &AnswerDraft, width: u16) -> Vec<(usize, String)> {
+    let sign = |at: usize| match &draft.entered {
+        Entered::One(chosen) if *chosen == Some(at) => "(•)",
+        Entered::One(_) => "( )",
+        Entered::Several(marked, _) if marked.get(at) == Some(&true) => "[x]",
+        _ => "[ ]",
+    };
+    let lines = |(at, option): (usize, String)| {
+        let head = format!("{:>2} {} ", at + 1, sign(at));
+        let room = (width as usize).saturating_sub(head.width()).max(1);
+        let told = wrapped(&option, room).into_iter().enumerate();
+        told.map(|(line, text)| {
+            let head = if line == 0 { head.clone() } else { " ".repeat(head.width()) };
+            (at, head + &text)
+        })
+        .collect::<Vec<_>>()
+    };
+    draft.due.question.form.options().into_iter().enumerate().flat_map(lines).collect()
+}
+
+fn draw_options(canvas: &mut Canvas<'_>, area: Rect, draft: &AnswerDraft) {
+    let here = match &draft.entered {
+        Entered::One(chosen) => *chosen,
+        Entered::Several(_, here) => Some(*here),
+        _ => None,
+    };
+    let lines = option_lines(draft, area.width);
+    let room = area.height as usize;
+    // The last line of the option that is chosen has to be seen.
+    let until = lines.iter().rposition(|(at, _)| Some(*at) == here).map_or(0, |at| at + 1);
+    let from = until.saturating_sub(room);
+    let more = lines.len() - from > room;
+    for (row, (at, line)) in rows_of(area).zip(lines.iter().skip(from)) {
+        let role = if Some(*at) == here { Role::Selection } else { Role::Text };
+        canvas.text(row, line, role);
+        canvas.click(row, Click::Row(0, *at));
+    }
+    if more && let Some(row) = rows_of(area).last() {
+        let place =
+            Rect { x: row.right().saturating_sub(8), width: 8.min(row.width), ..row }.intersection(row);
+        canvas.text(place, "  ↓ more", Role::Warning);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::{company, dialog_picture, in_dialog};
+    use crate::session::Question;
+
+    fn page(text: &str, forms: &[Form]) -> QuestionPage {
+        let due = |(at, form): (usize, &Form)| DueQuestion {
+            questionnaire: "q".to_owned(),
+            title: "Questions".to_owned(),
+            introduction: "Before you begin.".to_owned(),
+            occasion: "before".to_owned(),
+            question: Question {
+                id: format!("q{at}"),
+                text: text.to_owned(),
+                form: form.clone(),
+                required: true,
+            },
+        };
+        let all: Vec<DueQuestion> = forms.iter().enumerate().map(due).collect();
+        QuestionPage::first_of(&all).expect("something is due").0
+    }
+
+    fn forms() -> Vec<Form> {
+        let options: Vec<String> =
+            (1..=14).map(|at| format!("option number {at} {}", "of many ".repeat(8))).collect();
+        vec![
+            Form::Likert { points: 11, low: "not at all".to_owned(), high: "very much".to_owned() },
+            Form::Choice { options: options.clone(), several: false },
+            Form::Choice { options: options.clone(), several: true },
+            Form::Attention { options, expected: String::new() },
+            Form::Number { min: Some(0.0), max: None, unit: "dollars".to_owned() },
+            Form::Text { most: 100 },
+        ]
+    }
+
+    #[test]
+    fn every_form_is_drawn_in_every_window() {
+        let company = company();
+        for form in forms() {
+            let page = page(&"A long question. ".repeat(30), &[form]);
+            for width in (0..130).step_by(9) {
+                for height in 0..40 {
+                    dialog_picture(&page, &company, width, height);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_chosen_and_every_line_of_the_question_can_be_seen_in_the_smallest_window() {
+        let company = company();
+        let words: Vec<String> = (1..=120).map(|at| format!("word{at}.")).collect();
+        for form in &forms()[1..4] {
+            let mut page = page(&words.join(" "), std::slice::from_ref(form));
+            let mut seen = String::new();
+            for _ in 0..20 {
+                seen += &dialog_picture(&page, &company, 60, 13);
+                in_dialog(&mut page, Action::PageDown, &company);
+            }
+            assert!(words.iter().all(|word| seen.contains(word)), "{seen}");
+            for at in 1..=14 {
+                in_dialog(&mut page, Action::Down, &company);
+                let shown = dialog_picture(&page, &company, 60, 13);
+                let here = if matches!(page.draft().entered, Entered::Several(..)) { at + 1 } else { at };
+                assert!(shown.contains(&format!("option number {}", here.min(14))), "{at}\n{shown}");
+            }
+        }
+    }
+}

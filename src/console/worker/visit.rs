@@ -1,0 +1,158 @@
+//! The session's thread with a participant of a study: what comes next for them, their runs, their answers.
+
+use super::{Open, SessionThread};
+use crate::console::message::{News, VisitNews};
+use crate::console::request::{GivenAnswer, VisitRequest};
+use crate::session::{Access, ConsentGiven, DueQuestion, NextStep, RunError, Session, Study, Visit};
+
+/// A study that is being visited.
+pub(super) struct Desk {
+    study: Study,
+    visit: Option<Visit>,
+    /// How the participant has agreed, before a run records it.
+    agreed: Option<ConsentGiven>,
+    /// What is due, as it was told last.
+    due: Vec<DueQuestion>,
+}
+
+impl Desk {
+    fn of(study: Study) -> Desk {
+        Desk { study, visit: None, agreed: None, due: Vec::new() }
+    }
+
+    /// What comes next for the participant; none before one has come.
+    fn next(&self) -> Result<Option<NextStep>, RunError> {
+        let Some(visit) = &self.visit else { return Ok(None) };
+        let step = match visit.next()? {
+            // Agreement stands in the first run.
+            NextStep::Consent(_) if self.agreed.is_some() => visit.after_consent()?,
+            step => step,
+        };
+        if step == NextStep::Thanks {
+            visit.finish();
+        }
+        Ok(Some(step))
+    }
+}
+
+impl SessionThread {
+    /// Does what a participant's way asks for.
+    pub(super) fn lead(&mut self, request: VisitRequest) {
+        match request {
+            VisitRequest::Receive(study) => {
+                self.desk = Some(Desk::of(*study));
+                self.say(News::Visit(VisitNews::Ready));
+            }
+            VisitRequest::Begin { label, refused } => self.begin_visit(&label, refused),
+            VisitRequest::Agree(given) => {
+                self.at_desk(|desk| desk.agreed = Some(given));
+                self.say_next();
+            }
+            VisitRequest::Decline => {
+                self.at_desk(|desk| desk.visit.iter().for_each(Visit::decline));
+                self.say(News::Visit(VisitNews::Declined));
+            }
+            VisitRequest::PassPractice => {
+                self.at_desk(|desk| desk.visit.iter().for_each(Visit::pass_practice));
+                self.say_next();
+            }
+            VisitRequest::Play => self.play_next(),
+            VisitRequest::GoOn => self.say_next(),
+            VisitRequest::Ask(due) => {
+                if let Some(Open::Played(session)) = &mut self.open {
+                    session.ask_question(&due);
+                }
+            }
+            VisitRequest::Answer(answers) => self.take_answers(&answers),
+            VisitRequest::Withdraw => self.withdraw(),
+            VisitRequest::TryCode(code) => {
+                let right = self.desk.as_ref().and_then(|desk| {
+                    let protocol = &desk.study.protocol;
+                    protocol.access.code.is_some().then(|| protocol.opens_with(Some(&code)))
+                });
+                if right == Some(true) {
+                    self.desk = None;
+                }
+                self.say(News::Visit(VisitNews::Code(right)));
+            }
+        }
+    }
+
+    fn at_desk(&mut self, work: impl FnOnce(&mut Desk)) {
+        if let Some(desk) = &mut self.desk {
+            work(desk);
+        }
+    }
+
+    fn begin_visit(&mut self, label: &str, refused: u32) {
+        let Some(desk) = &mut self.desk else { return };
+        (desk.visit, desk.agreed, desk.due) = (None, None, Vec::new());
+        match Visit::begin(desk.study.clone(), &self.runs, label, refused) {
+            Ok(visit) => {
+                desk.visit = Some(visit);
+                self.say_next();
+            }
+            Err(problem) => self.say(News::Visit(VisitNews::LabelRefused(problem.to_string()))),
+        }
+    }
+
+    fn say_next(&self) {
+        let news = match self.desk.as_ref().map_or(Ok(None), Desk::next) {
+            Ok(Some(step)) => VisitNews::Next(step),
+            Ok(None) => VisitNews::Ready,
+            Err(problem) => VisitNews::Failed(problem.to_string()),
+        };
+        self.say(News::Visit(news));
+    }
+
+    /// Opens the participant's run, or begins it.
+    fn play_next(&mut self) {
+        let Some(desk) = &self.desk else { return };
+        let Some(visit) = &desk.visit else { return };
+        let begin =
+            |practice: bool| Session::create(visit.new_run(practice, desk.agreed), &self.configuration);
+        let opened = desk.next().and_then(|step| match step {
+            Some(NextStep::Practice { unfinished: None, .. }) => begin(true),
+            Some(NextStep::Session(None)) => begin(false),
+            Some(
+                NextStep::Practice { unfinished: Some(folder), .. }
+                | NextStep::Session(Some(folder))
+                | NextStep::Questions(folder),
+            ) => Session::open(&folder, Access::Write, true),
+            _ => Err(RunError::NotPossible("there is nothing to play".to_owned())),
+        });
+        self.take(opened, "", None);
+    }
+
+    fn take_answers(&mut self, answers: &[GivenAnswer]) {
+        let (Some(desk), Some(Open::Played(session))) = (&mut self.desk, &mut self.open) else { return };
+        for GivenAnswer { due, value, for_ms, changes } in answers {
+            session.answer_question(due, value, *for_ms, *changes);
+        }
+        desk.due = desk.study.due(session);
+        let due = desk.due.clone();
+        self.say(News::Visit(VisitNews::Answered(due)));
+    }
+
+    /// Tells what is due, if that has changed.
+    pub(super) fn tell_due(&mut self) {
+        let (Some(desk), Some(Open::Played(session))) = (&mut self.desk, &self.open) else { return };
+        let due = desk.study.due(session);
+        if due != desk.due {
+            desk.due.clone_from(&due);
+            self.say(News::Visit(VisitNews::Due(due)));
+        }
+    }
+
+    /// Erases what the participant did; no run of theirs is open.
+    fn withdraw(&mut self) {
+        self.queries.disconnect();
+        let erased = self.desk.as_ref().and_then(|desk| desk.visit.as_ref()).map(Visit::withdraw);
+        let news = match erased {
+            Some(Ok(())) => VisitNews::Withdrawn,
+            Some(Err(problem)) => VisitNews::Failed(problem.to_string()),
+            None => VisitNews::Ready,
+        };
+        self.say(News::Visit(news));
+    }
+}

@@ -1,0 +1,384 @@
+//! A participant of a study at the console, from the label to the thanks.
+
+use std::path::{Path, PathBuf};
+
+use novamind::console::glyphs::Glyphs;
+use novamind::console::request::{Recorded, Request};
+use novamind::session::{
+    Access, Activity, CodeDigest, ConsentMeans, Goal, Mode, Record, Study, Trajectory, VisitEvent,
+    lines_afterwards, visits,
+};
+
+use super::harness::Console;
+
+/// A study of two weeks with every kind of question, and a machine of its own.
+struct Lab(tempfile::TempDir);
+
+const PROTOCOL: &str = r#"
+name = "pilot"
+title = "Two weeks"
+[world]
+scenario = "short"
+days = 14
+[seeds]
+plan = "one"
+seed = 5
+[practice]
+offer = "none"
+[access]
+code = "CODE"
+"#;
+
+const BEFORE: &str = r#"
+title = "About you"
+introduction = "Two questions before you begin."
+when = "before"
+[[question]]
+id = "experience"
+text = "How much experience do you have?"
+form = "likert"
+points = 7
+low = "none"
+high = "much"
+required = true
+[[question]]
+id = "age"
+text = "How old are you?"
+form = "number"
+min = 18
+max = 99
+unit = "years"
+"#;
+
+const WEEK: &str = r#"
+title = "This week"
+when = "weeks"
+weeks = [1]
+[[question]]
+id = "check"
+text = "Choose the second option."
+form = "attention"
+options = ["first", "second"]
+expected = "second"
+required = true
+[[question]]
+id = "tools"
+text = "What helped?"
+form = "choice"
+options = ["SQL", "forms", "notes"]
+several = true
+"#;
+
+const END: &str = r#"
+title = "The end"
+when = "end"
+[[question]]
+id = "strategy"
+text = "What did you try?"
+form = "text"
+most = 40
+required = true
+"#;
+
+impl Lab {
+    fn new() -> Lab {
+        let lab = Lab(tempfile::tempdir().expect("a folder"));
+        let folder = lab.folder();
+        std::fs::create_dir_all(folder.join("questions")).expect("a folder");
+        let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("written");
+        write("study.toml", &PROTOCOL.replace("CODE", CodeDigest::of("open sesame", "salt").as_text()));
+        let consent: Vec<String> =
+            (1..=40).map(|line| format!("Paragraph {line} of what is recorded.")).collect();
+        write("consent.md", &consent.join("\n"));
+        write("questions/1-before.toml", BEFORE);
+        write("questions/2-week.toml", WEEK);
+        write("questions/3-end.toml", END);
+        write("assignment.csv", "label,condition,seed,order\nP01,,,1\nP02,,,2\n");
+        lab
+    }
+
+    fn edit(&self, from: &str, to: &str) {
+        let path = self.folder().join("study.toml");
+        let text = std::fs::read_to_string(&path).expect("a protocol");
+        assert!(text.contains(from), "{from}");
+        std::fs::write(path, text.replace(from, to)).expect("written");
+    }
+
+    fn folder(&self) -> PathBuf {
+        self.0.path().join("pilot")
+    }
+
+    fn runs(&self) -> PathBuf {
+        self.0.path().join("runs")
+    }
+
+    fn visit(&self, size: (u16, u16)) -> Console {
+        let study = Study::read(&self.folder()).expect("a study");
+        let mut console = Console::start(&self.runs(), size);
+        console.lead(study).expect("the label page");
+        console.shows("Type the label");
+        console
+    }
+
+    fn own_runs(&self, label: &str) -> Vec<PathBuf> {
+        let folders = std::fs::read_dir(self.runs().join("participants").join(label)).into_iter().flatten();
+        folders.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect()
+    }
+
+    fn events(&self) -> Vec<(String, VisitEvent)> {
+        let lines = visits(&self.runs().join("visits.jsonl"));
+        lines.into_iter().map(|line| (line.label, line.event)).collect()
+    }
+}
+
+/// What a run holds of questions: day, what happened, occasion, question, answer and changes.
+fn questions_of(run: &Path) -> Vec<String> {
+    let trajectory = Trajectory::read(&run.join("trajectory.jsonl")).expect("it reads");
+    let after = lines_afterwards(run, &trajectory).expect("it reads");
+    let told = |line: &novamind::session::Line| match &line.record {
+        Record::Activity(Activity::Question(asked)) => {
+            Some(format!("{} asked {} {}", line.day, asked.occasion, asked.id))
+        }
+        Record::Activity(Activity::Answer(given)) => Some(format!(
+            "{} {} {} {} changes {}",
+            line.day, given.occasion, given.id, given.value, given.changes
+        )),
+        _ => None,
+    };
+    trajectory.lines.iter().chain(&after.lines).filter_map(told).collect()
+}
+
+/// Lets a week pass; its report stays open.
+fn week(console: &mut Console) {
+    console.press("n enter 'test' enter f enter");
+}
+
+#[test]
+fn a_participant_is_led_from_the_label_to_the_thanks_and_may_leave_between() {
+    let lab = Lab::new();
+    let mut console = lab.visit((100, 30));
+    for wrong in ["'P9'", "'../x'"] {
+        console.press(&format!("{wrong} enter"));
+        console.shows("! ");
+    }
+    console.press("'P01' enter");
+    console.shows("Paragraph 1 of");
+    console.press("y");
+    console.shows("scroll to its end first");
+    console.press("pagedown pagedown y");
+    console.shows("The session begins now.");
+    console.press("enter");
+    // Two questions before anything else can be done.
+    console.shows("question 1 of 2");
+    console.press("8 : n enter");
+    console.shows("an answer is needed");
+    console.press("3 right shift-tab enter '17' enter");
+    console.shows("a number from 18 to 99");
+    console.press("ctrl-u '42' shift-tab 6 enter enter");
+    console.shows("runway");
+    let screen = console.screen();
+    assert!(!screen.contains("question") && !screen.contains("seed"), "{screen}");
+    week(&mut console);
+    console.shows("Most unusual changes");
+    console.press("n");
+    console.shows("Choose the second option.");
+    console.press("2 enter space down down space enter");
+    console.press("q");
+    console.shows("You can go on later");
+    console.press("enter 'P01' enter");
+    console.shows("goes on where you left it");
+    console.press("enter");
+    week(&mut console);
+    // The run is over: its page leads to the last question, and nowhere else.
+    let end = console.screen();
+    assert!(!end.contains("published") && !end.contains("replay"), "{end}");
+    console.press("esc v enter");
+    console.shows("What did you try?");
+    console.press("'I_guessed.' tab");
+    console.shows("Thank you for taking part");
+    console.press("enter");
+    console.shows("Type the label");
+
+    let runs = lab.own_runs("P01");
+    assert_eq!(runs.len(), 1);
+    assert_eq!(
+        questions_of(&runs[0]),
+        [
+            "0 asked before experience",
+            "0 asked before age",
+            "0 before experience 6 changes 2",
+            "0 before age 42.0 changes 0",
+            "7 asked week 1 check",
+            "7 asked week 1 tools",
+            "7 week 1 check \"second\" changes 0",
+            "7 week 1 tools [\"SQL\",\"notes\"] changes 0",
+            "14 asked end strategy",
+            "14 end strategy \"I guessed.\" changes 0",
+        ]
+    );
+    let trajectory = Trajectory::read(&runs[0].join("trajectory.jsonl")).expect("it reads");
+    let Record::Start(start) = &trajectory.lines[0].record else { panic!("the first line") };
+    let given = start.consent.as_ref().and_then(|consent| consent.given).expect("it was given");
+    assert_eq!((given.means, given.scrolled_to_end), (ConsentMeans::Screen, true));
+    assert_eq!(start.study.as_ref().map(|study| study.refused_labels), Some(2));
+    let seen: Vec<VisitEvent> = lab.events().into_iter().map(|(_, event)| event).collect();
+    use VisitEvent::{Came, Finished, LabelRefused};
+    assert_eq!(seen, [LabelRefused, LabelRefused, Came, Came, Finished]);
+}
+
+#[test]
+fn who_declines_leaves_no_run_and_who_withdraws_leaves_a_note() {
+    let lab = Lab::new();
+    let mut console = lab.visit((80, 24));
+    console.press("'P02' enter n");
+    console.shows("You did not agree");
+    console.press("enter 'P01' enter end y enter 4 enter enter");
+    console.shows("runway");
+    assert_eq!(lab.own_runs("P01").len(), 1);
+    // The second question is left by esc, the first by n.
+    for step in ["n", "y 'no' enter esc"] {
+        console.press(": 'withdraw' enter");
+        console.shows("for good");
+        console.press(step);
+        console.shows("goes on where you left it");
+        console.press("enter");
+    }
+    console.press(": 'withdraw' enter y 'withdraw' enter");
+    console.shows("You have withdrawn");
+    assert_eq!(lab.own_runs("P01").len(), 0);
+    assert!(lab.runs().join("participants/P01/withdrawn.toml").exists());
+    assert!(!lab.runs().join("participants/P02").exists());
+    console.press("enter 'P01' enter");
+    console.shows("You have withdrawn");
+    let seen: Vec<(String, VisitEvent)> = lab.events();
+    assert!(seen.contains(&("P02".to_owned(), VisitEvent::ConsentDeclined)));
+    assert!(seen.contains(&("P01".to_owned(), VisitEvent::Withdrew)));
+}
+
+#[test]
+fn practice_comes_first_and_can_be_passed_over_where_the_protocol_says_so() {
+    let lab = Lab::new();
+    lab.edit(
+        "offer = \"none\"",
+        "offer = \"optional\"\nscenario = \"short\"\ndays = 7\n[session]\ntour = true",
+    );
+    let mut console = lab.visit((100, 30));
+    console.press("'P01' enter end y");
+    console.shows("The practice comes first");
+    console.press("enter");
+    console.shows("PRACTICE");
+    console.shows("Tour · 1");
+    console.press("f4 n enter 'test' enter f enter enter");
+    console.shows("The session begins now.");
+    console.press("enter");
+    console.shows("SESSION");
+    assert_eq!(lab.own_runs("P01").len(), 2);
+    drop(console);
+    let mut other = lab.visit((100, 30));
+    other.press("'P02' enter end y s");
+    other.shows("The session begins now.");
+    assert!(lab.events().contains(&("P02".to_owned(), VisitEvent::PassedPractice)));
+}
+
+#[test]
+fn nothing_but_the_own_session_can_be_reached_until_the_code_is_given() {
+    let lab = Lab::new();
+    let mut console = lab.visit((100, 30));
+    console.press("'P01' enter end y enter 4 enter enter");
+    for keys in ["; r", "; t"] {
+        console.press(keys);
+        let screen = console.screen();
+        assert!(
+            screen.contains("only your own session") || screen.contains("has no tour"),
+            "{keys}\n{screen}"
+        );
+        console.press("esc");
+    }
+    for request in [
+        Request::ListRuns,
+        Request::Create(Box::default()),
+        Request::Open("latest".to_owned(), Access::Write),
+        Request::Rescue("latest".to_owned()),
+        Request::DeleteRun("latest".to_owned()),
+        Request::EndRun("latest".to_owned()),
+        Request::TakeOver(Mode::Sandbox),
+        Request::Replay { recorded: Recorded::Run("latest".to_owned()), goal: Goal::First, follow: false },
+    ] {
+        console.request(request.clone()).expect("nothing to wait for");
+        assert!(console.screen().contains("only your own session"), "{request:?}");
+    }
+    console.press("; q");
+    console.shows("You can go on later");
+    console.press("enter ctrl-e 'guess' enter");
+    console.shows("not the experimenter's code");
+    assert!(!console.screen().contains("guess"));
+    console.press("ctrl-u 'open' _ 'sesame' enter");
+    console.shows("New run");
+}
+
+#[test]
+fn the_results_page_shows_what_the_protocol_says() {
+    for (results, own, published) in [("none", false, false), ("own", true, false), ("published", true, true)]
+    {
+        let lab = Lab::new();
+        lab.edit("[access]", &format!("[session]\nresults = \"{results}\"\n[access]"));
+        lab.edit("days = 14", "days = 7");
+        let mut console = lab.visit((120, 40));
+        console.press("'P01' enter end y enter 4 enter enter n enter 'test' enter f enter");
+        let screen = console.screen();
+        assert_eq!(screen.contains("You end with"), own, "{screen}");
+        assert_eq!(screen.contains("Rule-based baseline"), published, "{screen}");
+        assert!(!screen.contains("seed 5"), "{screen}");
+    }
+}
+
+#[test]
+fn pages_fit_every_window_and_are_ascii_where_asked() {
+    let lab = Lab::new();
+    lab.edit("offer = \"none\"", "offer = \"optional\"\nscenario = \"short\"\ndays = 7");
+    let mut console = lab.visit((100, 30));
+    let steps = [
+        "",
+        "ctrl-e",
+        "esc 'P9' enter",
+        "'P01' enter",
+        "end",
+        "y",
+        "s",
+        "enter",
+        "4 enter",
+        "enter",
+        "n enter 'x' enter f enter enter",
+        "2 enter",
+        "enter",
+        "; q",
+        "enter 'P01' enter",
+        "W",
+        "y",
+        "esc",
+        "enter n enter 'x' enter f enter",
+        "enter",
+        "'words' tab",
+    ];
+    for step in steps {
+        console.size = (100, 30);
+        console.press(step);
+        for size in
+            [(60, 16), (61, 17), (80, 24), (120, 40), (200, 60), (400, 120), (60, 120), (20, 5), (0, 0)]
+        {
+            console.size = size;
+            let screen = console.screen();
+            let roomy = size.0 >= 60 && size.1 >= 16;
+            assert!(!roomy || !screen.trim().is_empty(), "{step} at {size:?}");
+        }
+        for size in [(60, 16), (120, 40)] {
+            console.size = size;
+            console.app.glyphs = Glyphs::Ascii;
+            let screen = console.screen();
+            assert!(screen.is_ascii(), "{step}\n{screen}");
+            console.app.glyphs = Glyphs::Braille;
+        }
+    }
+    console.size = (100, 30);
+    console.shows("Thank you");
+}

@@ -4,6 +4,7 @@
 //! carries the input. A query waits for the session's thread, so that it sees everything that was confirmed,
 //! unless a week is running: then it sees the state before it.
 
+mod desk;
 mod folder;
 mod mending;
 mod player;
@@ -27,9 +28,9 @@ use super::preferences::Preferences;
 use super::request::Request;
 use crate::session::{Configuration, Goal, Playback, QuerySource, Refusal, Rows, Session};
 use crate::tools::ToolId;
+use desk::Desk;
 use queries::QueryThreads;
 use run::OpenRun;
-use visit::Desk;
 
 pub use queries::Question;
 

@@ -1,5 +1,7 @@
 //! A page of questions: one after the other, with a way back, until all answers are sent together.
 
+use std::cell::Cell;
+
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -17,6 +19,8 @@ use crate::session::{DueQuestion, Form};
 
 /// Widest lines that read well.
 const WIDEST: u16 = 92;
+/// Said where more options follow.
+const MORE: &str = "  ↓ more";
 
 /// The questions of a questionnaire on one occasion.
 pub struct QuestionPage {
@@ -24,6 +28,8 @@ pub struct QuestionPage {
     at: usize,
     /// First line of what is asked, where it is longer than the window.
     from: usize,
+    /// Lines of it that could be read in the last frame, and the farthest that shows anything new.
+    read: Cell<(usize, usize)>,
     problem: Option<String>,
 }
 
@@ -35,7 +41,7 @@ impl QuestionPage {
             (&one.questionnaire, &one.occasion) == (&first.questionnaire, &first.occasion)
         };
         let drafts = due.iter().filter(same).cloned().map(AnswerDraft::new).collect();
-        let mut page = QuestionPage { drafts, at: 0, from: 0, problem: None };
+        let mut page = QuestionPage { drafts, at: 0, from: 0, read: Cell::new((1, 0)), problem: None };
         let shown = page.show(0)?;
         Some((page, shown))
     }
@@ -58,6 +64,13 @@ impl QuestionPage {
         draft.show();
         let question = Box::new(draft.due.clone());
         fresh.then_some(Effect::Request(Request::Visit(VisitRequest::Ask(question))))
+    }
+
+    /// Pages through what is asked.
+    fn page(&mut self, forward: bool) {
+        let (lines, last) = self.read.get();
+        let to = if forward { self.from + lines } else { self.from.saturating_sub(lines) };
+        self.from = to.min(last);
     }
 
     fn go_on(&mut self) -> Outcome {
@@ -125,8 +138,7 @@ impl Dialog for QuestionPage {
         match action {
             Action::GoOn | Action::Commit | Action::CommitNext | Action::Open => return self.go_on(),
             Action::GoBack | Action::CommitPrevious => return self.go_back(),
-            Action::PageUp => self.from = self.from.saturating_sub(4),
-            Action::PageDown => self.from += 4,
+            Action::PageUp | Action::PageDown => self.page(action == Action::PageDown),
             other => {
                 self.problem = None;
                 self.drafts[self.at].act(other);
@@ -139,8 +151,7 @@ impl Dialog for QuestionPage {
         let words = matches!(self.draft().entered, Entered::Words(_));
         match key.code {
             KeyCode::Tab if words => return self.go_on(),
-            KeyCode::PageUp if words => self.from = self.from.saturating_sub(4),
-            KeyCode::PageDown if words => self.from += 4,
+            KeyCode::PageUp | KeyCode::PageDown if words => self.page(key.code == KeyCode::PageDown),
             KeyCode::Char('q') if self.chooses() && key.modifiers.is_empty() => {
                 return Outcome::with(vec![Effect::Do(Action::Quit)]);
             }
@@ -199,8 +210,11 @@ impl QuestionPage {
     fn draw_asked(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let lines = self.asked(area.width as usize);
         let room = area.height as usize;
-        let from = self.from.min(lines.len().saturating_sub(room));
+        let last = lines.len().saturating_sub(room);
+        let from = self.from.min(last);
         let more = lines.len() - from > room;
+        // The last row may say that there is more.
+        self.read.set((room.saturating_sub(1).max(1), last));
         for (at, (row, (line, role))) in rows_of(area).zip(lines.iter().skip(from)).enumerate() {
             match more && at + 1 == room {
                 true => canvas.text(row, "↓ page down shows more of the question", Role::Warning),
@@ -305,7 +319,8 @@ fn option_lines(draft: &AnswerDraft, width: u16) -> Vec<(usize, String)> {
     };
     let lines = |(at, option): (usize, String)| {
         let head = format!("{:>2} {} ", at + 1, sign(at));
-        let room = (width as usize).saturating_sub(head.width()).max(1);
+        // Beside it there may be a sign that there is more.
+        let room = (width as usize).saturating_sub(head.width() + MORE.width()).max(1);
         let told = wrapped(&option, room).into_iter().enumerate();
         told.map(|(line, text)| {
             let head = if line == 0 { head.clone() } else { " ".repeat(head.width()) };
@@ -334,9 +349,8 @@ fn draw_options(canvas: &mut Canvas<'_>, area: Rect, draft: &AnswerDraft) {
         canvas.click(row, Click::Row(0, *at));
     }
     if more && let Some(row) = rows_of(area).last() {
-        let place =
-            Rect { x: row.right().saturating_sub(8), width: 8.min(row.width), ..row }.intersection(row);
-        canvas.text(place, "  ↓ more", Role::Warning);
+        let place = Rect { x: row.right().saturating_sub(MORE.width() as u16), ..row }.intersection(row);
+        canvas.text(place, MORE, Role::Warning);
     }
 }
 

@@ -1,39 +1,10 @@
 //! The session's thread with a participant of a study: what comes next for them, their runs, their answers.
 
+use super::desk::Desk;
 use super::{Open, SessionThread};
 use crate::console::message::{News, VisitNews};
 use crate::console::request::{GivenAnswer, VisitRequest};
-use crate::session::{Access, ConsentGiven, DueQuestion, NextStep, RunError, Session, Study, Visit};
-
-/// A study that is being visited.
-pub(super) struct Desk {
-    study: Study,
-    visit: Option<Visit>,
-    /// How the participant has agreed, before a run records it.
-    agreed: Option<ConsentGiven>,
-    /// What is due, as it was told last.
-    due: Vec<DueQuestion>,
-}
-
-impl Desk {
-    fn of(study: Study) -> Desk {
-        Desk { study, visit: None, agreed: None, due: Vec::new() }
-    }
-
-    /// What comes next for the participant; none before one has come.
-    fn next(&self) -> Result<Option<NextStep>, RunError> {
-        let Some(visit) = &self.visit else { return Ok(None) };
-        let step = match visit.next()? {
-            // Agreement stands in the first run.
-            NextStep::Consent(_) if self.agreed.is_some() => visit.after_consent()?,
-            step => step,
-        };
-        if step == NextStep::Thanks {
-            visit.finish();
-        }
-        Ok(Some(step))
-    }
-}
+use crate::session::{Access, NextStep, RunError, Session, Visit};
 
 impl SessionThread {
     /// Does what a participant's way asks for.

@@ -127,6 +127,9 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
         let score = session.score().unwrap_or(0.0);
         text += &format!("run ended: {} · day {} · score {}\n", ended.id(), figures.day, dollars(score));
     }
+    if session.rules().code_words {
+        text += &format!("code: {}\n", session.code_words());
+    }
     if let Some(remark) = &week.remark {
         text += &format!("note: {remark}\n");
     }

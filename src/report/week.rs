@@ -62,6 +62,8 @@ pub struct WeekReport {
     pub comments: u32,
     /// News items in it.
     pub news_items: u32,
+    /// Four words for the record up to it, where the rules show them.
+    pub code: Option<String>,
 }
 
 /// A figure: its name, how it is read and written, whether more of it is better, and the categories of the ledger that
@@ -125,13 +127,15 @@ impl WeekReport {
             };
             posts[kind].push(post.day);
         }
-        WeekReport::of(&Sources {
+        let told = WeekReport::of(&Sources {
             weeks: session.weeks(),
             decisions: session.decisions(),
             journal: session.journal(),
             cash_by_day: session.cash_by_day(),
             posts: posts.each_ref().map(Vec::as_slice),
-        })
+        });
+        let code = session.rules().code_words.then(|| session.code_words());
+        told.map(|told| WeekReport { code, ..told })
     }
 
     /// The last week of these; none before the first.
@@ -150,6 +154,7 @@ impl WeekReport {
             customer_posts,
             comments,
             news_items,
+            code: None,
         })
     }
 }

@@ -45,6 +45,8 @@ pub struct Session {
     pub(super) surroundings: RunSurroundings,
     /// The last line that was written, or applied again.
     pub(super) position: Position,
+    /// Hash of the line that closed the last week, or the run; empty before the first.
+    pub(super) closing_line: String,
     /// Rows that follow from what has happened.
     pub(super) projection: Projection,
     /// What the record says about questions of a study.
@@ -162,9 +164,10 @@ impl Session {
         self.simulation.state_hash()
     }
 
-    /// Four words for the trajectory as far as it has come: whoever notes them can later tell that it was this one.
+    /// Four words for the trajectory up to the line that closed the last week, or the run: whoever notes them can later tell
+    /// that it was this one. Empty before the first week.
     pub fn code_words(&self) -> String {
-        code_words(&self.position.line_hash)
+        code_words(&self.closing_line)
     }
 
     /// Whether everything that happened stands in the run's trajectory: not where a run is only read, or its file took no

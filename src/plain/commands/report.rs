@@ -41,7 +41,7 @@ impl Interpreter {
             "best_tried_channel_share": measures.channels.as_ref().and_then(|skill| skill.share),
             "truly_best_channel_share": measures.truly_best.as_ref().map(|best| best.share),
             "targeted_development_share": measures.targeted_development,
-            "forecasts": measures.forecasts,
+            "forecasts": story.shows_calibration().then_some(&measures.forecasts),
             "calls_per_week": measures.tools.per_week,
             "planning_words_per_rationale": measures.planning.planning_each,
             "report": as_markdown(&story),
@@ -89,6 +89,7 @@ fn in_words(report: &WeekReport) -> String {
         counted(report.news_items, "news item", "news items"),
         counted(week.research_finished, "finished R&D project or study", "finished R&D projects and studies")
     ));
+    lines.extend(report.code.iter().map(|code| format!("code: {code}")));
     lines.join("\n").replace("from 1 weeks ago", "from 1 week ago")
 }
 
@@ -128,5 +129,6 @@ fn as_data(report: &WeekReport) -> Value {
         "decided": report.decided,
         "moves": report.moves.iter().map(moved).collect::<Vec<_>>(),
         "forecasts": report.due.iter().map(due).collect::<Vec<_>>(),
+        "code": report.code,
     })
 }

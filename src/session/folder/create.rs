@@ -155,6 +155,7 @@ impl Session {
             simulation,
             projection,
             position: Position { seq: 0, line_hash: String::new() },
+            closing_line: String::new(),
             surroundings: RunSurroundings::default(),
             answers: AnswerBook::default(),
             seal_key: SealKey::default(),

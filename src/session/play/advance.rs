@@ -194,6 +194,7 @@ impl Session {
         let mut problem = self.append_done(&kind(closing));
         self.simulation.facts_chain.close();
         problem = problem.or_else(|| self.close_if_over());
+        self.closing_line.clone_from(&self.position.line_hash);
         let due =
             self.history.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.history.running_week.days_run == 0;
         let snapshot = due && problem.is_none() && self.durability_of_calls() == Durability::Synced;

@@ -243,7 +243,7 @@ fn the_protocol_tells_every_measure_and_every_rule() {
     for part in parts {
         assert!(said.out.contains(part), "{part} is missing in\n{}", said.out);
     }
-    let columns = lab.0.run(&["runs", "columns", "--json"]).out;
+    let columns = lab.0.run(&["runs", "--json", "columns"]).out;
     let columns: serde_json::Value = serde_json::from_str(&columns).expect("JSON");
     for (table, columns) in columns.as_object().expect("tables") {
         assert!(said.out.contains(&format!("### {table}")), "{table}");

@@ -24,7 +24,8 @@ pub struct Options {
     #[arg(long, value_name = "LABEL")]
     participant: Option<String>,
     /// Print as JSON.
-    #[arg(long, global = true)]
+    // A name of its own: `play`, whose options stand before a command too, has one called json.
+    #[arg(id = "runs_json", long = "json", global = true)]
     json: bool,
 }
 

@@ -1,7 +1,16 @@
 -- title: Capacity headroom
--- what: Usage against capacity day by day: how near the service is to its limit, and when it was beyond it.
--- chart: line day usage capacity
-SELECT day, total_usage_units AS usage, capacity_units AS capacity, capacity_tier AS tier,
-    round(100.0 * (capacity_units - total_usage_units) / nullif(capacity_units, 0), 1) AS free_percent
-FROM service_day
+-- what: The busiest day of each week against capacity, what it grew by, and the next week's peak at the same growth.
+-- chart: line week peak capacity next_peak
+WITH weeks AS (
+    SELECT (day + 6) / 7 AS week, count(*) AS days, max(total_usage_units) AS peak, min(capacity_units) AS capacity,
+        max(capacity_tier) AS tier
+    FROM service_day
+    GROUP BY 1
+)
+SELECT w.week, w.peak, w.capacity, w.tier,
+    round(100.0 * (w.capacity - w.peak) / nullif(w.capacity, 0), 1) AS free_percent,
+    round(100.0 * (w.peak * 1.0 / nullif(b.peak, 0) - 1), 1) AS growth_percent,
+    CASE WHEN w.days = 7 AND b.days = 7 THEN round(w.peak * 1.0 * w.peak / nullif(b.peak, 0)) END AS next_peak
+FROM weeks w
+LEFT JOIN weeks b ON b.week = w.week - 1
 ORDER BY 1

@@ -57,6 +57,14 @@ impl Answer {
         Answer::done(command, text, data)
     }
 
+    /// The same answer with notes for people below it.
+    pub fn with_notes(mut self, notes: &[String]) -> Answer {
+        if let Answer::Done { text, .. } = &mut self {
+            notes.iter().for_each(|note| *text += &format!("note: {note}\n"));
+        }
+        self
+    }
+
     /// A refused command.
     pub fn refused(command: &str, refusal: Refusal) -> Answer {
         Answer::Refused { command: command.to_owned(), refusal }

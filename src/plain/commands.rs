@@ -1,5 +1,6 @@
 //! The commands of plain mode: what each line does, and what is answered (docs/interfaces/plain-mode.md#commands).
 
+mod check;
 mod groups;
 mod readings;
 mod report;
@@ -19,6 +20,7 @@ use super::next;
 use super::signals::{Phase, Watch};
 use crate::database::text::table;
 use crate::notation::nearest;
+use crate::report::research::late_in_words;
 use crate::session::library::NamedQuery;
 use crate::session::{Change, Library, Mode, QuerySource, Refusal, Session, Via, rows_as_json};
 use crate::tools::{self, AnyTool, Kind, Module, ToolId};
@@ -27,7 +29,7 @@ use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 const NEXT: [&str; 3] = ["next", "next-week", "next_week"];
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 27] = [
+const COMMANDS: [(&str, &str); 28] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("queries", "queries [NAME]           the library of queries, or the result of one of them"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, run a week (also: next-week)"),
@@ -47,6 +49,10 @@ const COMMANDS: [(&str, &str); 27] = [
         "leads                    leads by group, paid and by word of mouth, and what a lead and a first bill cost",
     ),
     ("changes", "changes                  settings changed since the last week"),
+    (
+        "check",
+        "check CALL               what a call would do and cost, the margins or the spread that follow; nothing is done",
+    ),
     ("undo", "undo                     undo the last setting of this week"),
     ("redo", "redo                     redo what undo reverted"),
     ("history", "history [N]              the last N confirmed actions and weeks (20)"),
@@ -88,6 +94,7 @@ impl Interpreter {
     pub fn answer(&mut self, line: &str, input: &mut Input<impl BufRead>) -> io::Result<Option<Answer>> {
         let answer = match grammar::parse(line) {
             Ok(Line::Empty) => return Ok(None),
+            Ok(Line::Text { word, .. }) if word == "check" => self.check(line).unwrap_or_else(usage),
             Ok(Line::Text { word, rest }) => self.text(&word, &rest),
             Ok(Line::Call { word, arguments, .. }) if NEXT.contains(&word.as_str()) => {
                 self.next(&arguments, input)?
@@ -230,10 +237,25 @@ impl Interpreter {
         match self.session.call(tool, arguments, Via::Plain) {
             Ok(data) => {
                 let shown = groups::with_ranges(&self.session, &data);
-                Answer::call_shown(tool.name(), data.to_json(), shown)
+                let answer = Answer::call_shown(tool.name(), data.to_json(), shown);
+                match tool {
+                    ToolId::StartResearchProject => answer.with_notes(&self.late_projects(&data)),
+                    _ => answer,
+                }
             }
             Err(refusal) => Answer::refused(tool.name(), refusal),
         }
+    }
+
+    /// A warning where the project that was started runs beyond the last day.
+    fn late_projects(&self, started: &tools::Answer) -> Vec<String> {
+        let tools::Answer::StartResearchProject(started) = started else { return Vec::new() };
+        let last_day = self.session.manifest().days;
+        let is_late = started.expected_completion_day > last_day;
+        is_late
+            .then(|| late_in_words(&started.project_id, started.expected_completion_day, last_day))
+            .into_iter()
+            .collect()
     }
 
     fn undo(&mut self) -> Answer {

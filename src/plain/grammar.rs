@@ -46,7 +46,7 @@ pub struct Problem {
 }
 
 /// Commands whose text is the rest of the line as it stands.
-const TEXT_COMMANDS: [&str; 6] = ["sql", "query", "memo", "explain", "what", "glossary"];
+const TEXT_COMMANDS: [&str; 7] = ["sql", "query", "memo", "explain", "what", "glossary", "check"];
 
 /// Reads a line.
 pub fn parse(line: &str) -> Result<Line, Problem> {

@@ -9,6 +9,7 @@ use super::grammar::{Argument, Problem};
 use super::input::{Input, Read};
 use super::prompt;
 use crate::notation::{dollars, grouped, signed_dollars};
+use crate::report::research::late_lines;
 use crate::report::review::alike_lines;
 use crate::session::{Mode, Session, Via, Week};
 use crate::tools::{FORECAST_KEYS, Forecast};
@@ -148,6 +149,7 @@ pub fn ask(session: &Session, input: &mut Input<impl BufRead>) -> io::Result<Opt
         lines.push("nothing has changed since the last week".to_owned());
     }
     lines.extend(alike_lines(&seen));
+    lines.extend(late_lines(&seen));
     prompt(&format!("{}\n", lines.join("\n")))?;
     let rationale = loop {
         match ask_line(input, "why (. cancels)> ")? {

@@ -34,6 +34,7 @@ pub use figures::journal::JournalEntry;
 pub use figures::naive::{Bands, Coverage, Hindcast, Stage, hindcasts};
 pub use figures::observe::{Observation, WaitingThread};
 pub use figures::pace::Pace;
+pub use figures::research_outlook::{LateProject, ResearchOutlook, ResearchSpread};
 pub use figures::scored_forecast::{ForecastScore, ScoredForecast, Verdict, filed_forecasts};
 pub use figures::setting::{Audience, SettingId};
 pub use figures::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};

@@ -15,6 +15,8 @@ use crate::report::chapters::change_in_words;
 use crate::report::deals::deals_in_words;
 use crate::report::funnel::{Funnel, funnels};
 use crate::report::needs::{Need, Place, needs};
+use crate::report::peak::PeakProjection;
+use crate::report::research::late_lines;
 use crate::report::review::{alike_lines, money_lines};
 use crate::session::{
     Bands, Change, CompanyNames, JournalEntry, Numbers, Reversal, WaitingThread, undone_calls,
@@ -34,9 +36,14 @@ impl Interpreter {
         let runway =
             seen.weeks_of_cash().map_or("to the last day".to_owned(), |weeks| format!("{weeks} weeks"));
         let ended = seen.ended.map_or(String::new(), |ended| format!("ended: {}\n", ended.id()));
+        let tier = self.session.settings().core.capacity_tier;
+        let units = self.session.terms().capacities.iter().find(|own| own.tier == tier).map(|own| own.units);
+        let next = PeakProjection::of(self.session.weeks()).zip(units);
+        let capacity = next
+            .map_or(String::new(), |(next, units)| format!("{}\n", next.in_words(u32::from(tier), units)));
         let text = format!(
             "run {}{} · {}\nday {} of {} · week {}\n{ended}cash {} ({} over the last week) · runway {runway}\n\
-             subscribers {} · seats {}\nwaiting threads {} · running research {} · changes this week {}",
+             subscribers {} · seats {}\n{capacity}waiting threads {} · running research {} · changes this week {}",
             seen.run,
             seed_in_words(seen.seed),
             seen.mode,
@@ -66,6 +73,7 @@ impl Interpreter {
             "enterprise_seats": seen.seats,
             "waiting_threads": seen.waiting.len(),
             "running_research": seen.running_research,
+            "next_peak_at_last_growth": next.map(|(next, _)| next.next()),
             "changes": seen.changes.len() + seen.purchases.len(),
         });
         Answer::done("status", text, data)
@@ -129,11 +137,13 @@ impl Interpreter {
             lines.push("nothing has changed since the last week".to_owned());
         }
         lines.extend(alike_lines(&seen));
+        lines.extend(late_lines(&seen));
         lines.extend(money_lines(&seen));
         let data = json!({
             "changes": seen.changes,
             "purchases": seen.purchases,
             "alike_plans": seen.alike_plans,
+            "late_projects": seen.late_projects,
             "committed_per_day": seen.pace.committed,
             "one_time_costs": -seen.booked_since.sum(),
             "runway_weeks": seen.runway_weeks,
@@ -218,8 +228,10 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers
             COMMANDS.iter().map(|(_, line)| *line).filter(|line| !line.is_empty()).collect();
         let tools: Vec<&str> = callable().collect();
         let text = format!(
-            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=12 B=25 C=55\nhelp NAME \
-             explains one of them, and explain TERM says what a word means.",
+            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=12 B=25 C=55\n\
+             A week as agents call it: next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": \
+             {{\"point\": 950000, \"lower\": 900000, \"upper\": 990000}}, …}}}} (help next shows all of it)\n\
+             help NAME explains one of them, and explain TERM says what a word means.",
             lines.join("\n"),
             tools.join(", ")
         );

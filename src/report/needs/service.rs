@@ -4,6 +4,7 @@ use serde_json::json;
 
 use super::{AHEAD, Need, Place, Problem, Situation, rounded_up};
 use crate::notation::{json_number, percent};
+use crate::report::peak::PeakProjection;
 use crate::report::words::{count, money, whole};
 use crate::session::SettingId;
 use crate::session::ToolId;
@@ -29,9 +30,8 @@ pub(super) fn capacity(situation: &Situation<'_>) -> Option<Need> {
     if situation.seen.changes.iter().any(|change| change.setting == SettingId::CapacityTier) {
         return None;
     }
-    let before = situation.weeks.len().checked_sub(2).map(|at| situation.weeks[at].busiest_day as f64)?;
-    let growth = busiest / before.max(1.0);
-    if growth <= 1.0 || before <= 0.0 {
+    let growth = PeakProjection::of(situation.weeks)?.growth;
+    if growth <= 1.0 {
         return None;
     }
     let weeks = libm::log(now.units / busiest) / libm::log(growth);

@@ -13,6 +13,7 @@ pub(in crate::session) mod naive;
 pub(in crate::session) mod notices;
 pub(in crate::session) mod observe;
 pub(in crate::session) mod pace;
+pub(in crate::session) mod research_outlook;
 pub(in crate::session) mod scored_forecast;
 pub(in crate::session) mod setting;
 pub(in crate::session) mod tool_limits;

@@ -7,6 +7,7 @@ use super::booked::Booked;
 use super::changes::Change;
 use super::dashboard::{self, DeliveredQuality, Waiting, delivered_quality};
 use super::pace::Pace;
+use super::research_outlook::LateProject;
 use super::week::{WeekFigures, week_of};
 use crate::session::folder::mode::Mode;
 use crate::session::play::irrevocable::Irrevocable;
@@ -76,6 +77,8 @@ pub struct Observation {
     pub waiting: Vec<WaitingThread>,
     /// R&D projects that run.
     pub running_research: u32,
+    /// Those of them that run beyond the last day.
+    pub late_projects: Vec<LateProject>,
 }
 
 /// A thread that waits for an answer.
@@ -144,6 +147,7 @@ impl Session {
             alike_plans: self.alike_plans(),
             waiting: self.waiting(),
             running_research: self.running_research(),
+            late_projects: self.late_projects(),
         }
     }
 

@@ -9,6 +9,7 @@ use super::this_week::Step;
 use crate::session::error::RunError;
 use crate::session::figures::changes::{Change, changes, daily_cost};
 use crate::session::figures::journal::JournalEntry;
+use crate::session::figures::research_outlook::ResearchOutlook;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Call, Outcome, RefusalRecord, Reversal, Via};
 use crate::session::trajectory::{Durability, Record};
@@ -33,6 +34,8 @@ pub struct Preview {
     pub effect_day: Option<u32>,
     /// Settings that change.
     pub changes: Vec<Change>,
+    /// Of an R&D project: what it can be expected to take and to gain.
+    pub research: Option<ResearchOutlook>,
 }
 
 /// An accepted call whose draws are known.
@@ -57,6 +60,7 @@ impl Session {
             cost_per_day: 0.0,
             effect_day: None,
             changes: Vec::new(),
+            research: None,
         };
         match planned.command {
             Command::None | Command::ReadInsights(_) => {}
@@ -73,6 +77,7 @@ impl Session {
                 preview.cost_now = f64::from(self.simulation.params.research(tier).cost);
                 preview.effect_day =
                     Some(self.simulation.world.day + self.simulation.params.development.rd_min_duration_days);
+                preview.research = Some(self.research_outlook(tier));
             }
             Command::ResearchMarket => {
                 preview.cost_now = self.simulation.params.market_research.discovery_cost_level_1;

@@ -4,6 +4,7 @@ pub mod ads;
 pub mod development;
 pub mod quality;
 pub mod research;
+pub mod research_spread;
 pub mod service;
 pub mod usage;
 

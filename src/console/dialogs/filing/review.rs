@@ -10,6 +10,7 @@ use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::text::{number, wrapped};
 use crate::console::theme::Role;
+use crate::report::research::late_lines;
 use crate::report::review::{alike_lines, money_lines};
 use crate::tools::ToolId;
 
@@ -84,7 +85,8 @@ fn lines(canvas: &Canvas<'_>, width: usize, company: &Company, unsent: &[ToolId]
     if seen.changes.is_empty() && seen.purchases.is_empty() {
         lines.push(TextLine::from(canvas.span("  none", Role::Dim)));
     }
-    for text in alike_lines(seen).iter().flat_map(|line| wrapped(line, width.saturating_sub(2))) {
+    let warnings = alike_lines(seen).into_iter().chain(late_lines(seen));
+    for text in warnings.flat_map(|line| wrapped(&line, width.saturating_sub(2))) {
         lines.push(TextLine::from(canvas.span(format!("  {text}"), Role::Warning)));
     }
     lines.push(TextLine::default());

@@ -15,6 +15,7 @@ use crate::console::widgets::chart::NO_DATA;
 use crate::console::widgets::table::first_row;
 use crate::console::widgets::{Axis, Line, Side, Unit, chart};
 use crate::notation::{compact, dollars, percent};
+use crate::report::peak::PeakProjection;
 use crate::tools::ToolId;
 
 /// The tier that served last, and the tier that is set.
@@ -27,13 +28,13 @@ fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> String {
     let (_, set) = tiers(company, days);
     let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return String::new() };
     match last_week(days) {
-        Some((mean, peak)) if rung.units > 0.0 => format!(
-            "tier {set} · used {}, peak {} · {} {}",
-            share(mean, rung.units),
-            share(peak, rung.units),
-            compact((rung.units - peak).abs()),
-            if peak > rung.units { "too few" } else { "free" }
-        ),
+        Some((mean, peak)) if rung.units > 0.0 => {
+            let next = PeakProjection::of(&company.weeks).map_or(String::new(), |next| {
+                let growth = next.growth_in_words();
+                format!(" · next week {} at last week's growth ({growth})", share(next.next(), rung.units))
+            });
+            format!("tier {set} · used {}, peak {}{next}", share(mean, rung.units), share(peak, rung.units))
+        }
         _ => format!("tier {set} · {} units a day", compact(rung.units)),
     }
 }

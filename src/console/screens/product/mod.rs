@@ -16,13 +16,14 @@ use std::collections::BTreeMap;
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use self::model::{Ages, Day, ProjectOffer, PlanFacts, Project, Rung, Sales};
+use self::model::{Ages, Day, PlanFacts, Project, ProjectOffer, Rung};
 use self::part::ProductPart;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenState};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::readings::Reading;
 use crate::console::theme::Role;
+use crate::report::plan_margins::Sales;
 use crate::session::{Category, Rows};
 use crate::world::identifiers::Plan;
 
@@ -124,7 +125,7 @@ impl ScreenState for Product {
             Reading::OpenIssues => self.issues = Some(model::issues(rows)),
             _ => {}
         }
-        self.plans = self.sales.plans(look.company);
+        self.plans = model::plans(&self.sales, look.company);
     }
 
     fn renew(&mut self, look: &Look<'_>) {
@@ -135,7 +136,7 @@ impl ScreenState for Product {
         };
         self.rungs = model::ladder(look.company);
         self.offers = model::offers(look.company);
-        self.plans = self.sales.plans(look.company);
+        self.plans = model::plans(&self.sales, look.company);
         if !self.placed {
             let (_, set) = capacity::tiers(look.company, &self.days);
             let rung = self.rungs.iter().position(|rung| rung.tier == set);

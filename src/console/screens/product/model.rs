@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use crate::console::company::Company;
+use crate::report::plan_margins::{PlanUse, Sales};
 use crate::session::{Category, Rows, WeekFigures};
 use crate::session::{number_at, text_at};
 use crate::tools::{CapacityTierFacts, ResearchTierFacts, ToolId};
 use crate::world::identifiers::Plan;
 
-/// A plan and what it earns.
+/// A plan, its settings and what it earns.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PlanFacts {
     /// Model tier.
@@ -19,93 +20,34 @@ pub struct PlanFacts {
     pub price: f64,
     /// Dollars a unit.
     pub unit_cost: f64,
-    /// Active subscriptions.
-    pub customers: f64,
-    /// Their seats.
-    pub seats: f64,
-    /// What they pay, dollars a month.
-    pub monthly: f64,
-    /// Units of the last day, and the seats behind them.
-    pub units: f64,
-    /// Seats that used the product.
-    pub users: f64,
+    /// Its subscribers, what they pay and what they used on the last day.
+    pub sold: PlanUse,
 }
 
 impl PlanFacts {
-    /// Units a day and seat.
-    pub fn usage(&self) -> Option<f64> {
-        (self.users > 0.0).then(|| self.units / self.users)
-    }
-
     /// Dollars a month and seat for compute.
     pub fn compute(&self) -> Option<f64> {
-        self.usage().map(|usage| usage * 30.0 * self.unit_cost)
-    }
-
-    /// Dollars a month and seat that are paid.
-    pub fn revenue(&self) -> Option<f64> {
-        (self.seats > 0.0).then(|| self.monthly / self.seats)
+        self.sold.compute(self.unit_cost)
     }
 
     /// Share of the revenue that compute leaves.
     pub fn margin(&self) -> Option<f64> {
-        let (revenue, compute) = (self.revenue()?, self.compute()?);
-        (revenue > 0.0).then(|| 1.0 - compute / revenue)
+        self.sold.margin(self.unit_cost)
     }
 }
 
-/// What the customers of each plan pay and use.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Sales {
-    held: [(f64, f64, f64); 3],
-    used: [(f64, f64); 3],
-}
-
-impl Sales {
-    /// Takes who is there.
-    pub fn take_subscribers(&mut self, rows: &Rows) {
-        self.held = Default::default();
-        for (at, row) in by_plan(rows) {
-            let held = &mut self.held[at];
-            *held = (held.0 + number_at(row, 2), held.1 + number_at(row, 3), held.2 + number_at(row, 4));
+/// The plans with their settings and what they sell.
+pub fn plans(sales: &Sales, company: &Company) -> [PlanFacts; 3] {
+    Plan::ALL.map(|plan| {
+        let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u32;
+        let model = company.costs.model_tiers.get(&(tier as u8));
+        PlanFacts {
+            tier,
+            quota: company.setting(ToolId::SetUsageQuotas, plan.id()),
+            price: company.setting(ToolId::SetPrices, plan.id()),
+            unit_cost: model.map_or(0.0, |model| model.cost_per_usage_unit),
+            sold: sales.of_plan(plan),
         }
-    }
-
-    /// Takes what they used.
-    pub fn take_usage(&mut self, rows: &Rows) {
-        self.used = Default::default();
-        for (at, row) in by_plan(rows) {
-            let used = &mut self.used[at];
-            *used = (used.0 + number_at(row, 3), used.1 + number_at(row, 4));
-        }
-    }
-
-    /// The plans with their settings.
-    pub fn plans(&self, company: &Company) -> [PlanFacts; 3] {
-        std::array::from_fn(|at| {
-            let plan = Plan::ALL[at].id();
-            let tier = company.setting(ToolId::SetModelTiers, plan) as u32;
-            let ((customers, seats, monthly), (users, units)) = (self.held[at], self.used[at]);
-            let model = company.costs.model_tiers.get(&(tier as u8));
-            PlanFacts {
-                tier,
-                quota: company.setting(ToolId::SetUsageQuotas, plan),
-                price: company.setting(ToolId::SetPrices, plan),
-                unit_cost: model.map_or(0.0, |model| model.cost_per_usage_unit),
-                customers,
-                seats,
-                monthly,
-                units,
-                users,
-            }
-        })
-    }
-}
-
-fn by_plan(rows: &Rows) -> impl Iterator<Item = (usize, &Vec<crate::session::Cell>)> {
-    rows.rows.iter().filter_map(|row| {
-        let plan = Plan::ALL.iter().position(|plan| plan.id() == text_at(row, 1))?;
-        Some((plan, row))
     })
 }
 

@@ -35,7 +35,7 @@ impl ProductPart for Plans {
             let plans = Plan::ALL.iter().zip(&product.plans);
             plans.map(|(name, plan)| format!("{name} {}", write(plan))).collect::<Vec<_>>().join(", ")
         };
-        let customers = each(|plan| grouped(plan.customers, 0));
+        let customers = each(|plan| grouped(plan.sold.customers, 0));
         if product.plans.iter().all(|plan| plan.margin().is_none()) {
             return format!("no margin yet · customers {customers}");
         }
@@ -113,10 +113,10 @@ static FIGURES: [PlanFigure; 11] = [
     ("price a month", |plan| cents(plan.price)),
     ("quota a day", |plan| compact(plan.quota)),
     ("unit cost, $/1k", |plan| format!("${}", grouped(plan.unit_cost * 1000.0, 3))),
-    ("customers", |plan| grouped(plan.customers, 0)),
-    ("billed seats", |plan| grouped(plan.seats, 0)),
-    ("usage/seat, day", |plan| or_none(plan.usage(), |usage| grouped(usage, 1))),
-    ("paid/seat, mo.", |plan| or_none(plan.revenue(), cents)),
+    ("customers", |plan| grouped(plan.sold.customers, 0)),
+    ("billed seats", |plan| grouped(plan.sold.seats, 0)),
+    ("usage/seat, day", |plan| or_none(plan.sold.usage(), |usage| grouped(usage, 1))),
+    ("paid/seat, mo.", |plan| or_none(plan.sold.revenue(), cents)),
     ("compute/seat, mo.", |plan| or_none(plan.compute(), cents)),
     ("gross margin", |plan| {
         // The sign stands beside the plan that loses, where no window cuts it.
@@ -124,7 +124,7 @@ static FIGURES: [PlanFigure; 11] = [
             format!("{}{}", if margin < 0.0 { "! " } else { "" }, percent(margin, 1))
         })
     }),
-    ("billed a month", |plan| format!("${}", compact(plan.monthly))),
+    ("billed a month", |plan| format!("${}", compact(plan.sold.monthly))),
 ];
 
 /// The tool that sets what a row shows.

@@ -26,13 +26,18 @@ pub struct Spent {
 }
 
 /// One line on R&D.
-fn summary(projects: &[Project]) -> String {
+fn summary(projects: &[Project], last_day: u32) -> String {
     let running = projects.iter().filter(|project| !project.done);
     let next = running.clone().min_by_key(|project| project.expected);
     let done = projects.iter().filter(|project| project.done).count();
+    let late = match running.clone().filter(|project| project.expected > last_day).count() {
+        0 => String::new(),
+        late => format!(" · ! {late} after the last day"),
+    };
     match next {
         Some(next) => {
-            format!("{} running, next {} on day {} · {done} done", running.count(), next.id, next.expected)
+            let (count, id, day) = (running.count(), &next.id, next.expected);
+            format!("{count} running, next {id} on day {day}{late} · {done} done")
         }
         None => format!("none running · {done} done"),
     }
@@ -50,8 +55,8 @@ impl ProductPart for Research {
         product.projects.len() + product.offers.len()
     }
 
-    fn summary(&self, product: &Product, _: &Company) -> String {
-        summary(&product.projects)
+    fn summary(&self, product: &Product, company: &Company) -> String {
+        summary(&product.projects, company.seen.last_day)
     }
 
     fn note(&self, product: &Product, company: &Company) -> String {
@@ -148,7 +153,11 @@ fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &C
             (false, false) => Role::Text,
         };
         canvas.click(row, Click::Row(seat.number, skipped + at));
-        let mark = if project.done { "✓" } else { "…" };
+        let mark = match project.done {
+            true => "✓",
+            false if project.expected > company.seen.last_day => "!",
+            false => "…",
+        };
         let text = format!(
             "{:<7}{:>+8.4}{:>5} {:>4} {mark}",
             project.id, project.boost, project.started, project.expected

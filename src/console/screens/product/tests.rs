@@ -7,23 +7,27 @@ use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens::Screen;
 use crate::console::test_kit::{act, drawn, played, shown, sweep};
+use crate::report::plan_margins::PlanUse;
 use crate::tools::ToolId;
 
 #[test]
 fn plans_earn_what_is_paid_less_what_is_used() {
     let plan = PlanFacts {
         unit_cost: 0.002,
-        customers: 10.0,
-        seats: 20.0,
-        monthly: 240.0,
-        units: 1000.0,
-        users: 20.0,
+        sold: PlanUse {
+            customers: 10.0,
+            seats: 20.0,
+            monthly: 240.0,
+            units: 1000.0,
+            users: 20.0,
+            ..PlanUse::default()
+        },
         ..PlanFacts::default()
     };
-    assert_eq!((plan.usage(), plan.revenue(), plan.compute()), (Some(50.0), Some(12.0), Some(3.0)));
+    assert_eq!((plan.sold.usage(), plan.sold.revenue(), plan.compute()), (Some(50.0), Some(12.0), Some(3.0)));
     assert_eq!(plan.margin(), Some(0.75));
     let nobody = PlanFacts::default();
-    assert_eq!((nobody.usage(), nobody.revenue(), nobody.margin()), (None, None, None));
+    assert_eq!((nobody.sold.usage(), nobody.sold.revenue(), nobody.margin()), (None, None, None));
 }
 
 #[test]
@@ -35,7 +39,7 @@ fn the_readings_agree_with_the_company() {
     assert_eq!(screen.days.len(), 42);
     let usage: f64 = screen.days[35..].iter().map(|day| day.usage).sum();
     assert_eq!(usage, week.usage as f64);
-    let customers: f64 = screen.plans.iter().map(|plan| plan.customers).sum();
+    let customers: f64 = screen.plans.iter().map(|plan| plan.sold.customers).sum();
     assert_eq!(customers, f64::from(week.individual_subscribers + company.seen.companies));
     assert!(screen.plans.iter().any(|plan| plan.margin().is_some_and(|margin| margin > 0.0 && margin < 1.0)));
     assert_eq!((screen.rungs.len(), screen.places[ProductPane::Capacity as usize]), (8, 2));
@@ -146,11 +150,11 @@ fn figures_are_made_of_their_rows() {
     screen.focus_on(ProductPane::Plans);
     (screen.places[ProductPane::Plans as usize], screen.column) = (4, 1);
     assert_eq!(screen.figure(&look).expect("a figure").title, "customers of plan B");
-    assert_eq!(rows(&screen).len() as f64, screen.plans[1].customers.min(MOST));
+    assert_eq!(rows(&screen).len() as f64, screen.plans[1].sold.customers.min(MOST));
     act(&mut screen, Action::Right, &company);
     assert_eq!(
         (screen.focus, rows(&screen).len() as f64),
-        (ProductPane::Plans, screen.plans[2].customers.min(MOST))
+        (ProductPane::Plans, screen.plans[2].sold.customers.min(MOST))
     );
     screen.focus_on(ProductPane::Issues);
     screen.places[ProductPane::Issues as usize] = 0;

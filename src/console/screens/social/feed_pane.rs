@@ -40,7 +40,7 @@ impl Pane<Social> for FeedPane {
         let last = social.shown.len().saturating_sub(1);
         let (here, page) = (social.selected, usize::from(look.page.max(1)));
         match action {
-            Action::Open => return social.open(social.post().cloned()),
+            Action::Open => return social.open(social.post().cloned(), look.company),
             Action::Up => social.selected = here.saturating_sub(1),
             Action::Down => social.selected = (here + 1).min(last),
             Action::PageUp => social.selected = here.saturating_sub(page),

@@ -19,6 +19,7 @@ use super::panes::{Pane, Paned, draw_pane};
 use super::{Figure, Look, ScreenState};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, fit};
+use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::message::News;
 use crate::console::posts::Posts;
@@ -26,6 +27,7 @@ use crate::console::readings::Reading;
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Cell, Column, Editor, Field, Line, Side, Table, Unit, chart};
 use crate::notation::grouped;
+use crate::report::post_leads::leads_around;
 use crate::session::Rows;
 use crate::tools::ToolId;
 
@@ -109,11 +111,12 @@ impl Social {
     }
 
     /// A post with all that is known of it, and the comments on it.
-    fn read(&self, post: &Post) -> Effect {
+    fn read(&self, post: &Post, company: &Company) -> Effect {
         let mut parts = vec![post.text.clone()];
         if post.kind == PostKind::Own {
             let of =
                 |comment: &&Arc<Post>| comment.kind == PostKind::Comments && comment.answers == Some(post.number);
+            parts.extend(leads_around(post.day, &company.group_weeks, &company.seen.known_groups));
             let comments = self.all.iter().filter(of);
             parts.extend(comments.map(|comment| format!("↳ {}\n  {}", comment.head(), comment.text)));
         } else if let Some(own) = self.own.iter().find(|own| post.answers == Some(own.number)) {
@@ -137,7 +140,7 @@ impl Social {
     }
 
     /// Shows the thread of a post; within it, the whole post.
-    fn open(&mut self, post: Option<Post>) -> Vec<Effect> {
+    fn open(&mut self, post: Option<Post>, company: &Company) -> Vec<Effect> {
         let Some(post) = post else { return Vec::new() };
         match self.thread_of(&post).filter(|_| self.filter.thread.is_none()) {
             Some(own) => {
@@ -147,7 +150,7 @@ impl Social {
                 self.refilter();
                 Vec::new()
             }
-            None => vec![self.read(&post)],
+            None => vec![self.read(&post, company)],
         }
     }
 

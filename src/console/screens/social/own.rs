@@ -46,7 +46,7 @@ impl Pane<Social> for OwnPane {
 
     fn act(&self, social: &mut Social, action: Action, look: &Look<'_>) -> Vec<Effect> {
         let action = match action {
-            Action::Open => return social.open(social.own_post().cloned()),
+            Action::Open => return social.open(social.own_post().cloned(), look.company),
             // Tab ends typing here.
             Action::CommitNext | Action::CommitPrevious => Action::Commit,
             other => other,

@@ -11,6 +11,7 @@ use crate::console::effect::Effect;
 use crate::console::widgets::Field;
 use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::notation::dollars;
+use crate::report::research::outlook_lines;
 use crate::session::{Preview, Refusal};
 use crate::tools::{ArgumentKind, Key, Kind, Spec};
 
@@ -126,10 +127,13 @@ impl Form {
             }
             Kind::Purchase => match &self.preview {
                 Some(Ok(preview)) => {
-                    let text = format!(
+                    let mut text = format!(
                         "{tool} {arguments} costs {} at once and cannot be undone.",
                         dollars(preview.cost_now)
                     );
+                    for line in preview.research.iter().flat_map(outlook_lines) {
+                        text += &format!("\n{line}");
+                    }
                     vec![Effect::ConfirmCall { tool, arguments, text }]
                 }
                 _ => vec![Effect::call(tool, arguments)],

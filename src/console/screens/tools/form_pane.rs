@@ -105,7 +105,7 @@ impl Pane<Tools> for FormPane {
         let inside = Rect { x: seat.area.x + 1, width: seat.area.width.saturating_sub(2), ..seat.area };
         let below = draw_head(form.spec, canvas, inside, look);
         let lines = form_lines(form);
-        let outcome = outcome_lines(form, &tools.leads, look, inside.width as usize);
+        let outcome = outcome_lines(form, &tools.leads, &tools.sales, look, inside.width as usize);
         let room = below.height.saturating_sub(outcome.len().min(below.height as usize / 2) as u16);
         let sheet = Rect { height: (lines.len() as u16).min(room), ..below };
         draw_sheet(form, &tools.leads, &lines, canvas, sheet, seat.focused);

@@ -6,6 +6,7 @@ mod form;
 mod form_pane;
 mod grid;
 mod list_pane;
+mod margins;
 mod outcome;
 mod reference;
 mod sheet;
@@ -28,6 +29,7 @@ use crate::console::message::News;
 use crate::console::readings::Reading;
 use crate::console::widgets::Field;
 use crate::report::insights::{insights_as_ranges, overview_with_ages};
+use crate::report::plan_margins::Sales;
 use crate::session::{JournalEntry, Rows};
 use crate::tools::{Answer, CATALOGUE, Spec, ToolId};
 use form::{Form, spaced};
@@ -54,6 +56,7 @@ pub struct Tools {
     /// Forms that were opened, with their drafts.
     forms: BTreeMap<ToolId, Form>,
     leads: Leads,
+    sales: Sales,
 }
 
 impl Tools {
@@ -168,11 +171,16 @@ impl Tools {
 
 impl ScreenState for Tools {
     fn readings(&self) -> &'static [Reading] {
-        &[Reading::LeadsByChannel]
+        &[Reading::LeadsByChannel, Reading::Subscribers, Reading::Usage]
     }
 
-    fn take(&mut self, _: Reading, rows: &Rows, _: &Look<'_>) {
-        self.leads = Leads::read(rows);
+    fn take(&mut self, reading: Reading, rows: &Rows, _: &Look<'_>) {
+        match reading {
+            Reading::LeadsByChannel => self.leads = Leads::read(rows),
+            Reading::Subscribers => self.sales.take_subscribers(rows),
+            Reading::Usage => self.sales.take_usage(rows),
+            _ => {}
+        }
     }
 
     fn renew(&mut self, look: &Look<'_>) {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::form::Form;
+use super::margins::margins;
 use super::reference::reference;
 use super::sheet::Block;
 use crate::console::action::Action;
@@ -12,6 +13,8 @@ use crate::console::screens::Look;
 use crate::console::text::{count, number, wrapped};
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped, signed_dollars};
+use crate::report::plan_margins::Sales;
+use crate::report::research::outlook_lines;
 use crate::session::Rows;
 use crate::session::{number_at, text_at};
 use crate::tools::{ArgumentKind, Key};
@@ -70,6 +73,7 @@ fn rate_in_words(rate: f64) -> String {
 pub(super) fn outcome_lines(
     form: &Form,
     leads: &Leads,
+    sales: &Sales,
     look: &Look<'_>,
     width: usize,
 ) -> Vec<(String, Role)> {
@@ -95,6 +99,9 @@ pub(super) fn outcome_lines(
             if !parts.is_empty() {
                 paragraph(&format!("→ {}", parts.join(" · ")), Role::Strong);
             }
+            for line in preview.research.iter().flat_map(outlook_lines) {
+                paragraph(&line, Role::Text);
+            }
         }
         Some(Err(refusal)) => paragraph(&format!("! {}", refusal.message), Role::Bad),
         None => {}
@@ -110,12 +117,15 @@ pub(super) fn outcome_lines(
     {
         answer_lines(answer, &mut paragraph);
     }
-    let helps = reference(form.spec.id, look.company);
-    if !helps.is_empty() {
-        paragraph(" ", Role::Text);
-        for (at, line) in helps.iter().enumerate() {
+    let tables = [margins(form, sales, look.company), reference(form.spec.id, look.company)];
+    for table in tables.iter().filter(|table| !table.is_empty()) {
+        lines.push((" ".to_owned(), Role::Text));
+        for (at, line) in table.iter().enumerate() {
             let role = if at == 0 { Role::Header } else { Role::Text };
-            lines.push((line.clone(), role));
+            // Rows of a table keep their blanks; sentences below it may need a second line.
+            let is_row = line.contains("  ") || line.chars().count() <= width;
+            let parts = if is_row { vec![line.clone()] } else { wrapped(line, width) };
+            lines.extend(parts.into_iter().map(|part| (part, role)));
         }
     }
     let mut about = |text: &str| {

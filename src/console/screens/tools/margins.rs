@@ -1,0 +1,22 @@
+//! The margins that a draft of prices, model tiers or quotas would leave.
+
+use super::form::Form;
+use crate::console::company::Company;
+use crate::report::plan_margins::{Lever, PlanTerms, Sales, margin_lines};
+use crate::tools::ToolId;
+use crate::world::identifiers::ByPlan;
+
+/// Lines beside a form, the first one a head; empty where no margin follows from its tool.
+pub fn margins(form: &Form, sales: &Sales, company: &Company) -> Vec<String> {
+    let Some(lever) = Lever::of(form.spec.id) else { return Vec::new() };
+    let now = ByPlan::from_fn(|plan| PlanTerms {
+        price: company.setting(ToolId::SetPrices, plan.id()),
+        tier: company.setting(ToolId::SetModelTiers, plan.id()) as u8,
+        quota: company.setting(ToolId::SetUsageQuotas, plan.id()),
+    });
+    let terms = form.sheet.arguments().map_or(now, |arguments| lever.apply(now, &arguments));
+    let mut models: Vec<(u8, f64)> =
+        company.costs.model_tiers.iter().map(|(tier, model)| (*tier, model.cost_per_usage_unit)).collect();
+    models.sort_by_key(|(tier, _)| *tier);
+    margin_lines(sales, &terms, lever, &models, company.seen.day)
+}

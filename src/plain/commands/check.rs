@@ -1,0 +1,78 @@
+//! `check CALL`: what a call would do and cost, before it is made.
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::super::grammar::{self, Line, Problem, as_object};
+use super::{Interpreter, change_line, only_required, tool_called, unknown};
+use crate::notation::{dollars, signed_dollars};
+use crate::report::plan_margins::{Lever, PlanTerms, Sales, margin_lines};
+use crate::report::research::outlook_lines;
+use crate::session::{Preview, ToolId};
+use crate::world::identifiers::ByPlan;
+
+impl Interpreter {
+    /// Reads the call in a line that begins with the word `check`, so that columns are those of the line.
+    pub(super) fn check(&self, line: &str) -> Result<Answer, Problem> {
+        let call = line.replacen("check", "     ", 1);
+        let Line::Call { word, column, arguments } = grammar::parse(&call)? else {
+            let text = "check needs a call, for instance check set_prices B=30".to_owned();
+            return Err(Problem { text, column: line.chars().count() });
+        };
+        let tool = tool_called(&word).ok_or_else(|| unknown(&word, column))?;
+        let arguments = as_object(&arguments, only_required(tool))?;
+        Ok(match self.session.check(tool.spec().name(), &arguments) {
+            Ok(preview) => self.told(&preview, &arguments),
+            Err(refusal) => Answer::refused("check", refusal),
+        })
+    }
+
+    fn told(&self, preview: &Preview, arguments: &Value) -> Answer {
+        let mut lines = vec![format!("{} would be accepted; nothing was done", preview.tool)];
+        lines.extend(preview.changes.iter().map(|change| format!("  {}", change_line(change))));
+        let mut parts = Vec::new();
+        if preview.cost_now > 0.0 {
+            parts.push(format!("costs {} at once", dollars(preview.cost_now)));
+        }
+        if preview.cost_per_day != 0.0 {
+            parts.push(format!("{} a day", signed_dollars(preview.cost_per_day)));
+        }
+        if let Some(day) = preview.effect_day {
+            parts.push(format!("from day {day}"));
+        }
+        if !parts.is_empty() {
+            lines.push(format!("  {}", parts.join(" · ")));
+        }
+        let notes =
+            preview.research.iter().flat_map(outlook_lines).chain(self.margins(preview.tool, arguments));
+        lines.extend(notes.map(|note| format!("  {note}")));
+        let data = json!({
+            "tool": preview.tool,
+            "cost_now": preview.cost_now,
+            "cost_per_day": preview.cost_per_day,
+            "effect_day": preview.effect_day,
+            "changes": preview.changes,
+            "research": preview.research,
+        });
+        Answer::done("check", lines.join("\n"), data)
+    }
+
+    /// The margins that a call would leave; none where none follow from its tool.
+    fn margins(&self, tool: ToolId, arguments: &Value) -> Vec<String> {
+        let Some(lever) = Lever::of(tool) else { return Vec::new() };
+        let core = self.session.settings().core;
+        let now = ByPlan::from_fn(|plan| PlanTerms {
+            price: core.prices[plan],
+            tier: core.tiers[plan],
+            quota: core.quotas[plan].units(),
+        });
+        let models: Vec<(u8, f64)> =
+            self.session.terms().models.iter().map(|model| (model.tier, model.unit_cost)).collect();
+        match Sales::of(&self.session) {
+            Ok(sales) => {
+                margin_lines(&sales, &lever.apply(now, arguments), lever, &models, self.session.day())
+            }
+            Err(refusal) => vec![format!("no margins: {}", refusal.message)],
+        }
+    }
+}

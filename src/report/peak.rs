@@ -1,0 +1,80 @@
+//! The peak that capacity has to hold next week: the busiest day of the last week, times its growth over the busiest day of
+//! the week before. A projection at last week's growth, and named so wherever it stands.
+
+use super::words::whole;
+use crate::notation::percent;
+use crate::session::WeekFigures;
+
+/// The busiest days of the last two weeks, and the next at the same growth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PeakProjection {
+    /// Units of the busiest day of the last week.
+    pub busiest: f64,
+    /// Times the busiest day of the week before.
+    pub growth: f64,
+}
+
+impl PeakProjection {
+    /// From the last two weeks, if both are whole and somebody used the product in them.
+    pub fn of(weeks: &[WeekFigures]) -> Option<PeakProjection> {
+        let [.., before, last] = weeks else { return None };
+        let is_whole = |week: &WeekFigures| week.days_run == 7 && week.busiest_day > 0;
+        (is_whole(before) && is_whole(last)).then(|| PeakProjection {
+            busiest: last.busiest_day as f64,
+            growth: last.busiest_day as f64 / before.busiest_day as f64,
+        })
+    }
+
+    /// Units of the busiest day of the next week at last week's growth.
+    pub fn next(&self) -> f64 {
+        self.busiest * self.growth
+    }
+
+    /// Beside what a tier serves: `at last week's growth (+12%) next week's peak is 61,000 units, 76% of tier 1`.
+    pub fn in_words(&self, tier: u32, units: f64) -> String {
+        let share = percent(self.next() / units.max(1.0), 0);
+        format!(
+            "at last week's growth ({}) next week's peak is {} units, {share} of tier {tier}",
+            self.growth_in_words(),
+            whole(self.next())
+        )
+    }
+
+    /// Growth with its sign: `+12%`.
+    pub fn growth_in_words(&self) -> String {
+        let growth = percent(self.growth - 1.0, 0);
+        if growth.starts_with('-') { growth } else { format!("+{growth}") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::test_kit::played;
+    use crate::session::number_at;
+
+    #[test]
+    fn the_projection_follows_from_the_days_in_the_tables() {
+        let mut session = played(6);
+        let projection = PeakProjection::of(session.weeks()).expect("two weeks with use");
+        let mut busiest = |from: u32| {
+            let sql = format!(
+                "SELECT max(total_usage_units) FROM service_day WHERE day > {from} AND day <= {from} + 7"
+            );
+            number_at(&session.query(&sql).expect("a maximum").rows[0], 0)
+        };
+        let (before, last) = (busiest(28), busiest(35));
+        assert_eq!((projection.busiest, projection.next()), (last, last * (last / before)));
+        assert!(projection.in_words(1, 200_000.0).contains(&whole(last * last / before)));
+    }
+
+    #[test]
+    fn nothing_is_projected_from_less_than_two_whole_weeks() {
+        let week = |days_run, busiest_day| WeekFigures { days_run, busiest_day, ..WeekFigures::default() };
+        assert_eq!(PeakProjection::of(&[week(7, 50)]), None);
+        assert_eq!(PeakProjection::of(&[week(7, 0), week(7, 50)]), None);
+        assert_eq!(PeakProjection::of(&[week(7, 50), week(3, 50)]), None);
+        let shrinks = PeakProjection::of(&[week(7, 50), week(7, 25)]).expect("two weeks");
+        assert_eq!((shrinks.next(), shrinks.growth_in_words().as_str()), (12.5, "-50%"));
+    }
+}

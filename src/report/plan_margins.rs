@@ -1,0 +1,318 @@
+//! Gross margins of plans: what their subscribers pay beside the compute that their use costs, on the models that serve
+//! them and on others. There is one definition, for the screen of the product, the forms and plain mode: the use of the
+//! last day by those who are there, 30 days a month, and what they pay a month.
+
+use serde_json::Value;
+
+use super::words::money;
+use crate::notation::{cents, compact, percent};
+use crate::session::{Cell, Refusal, Rows, Session, ToolId, number_at, text_at};
+use crate::world::identifiers::{ByPlan, Group, Plan};
+
+/// Active subscriptions by group and plan.
+const SUBSCRIBERS: &str = include_str!("../../assets/readings/subscribers.sql");
+/// Units of the last day by group and plan.
+const USAGE: &str = include_str!("../../assets/readings/usage.sql");
+/// Days of a month of billing.
+const MONTH: f64 = 30.0;
+
+/// Subscribers, what they pay and what they used on the last day.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PlanUse {
+    /// Active subscriptions.
+    pub customers: f64,
+    /// Their seats.
+    pub seats: f64,
+    /// What they pay, dollars a month.
+    pub monthly: f64,
+    /// Subscriptions that were there on the last day.
+    pub accounts: f64,
+    /// Their seats.
+    pub users: f64,
+    /// Units they used on it.
+    pub units: f64,
+}
+
+impl PlanUse {
+    fn plus(self, other: PlanUse) -> PlanUse {
+        PlanUse {
+            customers: self.customers + other.customers,
+            seats: self.seats + other.seats,
+            monthly: self.monthly + other.monthly,
+            accounts: self.accounts + other.accounts,
+            users: self.users + other.users,
+            units: self.units + other.units,
+        }
+    }
+
+    /// Units a day and seat; none where nobody was there on the last day.
+    pub fn usage(&self) -> Option<f64> {
+        (self.users > 0.0).then(|| self.units / self.users)
+    }
+
+    /// Dollars a month and seat for compute, at dollars a unit.
+    pub fn compute(&self, unit_cost: f64) -> Option<f64> {
+        self.usage().map(|usage| usage * MONTH * unit_cost)
+    }
+
+    /// Dollars a month and seat that are paid.
+    pub fn revenue(&self) -> Option<f64> {
+        (self.seats > 0.0).then(|| self.monthly / self.seats)
+    }
+
+    /// Share of what is paid that compute leaves, at dollars a unit.
+    pub fn margin(&self, unit_cost: f64) -> Option<f64> {
+        margin(self.revenue()?, self.compute(unit_cost)?)
+    }
+
+    /// The same if every account used up a quota of units a day.
+    fn margin_of_full_quota(&self, quota: f64, unit_cost: f64) -> Option<f64> {
+        let full = PlanUse { units: self.accounts * quota, ..*self };
+        full.margin(unit_cost)
+    }
+}
+
+/// Share of a price that its compute leaves.
+fn margin(price: f64, compute: f64) -> Option<f64> {
+    (price > 0.0).then(|| 1.0 - compute / price)
+}
+
+/// What the subscribers of each group and plan pay and use.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sales {
+    held: Vec<(Group, Plan, PlanUse)>,
+    used: Vec<(Group, Plan, PlanUse)>,
+}
+
+impl Sales {
+    /// Asks the database of a run, without recording that it was asked.
+    ///
+    /// # Errors
+    /// The run has no database, or it cannot be read.
+    pub fn of(session: &Session) -> Result<Sales, Refusal> {
+        session.wait_for_database()?;
+        let (connection, limits) = (session.open_connection()?, session.query_limits());
+        let mut sales = Sales::default();
+        sales.take_subscribers(&connection.ask(SUBSCRIBERS, limits)?);
+        sales.take_usage(&connection.ask(USAGE, limits)?);
+        Ok(sales)
+    }
+
+    /// Takes who is there: group, plan, customers, seats, dollars a month.
+    pub fn take_subscribers(&mut self, rows: &Rows) {
+        self.held = by_plan(rows, |row| PlanUse {
+            customers: number_at(row, 2),
+            seats: number_at(row, 3),
+            monthly: number_at(row, 4),
+            ..PlanUse::default()
+        });
+    }
+
+    /// Takes what they used: group, plan, accounts, seats, units.
+    pub fn take_usage(&mut self, rows: &Rows) {
+        self.used = by_plan(rows, |row| PlanUse {
+            accounts: number_at(row, 2),
+            users: number_at(row, 3),
+            units: number_at(row, 4),
+            ..PlanUse::default()
+        });
+    }
+
+    /// All subscribers of a plan.
+    pub fn of_plan(&self, plan: Plan) -> PlanUse {
+        self.sum(|_, own| own == plan)
+    }
+
+    /// The subscribers of a plan by group, in the order of the groups.
+    fn by_group(&self, plan: Plan) -> Vec<(Group, PlanUse)> {
+        let of = |group: Group| (group, self.sum(|own, of| own == group && of == plan));
+        Group::all().map(of).filter(|(_, own)| own.customers > 0.0).collect()
+    }
+
+    fn sum(&self, counts: impl Fn(Group, Plan) -> bool) -> PlanUse {
+        let own = self.held.iter().chain(&self.used).filter(|(group, plan, _)| counts(*group, *plan));
+        own.fold(PlanUse::default(), |sum, (_, _, more)| sum.plus(*more))
+    }
+}
+
+fn by_plan(rows: &Rows, read: impl Fn(&[Cell]) -> PlanUse) -> Vec<(Group, Plan, PlanUse)> {
+    let own =
+        |row: &Vec<Cell>| Some((Group::parse(text_at(row, 0))?, Plan::parse(text_at(row, 1))?, read(row)));
+    rows.rows.iter().filter_map(own).collect()
+}
+
+/// What a draft would make of a plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanTerms {
+    /// List price, dollars a month and seat.
+    pub price: f64,
+    /// Model tier.
+    pub tier: u8,
+    /// Units a day and account.
+    pub quota: f64,
+}
+
+/// What a form sets, and what its margins are shown beside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lever {
+    /// List prices: margins at the price, too.
+    Price,
+    /// Model tiers.
+    Tier,
+    /// Quotas: margins when they are used up, too.
+    Quota,
+}
+
+impl Lever {
+    /// What a tool sets, if margins follow from it.
+    pub fn of(tool: ToolId) -> Option<Lever> {
+        match tool {
+            ToolId::SetPrices => Some(Lever::Price),
+            ToolId::SetModelTiers => Some(Lever::Tier),
+            ToolId::SetUsageQuotas => Some(Lever::Quota),
+            _ => None,
+        }
+    }
+
+    /// The terms of plans after a call of the tool with these arguments.
+    pub fn apply(self, mut terms: ByPlan<PlanTerms>, arguments: &Value) -> ByPlan<PlanTerms> {
+        for plan in Plan::ALL {
+            let Some(value) = arguments.get(plan.id()).and_then(Value::as_f64) else { continue };
+            let own = &mut terms[plan];
+            match self {
+                Lever::Price => own.price = value,
+                Lever::Tier => own.tier = value as u8,
+                Lever::Quota => own.quota = value,
+            }
+        }
+        terms
+    }
+}
+
+/// The margins of every plan under its terms and on every other model: a head, then lines.
+pub fn margin_lines(
+    sales: &Sales,
+    terms: &ByPlan<PlanTerms>,
+    lever: Lever,
+    models: &[(u8, f64)],
+    day: u32,
+) -> Vec<String> {
+    if Plan::ALL.into_iter().all(|plan| sales.of_plan(plan).usage().is_none()) {
+        return vec!["no margins: no use of subscribers has been measured".to_owned()];
+    }
+    let mut lines = vec![format!("gross margin by model tier at the use of day {day}; [ ] as set")];
+    let tiers: String = models.iter().map(|(tier, _)| format!("{:>8}", format!("T{tier} "))).collect();
+    lines.push(format!("{:<16}{tiers}", "a month and seat").trim_end().to_owned());
+    for plan in Plan::ALL {
+        let (own, set) = (sales.of_plan(plan), terms[plan]);
+        let row = |label: String, margin: &dyn Fn(f64) -> Option<f64>| {
+            let cell =
+                |(tier, unit_cost): &(u8, f64)| format!("{:>8}", cell(margin(*unit_cost), *tier == set.tier));
+            let cells: String = models.iter().map(cell).collect();
+            format!("{label:<16}{cells}").trim_end().to_owned()
+        };
+        let Some(paid) = own.revenue().filter(|_| own.usage().is_some()) else {
+            lines.push(format!("{plan} nobody used it on day {day}"));
+            continue;
+        };
+        lines.push(row(format!("{plan} paid {}", cents(paid)), &|unit_cost| own.margin(unit_cost)));
+        match lever {
+            Lever::Price if set.price > 0.0 && (set.price - paid).abs() >= 0.005 => {
+                let label = format!("{plan} list {}", cents(set.price));
+                lines.push(row(label, &|unit_cost| margin(set.price, own.compute(unit_cost)?)));
+            }
+            Lever::Quota => {
+                let label = format!("{plan} all use {}", compact(set.quota));
+                lines.push(row(label, &|unit_cost| own.margin_of_full_quota(set.quota, unit_cost)));
+            }
+            _ => {}
+        }
+    }
+    lines.extend(Plan::ALL.into_iter().filter_map(|plan| by_group(sales, plan, terms[plan], models)));
+    lines
+}
+
+/// The margins of a plan's groups on the model that is set; none where one group has the plan.
+fn by_group(sales: &Sales, plan: Plan, set: PlanTerms, models: &[(u8, f64)]) -> Option<String> {
+    let (_, unit_cost) = models.iter().find(|(tier, _)| *tier == set.tier)?;
+    let told = |(group, own): &(Group, PlanUse)| {
+        let margin = own.margin(*unit_cost).map_or("–".to_owned(), |margin| percent(margin, 0));
+        format!("{group} {margin} of {}", own.revenue().map_or("–".to_owned(), money))
+    };
+    let groups = sales.by_group(plan);
+    (groups.len() > 1).then(|| {
+        let told: Vec<String> = groups.iter().map(told).collect();
+        format!("{plan} by group on T{}: {}", set.tier, told.join(", "))
+    })
+}
+
+fn cell(margin: Option<f64>, is_set: bool) -> String {
+    // How far below nothing a margin lies matters no more at ten times the price.
+    let text = margin.map_or("–".to_owned(), |margin| match margin < -9.99 {
+        true => "<-999%".to_owned(),
+        false => percent(margin, 0),
+    });
+    if is_set { format!("[{text}]") } else { format!("{text} ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::report::test_kit::played;
+    use crate::session::CoreSettings;
+
+    fn terms(core: &CoreSettings) -> ByPlan<PlanTerms> {
+        ByPlan::from_fn(|plan| PlanTerms {
+            price: core.prices[plan],
+            tier: core.tiers[plan],
+            quota: core.quotas[plan].units(),
+        })
+    }
+
+    #[test]
+    fn margins_are_those_of_the_tables_on_every_model() {
+        let mut session = played(6);
+        let sales = Sales::of(&session).expect("a database");
+        let sql = "SELECT sum(s.effective_price * s.seat_count) / sum(s.seat_count),
+                   (SELECT sum(u.usage_units) * 30.0 / sum(o.seat_count) FROM daily_usage u
+                    JOIN subscriptions o ON o.customer_id = u.customer_id AND o.status = 'subscribed'
+                    WHERE u.day = 42 AND o.plan = 'B')
+                   FROM subscriptions s WHERE s.plan = 'B' AND s.status = 'subscribed'";
+        let row = session.query(sql).expect("figures").rows.remove(0);
+        let (paid, units) = (number_at(&row, 0), number_at(&row, 1));
+        let own = sales.of_plan(Plan::B);
+        for unit_cost in [0.0003, 0.002, 0.03] {
+            let expected = 1.0 - units * unit_cost / paid;
+            assert!((own.margin(unit_cost).expect("a margin") - expected).abs() < 1e-9);
+        }
+        let models: Vec<(u8, f64)> =
+            session.terms().models.iter().map(|model| (model.tier, model.unit_cost)).collect();
+        let now = terms(&session.settings().core);
+        let draft = Lever::Tier.apply(now, &json!({"B": 3}));
+        let lines = margin_lines(&sales, &draft, Lever::Tier, &models, 42);
+        assert!(lines[0].contains("at the use of day 42"), "{lines:?}");
+        let line = lines.iter().find(|line| line.starts_with("B paid ")).expect("plan B");
+        let on_3 = format!("[{}]", percent(own.margin(models[2].1).expect("a margin"), 0));
+        assert!(line.contains(&cents(paid)) && line.contains(&on_3), "{line} without {on_3}");
+        let dear = Lever::Price.apply(now, &json!({"B": 250}));
+        let lines = margin_lines(&sales, &dear, Lever::Price, &models, 42);
+        let line = lines.iter().find(|line| line.starts_with("B list $250.00")).expect("the list price");
+        let on_2 = format!("[{}]", percent(1.0 - units * models[1].1 / 250.0, 0));
+        assert!(line.contains(&on_2), "{line} without {on_2}");
+        let full = Lever::Quota.apply(now, &json!({"B": 300}));
+        let lines = margin_lines(&sales, &full, Lever::Quota, &models, 42);
+        let line = lines.iter().find(|line| line.starts_with("B all use 300")).expect("the quota");
+        let full = 1.0 - own.accounts * 300.0 / own.users * 30.0 * models[1].1 / paid;
+        assert!(line.contains(&format!("[{}]", percent(full, 0))), "{line} without {full}");
+    }
+
+    #[test]
+    fn nothing_measured_is_said_and_not_guessed() {
+        let session = played(0);
+        let sales = Sales::of(&session).expect("a database");
+        let lines = margin_lines(&sales, &terms(&session.settings().core), Lever::Price, &[(1, 0.0003)], 0);
+        assert_eq!(lines, ["no margins: no use of subscribers has been measured"]);
+    }
+}

@@ -1,0 +1,50 @@
+//! Leads around the day of a post: those of the week before and of the week after, by group. Counts only: which leads a post
+//! brought is in no record that a player may see.
+
+use super::words::whole;
+use crate::session::GroupWeek;
+use crate::world::identifiers::{ByGroup, Group};
+
+/// Lines on the leads before and after a decision day; none before a week has run after it.
+pub fn leads_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> Vec<String> {
+    let after = day as usize / 7;
+    let Some(later) = weeks.get(after).filter(|_| day.is_multiple_of(7)) else { return Vec::new() };
+    let before = after.checked_sub(1).and_then(|at| weeks.get(at));
+    let count = |week: &ByGroup<GroupWeek>, group: Group| whole(f64::from(week[group].leads));
+    let told: Vec<String> = known
+        .iter()
+        .map(|group| {
+            let earlier = before.map_or("–".to_owned(), |week| count(week, *group));
+            format!("{group} {earlier} → {}", count(later, *group))
+        })
+        .collect();
+    vec![
+        format!("Leads in the week before → in the week after: {}", told.join(", ")),
+        "Whatever else changed in these weeks is in them, too.".to_owned(),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::test_kit::played;
+    use crate::session::number_at;
+
+    #[test]
+    fn leads_are_counted_on_both_sides_of_the_day() {
+        let mut session = played(4);
+        let known = session.observe().known_groups;
+        let told = leads_around(14, session.group_weeks(), &known);
+        let mut leads = |from: u32| {
+            let sql = format!(
+                "SELECT count(*) FROM customers WHERE group_id = 'S1' AND created_day > {from} AND created_day <= {from} + 7"
+            );
+            whole(number_at(&session.query(&sql).expect("a count").rows[0], 0))
+        };
+        let expected = format!("S1 {} → {}", leads(7), leads(14));
+        assert!(told[0].contains(&expected), "{told:?} without {expected}");
+        let first = leads_around(0, session.group_weeks(), &known);
+        assert!(first[0].contains("S1 – → "), "{first:?}");
+        assert!(leads_around(28, session.group_weeks(), &known).is_empty(), "no week has run since");
+    }
+}

@@ -1,0 +1,127 @@
+//! R&D in words: what a project can be expected to take and to gain before it is paid for, and which ones come too late.
+
+use crate::session::{LateProject, Observation, ResearchOutlook, ResearchSpread};
+
+/// Lines on a project before it is started, the first one on time.
+pub fn outlook_lines(outlook: &ResearchOutlook) -> Vec<String> {
+    let ResearchOutlook { earliest, last_day, spread } = outlook;
+    if earliest > last_day {
+        return vec![format!(
+            "no project started now is done before day {earliest}, after the last day ({last_day})"
+        )];
+    }
+    let Some(spread) = spread else { return Vec::new() };
+    vec![time_in_words(spread, *earliest, *last_day), gain_in_words(spread)]
+}
+
+fn time_in_words(spread: &ResearchSpread, earliest: u32, last_day: u32) -> String {
+    let [quarter, half, three_quarters] = spread.quartile_days;
+    let by_the_end = format!("done by the last day ({last_day}) in {}", of_100(spread.by_last_day));
+    if quarter > earliest {
+        return format!("half finish between day {quarter} and {three_quarters}; {by_the_end}");
+    }
+    // The floor of the duration swallows the low end.
+    let mut parts = vec![format!("{} finish on day {earliest}, the earliest", of_100(spread.at_earliest))];
+    if half > earliest {
+        parts.push(format!("half by day {half}"));
+    }
+    if three_quarters > earliest {
+        parts.push(format!("three quarters by day {three_quarters}"));
+    }
+    format!("{}; {by_the_end}", parts.join(", "))
+}
+
+fn gain_in_words(spread: &ResearchSpread) -> String {
+    let [quarter, _, three_quarters] = spread.quartile_gains;
+    let least = match of_100(spread.at_least_gain).as_str() {
+        "fewer than 1 of 100" => String::new(),
+        share => format!("; the least, {:+}, in {share}", spread.least_gain),
+    };
+    format!("half gain between {quarter:+.4} and {three_quarters:+.4} quality{least}")
+}
+
+/// A share as a count of a hundred: `62 of 100`.
+fn of_100(share: f64) -> String {
+    match (share * 100.0).round() {
+        0.0 => "fewer than 1 of 100".to_owned(),
+        100.0 if share < 1.0 => "more than 99 of 100".to_owned(),
+        count => format!("{count} of 100"),
+    }
+}
+
+/// A line for each project that was started since the last week and runs beyond the last day.
+pub fn late_lines(seen: &Observation) -> Vec<String> {
+    let new = seen.late_projects.iter().filter(|project| project.is_new);
+    let line = |project: &LateProject| late_in_words(&project.id, project.due_day, seen.last_day);
+    new.map(line).collect()
+}
+
+/// That a project runs beyond the last day.
+pub fn late_in_words(project: &str, due_day: u32, last_day: u32) -> String {
+    format!("R&D project {project} is done on day {due_day}, after the last day ({last_day})")
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::session::{Configuration, Mode, NewRun, Session, Storage, Via};
+
+    fn run(days: u32, mode: Mode) -> Session {
+        let new = NewRun {
+            seed: Some(3),
+            days: Some(days),
+            cash: Some(30_000_000.0),
+            mode,
+            storage: Storage::Memory,
+            projection: false,
+            ..NewRun::default()
+        };
+        Session::create(new, &Configuration::shipped()).expect("a run")
+    }
+
+    #[test]
+    fn the_spread_is_told_before_the_project_is_paid() {
+        let session = run(500, Mode::Sandbox);
+        let told = |tier: u8| outlook_lines(&session.research_outlook(tier));
+        assert_eq!(
+            told(1),
+            [
+                "94 of 100 finish on day 30, the earliest; done by the last day (500) in 100 of 100",
+                "half gain between +0.0265 and +0.0535 quality; the least, +0.001, in 3 of 100",
+            ]
+        );
+        assert_eq!(
+            told(9)[0],
+            "32 of 100 finish on day 30, the earliest, half by day 102, three quarters by day 204; done by the \
+             last day (500) in more than 99 of 100"
+        );
+        assert_eq!(
+            told(20),
+            [
+                "35 of 100 finish on day 30, the earliest, half by day 466, three quarters by day 1222; done by \
+                 the last day (500) in 51 of 100",
+                "half gain between +3.6833 and +12.3167 quality; the least, +0.001, in 11 of 100",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_run_that_is_too_short_says_so_and_a_late_project_is_named() {
+        let session = run(28, Mode::Sandbox);
+        let told = outlook_lines(&session.research_outlook(2));
+        assert_eq!(told, ["no project started now is done before day 30, after the last day (28)"]);
+        let mut session = run(200, Mode::Sandbox);
+        for tier in 12..=20 {
+            let _ = session.call("start_research_project", &json!({ "tier": tier }), Via::Script);
+        }
+        let seen = session.observe();
+        let due = |project: &crate::session::LateProject| project.due_day > 200 && project.is_new;
+        assert!(!seen.late_projects.is_empty() && seen.late_projects.iter().all(due));
+        let first = &seen.late_projects[0];
+        let words =
+            format!("R&D project {} is done on day {}, after the last day (200)", first.id, first.due_day);
+        assert_eq!(late_lines(&seen)[0], words);
+    }
+}

@@ -1,0 +1,121 @@
+//! How the projects of an R&D tier spread in time and gain, before one of them is drawn
+//! (`docs/mechanics/product/research.md#spread`). It follows from the tier alone, whatever the seed.
+
+use crate::params::{Development, ResearchTier};
+use crate::random::inverse_normal;
+
+/// Share of the projects of a tier that take at most so many days, 0..=1.
+pub fn done_within(days: u32, tier: &ResearchTier, development: &Development) -> f64 {
+    match days < development.rd_min_duration_days {
+        true => 0.0,
+        // Durations are cut to whole days, so a day is reached by all that is drawn below the next.
+        false => share_below(f64::from(days) + 1.0, tier.mean_days, tier.std_days),
+    }
+}
+
+/// The least number of days within which a share of the projects is done; the share lies between 0 and 1.
+pub fn days_for(share: f64, tier: &ResearchTier, development: &Development) -> u32 {
+    let drawn = tier.mean_days + tier.std_days * inverse_normal(share);
+    let least = development.rd_min_duration_days;
+    let days = (drawn - 1.0).ceil().max(f64::from(least)) as u32;
+    // Rounding can leave the quantile a hair on the wrong side of a day.
+    match done_within(days, tier, development) < share {
+        true => days + 1,
+        false => days,
+    }
+}
+
+/// The quality that a share of the projects does not exceed; the share lies between 0 and 1.
+pub fn gain_at(share: f64, tier: &ResearchTier, development: &Development) -> f64 {
+    let drawn = tier.mean_quality_boost + tier.std_quality_boost * inverse_normal(share);
+    drawn.max(development.rd_min_quality_boost)
+}
+
+/// Share of the projects that gain no more than the least, 0..=1.
+pub fn share_of_least_gain(tier: &ResearchTier, development: &Development) -> f64 {
+    share_below(development.rd_min_quality_boost, tier.mean_quality_boost, tier.std_quality_boost)
+}
+
+/// Share of a normal distribution below a bound.
+fn share_below(bound: f64, mean: f64, spread: f64) -> f64 {
+    match spread > 0.0 {
+        true => 0.5 * libm::erfc((mean - bound) / spread * std::f64::consts::FRAC_1_SQRT_2),
+        false => f64::from(u8::from(mean < bound)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Product;
+    use super::super::research::draw;
+    use super::*;
+    use crate::params::Params;
+    use crate::random::Streams;
+
+    #[test]
+    fn the_shortest_duration_takes_the_share_that_its_floor_swallows() {
+        let params = Params::shipped();
+        for (tier, share) in [(1, 0.943327), (5, 0.42479), (10, 0.301909), (20, 0.348532)] {
+            let within = |days| done_within(days, params.research(tier), &params.development);
+            assert!((within(30) - share).abs() < 5e-7, "tier {tier}: {}", within(30));
+            assert_eq!(within(29), 0.0);
+        }
+    }
+
+    #[test]
+    fn quantiles_are_the_first_days_that_hold_their_share() {
+        let params = Params::shipped();
+        for tier in &params.research_tier {
+            for share in [0.05, 0.25, 0.5, 0.75, 0.975] {
+                let days = days_for(share, tier, &params.development);
+                assert!(done_within(days, tier, &params.development) >= share);
+                assert!(days == 30 || done_within(days - 1, tier, &params.development) < share);
+            }
+        }
+        let (fifth, development) = (params.research(5), &params.development);
+        let days = [0.25, 0.5, 0.75].map(|share| days_for(share, fifth, development));
+        assert_eq!(days, [30, 41, 81]);
+        let gains = [0.25, 0.75].map(|share| (gain_at(share, fifth, development) * 1e6).round());
+        assert_eq!(gains, [145_806.0, 294_194.0]);
+        assert!((share_of_least_gain(params.research(20), development) - 0.105_678).abs() < 5e-7);
+        assert_eq!(gain_at(0.01, params.research(20), development), 0.001);
+    }
+
+    #[test]
+    fn projects_over_seeds_spread_as_told() {
+        let params = Params::shipped();
+        for tier in [3, 10, 17] {
+            let product = Product::opening(&params);
+            let law = params.research(tier);
+            let drawn: Vec<_> =
+                (0..4000).map(|seed| draw(&product, 0, tier, &params, &Streams::new(seed))).collect();
+            let share = |holds: &dyn Fn(&crate::events::Project) -> bool| {
+                drawn.iter().filter(|project| holds(project)).count() as f64 / 4000.0
+            };
+            for days in [30, 60, 150, 400] {
+                let told = done_within(days, law, &params.development);
+                assert!(
+                    (share(&|project| project.due_day <= days) - told).abs() < 0.025,
+                    "tier {tier}, {days}"
+                );
+            }
+            for part in [0.25, 0.5, 0.75] {
+                let gain = gain_at(part, law, &params.development);
+                assert!(
+                    (share(&|project| project.boost <= gain) - part).abs() < 0.025,
+                    "tier {tier}, {part}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_tier_without_spread_is_certain() {
+        let params = Params::shipped();
+        let certain = ResearchTier { std_days: 0.0, std_quality_boost: 0.0, ..params.research(9).clone() };
+        let within = |days| done_within(days, &certain, &params.development);
+        assert_eq!([within(102), within(103)], [0.0, 1.0]);
+        assert_eq!(days_for(0.5, &certain, &params.development), 103);
+        assert_eq!(share_of_least_gain(&certain, &params.development), 0.0);
+    }
+}

@@ -4,8 +4,10 @@
 //! Everything here is computed from what a player may see: observations, the journal, and guarded queries. Each measure
 //! is one pure function. `outline` turns a story into a `page::Page`; the writers know nothing of companies.
 
+pub(crate) mod anonymised;
 pub(crate) mod books;
 pub(crate) mod chapters;
+pub(crate) mod collection;
 pub(crate) mod deals;
 pub(crate) mod fit;
 pub(crate) mod funnel;

@@ -73,6 +73,7 @@ pub use state::Session;
 pub use study::assignment::{ASSIGNMENT_FILE, Assignment, Place};
 pub use study::definition::{CONSENT_FILE, CodeDigest, PracticeOffer, Protocol, STUDY_FILE, SeedPlan, Study};
 pub use study::due::DueQuestion;
+pub use study::gather::{CollectNote, FoundRun, Gathered, gather, missing_places};
 pub use study::questions::{Form, Moment, Question, Questionnaire};
 pub use study::remarks::{REMARKS, Remark, remarks, write_remark};
 pub use study::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
@@ -81,7 +82,7 @@ pub use study::stamp::{EarlierRun, StudyStamp};
 pub use study::visit::{NextStep, Visit};
 pub use study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
 pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via};
-pub use trajectory::{Line, Record, Trajectory, record, written_moment};
+pub use trajectory::{Line, Record, Trajectory, nanoseconds as nanoseconds_of, record, written_moment};
 pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,
 };

@@ -526,7 +526,7 @@ def read_table(folder, name):
 
 def main(folder, configs):
     runs = []
-    for archive in sorted(Path(folder).rglob("*.tar.gz")):
+    for archive in sorted(Path(folder).glob("*.tar.gz")):
         with tarfile.open(archive) as tar:
             files = {Path(one.name).name: tar.extractfile(one).read() for one in tar if one.isfile()}
         overrides = json.loads(files["trajectory.jsonl"].splitlines()[0])["overrides"]

@@ -2,7 +2,7 @@
 
 mod transfer;
 
-pub use transfer::as_csv;
+pub use transfer::{as_csv, tidy_up_on_signals, write_tables};
 
 use std::path::{Path, PathBuf};
 

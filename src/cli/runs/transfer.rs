@@ -170,7 +170,7 @@ pub fn write_tables(tables: StudyTables, folder: &Path) -> Result<(), Failure> {
 }
 
 /// A signal that ends the program takes with it what is half made: nothing hidden stays on a stick.
-fn tidy_up_on_signals() {
+pub fn tidy_up_on_signals() {
     #[cfg(unix)]
     {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

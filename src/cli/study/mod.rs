@@ -1,9 +1,11 @@
 //! `novamind study`: what an experimenter does with a study.
 
+mod anonymise;
 mod assign;
 mod audit;
 mod check;
 mod code;
+mod collect;
 mod new;
 mod protocol;
 mod watch;
@@ -35,6 +37,10 @@ enum StudyCommand {
     Assign(assign::Options),
     /// Look for what an honest session does not leave behind: lines that were changed or cut, rehearsals, clocks that were set.
     Audit(audit::Options),
+    /// Write the tables of a study without what tells who took part.
+    Anonymise(anonymise::Options),
+    /// Collect the runs of all machines, each once and verified, with their tables.
+    Collect(collect::Options),
     /// Watch the sessions that are running.
     Watch(watch::Options),
     /// Print the protocol in words, with every measure and its definition, ready to be preregistered.
@@ -60,8 +66,10 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     match options.command {
         StudyCommand::New(options) => new::run(&options),
         StudyCommand::Check { folder } => check::run(&folder, context),
+        StudyCommand::Anonymise(options) => anonymise::run(&options),
         StudyCommand::Assign(options) => assign::run(&options),
         StudyCommand::Audit(options) => audit::run(&options, context),
+        StudyCommand::Collect(options) => collect::run(&options),
         StudyCommand::Watch(options) => watch::run(&options, context),
         StudyCommand::Protocol { folder } => protocol::run(&folder, context),
         StudyCommand::Code => code::run(),

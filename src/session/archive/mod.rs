@@ -29,7 +29,7 @@ pub use export::Export;
 pub use import::{Imported, import_run};
 pub use lab_key::{LabKey, LabPublicKey};
 pub use seal::Seal;
-pub use workshop::close_workshops;
+pub use workshop::{Workshop, close_workshops};
 
 use crate::session::error::RunError;
 use crate::session::play::afterwards::AFTERWARDS;

@@ -8,7 +8,7 @@ use crate::session::folder::create::new_id;
 
 /// A folder of its own beside what is being made. It is hidden, holds nothing that is listed as a run, and is removed
 /// when the work is done or has failed.
-pub(super) struct Workshop(PathBuf);
+pub struct Workshop(PathBuf);
 
 /// The workshops that are open, and whether the program is about to end.
 struct Open {

@@ -216,20 +216,26 @@ pub fn find_run_to_read(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
     find(runs, id, |_| true)
 }
 
+/// Whoever is nobody in particular finds the runs of all participants, as a list shows them.
 fn find(runs: &Path, id: &str, wanted: impl Fn(&RunSummary) -> bool) -> Result<PathBuf, RunError> {
     let missing = || RunError::NotFound { id: id.to_owned(), folder: runs.to_owned() };
-    let list = list_runs(runs)?;
+    let folders = if label_of(runs).is_some() { vec![runs.to_owned()] } else { all_run_folders(runs) };
+    let mut list: Vec<(PathBuf, RunSummary)> = Vec::new();
+    for folder in folders {
+        list.extend(list_runs(&folder)?.into_iter().map(|run| (folder.join(&run.id), run)));
+    }
+    // Of those played at the same moment the first in the common folder.
+    list.sort_by(|(_, one), (_, other)| other.played.cmp(&one.played));
     if id == "latest" {
-        let newest = list.iter().find(|run| run.problem.is_none() && wanted(run));
-        return newest.map(|run| runs.join(&run.id)).ok_or_else(missing);
+        let newest = list.into_iter().find(|(_, run)| run.problem.is_none() && wanted(run));
+        return newest.map(|(folder, _)| folder).ok_or_else(missing);
     }
-    let folder = runs.join(id);
-    if !id.is_empty() && list.iter().any(|run| run.id == id) {
-        return Ok(folder);
+    if let Some((folder, _)) = list.iter().find(|(_, run)| !id.is_empty() && run.id == id) {
+        return Ok(folder.clone());
     }
-    let mut fitting = list.iter().filter(|run| id.len() >= 2 && run.id.starts_with(id));
+    let mut fitting = list.iter().filter(|(_, run)| id.len() >= 2 && run.id.starts_with(id));
     match (fitting.next(), fitting.next()) {
-        (Some(only), None) => Ok(runs.join(&only.id)),
+        (Some((folder, _)), None) => Ok(folder.clone()),
         (Some(_), Some(_)) => {
             Err(RunError::NotPossible(format!("several run ids begin with {id}; type more of the id")))
         }

@@ -4,6 +4,7 @@ pub mod answer_book;
 pub mod assignment;
 pub mod definition;
 pub mod due;
+pub mod gather;
 pub mod questions;
 pub mod remarks;
 pub mod rules;

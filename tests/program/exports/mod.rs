@@ -1,6 +1,7 @@
 //! Runs that are handed over: archives out and in, their tables, the session summary, runs side by side, and the schema
 //! of the lines.
 
+mod collected;
 mod handover;
 mod schema;
 mod signed;

@@ -239,3 +239,101 @@ fn what_people_write_becomes_no_formula_and_commands_no_terminal() {
         }
     }
 }
+
+#[test]
+fn anonymous_tables_tell_nothing_of_who_took_part_and_can_be_linked_by_who_has_the_secret() {
+    let home = Home::new();
+    watched(&home);
+    played(&home, "Ada Lovelace");
+    let out = export(&home);
+    let place = |name: &str| text(&home.0.path().join(name));
+    let (anonymous, secret) = (place("anonymous"), place("study.secret"));
+    let anonymise = |out: &str, more: &[&str]| {
+        home.run(
+            &[&["study", "anonymise", &place("study"), "--out", out, "--secret", &secret], more].concat(),
+        )
+    };
+    let said = anonymise(&anonymous, &[]);
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    let links = table(&home.0.path().join("study.links.csv"));
+    let runs = table(&Path::new(&anonymous).join("runs.csv"));
+    let original = table(&out.join("runs.csv"));
+    assert_eq!((links.len(), runs.len()), (2, 2));
+    for (link, row) in links.iter().zip(&runs) {
+        assert_eq!(
+            [&link["new_run"], &link["new_participant"], &link["original"]],
+            [&row["run"], &row["participant"], &row["original"]]
+        );
+        let sealed = original.iter().find(|own| own["run"] == link["run"]).expect("a sealed run");
+        assert_eq!(sealed["last_hash"], link["last_hash"]);
+        assert_eq!(row["cash"], sealed["cash"], "figures stay");
+        assert_eq!(row["created"], "0");
+    }
+    let machine = {
+        let events = table(&out.join("events.csv"));
+        let detail = events.iter().find(|row| row["kind"] == "session").expect("a line")["detail"].clone();
+        detail.split(';').next().and_then(|part| part.strip_prefix("machine=")).expect("a machine").to_owned()
+    };
+    let year = &original[0]["created"][..4];
+    for name in ["runs", "weeks", "forecasts", "queries", "events", "answers", "notes", "columns"] {
+        let given =
+            std::fs::read_to_string(Path::new(&anonymous).join(format!("{name}.csv"))).expect("a table");
+        let mut secrets =
+            vec!["Lovelace", "P 3", "watch the costs", "should follow", "If it goes well", &machine];
+        secrets.extend(original.iter().map(|row| row["run"].as_str()));
+        secrets.extend(original.iter().map(|row| row["last_hash"].as_str()));
+        let at = format!("{year}-");
+        secrets.push(&at);
+        for secret in secrets {
+            assert!(!given.contains(secret), "{name} tells {secret:?}");
+        }
+        assert_eq!(given.lines().count() > 1, name != "answers" || given.contains("mood"), "{name}");
+    }
+    // The same secret gives the same names; masked texts keep their lengths; nothing is written over.
+    anonymise(&anonymous, &[]).fails(1, &["already exists"]);
+    let masked = place("masked");
+    assert_eq!(anonymise(&masked, &["--mask"]).code, 0);
+    let again = table(&Path::new(&masked).join("runs.csv"));
+    assert_eq!(again[0]["participant"], runs[0]["participant"]);
+    let notes = table(&Path::new(&masked).join("notes.csv"));
+    assert!(notes.iter().any(|row| row["text"] == "[16 characters]"), "{notes:?}");
+    std::fs::write(home.0.path().join("study.secret"), "guess").expect("a file");
+    anonymise(&place("third"), &[]).fails(2, &["64 hexadecimal digits"]);
+}
+
+#[test]
+fn the_loading_scripts_read_the_tables() {
+    let home = Home::new();
+    watched(&home);
+    played(&home, "=P01");
+    let out = export(&home);
+    let runs = table(&out.join("runs.csv"));
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/studies/examples");
+    for (program, script, check) in [("python3", "load.py", "-V"), ("Rscript", "load.R", "--version")] {
+        if Command::new(program).arg(check).output().is_err() {
+            continue;
+        }
+        let done = Command::new(program).arg(examples.join(script)).arg(&out).output().expect("it runs");
+        let told = String::from_utf8(done.stdout).expect("text");
+        assert!(done.status.success(), "{told}{}", String::from_utf8_lossy(&done.stderr));
+        assert_eq!(told.lines().count(), 2, "{told}");
+        for (line, row) in told.lines().zip(&runs) {
+            let cells: Vec<&str> = line.split('\t').collect();
+            assert_eq!((cells[0], cells[1]), (&*row["run"], row["participant"].trim_start_matches('\'')));
+            for (cell, column) in cells[2..].iter().zip(["day", "cash", "active_seconds", "calls"]) {
+                let [read, told] = [cell, &*row[column]].map(|text| text.parse::<f64>().expect("a number"));
+                assert!((read - told).abs() <= 1e-6 * told.abs(), "{column}: {read} is not {told}");
+            }
+        }
+    }
+    if let Ok(done) = Command::new("python3")
+        .args(["-c", "import sys; sys.path.insert(0, sys.argv[1]); import load; print(len(load.tables(sys.argv[2])['events']))"])
+        .args([&examples, &out])
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output()
+    {
+        let told = String::from_utf8_lossy(&done.stdout).trim().to_owned();
+        let events = table(&out.join("events.csv")).len().to_string();
+        assert_eq!(told, events, "{}", String::from_utf8_lossy(&done.stderr));
+    }
+}

@@ -1,0 +1,63 @@
+"""Loads the tables of a study (docs/studies/tables.md) with the types that columns.csv names.
+
+    python3 load.py FOLDER            prints a line for each run
+    from load import tables           tables("FOLDER") gives data frames if pandas is there, else lists of dicts
+
+Missing values are None, or NaN in data frames. A `'` that keeps a text from being a formula is taken away.
+"""
+
+import csv
+import sys
+from pathlib import Path
+
+try:
+    import pandas
+except ImportError:
+    pandas = None
+
+NAMES = ("runs", "weeks", "forecasts", "queries", "events", "answers", "notes")
+WHOLE = {"count", "day", "days", "number", "bytes"}
+REAL = {"dollars", "dollars a month", "share", "seconds", "milliseconds", "minutes", "per week", "per 100 words", "units"}
+
+
+def columns(folder):
+    """Unit and meaning by table and column."""
+    with open(Path(folder) / "columns.csv", newline="", encoding="utf-8") as file:
+        return {(row["table"], row["column"]): row for row in csv.DictReader(file)}
+
+
+def value(text, unit):
+    """A cell as its unit says."""
+    if text == "":
+        return None
+    if unit == "0 or 1":
+        return text == "1"
+    if unit in WHOLE:
+        return int(text)
+    if unit in REAL:
+        return float(text)
+    return text[1:] if text[0] == "'" and text[1:].lstrip()[:1] in tuple("=+-@") else text
+
+
+def rows(folder, name):
+    """A table as a list of dicts."""
+    known = columns(folder)
+    with open(Path(folder) / f"{name}.csv", newline="", encoding="utf-8") as file:
+        table = csv.DictReader(file)
+        return [{column: value(cell, known[name, column]["unit"]) for column, cell in row.items()} for row in table]
+
+
+def tables(folder):
+    """All tables by name."""
+    loaded = {name: rows(folder, name) for name in NAMES}
+    if pandas is None:
+        return loaded
+    known = columns(folder)
+    heads = {name: [column for table, column in known if table == name] for name in NAMES}
+    return {name: pandas.DataFrame(loaded[name], columns=heads[name]) for name in NAMES}
+
+
+if __name__ == "__main__":
+    for run in rows(sys.argv[1], "runs"):
+        cells = ("run", "participant", "day", "cash", "active_seconds", "calls", "truly_best_channel_share")
+        print("\t".join("" if run[name] is None else str(run[name]) for name in cells))

@@ -1,0 +1,121 @@
+//! `novamind study anonymise`: the tables of a study without what tells who took part.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::cli::runs::as_csv;
+use crate::cli::{Failure, print};
+use crate::report::anonymised::{Anonymiser, LINKS, NamedTable, Texts};
+use crate::report::tables::headings;
+
+/// Options of `study anonymise`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Folder with the tables of `study collect` or `runs export --all`.
+    #[arg(value_name = "FOLDER")]
+    folder: PathBuf,
+    /// New folder for the anonymous tables.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// File with the secret that new names are made with; it is made if it is missing. The table of old and new names is
+    /// written beside it. Keep both.
+    #[arg(long, value_name = "FILE")]
+    secret: PathBuf,
+    /// Leave the lengths of texts that people wrote.
+    #[arg(long)]
+    mask: bool,
+}
+
+/// Runs the command.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let links_path = options.secret.with_extension("links.csv");
+    let inside = |path: &Path| path.parent().is_some_and(|folder| folder == options.out);
+    if inside(&options.secret) {
+        return Err(Failure::usage("the secret must not lie in the folder that is given away"));
+    }
+    let tables =
+        headings().iter().map(|(name, _)| read(&options.folder, name)).collect::<Result<Vec<_>, _>>()?;
+    let secret = secret_of(&options.secret)?;
+    let texts = if options.mask { Texts::Masked } else { Texts::Dropped };
+    let (made, links) = Anonymiser::new(secret, texts).anonymise(&tables).map_err(Failure::unreadable)?;
+    let failed =
+        |path: &Path, error: &std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
+    if options.out.exists() {
+        let message =
+            format!("{} already exists: what lies in it might be given away too", options.out.display());
+        return Err(Failure::failed(message));
+    }
+    std::fs::create_dir_all(&options.out).map_err(|error| failed(&options.out, &error))?;
+    for (name, rows) in &made {
+        let path = options.out.join(format!("{name}.csv"));
+        std::fs::write(&path, as_csv(rows)?).map_err(|error| failed(&path, &error))?;
+    }
+    let mut rows = vec![LINKS.map(str::to_owned).to_vec()];
+    rows.extend(links.iter().map(|link| {
+        let cells = [
+            &link.participant,
+            &link.new_participant,
+            &link.run,
+            &link.new_run,
+            &link.last_hash,
+            &link.original,
+        ];
+        cells.map(Clone::clone).to_vec()
+    }));
+    let text = as_csv(&rows)?;
+    // It holds what the secret does: old and new names.
+    let _ = std::fs::remove_file(&links_path);
+    own_file(&links_path)
+        .and_then(|mut file| file.write_all(text.as_bytes()))
+        .map_err(|error| failed(&links_path, &error))?;
+    print(&format!(
+        "{} runs without names are in {}; keep {} and {}\n",
+        links.len(),
+        options.out.display(),
+        options.secret.display(),
+        links_path.display()
+    ))
+}
+
+/// A table of a folder.
+fn read(folder: &Path, name: &str) -> Result<NamedTable, Failure> {
+    let path = folder.join(format!("{name}.csv"));
+    let wrong = |error: csv::Error| Failure::unreadable(format!("{}: {error}", path.display()));
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_path(&path).map_err(wrong)?;
+    let rows = reader.records().map(|row| Ok(row.map_err(wrong)?.iter().map(str::to_owned).collect()));
+    Ok((name.to_owned(), rows.collect::<Result<Vec<_>, Failure>>()?))
+}
+
+/// The secret of a file, which is made if it is missing: 64 hexadecimal digits.
+fn secret_of(path: &Path) -> Result<[u8; 32], Failure> {
+    let failed = |error: std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
+    match std::fs::read_to_string(path) {
+        Ok(text) => {
+            let hash = blake3::Hash::from_hex(text.trim()).map_err(|_| {
+                Failure::usage(format!("{}: a secret is 64 hexadecimal digits", path.display()))
+            })?;
+            Ok(*hash.as_bytes())
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            let mut secret = [0; 32];
+            getrandom::fill(&mut secret)
+                .map_err(|error| Failure::failed(format!("the system gives no random numbers ({error})")))?;
+            let text = format!("{}\n", blake3::Hash::from_bytes(secret).to_hex());
+            own_file(path).and_then(|mut file| file.write_all(text.as_bytes())).map_err(failed)?;
+            Ok(secret)
+        }
+        Err(error) => Err(failed(error)),
+    }
+}
+
+/// A new file that only its owner can read.
+fn own_file(path: &Path) -> std::io::Result<File> {
+    let mut options = File::options();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(path)
+}

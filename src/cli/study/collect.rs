@@ -1,0 +1,93 @@
+//! `novamind study collect`: the runs of all machines in one folder, with their tables.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::json;
+
+use crate::cli::run::progress_bar;
+use crate::cli::runs::{tidy_up_on_signals, write_tables};
+use crate::cli::{Failure, print};
+use crate::notation::printable;
+use crate::report::collection::{Collected, Collecting, collect};
+use crate::session::{CollectNote, Study};
+
+/// Options of `study collect`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Folders of runs of the machines, copies of them, and archives; they are searched with all that lies below.
+    #[arg(value_name = "FOLDER", required = true)]
+    sources: Vec<PathBuf>,
+    /// Folder for archives, tables and collect.log.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Study whose assignment says who should be there.
+    #[arg(long, value_name = "DIR")]
+    protocol: Option<PathBuf>,
+    /// CSV with the columns run and participant: labels to put in place of those of the runs.
+    #[arg(long, value_name = "FILE")]
+    labels: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command; 1 where somebody has to look into something.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    tidy_up_on_signals();
+    let study = options.protocol.as_deref().map(Study::read).transpose()?;
+    let labels = options.labels.as_deref().map(read_labels).transpose()?.unwrap_or_default();
+    let mut bar = None;
+    let what =
+        Collecting { sources: &options.sources, out: &options.out, study: study.as_ref(), labels: &labels };
+    let collected = collect(what, &mut |done, all| {
+        bar.get_or_insert_with(|| progress_bar(all as u64, "runs")).set_position(done as u64);
+    })?;
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    let Collected { tables, runs, notes } = collected;
+    write_tables(tables, &options.out)?;
+    let log: String = notes.iter().map(|note| format!("{}\n", printable(&note.to_string()))).collect();
+    let path = options.out.join("collect.log");
+    std::fs::write(&path, &log).map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
+    if options.json {
+        let told = runs.iter().map(|(label, seal, archive)| {
+            json!({ "run": seal.run, "participant": label, "file": archive, "checksum": seal.checksum })
+        });
+        let object = json!({ "runs": told.collect::<Vec<_>>(), "notes": notes });
+        print(&format!("{object}\n"))?;
+    } else {
+        let one = if runs.len() == 1 { "run" } else { "runs" };
+        print(&format!(
+            "{log}{} {one} verified; archives, tables and collect.log are in {}\n",
+            runs.len(),
+            options.out.display()
+        ))?;
+    }
+    match notes.iter().filter(|note| CollectNote::needs_attention(note)).count() {
+        0 => Ok(()),
+        1 => Err(Failure::failed("1 note needs attention")),
+        count => Err(Failure::failed(format!("{count} notes need attention"))),
+    }
+}
+
+/// New labels by run.
+fn read_labels(path: &Path) -> Result<BTreeMap<String, String>, Failure> {
+    let wrong = |problem: String| Failure::usage(format!("{}: {problem}", path.display()));
+    let mut reader = csv::Reader::from_path(path).map_err(|error| wrong(error.to_string()))?;
+    let head = reader.headers().map_err(|error| wrong(error.to_string()))?;
+    if head.iter().collect::<Vec<_>>() != ["run", "participant"] {
+        return Err(wrong("the first line has to be: run,participant".to_owned()));
+    }
+    let mut labels = BTreeMap::new();
+    for row in reader.records() {
+        let row = row.map_err(|error| wrong(error.to_string()))?;
+        let (run, label) = (row[0].trim().to_owned(), row[1].trim().to_owned());
+        if labels.insert(run.clone(), label).is_some() {
+            return Err(wrong(format!("run {run} stands there twice")));
+        }
+    }
+    Ok(labels)
+}

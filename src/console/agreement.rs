@@ -94,11 +94,7 @@ impl Agreement {
         let below = Rect { y: inside.bottom().saturating_sub(1), height: inside.height.min(1), ..inside };
         match self.read.get() {
             true => canvas.text(below, &format!("{agree}   {decline}"), Role::Strong),
-            false => canvas.text(
-                below,
-                &format!("the text goes on: scroll to its end to agree   {decline}"),
-                Role::Warning,
-            ),
+            false => canvas.text(below, &format!("scroll to its end to agree   {decline}"), Role::Warning),
         }
         if last > 0 {
             canvas.pane_keys(area, "up/down/page down scroll");

@@ -41,28 +41,24 @@ impl VisitPage {
         for (row, (line, role)) in rows_of(text).zip(&lines) {
             canvas.text(row, line, *role);
         }
-        self.draw_field(canvas, inside);
+        let used = text.y - inside.y + lines.len() as u16 + 1;
+        let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
+        self.draw_field(canvas, below);
         if let Some(problem) = &self.problem {
-            self.draw_problem(canvas, inside, problem);
+            let below = Rect { y: below.y + 2, height: below.height.saturating_sub(2), ..below };
+            let lines = wrapped(&format!("! {problem}"), below.width as usize);
+            for (row, line) in rows_of(below).zip(lines) {
+                canvas.text(row, &line, Role::Bad);
+            }
         }
     }
 
-    fn draw_field(&self, canvas: &mut Canvas<'_>, inside: Rect) {
-        let row = Rect { y: inside.bottom().saturating_sub(3), height: inside.height.min(1), ..inside };
-        let row = Rect { width: 32.min(row.width), ..row };
+    fn draw_field(&self, canvas: &mut Canvas<'_>, below: Rect) {
+        let row = Rect { width: 32.min(below.width), height: below.height.min(1), ..below };
         match &self.kind {
             PageKind::Label(field) | PageKind::Withdraw(Some(field)) => field.draw(canvas, row),
             PageKind::Code(field) => field.masked().draw(canvas, row),
             _ => {}
-        }
-    }
-
-    /// What went wrong, below the field; in as many rows as there are.
-    fn draw_problem(&self, canvas: &mut Canvas<'_>, inside: Rect, problem: &str) {
-        let rows = inside.height.min(2);
-        let below = Rect { y: inside.bottom().saturating_sub(rows), height: rows, ..inside };
-        for (row, line) in rows_of(below).zip(wrapped(&format!("! {problem}"), inside.width as usize)) {
-            canvas.text(row, &line, Role::Bad);
         }
     }
 
@@ -102,7 +98,7 @@ impl VisitPage {
                 let kept = "Everything you confirm is kept. You can leave at any time and go on later with your label.";
                 let palette = key(Action::Palette);
                 let withdraw = format!(
-                    "You can withdraw at any time: {palette} {}. That erases everything you did in this study.",
+                    "You can withdraw at any time ({palette} {}). That erases everything you did in this study.",
                     Action::Withdraw.entry().title
                 );
                 ("Session", vec![text(first), text(kept), text(&withdraw), strong(format!("{go} begins"))])

@@ -229,7 +229,7 @@ impl Menu {
         let (instead, problem) = match &self.asked {
             Some(Asked::Instead(instead, problem)) => (instead, problem),
             Some(Asked::Agree(_, text)) => {
-                let (agree, decline) = ("y I agree, the session begins", "n I do not, nothing is recorded");
+                let (agree, decline) = ("y I agree, the session begins", "n I do not agree");
                 return text.draw(canvas, area, "Before the session", agree, decline);
             }
             _ => return,

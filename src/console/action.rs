@@ -169,7 +169,7 @@ actions! {
         Journal "journal" "Journal" "Show what was done and how forecasts turned out."
         NextWeek "next-week" "next week" "Review the changes, write a rationale, forecast, and run the week."
         Palette "palette" "palette" "Find screens, tools, groups, queries, tables and commands by typing."
-        Help "help" "help" "Show every key that works here."
+        Help "help" "help" "Show every key that works here, those of the focused pane first."
         Changes "changes" "changes" "Show the settings changed since the last week."
         Undo "undo" "undo" "Undo the last setting of this week and say what it was and is again; c lists the changes."
         Redo "redo" "redo" "Redo what undo reverted."
@@ -204,7 +204,7 @@ actions! {
         First "first" "first" "Move to the first row."
         Last "last" "last" "Move to the last row."
         Open "open" "open" "Open what is selected."
-        Close "close" "close" "Close, or clear the filter."
+        Close "close" "close" "Close, clear the filter, or go back to where you came from."
         Filter "filter" "filter" "Show only the rows that contain a text."
         Sort "sort" "sort" "Sort by the selected column; again to reverse, a third time to stop sorting."
     }

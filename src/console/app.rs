@@ -6,6 +6,7 @@ mod guide;
 mod input;
 mod news;
 mod orders;
+mod trail;
 mod viewer;
 mod visit;
 
@@ -110,6 +111,8 @@ pub struct Run {
     pub here: ScreenId,
     /// Screens shown before, the last one last.
     pub before: Vec<ScreenId>,
+    /// Places from which what is shown was opened, the last one last.
+    trail: Vec<trail::Stop>,
     /// Screens that were left with back, the last one last.
     pub after: Vec<ScreenId>,
     /// The focused pane has the whole screen.
@@ -399,6 +402,7 @@ impl App {
 
     fn back(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
+        run.forget_trail();
         match run.before.pop() {
             Some(screen) => {
                 run.after.push(run.here);
@@ -411,6 +415,7 @@ impl App {
 
     fn forward(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
+        run.forget_trail();
         match run.after.pop() {
             Some(screen) => {
                 run.before.push(run.here);

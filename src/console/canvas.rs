@@ -41,6 +41,8 @@ pub struct Canvas<'a> {
     pub stale: bool,
     /// What curves are drawn with.
     pub marker: Marker,
+    /// Places from which the focused pane was reached; they stand before its title.
+    pub path: Vec<String>,
 }
 
 /// Side of a cell to which text is pushed.
@@ -64,6 +66,7 @@ impl<'a> Canvas<'a> {
             zoomed: false,
             stale: false,
             marker: Marker::Braille,
+            path: Vec::new(),
         }
     }
 
@@ -125,19 +128,29 @@ impl<'a> Canvas<'a> {
     /// Draws the border of a pane and returns its inside. The title carries what the pane is, the right end of the
     /// upper border what is worth knowing about it.
     pub fn pane(&mut self, area: Rect, title: &str, note: &str, focused: bool) -> Rect {
-        let border = self.style(if focused { Role::Focus } else { Role::Border });
-        let mut block = Block::bordered().border_type(BorderType::Plain).border_style(border);
+        // The focus is told by the lines themselves: without colour, too.
+        let (kind, role) =
+            if focused { (BorderType::Thick, Role::Focus) } else { (BorderType::Plain, Role::Border) };
+        let mut block = Block::bordered().border_type(kind).border_style(self.style(role));
         let room = (area.width as usize).saturating_sub(4);
-        if !title.is_empty() && room > 0 {
-            let text = format!(" {} ", fit(title, room.saturating_sub(2)));
-            block = block.title(Line::from(self.span(text, Role::Title)));
-        }
-        let left = title.width() + 3;
         let note = match (self.stale, note) {
             (false, note) => note.to_owned(),
             (true, "") => "stale".to_owned(),
             (true, note) => format!("stale · {note}"),
         };
+        let way = if focused && !title.is_empty() { self.path.as_slice() } else { &[] };
+        let in_room = |room: usize| path_before(way, title, room);
+        // The note gives way to the nearest place.
+        let path = Some(in_room(room.saturating_sub(note.width() + 6)))
+            .filter(|path| !path.is_empty())
+            .unwrap_or_else(|| in_room(room.saturating_sub(2)));
+        if !title.is_empty() && room > 0 {
+            let before =
+                self.span(if path.is_empty() { " ".to_owned() } else { format!(" {path}") }, Role::Dim);
+            let text = format!("{} ", fit(title, room.saturating_sub(path.width() + 2)));
+            block = block.title(Line::from(vec![before, self.span(text, Role::Title)]));
+        }
+        let left = path.width() + title.width() + 3;
         if !note.is_empty() && room > left + 4 {
             let text = format!(" {} ", fit(&note, room - left - 2));
             block = block.title(Line::from(self.span(text, Role::Dim)).right_aligned());
@@ -162,6 +175,19 @@ impl<'a> Canvas<'a> {
     pub fn click(&mut self, area: Rect, click: Click) {
         self.clicks.push((area, click));
     }
+}
+
+/// The way to a title in at most the room that the title leaves: `Customers › S2 › `. Nearer places stay longer; one
+/// that the title names itself is not said twice.
+fn path_before(path: &[String], title: &str, room: usize) -> String {
+    let said = path.last().is_some_and(|last| title.split(' ').any(|word| word == last));
+    let path = &path[..path.len() - usize::from(said)];
+    let words = |from: usize| {
+        let cut = if from > 0 { "… › " } else { "" };
+        path[from..].iter().fold(cut.to_owned(), |text, place| text + place + " › ")
+    };
+    let fits = |text: &String| text.width() + title.width() <= room;
+    (0..path.len()).map(words).find(fits).unwrap_or_default()
 }
 
 /// The rows of an area, each one cell high.
@@ -203,6 +229,16 @@ pub fn centered(area: Rect, width: u16, height: u16) -> Rect {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_path_keeps_its_nearer_places_and_names_none_twice() {
+        let path = ["Overview", "Customers", "S2"].map(str::to_owned);
+        assert_eq!(path_before(&path, "Go to", 60), "Overview › Customers › S2 › ");
+        assert_eq!(path_before(&path, "Go to", 25), "… › S2 › ");
+        assert_eq!(path_before(&path, "Fit of S2", 60), "Overview › Customers › ");
+        assert_eq!(path_before(&path, "Fit of S2", 12), "");
+        assert_eq!(path_before(&[], "Fit of S2", 60), "");
+    }
 
     #[test]
     fn text_is_cut_between_graphemes() {

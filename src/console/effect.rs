@@ -59,6 +59,8 @@ pub enum Effect {
     Say(String),
     /// Say that something was refused.
     Complain(String),
+    /// What follows begins a path of its own instead of going on with the one that led here.
+    BeginPath,
     /// Show a screen.
     Show(ScreenId),
     /// Show the form of a tool.

@@ -107,8 +107,10 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     let beside = run.viewer.as_ref().filter(|_| !run.zoomed).map_or(0, |viewer| viewer.columns(body));
     let screen = Rect { width: body.width - beside, ..body };
     canvas.stale = is_stale(run);
+    canvas.path = run.path(&look);
     run.screens.get(run.here).draw(canvas, screen, &look);
     canvas.stale = false;
+    canvas.path.clear();
     if let Some(viewer) = &run.viewer {
         // A list beside the screen is not what paging goes by.
         let page = canvas.page;

@@ -8,7 +8,7 @@ use std::fmt;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use toml::Table;
 
-use super::action::{ACTIONS, Action, Scope};
+use super::action::{Action, Scope};
 
 /// A key with its modifiers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd)]
@@ -282,16 +282,10 @@ impl Keys {
         bindings.filter(move |(_, own)| *own == action).map(|(chords, _)| chords.as_slice())
     }
 
-    /// Rows of the help for some scopes: scope, keys, title, explanation.
-    pub fn help(&self, scopes: &[Scope]) -> Vec<(Scope, String, &'static str, &'static str)> {
-        let wanted = ACTIONS.iter().filter(|entry| scopes.contains(&entry.scope));
-        let row = |entry: &'static super::action::ActionEntry| {
-            let keys: Vec<String> = self.chords(entry.action).map(written).collect();
-            (entry.scope, keys.join(", "), entry.title, entry.doc)
-        };
-        let mut rows: Vec<_> = wanted.map(row).collect();
-        rows.sort_by_key(|(scope, ..)| scopes.iter().position(|own| own == scope));
-        rows
+    /// Keys that ask for an action where these scopes hold: not those that an inner scope uses for something else.
+    pub fn working(&self, action: Action, scopes: &[Scope]) -> Vec<String> {
+        let works = |chords: &&[Chord]| self.meaning(scopes, chords) == Meaning::Action(action);
+        self.chords(action).filter(works).map(written).collect()
     }
 }
 
@@ -313,6 +307,7 @@ pub fn written(chords: &[Chord]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::console::action::ACTIONS;
 
     #[test]
     fn chords_read_back_as_they_are_written() {

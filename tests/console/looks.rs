@@ -10,7 +10,7 @@ pub fn cut_with_room(screen: &str) -> Vec<String> {
             let behind = &line[at + sign.len()..];
             let blanks = behind.chars().take_while(|letter| *letter == ' ').count();
             let next = behind.chars().nth(blanks);
-            blanks >= GAP && matches!(next, Some('│') | None) && next.is_some()
+            blanks >= GAP && matches!(next, Some('│' | '┃') | None) && next.is_some()
         })
     };
     screen.lines().filter(wasteful).map(str::to_owned).collect()
@@ -41,7 +41,7 @@ pub fn emptiest_half(screen: &str, width: usize) -> f64 {
 }
 
 fn is_ink(cell: char) -> bool {
-    !matches!(cell, ' ' | '\u{2800}' | '─' | '│' | '┌' | '┐' | '└' | '┘' | '├' | '┤' | '┬' | '┴' | '┼')
+    !" \u{2800}─│┌┐└┘├┤┬┴┼━┃┏┓┗┛".contains(cell)
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod behind;
 mod company;
 mod figures;
+mod focus;
 mod guide;
 mod harness;
 mod looks;

@@ -148,7 +148,7 @@ fn everything_is_found_in_the_palette() {
     console.press(": 'zzzz'");
     console.shows("no match");
     console.press("esc ?");
-    console.shows("Keys that work here");
+    console.shows("Keys: Tools › set_prices");
 }
 
 #[test]

@@ -207,6 +207,9 @@ impl App {
         if global {
             return self.act_globally(action);
         }
+        if self.goes_back_along(action) {
+            return;
+        }
         let effects = self.with_screen(|screen, look| screen.act(action, look)).unwrap_or_default();
         self.follow(effects);
     }
@@ -232,6 +235,9 @@ impl App {
 
     fn act_globally(&mut self, action: Action) {
         if let Some(screen) = ScreenId::ALL.into_iter().find(|screen| screen.action() == action) {
+            if let Stage::Run(run) = &mut self.stage {
+                run.forget_trail();
+            }
             return self.show(screen);
         }
         match action {
@@ -245,10 +251,7 @@ impl App {
                     self.open(palette);
                 }
             }
-            Action::Help => {
-                let help = Help::new(&self.keys, &self.scopes());
-                self.open(help);
-            }
+            Action::Help => self.show_help(),
             Action::NextWeek => self.file(),
             Action::Changes => self.show_changes(),
             Action::Dashboard => {
@@ -281,6 +284,14 @@ impl App {
         }
     }
 
+    fn show_help(&mut self) {
+        let Stage::Run(run) = &self.stage else { return };
+        let look = Look { company: &run.company, keys: &self.keys, page: self.page };
+        let replay = run.viewer.is_some();
+        let help = Help::new(run.here, &run.screens.get(run.here).pane_keys(&look), replay, &self.keys);
+        self.open(help);
+    }
+
     fn move_focus(&mut self, forward: bool) {
         self.with_screen(|screen, _| {
             let panes = screen.panes();
@@ -301,7 +312,8 @@ impl App {
         let found = self.with_screen(|screen, look| screen.figure(look)).flatten();
         match found {
             Some(Figure { title, sql: Some(sql), .. }) => {
-                self.open(RowsBehind::new(title, sql.clone()));
+                let here = self.run().map_or("", |run| run.here.action().entry().title);
+                self.open(RowsBehind::new(format!("{here} › {title}"), sql.clone()));
                 self.follow(vec![Effect::AskBehind(sql)]);
             }
             Some(Figure { title, sql: None, .. }) => {

@@ -167,10 +167,15 @@ impl App {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
         let look = Look { company: &company, keys: &self.keys, page: self.page };
+        let focus = run.screens.get(run.here).focus();
         let mut effects = run.screens.get_mut(screen).hear(&news, &look);
         // A call may come from a form or from the screen that is shown.
         if matches!(news, News::Called(..)) && run.here != screen {
             effects.extend(run.screens.get_mut(run.here).hear(&news, &look));
+        }
+        // What has the whole screen keeps it: the answer stands in it.
+        if run.zoomed {
+            run.screens.get_mut(run.here).set_focus(focus);
         }
         self.follow(effects);
     }
@@ -198,6 +203,7 @@ impl App {
             interrupt,
             here,
             before: Vec::new(),
+            trail: Vec::new(),
             after: Vec::new(),
             zoomed: false,
             shown: Instant::now(),

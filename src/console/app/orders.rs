@@ -50,58 +50,41 @@ impl App {
             Effect::Write(name, contents) => self.write(vec![(name.as_str(), contents)]),
             Effect::Say(text) => self.say(text),
             Effect::Complain(text) => self.complain(text),
-            Effect::Show(screen) => self.show(screen),
-            Effect::ShowTool(tool) => {
+            Effect::BeginPath => {
                 if let Stage::Run(run) = &mut self.stage {
-                    let company = run.company.clone();
-                    run.screens.tools.show(tool, &company);
+                    run.forget_trail();
                 }
-                self.show(ScreenId::Tools);
             }
-            Effect::ShowCell(tool, of) => {
-                if let Stage::Run(run) = &mut self.stage {
-                    let company = run.company.clone();
-                    run.screens.tools.show_cell(tool, &of, &company);
-                }
-                self.show(ScreenId::Tools);
-            }
+            Effect::Show(screen) => self.lead_to(screen, |_| {}),
+            Effect::ShowTool(tool) => self.lead_to(ScreenId::Tools, |run| {
+                let company = run.company.clone();
+                run.screens.tools.show(tool, &company);
+            }),
+            Effect::ShowCell(tool, of) => self.lead_to(ScreenId::Tools, |run| {
+                let company = run.company.clone();
+                run.screens.tools.show_cell(tool, &of, &company);
+            }),
             Effect::Prefill { tool, arguments } => {
+                let mut effects = Vec::new();
+                self.lead_to(ScreenId::Tools, |run| {
+                    let company = run.company.clone();
+                    effects = run.screens.tools.prefill(tool, &arguments, &company);
+                });
                 // What the call would do is asked for by the screen that shows it.
-                self.show(ScreenId::Tools);
-                if let Stage::Run(run) = &mut self.stage {
-                    let company = run.company.clone();
-                    let effects = run.screens.tools.prefill(tool, &arguments, &company);
-                    self.follow(effects);
-                }
+                self.follow(effects);
             }
-            Effect::ShowThread(number) => {
-                if let Stage::Run(run) = &mut self.stage {
-                    let company = run.company.clone();
-                    run.screens.inbox.show(number, &company);
-                }
-                self.show(ScreenId::Inbox);
-            }
-            Effect::ShowGroup(screen, group) => {
-                if let Stage::Run(run) = &mut self.stage {
-                    match screen {
-                        ScreenId::Market => run.screens.market.show(group),
-                        _ => run.screens.customers.show(group, &run.company),
-                    }
-                }
-                self.show(screen);
-            }
-            Effect::EditSql(sql) => {
-                if let Stage::Run(run) = &mut self.stage {
-                    run.screens.sql.edit(&sql);
-                }
-                self.show(ScreenId::Sql);
-            }
+            Effect::ShowThread(number) => self.lead_to(ScreenId::Inbox, |run| {
+                let company = run.company.clone();
+                run.screens.inbox.show(number, &company);
+            }),
+            Effect::ShowGroup(screen, group) => self.lead_to(screen, |run| match screen {
+                ScreenId::Market => run.screens.market.show(group),
+                _ => run.screens.customers.show(group, &run.company),
+            }),
+            Effect::EditSql(sql) => self.lead_to(ScreenId::Sql, |run| run.screens.sql.edit(&sql)),
             Effect::RunSql(sql) => {
-                let effects = match &mut self.stage {
-                    Stage::Run(run) => run.screens.sql.edit_and_run(&sql),
-                    Stage::Menu(_) | Stage::Visit(_) => Vec::new(),
-                };
-                self.show(ScreenId::Sql);
+                let mut effects = Vec::new();
+                self.lead_to(ScreenId::Sql, |run| effects = run.screens.sql.edit_and_run(&sql));
                 self.follow(effects);
             }
             Effect::SaveQuery { name, title, sql } => self.save_query([name, title, sql]),

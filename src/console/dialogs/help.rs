@@ -1,23 +1,31 @@
-//! Every key that works here.
+//! The keys that work here: those of the focused pane first, then those of the screen, then what works everywhere.
 
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
+use crate::console::action::{ACTIONS, Action, Scope};
 use crate::console::canvas::{Canvas, centered};
 use crate::console::keys::Keys;
-use crate::console::screens::Look;
+use crate::console::screens::{Look, PaneKeys, ScreenId};
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Table};
 
-/// The keys of some scopes.
+/// The keys of a place.
 pub struct Help {
+    title: String,
     table: Table,
 }
 
+/// Keys that work in the same part of the program.
+struct Part {
+    name: &'static str,
+    scopes: Vec<Scope>,
+    actions: Vec<Action>,
+}
+
 impl Help {
-    /// Shows the keys of a focused place, the innermost scope first.
-    pub fn new(keys: &Keys, scopes: &[Scope]) -> Help {
+    /// Shows the keys of a screen whose panes have these, the focused one first.
+    pub fn new(here: ScreenId, panes: &[PaneKeys], replay: bool, keys: &Keys) -> Help {
         let columns = vec![
             Column::words("where").at_most(8),
             Column::words("keys").at_most(16),
@@ -25,22 +33,75 @@ impl Help {
             Column::words("").at_most(90),
         ];
         let mut table = Table::new(columns);
-        let row = |(scope, chords, title, doc): (Scope, String, &str, &str)| {
-            let keys = if chords.is_empty() {
-                Cell::words("palette").role(Role::Dim)
-            } else {
-                Cell::words(chords).role(Role::Key)
-            };
-            vec![
-                Cell::words(scope.id()).role(Role::Dim),
-                keys,
-                Cell::words(title),
-                Cell::words(doc).role(Role::Text),
-            ]
-        };
-        table.set_rows(keys.help(scopes).into_iter().map(row).collect());
-        Help { table }
+        let mut listed: Vec<Action> = Vec::new();
+        let mut rows = Vec::new();
+        for part in parts(panes, replay) {
+            for action in part.actions {
+                let chords = keys.working(action, &part.scopes);
+                let unbound = keys.label(action).is_none();
+                if listed.contains(&action) || chords.is_empty() && !unbound {
+                    continue;
+                }
+                listed.push(action);
+                rows.push(row(part.name, &chords, action));
+            }
+        }
+        table.set_rows(rows);
+        let screen = here.action().entry().title;
+        let pane = panes.first().map(|pane| pane.title.as_str()).filter(|title| !title.is_empty());
+        let title = pane.map_or_else(|| screen.to_owned(), |pane| format!("{screen} › {pane}"));
+        Help { title: format!("Keys: {title}"), table }
     }
+
+    /// The rows as text.
+    #[cfg(test)]
+    fn rows(&self) -> Vec<Vec<String>> {
+        self.table.rows().iter().map(|row| row.iter().map(|cell| cell.text.clone()).collect()).collect()
+    }
+}
+
+fn row(part: &str, chords: &[String], action: Action) -> Vec<Cell> {
+    let entry = action.entry();
+    let keys = match chords.is_empty() {
+        true => Cell::words("palette").role(Role::Dim),
+        false => Cell::words(chords.join(", ")).role(Role::Key),
+    };
+    vec![
+        Cell::words(part).role(Role::Dim),
+        keys,
+        Cell::words(entry.title),
+        Cell::words(entry.doc).role(Role::Text),
+    ]
+}
+
+/// The parts in their order. Moving in lists is the same everywhere and comes late.
+fn parts(panes: &[PaneKeys], replay: bool) -> Vec<Part> {
+    let with_global = |scopes: &[Scope]| {
+        let replayed = replay && !scopes.first().is_some_and(|scope| scope.is_text());
+        let first = replayed.then_some(Scope::Viewer);
+        first.into_iter().chain(scopes.iter().copied()).chain([Scope::Global]).collect::<Vec<Scope>>()
+    };
+    let mut parts = Vec::new();
+    for (at, pane) in panes.iter().enumerate() {
+        let hints = pane.hints.iter().copied().filter(|action| action.entry().scope != Scope::Global);
+        let scopes = pane.scopes.iter().filter(|scope| **scope != Scope::List);
+        parts.push(Part {
+            name: if at == 0 { "pane" } else { "screen" },
+            scopes: with_global(&pane.scopes),
+            actions: hints.chain(scopes.flat_map(|scope| of(*scope))).collect(),
+        });
+    }
+    let own = panes.first().map_or(Vec::new(), |pane| with_global(&pane.scopes));
+    for (scope, name) in [(Scope::Viewer, "replay"), (Scope::List, "lists"), (Scope::Global, "always")] {
+        if own.contains(&scope) {
+            parts.push(Part { name, scopes: own.clone(), actions: of(scope).collect() });
+        }
+    }
+    parts
+}
+
+fn of(scope: Scope) -> impl Iterator<Item = Action> {
+    ACTIONS.iter().filter(move |entry| entry.scope == scope).map(|entry| entry.action)
 }
 
 impl Dialog for Help {
@@ -77,7 +138,7 @@ impl Dialog for Help {
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let own = centered(area, area.width.saturating_sub(4).min(110), area.height.saturating_sub(2));
         canvas.clear(own, Role::Text);
-        let inside = canvas.pane(own, "Keys that work here", &self.table.note(), true);
+        let inside = canvas.pane(own, &self.title, &self.table.note(), true);
         self.table.draw(
             canvas,
             Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside },
@@ -85,5 +146,50 @@ impl Dialog for Help {
             0,
         );
         canvas.pane_keys(own, &look.hints(&[Action::Filter, Action::Close]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pane(title: &str, scopes: &[Scope], hints: &[Action]) -> PaneKeys {
+        PaneKeys { title: title.to_owned(), scopes: scopes.to_vec(), hints: hints.to_vec() }
+    }
+
+    #[test]
+    fn the_focused_pane_comes_first_and_keys_that_mean_something_else_are_left_out() {
+        let form = pane("set_prices", &[Scope::Form, Scope::List], &[Action::EditCell, Action::Close]);
+        let list = pane("Tools", &[Scope::List], &[Action::Open, Action::Filter]);
+        let keys = Keys::shipped();
+        let help = Help::new(ScreenId::Tools, &[form, list], false, &keys);
+        assert_eq!(help.title, "Keys: Tools › set_prices");
+        let rows = help.rows();
+        assert_eq!(rows[0][..3], ["pane", "enter, e", "edit"]);
+        assert_eq!(rows[1][..3], ["pane", "esc", "close"], "what one does most comes first");
+        let place = |title: &str| rows.iter().position(|row| row[2] == title).expect(title);
+        assert_eq!(rows[place("open")][..2], ["screen", "enter"], "enter opens in the list only");
+        assert!(place("apply") < place("open") && place("open") < place("up") && place("up") < place("quit"));
+        assert_eq!(rows[place("quit")][0], "always");
+        let parts: Vec<&str> = rows.iter().map(|row| row[0].as_str()).collect();
+        let mut order = parts.clone();
+        order.dedup();
+        assert_eq!(order, ["pane", "screen", "lists", "always"]);
+        let mut titles: Vec<&String> = rows.iter().map(|row| &row[3]).collect();
+        titles.sort_unstable();
+        titles.dedup();
+        assert_eq!(titles.len(), rows.len(), "nothing is told twice");
+        // A key that an inner place uses is not promised to an outer one.
+        let query = pane("Results", &[Scope::Result, Scope::List], &[]);
+        let rows = Help::new(ScreenId::Sql, &[query], false, &keys).rows();
+        assert!(rows.iter().all(|row| row[2] != "open"), "enter shows the whole cell here");
+    }
+
+    #[test]
+    fn a_replay_has_its_own_part() {
+        let list = pane("Decisions", &[Scope::List], &[Action::Open]);
+        let rows = Help::new(ScreenId::Journal, &[list], true, &Keys::shipped()).rows();
+        let first = |name: &str| rows.iter().position(|row| row[0] == name).expect(name);
+        assert!(first("pane") < first("replay") && first("replay") < first("always"));
     }
 }

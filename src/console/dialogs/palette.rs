@@ -183,7 +183,7 @@ impl Palette {
 
     fn choose(&self) -> Outcome {
         match self.found.get(self.selected) {
-            Some((at, _)) => Outcome::close_with(vec![self.entries[*at].effect.clone()]),
+            Some((at, _)) => Outcome::close_with(vec![Effect::BeginPath, self.entries[*at].effect.clone()]),
             None => Outcome::stay(),
         }
     }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 /// Thickness of lines and diameter of dots, pixels.
 const LINE: f64 = 1.2;
+const THICK_LINE: f64 = 2.6;
 const DOT: f64 = 2.3;
 
 /// The outline of a sign in a cell; none for signs that are written.
@@ -14,11 +15,11 @@ pub fn path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> Opt
         '▁'..='█' => block(1.0 - f64::from(sign as u32 - 0x2580) / 8.0, 1.0),
         '▀' => block(0.0, 0.5),
         '░' | '▒' | '▓' => shade(sign, left, top, (width, height)),
-        '⎯' => corner('─', left, top, (width, height)),
+        '⎯' => corner('─', LINE, left, top, (width, height)),
         '─' | '│' | '┌' | '┐' | '└' | '┘' | '├' | '┤' | '┬' | '┴' | '┼' => {
-            corner(sign, left, top, (width, height))
+            corner(sign, LINE, left, top, (width, height))
         }
-        _ => return None,
+        _ => corner(thin(sign)?, THICK_LINE, left, top, (width, height)),
     })
 }
 
@@ -55,17 +56,23 @@ fn shade(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String
     (0..STRIPES).map(|stripe| rectangle(left, top + f64::from(stripe) * step, width, step * share)).collect()
 }
 
+/// The thin sign of a thick one.
+fn thin(sign: char) -> Option<char> {
+    let pairs = [('━', '─'), ('┃', '│'), ('┏', '┌'), ('┓', '┐'), ('┗', '└'), ('┛', '┘')];
+    pairs.into_iter().find(|(thick, _)| *thick == sign).map(|(_, thin)| thin)
+}
+
 /// Lines from the middle of the cell to some of its sides.
-fn corner(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
+fn corner(sign: char, line: f64, left: f64, top: f64, (width, height): (f64, f64)) -> String {
     let (to_left, to_right) = (!"│┌└├".contains(sign), !"│┐┘┤".contains(sign));
     let (up, down) = (!"─┌┐┬".contains(sign), !"─└┘┴".contains(sign));
-    let (x, y) = (left + (width - LINE) / 2.0, top + (height - LINE) / 2.0);
-    let (half_width, half_height) = ((width + LINE) / 2.0, (height + LINE) / 2.0);
+    let (x, y) = (left + (width - line) / 2.0, top + (height - line) / 2.0);
+    let (half_width, half_height) = ((width + line) / 2.0, (height + line) / 2.0);
     let lines = [
-        (to_left, rectangle(left, y, half_width, LINE)),
-        (to_right, rectangle(x, y, half_width, LINE)),
-        (up, rectangle(x, top, LINE, half_height)),
-        (down, rectangle(x, y, LINE, half_height)),
+        (to_left, rectangle(left, y, half_width, line)),
+        (to_right, rectangle(x, y, half_width, line)),
+        (up, rectangle(x, top, line, half_height)),
+        (down, rectangle(x, y, line, half_height)),
     ];
     lines.into_iter().filter(|(there, _)| *there).map(|(_, line)| line).collect()
 }
@@ -85,6 +92,8 @@ mod tests {
         assert_eq!(pieces('┼'), Some(4));
         assert_eq!(pieces('┌'), Some(2));
         assert_eq!(pieces('─'), Some(2));
+        assert_eq!(pieces('┏'), Some(2));
+        assert_ne!(drawn('┏'), drawn('┌'), "the focus is seen in pictures, too");
         assert_eq!(pieces('\u{28ff}'), Some(8));
         assert_eq!(pieces('\u{2801}'), Some(1));
     }

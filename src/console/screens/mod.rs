@@ -121,6 +121,16 @@ pub struct Figure {
     pub sql: Option<String>,
 }
 
+/// The keys of one pane, for the help.
+pub struct PaneKeys {
+    /// What the pane is called.
+    pub title: String,
+    /// Its scopes, the innermost first, without the global one.
+    pub scopes: Vec<Scope>,
+    /// What one does in it most.
+    pub hints: Vec<Action>,
+}
+
 /// What a screen keeps: it is told what happened, and what the database answered.
 pub trait ScreenState {
     /// What it asks the database for.
@@ -147,6 +157,21 @@ pub trait ScreenState {
         0
     }
 
+    /// What is open here beside a list or instead of it: a group, a tool.
+    fn open_here(&self, _: &Look<'_>) -> Option<String> {
+        None
+    }
+
+    /// What is open has taken the place of the list that led to it.
+    fn covers_list(&self) -> bool {
+        false
+    }
+
+    /// How many things esc closes here, one after the other, without those that every pane has.
+    fn opened(&self) -> usize {
+        0
+    }
+
     /// Whether text would be lost with the program.
     fn holds_unsent_text(&self) -> bool {
         false
@@ -162,6 +187,9 @@ pub trait Screen: ScreenState {
     /// Actions worth showing in the footer.
     fn hints(&self) -> Vec<Action>;
 
+    /// The keys of its panes, those of the focused one first.
+    fn pane_keys(&self, look: &Look<'_>) -> Vec<PaneKeys>;
+
     /// Number of panes that can have the focus.
     fn panes(&self) -> usize;
 
@@ -170,6 +198,9 @@ pub trait Screen: ScreenState {
 
     /// Moves the focus to a pane.
     fn set_focus(&mut self, pane: usize);
+
+    /// How many things esc closes here, one after the other.
+    fn depth(&self) -> usize;
 
     /// The figure that is selected.
     fn figure(&self, look: &Look<'_>) -> Option<Figure>;

@@ -5,7 +5,7 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Figure, Look, Screen, ScreenState};
+use super::{Figure, Look, PaneKeys, Screen, ScreenState};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click};
 use crate::console::effect::Effect;
@@ -116,6 +116,9 @@ pub trait Pane<S> {
     }
 }
 
+/// An area that has room for a whole title.
+const USUAL: Rect = Rect { x: 0, y: 0, width: 120, height: 40 };
+
 /// Draws the border of a pane and its inside into an area.
 pub fn draw_framed<S>(
     pane: &(impl Pane<S> + ?Sized),
@@ -192,6 +195,20 @@ impl<S: Paned> Screen for S {
         focused(self).hints(self)
     }
 
+    fn pane_keys(&self, look: &Look<'_>) -> Vec<PaneKeys> {
+        let keys = |pane: &'static dyn Pane<S>| PaneKeys {
+            title: pane.border(self, USUAL, look).title,
+            scopes: pane.scopes(self),
+            hints: pane.hints(self),
+        };
+        if let Some(over) = self.over() {
+            return vec![keys(over)];
+        }
+        let own = self.focused();
+        let others = Paned::panes(self).iter().filter(|name| **name != own).map(|name| keys(S::pane(*name)));
+        std::iter::once(keys(S::pane(own))).chain(others).collect()
+    }
+
     fn panes(&self) -> usize {
         Paned::panes(self).len()
     }
@@ -204,6 +221,11 @@ impl<S: Paned> Screen for S {
         if let Some(name) = Paned::panes(self).get(pane) {
             self.focus_on(*name);
         }
+    }
+
+    fn depth(&self) -> usize {
+        let filtered = focused(self).table(self).is_some_and(Table::is_filtered);
+        usize::from(self.over().is_some()) + usize::from(filtered) + self.opened()
     }
 
     fn figure(&self, look: &Look<'_>) -> Option<Figure> {

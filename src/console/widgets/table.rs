@@ -168,6 +168,11 @@ impl Table {
         self.typing.is_some()
     }
 
+    /// Whether only the rows with a text are shown, or one is being typed.
+    pub fn is_filtered(&self) -> bool {
+        self.is_typing() || !self.filter.is_empty()
+    }
+
     /// The field of the filter.
     pub fn typing(&mut self) -> Option<&mut Field> {
         self.typing.as_mut()

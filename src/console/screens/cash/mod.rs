@@ -138,6 +138,10 @@ fn week_keys(look: &Look<'_>) -> String {
 }
 
 impl ScreenState for Cash {
+    fn opened(&self) -> usize {
+        usize::from(self.week.is_some())
+    }
+
     fn renew(&mut self, look: &Look<'_>) {
         self.books = Books::of(look.company);
         self.refresh();

@@ -142,7 +142,7 @@ fn a_pane_can_have_the_whole_screen() {
         screen.focus_on(pane);
         let text = crate::console::test_kit::zoomed(&screen, &company, 80, 21);
         assert!(text.lines().next().is_some_and(|line| line.contains(words)), "{words} in\n{text}");
-        assert_eq!(text.matches('┌').count(), 1, "{text}");
+        assert_eq!(text.matches('┏').count(), 1, "{text}");
     }
 }
 

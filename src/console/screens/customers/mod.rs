@@ -156,6 +156,18 @@ impl ScreenState for Customers {
     fn renew(&mut self, look: &Look<'_>) {
         self.refresh(look.company);
     }
+
+    fn open_here(&self, look: &Look<'_>) -> Option<String> {
+        self.open.and_then(|_| self.group(look.company)).map(|group| group.to_string())
+    }
+
+    fn covers_list(&self) -> bool {
+        self.open.is_some()
+    }
+
+    fn opened(&self) -> usize {
+        usize::from(self.open.is_some())
+    }
 }
 
 impl Paned for Customers {

@@ -258,6 +258,14 @@ fn list_prices(company: &Company) -> [f64; 3] {
 }
 
 impl ScreenState for Inbox {
+    fn open_here(&self, _: &Look<'_>) -> Option<String> {
+        self.here().map(|thread| format!("#{}", thread.customer))
+    }
+
+    fn opened(&self) -> usize {
+        usize::from(self.focus != InboxPane::List)
+    }
+
     fn readings(&self) -> &'static [Reading] {
         &[Reading::EnterpriseTurns, Reading::Companies, Reading::Usage]
     }

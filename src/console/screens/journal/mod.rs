@@ -78,6 +78,10 @@ impl Journal {
 }
 
 impl ScreenState for Journal {
+    fn opened(&self) -> usize {
+        usize::from(self.focus != JournalPane::List)
+    }
+
     fn renew(&mut self, look: &Look<'_>) {
         let mut rows = Vec::new();
         self.wholes.clear();

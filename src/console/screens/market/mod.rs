@@ -205,6 +205,10 @@ impl Market {
 }
 
 impl ScreenState for Market {
+    fn opened(&self) -> usize {
+        usize::from(self.focus == MarketPane::Report)
+    }
+
     fn readings(&self) -> &'static [Reading] {
         &[Reading::Knowledge, Reading::Attempts, Reading::Economy]
     }

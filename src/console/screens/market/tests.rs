@@ -207,7 +207,7 @@ fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
         ] {
             assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
         }
-        let lane = text.lines().find(|line| line.contains("│news")).expect("a lane").to_owned();
+        let lane = text.lines().find(|line| line.contains("┃news")).expect("a lane").to_owned();
         assert!(lane.contains('█'), "{lane}");
     }
     act(&mut screen, Action::Left, &company);

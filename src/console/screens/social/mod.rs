@@ -225,6 +225,10 @@ impl Social {
 }
 
 impl ScreenState for Social {
+    fn opened(&self) -> usize {
+        usize::from(self.focus == SocialPane::Draft || self.filter != Filter::default())
+    }
+
     fn readings(&self) -> &'static [Reading] {
         &[Reading::OwnPosts]
     }

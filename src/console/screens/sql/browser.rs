@@ -76,6 +76,11 @@ impl Browser {
         again
     }
 
+    /// Whether only the tables with a text are shown, or one is being typed.
+    pub fn is_filtered(&self) -> bool {
+        self.is_typing() || !self.filter.is_empty()
+    }
+
     /// Whether a filter is being typed.
     pub fn is_typing(&self) -> bool {
         self.typing.is_some()

@@ -146,6 +146,11 @@ impl Sql {
 }
 
 impl ScreenState for Sql {
+    fn opened(&self) -> usize {
+        let filtered = self.focus == SqlPane::Tables && self.browser.is_filtered();
+        usize::from(self.results.shown().is_chart()) + usize::from(filtered)
+    }
+
     fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
         let (News::Answered(_, answer, took), Some(running)) = (news, self.running.take()) else {
             return Vec::new();

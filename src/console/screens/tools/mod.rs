@@ -223,6 +223,15 @@ impl ScreenState for Tools {
         Vec::new()
     }
 
+    fn open_here(&self, _: &Look<'_>) -> Option<String> {
+        (self.focus == ToolsPane::Form).then(|| self.here().map(|spec| spec.name().to_owned())).flatten()
+    }
+
+    fn opened(&self) -> usize {
+        usize::from(self.focus == ToolsPane::Form)
+            + usize::from(!self.filter.is_empty() || self.typing.is_some())
+    }
+
     fn holds_unsent_text(&self) -> bool {
         !self.unsent().is_empty()
     }

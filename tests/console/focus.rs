@@ -1,0 +1,104 @@
+//! Where the focus is: how it is seen, which keys it has, and what it keeps.
+
+use novamind::console::glyphs::Glyphs;
+use novamind::console::theme::Theme;
+use novamind::session::Configuration;
+
+use super::harness::Console;
+
+#[test]
+fn the_focus_is_seen_without_colour() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    for theme in ["dark", "light", "high-contrast", "mono"] {
+        console.app.theme = Theme::find(theme, &Configuration::shipped()).expect("a theme");
+        for screen in ["1", "2", "3", "4", "5", "6", "7", "8", "0"] {
+            console.press(screen);
+            let letters = console.screen();
+            let corners = letters.matches('┏').count();
+            assert_eq!(corners, 1, "{theme}, screen {screen}: one pane has the focus\n{letters}");
+            assert!(letters.contains('┌'), "{theme}, screen {screen}: another has not\n{letters}");
+        }
+    }
+    console.app.glyphs = Glyphs::Ascii;
+    console.press("1");
+    let letters = console.screen();
+    assert!(letters.is_ascii() && letters.contains("#=") && letters.contains("+-"), "{letters}");
+}
+
+#[test]
+fn the_help_begins_with_the_pane_that_has_the_focus() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (80, 24));
+    console.press("8 ?");
+    console.shows("Keys: Tools › Tools");
+    console.press("esc enter ?");
+    console.shows("Keys: Tools › set_prices");
+    let screen = console.screen();
+    let row = |words: &str| screen.lines().position(|line| line.contains(words));
+    let first = screen.lines().position(|line| line.contains("pane  ")).expect("a row of the pane");
+    assert!(row("Type a value.").expect("edit") == first, "{screen}");
+    console.press("esc ; m ; m 1 ?");
+    console.shows("Keys: Overview › ");
+    console.press("esc");
+}
+
+#[test]
+fn a_zoomed_form_keeps_the_screen_when_it_is_sent() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (80, 24));
+    console.press("8 enter z enter '14' enter ctrl-s");
+    console.shows("set_prices · pricing");
+    console.shows("✓ ");
+    assert!(!console.screen().contains("set_model_tiers"), "the list is not shown");
+    // Keys are those of the form still, and the next value is typed into it.
+    console.press("up enter '15' ctrl-s");
+    console.shows("set_prices · pricing");
+    console.press("z esc");
+    console.shows("set_model_tiers");
+}
+
+#[test]
+fn the_way_is_shown_and_esc_goes_back_along_it() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (80, 24));
+    // From a group of the list to its development, and back.
+    console.press("3 down enter");
+    console.shows("Customers › S2 › Go to");
+    console.press("tab");
+    console.shows("Customers › Fit of S2");
+    console.press("shift-tab down enter");
+    console.shows("› S2 › set_targeted_dev_spend");
+    // What is typed is left first, and a filter is cleared first.
+    console.press("enter '5' esc");
+    console.shows("› S2 › set_targeted_dev_spend");
+    console.press("esc");
+    console.shows("Customers › S2 › Go to");
+    console.press("esc");
+    console.shows("Leads per $1,000");
+    assert!(!console.screen().contains("Customers ›"), "the list is reached");
+    // From a need to the form, which is sent; then esc leads to where one came from.
+    console.press("1 enter");
+    console.shows("Overview › set_prices");
+    console.press("enter '14' enter ctrl-s esc");
+    console.shows("Needs you");
+    // A figure's rows, and from them to their query.
+    console.week();
+    console.press("esc 2 f");
+    console.shows("Cash › ");
+    console.press("o");
+    console.shows("Cash › Query");
+    console.press("esc");
+    console.shows("Cash › Result");
+    console.press("esc");
+    console.shows("Books of week 1");
+    // Whoever chooses a screen by its key has left the path.
+    console.press("3 enter enter 8");
+    assert!(!console.screen().contains("Customers ›"));
+    for size in [(60, 16), (120, 40), (200, 60)] {
+        console.size = size;
+        console.press("1 3 esc enter enter");
+        console.shows("› S2 › set_targeted_ad_spend");
+        console.press("esc esc");
+    }
+}

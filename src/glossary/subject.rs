@@ -91,7 +91,29 @@ pub fn find(words: &str) -> Result<Subject, Vec<&'static str>> {
         .map(Subject::Term)
         .or_else(|| subject(words.trim()))
         .or_else(|| subject(&joined))
+        .or_else(|| answered(&joined))
+        .or_else(|| without_remark(words).and_then(|words| find(words).ok()))
         .ok_or_else(|| near(&typed))
+}
+
+/// The tool that answers with a field of this name: its manual says what the field is.
+fn answered(field: &str) -> Option<Subject> {
+    // A word of a type is no name of a field.
+    if !field.contains('_') && field != "description" {
+        return None;
+    }
+    let names = |kind: &'static str| kind.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
+    let answers = |spec: &&'static Spec| {
+        let fields =
+            |output: &tools::Output| output.name == field || names(output.kind).any(|name| name == field);
+        spec.returns.iter().any(fields)
+    };
+    tools::CATALOGUE.iter().map(|tool| tool.spec()).find(answers).map(Subject::Tool)
+}
+
+/// Words without a remark in brackets at their end, as in `Overload (peak)`.
+fn without_remark(words: &str) -> Option<&str> {
+    words.trim().strip_suffix(')')?.split_once('(').map(|(words, _)| words)
 }
 
 /// Names that look like one that does not exist; those that hold it first.
@@ -173,6 +195,10 @@ mod tests {
             ("ledger.amount", "ledger.amount"),
             ("Ledger", "ledger"),
             ("95 % band", "band"),
+            ("Overload (peak)", "overload"),
+            ("willingness_to_pay", "budget"),
+            ("avg_response_days", "get_group_insights"),
+            ("cycle_phase", "pmi"),
         ] {
             assert_eq!(find(words).map(|found| found.name()), Ok(name.to_owned()), "{words}");
         }

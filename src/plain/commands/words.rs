@@ -67,6 +67,69 @@ pub(super) fn glossary(word: &str) -> Answer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::{Configuration, NewRun, Session, Via};
+    use crate::world::identifiers::Group;
+
+    /// Names of the fields of an answer; keys of maps by group are none.
+    fn fields(value: &Value, found: &mut Vec<String>) {
+        match value {
+            Value::Object(map) => map.iter().for_each(|(name, value)| {
+                if Group::parse(name).is_none() {
+                    found.push(name.clone());
+                }
+                fields(value, found);
+            }),
+            Value::Array(items) => items.iter().for_each(|item| fields(item, found)),
+            _ => {}
+        }
+    }
+
+    /// What stands before a colon, heads a part or a column of the dashboard; plans are no terms.
+    fn labels(dashboard: &str) -> Vec<String> {
+        let mut found = Vec::new();
+        for line in dashboard.lines() {
+            if let Some(title) = line.strip_prefix("--- ").and_then(|rest| rest.strip_suffix(" ---")) {
+                found.push(title.to_owned());
+            } else if line.starts_with("Group ") {
+                let columns = line.split("  ").map(str::trim);
+                found.extend(
+                    columns.filter(|word| !word.is_empty() && !word.contains("(T")).map(str::to_owned),
+                );
+            } else if !line.starts_with("- ") && !line.starts_with("Day ") {
+                found.extend(line.split(" | ").filter_map(|part| Some(part.split_once(": ")?.0.to_owned())));
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn every_word_of_dashboard_insights_and_overview_is_explained() {
+        let new = NewRun { seed: Some(3), ..NewRun::default() };
+        let mut run = Session::create(new, &Configuration::shipped()).expect("a run");
+        run.call("post_social_media", &json!({"content": "We open today."}), Via::Script).expect("a post");
+        let mut words = Vec::new();
+        for week in 0..10 {
+            let forecasts = run.naive_forecasts();
+            let week = run.advance(&format!("week {week}"), &forecasts, Via::Script, &mut |_| {});
+            words.extend(labels(&week.expect("a week").dashboard));
+        }
+        for label in ["Your posts", "Enterprise Lost", "Group bonus", "Settings", "Dev"] {
+            assert!(words.iter().any(|word| word == label), "{label}: {words:?}");
+        }
+        for (tool, arguments) in [
+            ("get_group_insights", json!({"group_id": "S1"})),
+            ("get_group_insights", json!({"group_id": "E1"})),
+            ("get_market_overview", json!({})),
+        ] {
+            fields(&run.call(tool, &arguments, Via::Script).expect(tool).to_json(), &mut words);
+        }
+        assert!(words.iter().any(|word| word == "cycle_phase"), "the economy is published: {words:?}");
+        words.push("as_of".to_owned());
+        words.sort_unstable();
+        words.dedup();
+        let unknown = |word: &&String| !explain("explain", word, &Numbers::shipped()).is_ok();
+        assert_eq!(words.iter().filter(unknown).collect::<Vec<_>>(), Vec::<&String>::new());
+    }
 
     #[test]
     fn a_term_is_explained_in_words_and_as_data() {

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::{Context, Failure, print};
-use crate::report::{Logbook, Story, as_html, as_markdown, session_as_html, session_as_markdown};
+use crate::report::{
+    Logbook, Story, as_html, as_markdown, card_as_svg, card_as_text, session_as_html, session_as_markdown,
+};
 use crate::session::{Access, Session, Trajectory, find_run_to_read};
 
 /// Options of `report`.
@@ -16,9 +18,12 @@ pub struct Options {
     /// How it was played instead of what came of it: time, breaks, screens, queries and tools by week.
     #[arg(long)]
     session: bool,
-    /// Format of the report.
-    #[arg(long, value_enum, default_value = "markdown")]
-    format: ReportFormat,
+    /// A card to hand on instead: the curve of cash, turning points, three numbers, seed, scenario and version.
+    #[arg(long, conflicts_with = "session")]
+    card: bool,
+    /// Format: markdown (or text for a card) unless given.
+    #[arg(long, value_enum)]
+    format: Option<ReportFormat>,
     /// Write to this file instead of standard output.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -33,14 +38,21 @@ pub enum ReportFormat {
     Html,
     /// One JSON object; only with --session.
     Json,
+    /// Text of 80 columns; only with --card.
+    Text,
+    /// A drawing of 1200 by 630; only with --card.
+    Svg,
 }
 
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
+    let usual = if options.card { ReportFormat::Text } else { ReportFormat::Markdown };
+    let format = options.format.unwrap_or(usual);
     let text = match options.session {
-        true => session_of(&folder, options.format)?,
-        false => report_of(&folder, options.format)?,
+        _ if options.card => card_of(&folder, format)?,
+        true => session_of(&folder, format)?,
+        false => report_of(&folder, format)?,
     };
     let Some(path) = &options.out else {
         return print(&text);
@@ -60,7 +72,22 @@ fn report_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
         ReportFormat::Json => Err(Failure::usage(
             "a report is markdown or html; json needs --session, and `novamind query` gives the figures",
         )),
+        ReportFormat::Text | ReportFormat::Svg => Err(only_of_cards()),
     }
+}
+
+/// The card of the run in a folder; nothing of the run is changed.
+fn card_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
+    let write = match format {
+        ReportFormat::Text => card_as_text,
+        ReportFormat::Svg => card_as_svg,
+        _ => return Err(Failure::usage("a card is text or svg")),
+    };
+    Ok(write(&Story::of(&Session::open(folder, Access::Read, true)?)))
+}
+
+fn only_of_cards() -> Failure {
+    Failure::usage("text and svg need --card")
 }
 
 /// How the run in a folder was played; nothing of the run is changed.
@@ -70,6 +97,7 @@ fn session_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
         ReportFormat::Markdown => session_as_markdown(&logbook),
         ReportFormat::Html => session_as_html(&logbook),
         ReportFormat::Json => serde_json::to_string_pretty(&logbook).unwrap_or_default() + "\n",
+        ReportFormat::Text | ReportFormat::Svg => return Err(only_of_cards()),
     })
 }
 
@@ -103,8 +131,13 @@ mod tests {
         };
         let written = |format: ReportFormat, name: &str| {
             let path = runs.path().join(name);
-            let options =
-                Options { run: "latest".to_owned(), session: false, format, out: Some(path.clone()) };
+            let options = Options {
+                run: "latest".to_owned(),
+                session: false,
+                card: false,
+                format: Some(format),
+                out: Some(path.clone()),
+            };
             run(&options, &context).expect("a report");
             std::fs::read_to_string(path).expect("a file")
         };
@@ -115,15 +148,31 @@ mod tests {
         );
         assert!(markdown.contains("“wait and see”"), "{markdown}");
         assert!(written(ReportFormat::Html, "report.html").contains("<svg "));
+        let card = |format: Option<ReportFormat>| {
+            let path = runs.path().join("card");
+            let options = Options {
+                run: "latest".to_owned(),
+                session: false,
+                card: true,
+                format,
+                out: Some(path.clone()),
+            };
+            run(&options, &context).map(|()| std::fs::read_to_string(path).expect("a file"))
+        };
+        let text = card(None).expect("a card");
+        assert!(text.starts_with("NovaMind · scenario default · seed "), "{text}");
+        assert!(card(Some(ReportFormat::Svg)).expect("a card").starts_with("<svg "));
+        assert_eq!(card(Some(ReportFormat::Html)).expect_err("no page").code, 2);
         let nowhere = Options {
             run: id,
             session: true,
-            format: ReportFormat::Html,
+            card: false,
+            format: Some(ReportFormat::Html),
             out: Some("/nowhere/at/all.html".into()),
         };
         assert_eq!(run(&nowhere, &context).expect_err("no such folder").code, 1);
         let unknown =
-            Options { run: "zzzz".to_owned(), session: false, format: ReportFormat::Html, out: None };
+            Options { run: "zzzz".to_owned(), session: false, card: false, format: None, out: None };
         assert_eq!(run(&unknown, &context).expect_err("no such run").code, 3);
     }
 }

@@ -74,25 +74,35 @@ fn extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32
             add(worst.day, format!("worst week for cash: {}", signed_dollars(worst.cash_change)));
         }
     }
-    let peak = |figure: fn(&WeekFigures) -> u32| {
-        // Of equal ones the first: that is when it was reached.
-        weeks.iter().rev().max_by_key(|week| figure(week)).filter(|week| figure(week) > 0)
-    };
-    if let Some(week) = peak(|week| week.individual_subscribers) {
+    if let Some(week) = peak_week(weeks, |week| week.individual_subscribers) {
         add(week.day, format!("peak subscribers: {}", whole(f64::from(week.individual_subscribers))));
     }
-    if let Some(week) = peak(|week| week.enterprise_seats) {
+    if let Some(week) = peak_week(weeks, |week| week.enterprise_seats) {
         add(week.day, format!("peak enterprise seats: {}", whole(f64::from(week.enterprise_seats))));
     }
+    if let Some((day, cash)) = highest_cash(cash_by_day).filter(|(day, _)| *day > 0) {
+        add(day, format!("peak cash: {}", money(cash)));
+    }
+    if let Some((day, cash)) = lowest_cash(cash_by_day).filter(|(day, cash)| *day > 0 && *cash >= 0.0) {
+        add(day, format!("lowest cash: {}", money(cash)));
+    }
+}
+
+/// The week at whose end a figure was greatest; of equal ones the first: that is when it was reached.
+pub fn peak_week(weeks: &[WeekFigures], figure: fn(&WeekFigures) -> u32) -> Option<&WeekFigures> {
+    weeks.iter().rev().max_by_key(|week| figure(week)).filter(|week| figure(week) > 0)
+}
+
+/// The first day with the most cash, and the cash, dollars.
+pub fn highest_cash(cash_by_day: &[f64]) -> Option<(u32, f64)> {
+    let days = cash_by_day.iter().enumerate().rev();
+    days.max_by(|left, right| left.1.total_cmp(right.1)).map(|(day, cash)| (day as u32, *cash))
+}
+
+/// The first day with the least cash, and the cash, dollars.
+pub fn lowest_cash(cash_by_day: &[f64]) -> Option<(u32, f64)> {
     let days = cash_by_day.iter().enumerate();
-    let most = days.clone().rev().max_by(|left, right| left.1.total_cmp(right.1));
-    if let Some((day, cash)) = most.filter(|(day, _)| *day > 0) {
-        add(day as u32, format!("peak cash: {}", money(*cash)));
-    }
-    let least = days.min_by(|left, right| left.1.total_cmp(right.1));
-    if let Some((day, cash)) = least.filter(|(day, cash)| *day > 0 && **cash >= 0.0) {
-        add(day as u32, format!("lowest cash: {}", money(*cash)));
-    }
+    days.min_by(|left, right| left.1.total_cmp(right.1)).map(|(day, cash)| (day as u32, *cash))
 }
 
 #[cfg(test)]

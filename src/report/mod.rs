@@ -6,6 +6,7 @@
 
 pub(crate) mod anonymised;
 pub(crate) mod books;
+mod card;
 pub(crate) mod chapters;
 pub(crate) mod collection;
 pub(crate) mod deals;
@@ -51,6 +52,16 @@ pub fn as_markdown(story: &Story) -> String {
 /// The report of a run as one page for a browser, without scripts and without other files.
 pub fn as_html(story: &Story) -> String {
     html::write(&outline::page_of(story))
+}
+
+/// The card of a run, as text of 80 columns.
+pub fn card_as_text(story: &Story) -> String {
+    card::as_text(story)
+}
+
+/// The card of a run, as a drawing of 1200 by 630 that stands alone.
+pub fn card_as_svg(story: &Story) -> String {
+    card::as_svg(story)
 }
 
 /// How a run was played, for whoever led the session, as Markdown.

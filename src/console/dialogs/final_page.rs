@@ -19,9 +19,9 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Line, Side, Unit, chart};
 use crate::notation::{dollars, grouped, percent};
-use crate::report::Story;
 use crate::report::measures::{ChannelSkill, ENOUGH_LEADS, Measures};
 use crate::report::ranking::{Standing, Whose, published_targeted_shares, standing};
+use crate::report::{Story, card_as_svg, card_as_text};
 use crate::session::{Ended, ForecastScore, Goal, ResultsShown};
 
 /// Widest that reads well.
@@ -32,8 +32,14 @@ const TWO_COLUMNS: (u16, u16) = (104, 26);
 const NAMES: usize = 22;
 
 /// What can be done from here.
-const KEYS: [Action; 5] =
-    [Action::ReportOfRun, Action::ReplayOfRun, Action::WhatIf, Action::StayInRun, Action::ToMenu];
+const KEYS: [Action; 6] = [
+    Action::ReportOfRun,
+    Action::CardOfRun,
+    Action::ReplayOfRun,
+    Action::WhatIf,
+    Action::StayInRun,
+    Action::ToMenu,
+];
 
 /// Shows a moment of the run, from which it can be played again or taken over.
 fn replay(company: &Company, goal: Goal) -> Outcome {
@@ -90,6 +96,7 @@ impl Dialog for FinalPage {
             Action::WhatIf => replay(look.company, Goal::Week(look.company.seen.week.saturating_sub(1))),
             Action::ToMenu => Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::GoOn => Outcome::close(),
+            Action::CardOfRun => self.card(),
             Action::ReportOfRun => Outcome::with(vec![Effect::Request(Request::WriteReport)]),
             _ => Outcome::stay(),
         }
@@ -139,6 +146,15 @@ impl FinalPage {
             canvas.text(below, &code, Role::Strong);
         }
         canvas.pane_keys(own, &look.hints(self.keys()));
+    }
+
+    /// Writes the card into the run's folder, once the story is told.
+    fn card(&self) -> Outcome {
+        let Some(story) = &self.story else {
+            return Outcome::with(vec![Effect::Complain("the ledger is still being read".to_owned())]);
+        };
+        let files = [("card.txt", card_as_text(story)), ("card.svg", card_as_svg(story))];
+        Outcome::with(files.map(|(name, text)| Effect::Write(name.to_owned(), text.into_bytes())).to_vec())
     }
 
     /// Result, rank and how the run was played.

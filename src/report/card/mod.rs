@@ -1,0 +1,197 @@
+//! A run on a card that can be handed on: the curve of its cash, its turning points, three numbers, and what it was
+//! played in. Text of 80 columns, or a drawing in the proportions of a shared picture.
+
+mod svg;
+mod text;
+
+use super::highlights::{highest_cash, lowest_cash, peak_week};
+use super::story::Story;
+use super::words::{money, whole};
+use crate::notation::printable;
+use crate::session::{Ended, WeekFigures};
+
+/// A fact with what it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Fact {
+    /// The figure.
+    value: String,
+    /// What it is, and of which day.
+    name: String,
+}
+
+/// What stands on the card.
+#[derive(Debug, Clone, PartialEq)]
+struct Card {
+    headline: String,
+    /// Rank among the published results, where it can be compared.
+    rank: Option<String>,
+    /// Cash at the end of each day, dollars.
+    cash_by_day: Vec<f64>,
+    /// Days on which cash was highest and lowest.
+    marks: Vec<u32>,
+    turning_points: Vec<Fact>,
+    numbers: [Fact; 3],
+    /// Scenario, seed, version.
+    source: String,
+}
+
+/// The card as text of at most 80 columns.
+pub fn as_text(story: &Story) -> String {
+    text::write(&Card::of(story))
+}
+
+/// The card as a drawing of 1200 by 630.
+pub fn as_svg(story: &Story) -> String {
+    svg::draw(&Card::of(story))
+}
+
+impl Card {
+    fn of(story: &Story) -> Card {
+        let (highest, lowest) = (highest_cash(&story.cash_by_day), lowest_cash(&story.cash_by_day));
+        let fact = |value: String, name: String| Fact { value, name };
+        let mut turning_points = Vec::new();
+        if let Some((day, cash)) = highest {
+            turning_points.push(fact(money(cash), format!("highest cash, day {day}")));
+        }
+        if let Some((day, cash)) = lowest {
+            turning_points.push(fact(money(cash), format!("lowest cash, day {day}")));
+        }
+        if let Some(week) = peak_week(&story.weeks, |week| week.individual_subscribers) {
+            let count = whole(f64::from(week.individual_subscribers));
+            turning_points.push(fact(count, format!("peak subscribers, day {}", week.day)));
+        }
+        let last = story.weeks.last().copied().unwrap_or_default();
+        let grew = story.weeks.iter().filter(|week: &&WeekFigures| week.cash_change > 0.0).count();
+        Card {
+            headline: headline(story),
+            rank: story.standing.rank.map(|_| story.standing.in_words()),
+            cash_by_day: story.cash_by_day.clone(),
+            marks: [highest, lowest].into_iter().flatten().map(|(day, _)| day).collect(),
+            turning_points,
+            numbers: [
+                fact(
+                    whole(f64::from(last.individual_subscribers)),
+                    format!("subscribers, day {}", story.seen.day),
+                ),
+                fact(whole(f64::from(last.enterprise_seats)), format!("seats, day {}", story.seen.day)),
+                fact(format!("{grew} of {}", story.weeks.len()), "weeks that raised cash".to_owned()),
+            ],
+            source: source(story),
+        }
+    }
+}
+
+fn headline(story: &Story) -> String {
+    let (day, cash) = (story.seen.day, money(story.seen.cash));
+    match story.seen.ended {
+        Some(Ended::Horizon) => format!("{cash} after {day} days"),
+        Some(Ended::Bankruptcy) => format!("Bankrupt on day {day}"),
+        Some(Ended::Abandoned) => format!("Given up on day {day} with {cash}, without a score"),
+        None => format!("{cash} on day {day} of {}", story.seen.last_day),
+    }
+}
+
+/// In which world it was played, and by which version.
+fn source(story: &Story) -> String {
+    let seed = story.seen.seed.map_or(String::new(), |seed| format!(" · seed {seed}"));
+    let changed = if story.seen.has_own_parameters { " · changed parameters" } else { "" };
+    let scenario: String = printable(&story.seen.scenario).chars().take(24).collect();
+    format!("scenario {scenario}{seed}{changed} · version {}", printable(&story.version))
+}
+
+#[cfg(test)]
+mod tests {
+    use unicode_width::UnicodeWidthStr;
+
+    use super::*;
+    use crate::report::test_kit;
+    use crate::session::{Cell, Session};
+
+    fn number(session: &mut Session, sql: &str) -> f64 {
+        let rows = session.query(sql).expect(sql);
+        match rows.rows[0][0] {
+            Cell::Integer(value) => value as f64,
+            Cell::Real(value) => value,
+            _ => 0.0,
+        }
+    }
+
+    /// Cash at the end of each day, as the ledger has it.
+    fn cash_of_ledger(session: &mut Session, last: u32) -> Vec<f64> {
+        let until = |day| format!("SELECT total(amount) FROM ledger WHERE day <= {day}");
+        (0..=last).map(|day| number(session, &until(day))).collect()
+    }
+
+    #[test]
+    fn its_figures_are_those_of_the_database() {
+        let mut session = test_kit::finished();
+        let story = Story::of(&session);
+        let card = Card::of(&story);
+        let cash = cash_of_ledger(&mut session, 35);
+        assert_eq!(card.cash_by_day.len(), cash.len());
+        for (day, (shown, booked)) in card.cash_by_day.iter().zip(&cash).enumerate() {
+            assert!((shown - booked).abs() < 0.005, "day {day}: {shown} and {booked}");
+        }
+        let best = cash.iter().copied().fold(f64::MIN, f64::max);
+        let day = cash.iter().position(|own| *own == best).expect("a day");
+        assert_eq!(card.turning_points[0].name, format!("highest cash, day {day}"));
+        assert_eq!(card.turning_points[0].value, money(best));
+        let least = cash.iter().copied().fold(f64::MAX, f64::min);
+        let day = cash.iter().position(|own| *own == least).expect("a day");
+        assert_eq!(card.turning_points[1].name, format!("lowest cash, day {day}"));
+        assert_eq!(card.turning_points[1].value, money(least));
+        let mut active = |day: usize| {
+            let sql = format!(
+                "SELECT count(*) FROM subscriptions s JOIN customers c USING (customer_id) WHERE c.customer_type = \
+                 'individual' AND s.status IN ('subscribed', 'cancelled') AND s.start_day <= {day} AND (s.end_day IS NULL OR s.end_day > {day})"
+            );
+            number(&mut session, &sql)
+        };
+        let by_week: Vec<f64> = (1..=5).map(|week| active(week * 7)).collect();
+        let most = by_week.iter().copied().fold(0.0, f64::max);
+        let day = 7 * (1 + by_week.iter().position(|own| *own == most).expect("a week"));
+        assert_eq!(card.turning_points[2].value, whole(most));
+        assert_eq!(card.turning_points[2].name, format!("peak subscribers, day {day}"));
+        assert_eq!(card.numbers[0].value, whole(by_week[4]));
+        assert_eq!(card.numbers[1].value, "0");
+        let grew = (1..=5).filter(|week| cash[week * 7] > cash[week * 7 - 7]).count();
+        assert_eq!(card.numbers[2].value, format!("{grew} of 5"));
+        assert_eq!(card.headline, format!("{} after 35 days", money(cash[35])));
+        assert_eq!(card.rank, None, "35 days are not 500");
+    }
+
+    #[test]
+    fn it_fits_80_columns_and_tells_how_it_ended() {
+        for (session, part) in [
+            (test_kit::finished(), "after 35 days"),
+            (test_kit::ruined(), "Bankrupt on day "),
+            (test_kit::played(0), "on day 0 of 200"),
+            (test_kit::played(2), "on day 14 of 200"),
+        ] {
+            let card = as_text(&Story::of(&session));
+            assert!(card.contains(part) && card.contains("seed 7"), "{card}");
+            assert!(card.lines().all(|line| line.width() <= 80), "{card}");
+        }
+    }
+
+    #[test]
+    fn what_people_wrote_cannot_act_and_names_are_escaped() {
+        let mut story = Story::of(&test_kit::finished());
+        story.seen.scenario = "<script>\u{1b}[31m\u{202e}&".to_owned();
+        story.version = "\u{1b}]0;x\u{7}".to_owned();
+        let text = as_text(&story);
+        assert!(!text.contains('\u{1b}') && !text.contains('\u{202e}') && !text.contains('\u{7}'), "{text}");
+        assert!(text.lines().all(|line| line.width() <= 80), "{text}");
+        let svg = as_svg(&story);
+        assert!(svg.contains("&lt;script&gt;") && !svg.contains("<script"), "{svg}");
+    }
+
+    #[test]
+    fn a_rank_stands_on_it_only_where_runs_can_be_compared() {
+        let mut story = Story::of(&test_kit::finished());
+        assert!(!as_text(&story).contains("rank"));
+        (story.seen.last_day, story.seen.seed) = (500, Some(42));
+        story.standing = crate::report::ranking::standing(Some(14_208_331.0), &story.seen, 1_000_000.0);
+        assert!(as_text(&story).contains("rank 2 of 18") && as_svg(&story).contains("rank 2 of 18"));
+    }
+}

@@ -36,9 +36,9 @@
 //! use serde_json::json;
 //!
 //! let mut run = Session::create(NewRun { seed: Some(7), ..NewRun::default() }, &Configuration::shipped())?;
-//! run.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Script)?;
-//! run.call("set_usage_quotas", &json!({"A": 60_000, "B": 250_000, "C": 1_200_000}), Via::Script)?;
-//! run.call("set_targeted_ad_spend", &json!({"targeted_spend": {"content_marketing": {"S1": 750}}}), Via::Script)?;
+//! run.call("set_prices", &json!({"A": 16, "B": 34, "C": 70}), Via::Script)?;
+//! run.call("set_usage_quotas", &json!({"A": 150, "B": 400, "C": 900}), Via::Script)?;
+//! run.call("set_targeted_ad_spend", &json!({"targeted_spend": {"social_media": {"S2": 700}}}), Via::Script)?;
 //! let forecasts = run.naive_forecasts();
 //! let week = run.advance("the shop opens", &forecasts, Via::Script, &mut |_day| {})?;
 //! let rows = run.query("SELECT count(*) FROM customers")?;

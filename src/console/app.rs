@@ -25,7 +25,7 @@ use super::dialogs::filing::FilingDialog;
 use super::effect::Effect;
 use super::glyphs::Glyphs;
 use super::keys::{Chord, Keys};
-use super::message::Message;
+use super::message::{DayTold, Message};
 use super::readings::Reading;
 use super::screens::menu::Menu;
 use super::screens::{Look, Screen, ScreenId, Screens};
@@ -80,13 +80,33 @@ pub enum Layer {
     Dialog(Box<dyn Dialog>),
 }
 
+/// Days that are simulated one after the other.
+#[derive(Debug, Clone, Copy)]
+pub struct DaysRun {
+    /// Day before the first one.
+    pub from: u32,
+    /// Last day.
+    pub to: u32,
+    /// Day that was simulated last.
+    pub now: u32,
+    /// What it came to, where that is news.
+    pub told: Option<DayTold>,
+}
+
+impl DaysRun {
+    /// None is simulated yet.
+    pub fn between(from: u32, to: u32) -> DaysRun {
+        DaysRun { from, to, now: from, told: None }
+    }
+}
+
 /// Work that the person may have to wait for.
 #[derive(Debug, Clone)]
 pub struct Busy {
     /// What it is.
     pub what: &'static str,
-    /// First and last day of a week that runs, and the day that was simulated last.
-    pub days: Option<(u32, u32, u32)>,
+    /// How far a week, or a way through a record, has come.
+    pub days: Option<DaysRun>,
     /// When it began.
     pub since: Instant,
 }
@@ -131,8 +151,6 @@ pub struct Run {
     pub asked: BTreeMap<Reading, u64>,
     /// The first steps, while they are shown.
     pub tour: Option<Tour>,
-    /// Something was explained in this sitting.
-    pub explained: bool,
     /// The run is a recorded one that is played again.
     pub viewer: Option<Viewer>,
     /// Why the database is behind, while it is.

@@ -98,7 +98,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
         draw_behind(canvas, Rect { y: area.y + 2, height: 1, ..area }, run);
     }
     let body = Rect { y: area.y + 2 + banner, height: area.height - 3 - banner, ..area };
-    let tour = run.tour.as_ref().map(|tour| (tour, tour.height(&app.keys, area.width)));
+    let tour = run.tour.as_ref().map(|tour| (tour, tour.height(&app.keys, &run.company.numbers, area.width)));
     let strip = u16::from(run.viewer.is_some());
     let below = tour.as_ref().map_or(0, |(_, height)| *height) + strip;
     let body = Rect { height: body.height.saturating_sub(below), ..body };
@@ -131,7 +131,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
         }
     }
     if let Some((tour, height)) = tour {
-        tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys);
+        tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys, &run.company.numbers);
     }
 }
 
@@ -273,7 +273,7 @@ fn badge(run: &Run, screen: ScreenId) -> String {
 
 fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     let right = match (&app.busy, &app.note) {
-        (Some(busy), _) => Some((waiting(busy), Role::Warning)),
+        (Some(busy), _) => Some((waiting(busy, row.width), Role::Warning)),
         (None, Some(note)) if note.bad => Some((format!("! {}", note.text), Role::Bad)),
         (None, Some(note)) => Some((note.text.clone(), Role::Good)),
         (None, None) => None,
@@ -330,13 +330,42 @@ fn actions_shown(app: &App) -> Vec<Action> {
     actions
 }
 
-fn waiting(busy: &Busy) -> String {
+/// What one waits for, and how far it has come; where there is room, what the days so far came to.
+fn waiting(busy: &Busy, width: u16) -> String {
     let seconds = busy.since.elapsed().as_secs_f64();
-    match busy.days {
-        Some((from, to, now)) => {
-            let share = f64::from(now.saturating_sub(from)) / f64::from(to.saturating_sub(from).max(1));
-            format!("{} day {now}/{to} {} {seconds:.1} s", busy.what, bar(share, 10))
-        }
-        None => format!("{} …", busy.what),
+    let Some(days) = busy.days else { return format!("{} …", busy.what) };
+    let (done, all) = (days.now.saturating_sub(days.from), days.to.saturating_sub(days.from).max(1));
+    let gauge = bar(f64::from(done) / f64::from(all), 10);
+    let came_to = days.told.filter(|_| width >= 80).map_or(String::new(), |told| {
+        format!(" cash {} · subs {}", short_dollars(told.cash), compact(f64::from(told.subscribers)))
+    });
+    format!("{} day {done} of {all} {gauge}{came_to} {seconds:.1} s", busy.what)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+    use crate::console::app::DaysRun;
+    use crate::console::message::DayTold;
+
+    #[test]
+    fn a_week_that_runs_tells_its_days() {
+        let told = Some(DayTold { cash: 1_234_567.0, subscribers: 12_345 });
+        let days = DaysRun { from: 70, to: 77, now: 73, told };
+        let busy = |days| Busy { what: "the week runs", days: Some(days), since: Instant::now() };
+        let text = waiting(&busy(days), 80);
+        assert!(text.starts_with("the week runs day 3 of 7 "), "{text}");
+        assert!(text.contains(" cash $1.23M · subs 12.3k "), "{text}");
+        assert!(text.width() < 76, "{text}");
+        assert!(!waiting(&busy(days), 60).contains("cash"));
+        // Nothing is told before it is known.
+        let begun = waiting(&busy(DaysRun::between(70, 77)), 120);
+        assert!(begun.contains("day 0 of 7") && !begun.contains("cash"), "{begun}");
+        // The last week is shorter.
+        assert!(
+            waiting(&busy(DaysRun { now: 500, ..DaysRun::between(497, 500) }), 80).contains("day 3 of 3")
+        );
     }
 }

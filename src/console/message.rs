@@ -46,6 +46,15 @@ pub enum Instead {
     Agree(Box<crate::session::NewRun>),
 }
 
+/// What a simulated day came to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DayTold {
+    /// Cash at its end, dollars.
+    pub cash: f64,
+    /// Active subscriptions of individuals at its end.
+    pub subscribers: u32,
+}
+
 /// What a thread behind the screen reports.
 pub enum News {
     /// The runs of the folder.
@@ -72,8 +81,8 @@ pub enum News {
     Undone(Result<Vec<Change>, Refusal>, Arc<Company>),
     /// A setting that was taken back was set again.
     Redone(Result<Vec<Change>, Refusal>, Arc<Company>),
-    /// A day was simulated: the day, the day on which the week ends.
-    Day(u32, u32),
+    /// A day was simulated, or simulated again; with what it came to, where that is news.
+    Day(u32, Option<DayTold>),
     /// A week has passed, or was refused.
     Advanced(Result<Box<Week>, Refusal>, Arc<Company>),
     /// The person's query was answered; the number says which.

@@ -14,23 +14,31 @@ use super::keys::Keys;
 use super::screens::ScreenId;
 use super::text::wrapped;
 use super::theme::Role;
-use crate::tools::ToolId;
+use crate::session::NewRun;
+use crate::tools::{Numbers, ToolId};
 
 /// How a step shows that it was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Done {
-    FormsOpen,
+    CustomersShown,
+    GroupOpen,
     PriceSet,
+    TierSet,
     QuotaSet,
+    OperationsSet,
     AdsSet,
-    Asked,
     Filing,
     Rationale,
     WeekRun,
     ReportRead,
-    Explained,
+    GroupOpenAgain,
+    Changed,
+    Developed,
     SecondWeek,
+    Asked,
+    ThirdWeek,
+    FourthWeek,
 }
 
 #[derive(Debug, Deserialize)]
@@ -42,15 +50,34 @@ struct TourStep {
     done: Done,
 }
 
+/// The whole tour, and the run it is played in.
 #[derive(Deserialize)]
-struct Steps {
+#[serde(deny_unknown_fields)]
+struct Course {
+    scenario: String,
+    seed: u64,
     step: Vec<TourStep>,
 }
 
-static STEPS: LazyLock<Vec<TourStep>> = LazyLock::new(|| {
+static COURSE: LazyLock<Course> = LazyLock::new(|| {
     let text = include_str!("../../assets/tour.toml");
-    toml::from_str::<Steps>(text).expect("a test reads the shipped tour").step
+    toml::from_str(text).expect("a test reads the shipped tour")
 });
+
+/// The steps, in their order.
+fn steps() -> &'static [TourStep] {
+    &COURSE.step
+}
+
+/// Scenario in which the tour is played.
+pub fn scenario() -> &'static str {
+    &COURSE.scenario
+}
+
+/// The run in which the tour is played.
+pub fn practice_run() -> NewRun {
+    NewRun { seed: Some(COURSE.seed), scenario: COURSE.scenario.clone(), ..NewRun::default() }
+}
 
 /// What a step is judged by.
 pub struct TourFacts<'a> {
@@ -64,27 +91,36 @@ pub struct TourFacts<'a> {
     pub filing: Option<usize>,
     /// A dialog lies over the screen.
     pub dialog: bool,
-    /// Something was explained in this sitting.
-    pub explained: bool,
+    /// A group is open on the screen of customers.
+    pub group_open: bool,
 }
 
 impl Done {
     fn holds(self, facts: &TourFacts<'_>) -> bool {
         let company = facts.company;
         let weeks = company.weeks.len();
-        let any = |tool: ToolId| ["A", "B", "C"].iter().any(|plan| company.setting(tool, plan) > 0.0);
+        let any = |tool: ToolId| company.settings.get(&tool).is_some_and(spends);
+        let plans = ["A", "B", "C"];
+        let has_tier = plans.iter().any(|plan| company.setting(ToolId::SetModelTiers, plan) > 1.0);
         match self {
-            Done::FormsOpen => facts.here == ScreenId::Tools || any(ToolId::SetPrices),
+            Done::CustomersShown => facts.here == ScreenId::Customers || any(ToolId::SetPrices),
+            Done::GroupOpen => facts.group_open || any(ToolId::SetPrices),
             Done::PriceSet => any(ToolId::SetPrices),
+            Done::TierSet => weeks > 0 || has_tier,
             Done::QuotaSet => any(ToolId::SetUsageQuotas),
-            Done::AdsSet => company.settings.get(&ToolId::SetTargetedAdSpend).is_some_and(spends),
-            Done::Asked => weeks > 0 || !company.asked.is_empty() || facts.before.contains(&ScreenId::Sql),
+            Done::OperationsSet => weeks > 0 || company.setting(ToolId::SetDailySpend, "operations") > 0.0,
+            Done::AdsSet => any(ToolId::SetTargetedAdSpend),
             Done::Filing => weeks > 0 || facts.filing.is_some(),
             Done::Rationale => weeks > 0 || facts.filing == Some(3),
             Done::WeekRun => weeks > 0,
-            Done::ReportRead => weeks > 0 && !facts.dialog,
-            Done::Explained => facts.explained,
+            Done::ReportRead => weeks > 1 || weeks > 0 && !facts.dialog,
+            Done::GroupOpenAgain => weeks > 1 || !company.seen.changes.is_empty() || facts.group_open,
+            Done::Changed => weeks > 1 || !company.seen.changes.is_empty(),
+            Done::Developed => weeks > 1 || any(ToolId::SetTargetedDevSpend),
             Done::SecondWeek => weeks > 1,
+            Done::Asked => weeks > 2 || facts.here == ScreenId::Sql || facts.before.contains(&ScreenId::Sql),
+            Done::ThirdWeek => weeks > 2,
+            Done::FourthWeek => weeks > 3,
         }
     }
 }
@@ -100,6 +136,9 @@ fn spends(arguments: &serde_json::Map<String, Value>) -> bool {
     arguments.values().any(holds)
 }
 
+/// Most lines of a step below its title.
+const MOST_LINES: usize = 4;
+
 /// Where the person is in the tour.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tour {
@@ -109,10 +148,10 @@ pub struct Tour {
 impl Tour {
     /// Goes on over every step that is done; false when none is left.
     pub fn settle(&mut self, facts: &TourFacts<'_>) -> bool {
-        while STEPS.get(self.at).is_some_and(|step| step.done.holds(facts)) {
+        while steps().get(self.at).is_some_and(|step| step.done.holds(facts)) {
             self.at += 1;
         }
-        self.at < STEPS.len()
+        self.at < steps().len()
     }
 
     /// Goes on without doing the step.
@@ -121,26 +160,27 @@ impl Tour {
     }
 
     /// Rows it needs in a window of a width: a rule and a few lines.
-    pub fn height(&self, keys: &Keys, width: u16) -> u16 {
-        1 + self.lines(keys, width).len() as u16
+    pub fn height(&self, keys: &Keys, numbers: &Numbers, width: u16) -> u16 {
+        1 + self.lines(keys, numbers, width).len() as u16
     }
 
     /// What is written below the rule: lines, and whether they say what to press.
-    fn lines(&self, keys: &Keys, width: u16) -> Vec<(String, bool)> {
-        let Some(step) = STEPS.get(self.at) else { return Vec::new() };
+    fn lines(&self, keys: &Keys, numbers: &Numbers, width: u16) -> Vec<(String, bool)> {
+        let Some(step) = steps().get(self.at) else { return Vec::new() };
         let room = width.saturating_sub(2) as usize;
-        let look = wrapped(&with_keys(&step.look, keys), room).into_iter().map(|line| (line, false));
+        let look =
+            wrapped(&with_keys(&numbers.fill(&step.look), keys), room).into_iter().map(|line| (line, false));
         let press = wrapped(&format!("→ {}", with_keys(&step.press, keys)), room);
         let press = press.into_iter().map(|line| (line, true));
-        look.chain(press).take(4).collect()
+        look.chain(press).take(MOST_LINES).collect()
     }
 
     /// Draws the step into its rows.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, keys: &Keys) {
-        let Some(step) = STEPS.get(self.at) else { return };
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, keys: &Keys, numbers: &Numbers) {
+        let Some(step) = steps().get(self.at) else { return };
         canvas.clear(area, Role::Text);
         canvas.text(area, &"─".repeat(area.width as usize), Role::Focus);
-        let title = format!(" Tour · {} of {} · {} ", self.at + 1, STEPS.len(), step.title);
+        let title = format!(" Tour · {} of {} · {} ", self.at + 1, steps().len(), step.title);
         let place = Rect { x: area.x + 2, width: area.width.saturating_sub(2), ..area };
         canvas.text(Rect { height: 1, ..place }, &title, Role::Title);
         let mut right = area.right().saturating_sub(2);
@@ -157,7 +197,7 @@ impl Tour {
             canvas.click(button, Click::Do(action));
         }
         let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-        for (row, (line, press)) in rows_of(below).zip(self.lines(keys, area.width)) {
+        for (row, (line, press)) in rows_of(below).zip(self.lines(keys, numbers, area.width)) {
             let row = Rect { x: row.x + 1, width: row.width.saturating_sub(1), ..row };
             canvas.text(row, &line, if press { Role::Strong } else { Role::Text });
         }
@@ -188,9 +228,15 @@ fn with_keys(text: &str, keys: &Keys) -> String {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
     use crate::console::company::Company;
     use crate::console::test_kit::{company, painted, played};
+    use crate::report::fit::Beside;
+    use crate::report::needs::Place;
+    use crate::session::{Configuration, Session, Via};
+    use crate::world::identifiers::Group;
 
     fn facts(company: &Company) -> TourFacts<'_> {
         TourFacts {
@@ -199,29 +245,31 @@ mod tests {
             before: &[],
             filing: None,
             dialog: false,
-            explained: false,
+            group_open: false,
         }
     }
 
     #[test]
-    fn steps_name_actions_that_exist_and_fit_four_rows_of_80_columns() {
+    fn steps_name_actions_and_numbers_that_exist_and_are_short() {
         let keys = Keys::shipped();
-        for (at, step) in STEPS.iter().enumerate() {
+        let numbers = Numbers::shipped();
+        for (at, step) in steps().iter().enumerate() {
             for text in [&step.look, &step.press] {
+                let filled = numbers.fill(text);
                 for name in
-                    text.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(name, _)| name)
+                    filled.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(name, _)| name)
                 {
                     assert!(ACTIONS.iter().any(|entry| entry.name == name), "{}: {name}", step.title);
                 }
             }
             let tour = Tour { at };
-            assert!(tour.height(&keys, 80) <= 4, "{}: {:?}", step.title, tour.lines(&keys, 80));
-            assert!(tour.height(&keys, 60) <= 5, "{}", step.title);
-            let shown = painted(80, 4, |canvas, area| tour.draw(canvas, area, &keys)).join("\n");
-            assert!(shown.contains(&format!("Tour · {} of {}", at + 1, STEPS.len())), "{shown}");
+            let lines = tour.lines(&keys, &numbers, 80);
+            assert!(tour.height(&keys, &numbers, 80) <= 4, "{}: {lines:?}", step.title);
+            assert!(tour.height(&keys, &numbers, 60) <= 5, "{}", step.title);
+            let shown = painted(80, 4, |canvas, area| tour.draw(canvas, area, &keys, &numbers)).join("\n");
+            assert!(shown.contains(&format!("Tour · {} of {}", at + 1, steps().len())), "{shown}");
             assert!(!shown.contains('{') && shown.contains("→ ") && !shown.contains('…'), "{shown}");
         }
-        assert!((9..=12).contains(&STEPS.len()));
     }
 
     #[test]
@@ -230,15 +278,17 @@ mod tests {
         let mut tour = Tour::default();
         assert!(tour.settle(&facts(&fresh)));
         assert_eq!(tour.at, 0);
-        assert!(tour.settle(&TourFacts { here: ScreenId::Tools, ..facts(&fresh) }));
-        assert_eq!(STEPS[tour.at].done, Done::PriceSet);
-        let played = Company::of(&played(1));
-        assert!(tour.settle(&TourFacts { dialog: true, ..facts(&played) }));
-        assert_eq!(STEPS[tour.at].done, Done::ReportRead);
+        assert!(tour.settle(&TourFacts { here: ScreenId::Customers, ..facts(&fresh) }));
+        assert_eq!(steps()[tour.at].done, Done::GroupOpen);
+        assert!(tour.settle(&TourFacts { group_open: true, ..facts(&fresh) }));
+        assert_eq!(steps()[tour.at].done, Done::PriceSet);
+        let played = Company::of(&played(2));
+        let mut tour = Tour::default();
         assert!(tour.settle(&facts(&played)));
-        assert_eq!(STEPS[tour.at].done, Done::Explained);
-        assert!(tour.settle(&TourFacts { explained: true, ..facts(&played) }));
-        assert_eq!(STEPS[tour.at].done, Done::SecondWeek);
+        assert_eq!(steps()[tour.at].done, Done::Asked, "a person who comes back goes on near the end");
+        assert!(tour.settle(&TourFacts { here: ScreenId::Sql, ..facts(&played) }));
+        assert_eq!(steps()[tour.at].done, Done::ThirdWeek);
+        tour.skip();
         tour.skip();
         assert!(!tour.settle(&facts(&played)), "the tour is over");
     }
@@ -247,15 +297,59 @@ mod tests {
     fn every_step_can_be_skipped_and_drawn_in_any_window() {
         let fresh = company();
         let keys = Keys::shipped();
+        let numbers = Numbers::shipped();
         let mut tour = Tour::default();
-        for _ in 0..STEPS.len() {
+        for _ in 0..steps().len() {
             assert!(tour.settle(&facts(&fresh)));
             for (width, height) in [(0, 0), (1, 1), (20, 3), (60, 5), (200, 4)] {
-                painted(width, height, |canvas, area| tour.draw(canvas, area, &keys));
+                painted(width, height, |canvas, area| tour.draw(canvas, area, &keys, &numbers));
             }
             tour.skip();
         }
         assert!(!tour.settle(&facts(&fresh)));
-        assert_eq!(tour.height(&keys, 80), 1);
+        assert_eq!(tour.height(&keys, &numbers, 80), 1);
+    }
+
+    #[test]
+    fn the_practice_run_is_what_the_steps_say() {
+        let mut run = Session::create(practice_run(), &Configuration::shipped()).expect("a practice run");
+        let s2 = |run: &Session| {
+            Company::of(run).fit(Group::parse("S2").expect("a group")).expect("S2 is known").clone()
+        };
+        let wanted = s2(&run);
+        assert!(wanted.budget.beside(45.0) == Beside::Below, "well below what S2 pays: {:?}", wanted.budget);
+        assert!(wanted.usage.beside(400.0) == Beside::Above, "400 covers S2: {:?}", wanted.usage);
+        for (tool, arguments) in [
+            ("set_prices", json!({"B": 45})),
+            ("set_model_tiers", json!({"B": 2})),
+            ("set_usage_quotas", json!({"A": 0, "B": 400, "C": 0})),
+            ("set_daily_spend", json!({"operations": 160})),
+            ("set_targeted_ad_spend", json!({"targeted_spend": {"social_media": {"S2": 700}}})),
+        ] {
+            run.call(tool, &arguments, Via::Script).expect(tool);
+        }
+        let week = |run: &mut Session| {
+            let forecasts = run.naive_forecasts();
+            run.advance("the tour", &forecasts, Via::Script, &mut |_| {}).expect("a week").figures
+        };
+        let first = week(&mut run);
+        let (leads, signed) = (first.new_individual_leads, first.new_individual_subscribers);
+        assert!(leads > 100 && signed > 0 && signed * 5 < leads, "few signed: {signed} of {leads}");
+        let company = Company::of(&run);
+        let need = company.needs.first().expect("something needs the person");
+        let Place::Call(tool, arguments) = &need.place else { panic!("{need:?}") };
+        assert_eq!((*tool, arguments), (ToolId::SetModelTiers, &json!({"B": 3})), "a better model for B");
+        run.call("set_model_tiers", arguments, Via::Script).expect("the call of the need");
+        run.call("set_targeted_dev_spend", &json!({"targeted_spend": {"S2": 1100}}), Via::Script)
+            .expect("development");
+        let second = week(&mut run);
+        assert!(second.new_individual_subscribers > signed, "it was mended: {second:?}");
+        let mut left = 0;
+        while run.observe().ended.is_none() {
+            left += week(&mut run).cancellations;
+        }
+        assert!(left > 0, "somebody leaves before the end");
+        let numbers = Company::of(&run).numbers.fill("{billing.billing_period_days}");
+        assert_eq!(numbers, "30");
     }
 }

@@ -6,6 +6,8 @@
 mod answers;
 pub mod bench;
 pub(crate) mod comparison;
+#[cfg(test)]
+mod example_tests;
 mod forecasts;
 mod golden;
 mod metrics;

@@ -10,31 +10,49 @@ fn the_tour_goes_on_by_doing_and_is_resumed_where_it_stopped() {
     let mut console = Console::start(runs.path(), (80, 24));
     console.shows("New here?");
     console.press("enter");
-    console.shows("Tour · 1 of 11 · What counts");
-    console.shows("day 0/500");
-    console.press("8");
-    console.shows("Tour · 2 of 11 · Prices");
-    console.press("enter enter '12' down '25' down '55' enter ctrl-s");
-    console.shows("Tour · 3 of 11 · Quotas");
+    console.shows("Tour · 1 of 18 · The idea");
+    console.shows("day 0/84");
+    console.press("3");
+    console.shows("Tour · 2 of 18 · What they want");
+    console.press("down enter");
+    console.shows("Tour · 3 of 18 · A price");
+    console.press("8 enter down enter '45' enter ctrl-s");
+    console.shows("Tour · 4 of 18 · A model");
     console.press("f4 esc");
     assert!(!console.screen().contains("Tour ·"), "it is closed");
     console.press("1 : 'tour' enter");
-    console.shows("Tour · 3 of 11 · Quotas");
-    console.press("f3 f3 f3");
-    console.shows("Tour · 6 of 11 · A week");
+    console.shows("Tour · 4 of 18 · A model");
+    // It is left with the program, and goes on from the menu where it was left.
+    console.press("q");
+    drop(console);
+    let mut console = Console::start(runs.path(), (80, 24));
+    console.shows("goes on in your practice run");
+    console.press("down down down down enter");
+    console.shows("Tour · 4 of 18 · A model");
+    console.press("f3 f3 f3 f3");
+    console.shows("Tour · 8 of 18 · A week");
     console.press("n");
-    console.shows("Tour · 7 of 11 · Why");
+    console.shows("Tour · 9 of 18 · Why");
     console.press("enter 'curious' enter");
-    console.shows("Tour · 8 of 11 · Forecasts");
+    console.shows("Tour · 10 of 18 · Forecasts");
     console.press("f enter");
-    console.shows("Tour · 9 of 11 · Report");
+    console.shows("Tour · 11 of 18 · Report");
     console.press("esc");
-    console.shows("Tour · 10 of 11 · What is this?");
-    console.press("f2 esc");
-    console.shows("Tour · 11 of 11 · On your own");
-    console.press("f3");
+    console.shows("Tour · 12 of 18 · Who signed");
+    console.press("f3 f3 f3 f3 f3");
+    console.shows("Tour · 17 of 18 · Who buys");
+    console.press("f3 f3");
     assert!(!console.screen().contains("Tour ·"), "it is over");
-    console.shows("the tour is over");
+    console.shows("the tour is over; the company is yours until day 84");
+    assert_eq!(list_runs(runs.path()).expect("a list").len(), 1);
+}
+
+#[test]
+fn a_run_that_is_no_practice_has_no_tour() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.press(": 'tour' enter");
+    console.shows("the tour has a run of its own");
 }
 
 #[test]

@@ -14,18 +14,25 @@ use super::harness::Console;
 const SIZES: [(u16, u16); 2] = [(80, 24), (120, 40)];
 
 /// Keys of the tour by step: what its texts say to press, and a statement and a sentence to type.
-const TOUR: [(&str, &str); 11] = [
-    ("What counts", "8"),
-    ("Prices", "enter enter '12' tab '25' tab '55' enter ctrl-s"),
-    ("Quotas", "down down enter enter '60k' tab '250k' tab '1.2M' enter ctrl-s"),
-    ("Leads", "down down down enter down down down enter '750' enter ctrl-s"),
-    ("Ask", "9 'SELECT_*_FROM_ledger' f5 esc 1"),
+const TOUR: [(&str, &str); 18] = [
+    ("The idea", "3"),
+    ("What they want", "down enter"),
+    ("A price", "8 enter down enter '45' enter ctrl-s"),
+    ("A model", "down enter down enter '2' enter ctrl-s"),
+    ("A quota", "down enter down enter '400' enter ctrl-s"),
+    ("Operations", "down down enter enter '160' enter ctrl-s"),
+    ("Leads", "down enter right enter '700' enter ctrl-s"),
     ("A week", "n"),
     ("Why", "enter 'A_first_try.' enter"),
     ("Forecasts", "f enter"),
     ("Report", "esc"),
-    ("What is this?", "i"),
-    ("On your own", "esc n enter 'Once_more.' enter f enter"),
+    ("Who signed", "3"),
+    ("Mend it", "1 enter ctrl-s"),
+    ("Development", "3 down enter enter '1100' enter ctrl-s"),
+    ("The second week", "n f enter"),
+    ("Any figure", "esc 2 f o"),
+    ("Who buys", "esc esc n f enter"),
+    ("Who stays", "esc n f enter"),
 ];
 
 /// Keys that a task may take, letters that are typed included.
@@ -96,11 +103,14 @@ fn the_tour_is_played_as_its_texts_say() {
         let mut console = Console::start(runs.path(), size);
         do_it(&mut console, "enter", 1);
         for (number, (title, keys)) in TOUR.iter().enumerate() {
-            console.shows(&format!("Tour · {} of 11 · {title}", number + 1));
+            console.shows(&format!("Tour · {} of {} · {title}", number + 1, TOUR.len()));
             do_it(&mut console, keys, 40);
         }
         console.shows("the tour is over");
-        assert_eq!(console.app.run().expect("a run").company.seen.day, 14);
+        let company = &console.app.run().expect("a run").company;
+        assert_eq!((company.seen.scenario.as_str(), company.seen.day), ("practice", 28));
+        let signed = |week: usize| company.weeks[week].new_individual_subscribers;
+        assert!(0 < signed(0) && signed(0) < signed(1), "what was mended is seen in the second week");
     }
 }
 

@@ -6,17 +6,17 @@ use crate::console::dialogs::explain::Explain;
 use crate::console::dialogs::glossary::Glossary;
 use crate::console::effect::Effect;
 use crate::console::request::Request;
-use crate::console::tour::{Tour, TourFacts};
+use crate::console::screens::{Look, ScreenId, ScreenState};
+use crate::console::tour::{self, TourFacts};
 use crate::console::visit::VisitState;
 use crate::glossary::Subject;
-use crate::session::NewRun;
+use crate::session::Access;
 
 impl App {
     /// Explains the figure that is selected, or the screen if none is.
     pub(super) fn explain(&mut self) {
         let figure = self.with_screen(|screen, look| screen.figure(look)).flatten();
         let Stage::Run(run) = &mut self.stage else { return };
-        run.explained = true;
         let numbers = run.company.numbers.clone();
         let dialog = match figure {
             Some(figure) => Explain::figure(&figure, numbers),
@@ -28,7 +28,6 @@ impl App {
     /// Explains a subject over what is open.
     pub(super) fn explain_subject(&mut self, subject: Subject) {
         let Stage::Run(run) = &mut self.stage else { return };
-        run.explained = true;
         let explain = Explain::subject(subject, run.company.numbers.clone());
         self.layers.push(Layer::Dialog(Box::new(explain)));
     }
@@ -39,13 +38,18 @@ impl App {
         self.layers.push(Layer::Dialog(Box::new(glossary)));
     }
 
-    /// Starts a new run for practice with the tour in it.
+    /// Opens the run for practice with the tour in it, or a new one.
     pub(super) fn start_tour(&mut self) {
         self.tour_planned = true;
-        self.follow(vec![Effect::Request(Request::Create(Box::new(NewRun {
-            seed: Some(42),
-            ..NewRun::default()
-        })))]);
+        // Whoever has left it goes on where it was left.
+        let begun = match &self.stage {
+            Stage::Menu(menu) => menu.practice().map(str::to_owned),
+            Stage::Run(_) => None,
+        };
+        self.follow(vec![Effect::Request(match begun {
+            Some(id) => Request::Open(id, Access::Write),
+            None => Request::Create(Box::new(tour::practice_run())),
+        })]);
     }
 
     /// Shows the tour in the run, from the first step that is not done.
@@ -56,7 +60,11 @@ impl App {
         }
         let Stage::Run(run) = &mut self.stage else { return };
         if run.company.is_baseline() && !of_practice {
-            return self.complain("baseline runs have no tour; start a practice run from the start menu");
+            return self.complain("baseline runs have no tour; Tour in the start menu opens a practice run");
+        }
+        // What its steps say holds in the practice run alone.
+        if run.company.seen.scenario != tour::scenario() {
+            return self.complain("the tour has a run of its own: Tour in the start menu opens it");
         }
         run.tour.get_or_insert_default();
     }
@@ -80,7 +88,7 @@ impl App {
         self.say(format!("tour closed; {way} resumes it"));
     }
 
-    fn tour(&mut self) -> Option<&mut Tour> {
+    fn tour(&mut self) -> Option<&mut tour::Tour> {
         match &mut self.stage {
             Stage::Run(run) => run.tour.as_mut(),
             Stage::Menu(_) | Stage::Visit(_) => None,
@@ -92,17 +100,20 @@ impl App {
         let Stage::Run(run) = &mut self.stage else { return };
         let Some(tour) = &mut run.tour else { return };
         let filing = matches!(self.layers.last(), Some(Layer::Filing)).then(|| run.filing.step_number());
+        let look = Look { company: &run.company, keys: &self.keys, page: self.page };
+        let group_open = run.here == ScreenId::Customers && run.screens.customers.open_here(&look).is_some();
         let facts = TourFacts {
             company: &run.company,
             here: run.here,
             before: &run.before,
             filing,
             dialog: !self.layers.is_empty(),
-            explained: run.explained,
+            group_open,
         };
         if !tour.settle(&facts) {
             run.tour = None;
-            self.say("the tour is over; the company is yours");
+            let last = run.company.seen.last_day;
+            self.say(format!("the tour is over; the company is yours until day {last}"));
         }
     }
 }

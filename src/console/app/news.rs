@@ -62,9 +62,9 @@ impl App {
                     self.complain(problem);
                 }
             }
-            News::Day(day, _) => {
-                if let Some(Some((_, _, last))) = self.busy.as_mut().map(|busy| busy.days.as_mut()) {
-                    *last = day;
+            News::Day(day, told) => {
+                if let Some(days) = self.busy.as_mut().and_then(|busy| busy.days.as_mut()) {
+                    (days.now, days.told) = (day, told);
                 }
             }
             News::Advanced(week, company) => self.advanced(week, company),
@@ -213,7 +213,6 @@ impl App {
             changes: 0,
             asked: BTreeMap::new(),
             tour,
-            explained: false,
             viewer,
             behind: None,
         }));

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{App, Busy, Closing, Layer, Order, Stage};
+use super::{App, Busy, Closing, DaysRun, Layer, Order, Stage};
 use crate::console::dialogs::confirm::Confirm;
 use crate::console::dialogs::reader::Reader;
 use crate::console::effect::Effect;
@@ -128,10 +128,10 @@ impl App {
                     self.complain("a week is running already")
                 };
             }
-            let days = self.run().filter(|_| is_advance).map(|run| {
-                let from = run.company.seen.day;
-                (from, run.company.next_decision_day, from)
-            });
+            let days = self
+                .run()
+                .filter(|_| is_advance)
+                .map(|run| DaysRun::between(run.company.seen.day, run.company.next_decision_day));
             self.busy = Some(Busy { what, days, since: Instant::now() });
         }
         if matches!(request, Request::WriteReport) {

@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use super::{App, Busy, Closing, Order, Run, Stage};
+use super::{App, Busy, Closing, DaysRun, Order, Run, Stage};
 use crate::console::action::{Action, Scope};
 use crate::console::dialogs::reader::Reader;
 use crate::console::dialogs::seek::Seek;
@@ -173,8 +173,11 @@ impl App {
         viewer.stop.store(false, Ordering::Relaxed);
         viewer.goes = true;
         let stop = viewer.stop.clone();
-        self.busy =
-            Some(Busy { what: "seeking", days: Some((from, target.max(from), from)), since: Instant::now() });
+        self.busy = Some(Busy {
+            what: "seeking",
+            days: Some(DaysRun::between(from, target.max(from))),
+            since: Instant::now(),
+        });
         self.orders.push(Order::Job(Job::Go(goal, stop)));
     }
 

@@ -96,7 +96,7 @@ impl Dialog for FinalPage {
             Action::WhatIf => replay(look.company, Goal::Week(look.company.seen.week.saturating_sub(1))),
             Action::ToMenu => Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::GoOn => Outcome::close(),
-            Action::CardOfRun => self.card(),
+            Action::CardOfRun if look.company.rules.results != ResultsShown::None => self.card(),
             Action::ReportOfRun => Outcome::with(vec![Effect::Request(Request::WriteReport)]),
             _ => Outcome::stay(),
         }

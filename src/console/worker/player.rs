@@ -114,7 +114,7 @@ impl SessionThread {
     fn tell(&self, told: &mut Instant, day: u32) -> ControlFlow<()> {
         if told.elapsed() >= BETWEEN_DAYS {
             *told = Instant::now();
-            let _ = self.news.send(Message::News(News::Day(day, day)));
+            let _ = self.news.send(Message::News(News::Day(day, None)));
         }
         ControlFlow::Continue(())
     }

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::BETWEEN_DAYS;
 use super::queries::QueryThreads;
 use crate::console::company::Company;
-use crate::console::message::{Message, News};
+use crate::console::message::{DayTold, Message, News};
 use crate::report::{Story, as_html, as_markdown};
 use crate::session::{Forecasts, Session, Via};
 use crate::tools::ToolId;
@@ -51,7 +51,9 @@ impl OpenRun<'_> {
         let week = self.session.advance(rationale, forecasts, Via::Form, &mut |report| {
             if told.elapsed() >= BETWEEN_DAYS {
                 told = Instant::now();
-                let _ = news.send(Message::News(News::Day(report.figures.day, report.week_end)));
+                let figures = report.figures;
+                let told = DayTold { cash: figures.cash, subscribers: figures.individual_subscribers };
+                let _ = news.send(Message::News(News::Day(figures.day, Some(told))));
             }
         });
         Some(News::Advanced(week.map(Box::new), self.company()))

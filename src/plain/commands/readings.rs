@@ -228,7 +228,7 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers
             COMMANDS.iter().map(|(_, line)| *line).filter(|line| !line.is_empty()).collect();
         let tools: Vec<&str> = callable().collect();
         let text = format!(
-            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=12 B=25 C=55\n\
+            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=16 B=34 C=70\n\
              A week as agents call it: next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": \
              {{\"point\": 950000, \"lower\": 900000, \"upper\": 990000}}, …}}}} (help next shows all of it)\n\
              help NAME explains one of them, and explain TERM says what a word means.",

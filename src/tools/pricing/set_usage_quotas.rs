@@ -41,7 +41,7 @@ static SPEC: Spec = Spec {
     writes: &["config_history"],
     refusals: &["quota_missing", "quota_negative", "amount_too_large"],
     returns: &[Output { name: "quotas", kind: "map plan -> number", doc: "all three quotas, units/day" }],
-    example: r#"{"A": 50000, "B": 200000, "C": 900000}"#,
+    example: r#"{"A": 150, "B": 400, "C": 900}"#,
 };
 
 /// The quotas in force.

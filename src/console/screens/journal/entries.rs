@@ -298,7 +298,7 @@ fn collect(value: &Value, path: &str, leaves: &mut Vec<(String, f64)>) {
     }
 }
 
-/// Arguments of a call in few characters: `A 12 B 25`, `search_ads(S3 40)`.
+/// Arguments of a call in few characters: `A 16 B 34`, `search_ads(S3 40)`.
 pub fn in_words(value: &Value) -> String {
     match value {
         Value::Null => "–".to_owned(),

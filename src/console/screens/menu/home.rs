@@ -36,7 +36,11 @@ impl Menu {
         if let Some(run) = self.latest() {
             choices.push((HomeEntry::Continue, "Continue", short(run)));
         }
-        let tour = (HomeEntry::Tour, "Tour", "New here? The first two minutes".to_owned());
+        let words = match self.practice() {
+            Some(_) => "goes on in your practice run",
+            None => "New here? A company for practice",
+        };
+        let tour = (HomeEntry::Tour, "Tour", words.to_owned());
         let known = matches!(self.runs, Some(Ok(_)));
         let newcomer = known && count == 0;
         if newcomer {

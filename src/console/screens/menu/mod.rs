@@ -20,8 +20,9 @@ use crate::console::effect::Effect;
 use crate::console::message::Instead;
 use crate::console::request::Request;
 use crate::console::theme::Role;
+use crate::console::tour;
 use crate::console::widgets::Table;
-use crate::session::{Access, Configuration, RunPreview, RunSummary};
+use crate::session::{Access, Configuration, Mode, RunPreview, RunSummary};
 use form::{ROWS, RunForm};
 use home::HomeEntry;
 use runs::Asked;
@@ -140,6 +141,17 @@ impl Menu {
 
     fn latest(&self) -> Option<&RunSummary> {
         self.list().iter().find(|run| run.ended.is_none() && run.problem.is_none())
+    }
+
+    /// The run in which the tour was begun, if it goes on.
+    pub fn practice(&self) -> Option<&str> {
+        let begun = |run: &&RunSummary| {
+            run.scenario == tour::scenario()
+                && run.ended.is_none()
+                && run.problem.is_none()
+                && run.mode != Some(Mode::Baseline)
+        };
+        self.list().iter().find(begun).map(|run| run.id.as_str())
     }
 
     /// Last place of a page that is a plain list.

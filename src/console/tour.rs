@@ -266,6 +266,10 @@ mod tests {
             let lines = tour.lines(&keys, &numbers, 80);
             assert!(tour.height(&keys, &numbers, 80) <= 4, "{}: {lines:?}", step.title);
             assert!(tour.height(&keys, &numbers, 60) <= 5, "{}", step.title);
+            let narrow: Vec<String> =
+                tour.lines(&keys, &numbers, 60).into_iter().map(|(line, _)| line).collect();
+            let press = format!("→ {}", with_keys(&numbers.fill(&step.press), &keys));
+            assert!(narrow.join(" ").ends_with(&press), "{}: {narrow:?}", step.title);
             let shown = painted(80, 4, |canvas, area| tour.draw(canvas, area, &keys, &numbers)).join("\n");
             assert!(shown.contains(&format!("Tour · {} of {}", at + 1, steps().len())), "{shown}");
             assert!(!shown.contains('{') && shown.contains("→ ") && !shown.contains('…'), "{shown}");

@@ -5,8 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::policy::{Policy, PriceBook};
-use super::routine::best_starting_channel;
-use crate::session::Configuration;
+use crate::session::{Configuration, best_starting_channel};
 use crate::shipped;
 use crate::tools::CATALOGUE;
 use crate::world::identifiers::Group;

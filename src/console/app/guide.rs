@@ -44,7 +44,7 @@ impl App {
         // Whoever has left it goes on where it was left.
         let begun = match &self.stage {
             Stage::Menu(menu) => menu.practice().map(str::to_owned),
-            Stage::Run(_) => None,
+            Stage::Run(_) | Stage::Visit(_) => None,
         };
         self.follow(vec![Effect::Request(match begun {
             Some(id) => Request::Open(id, Access::Write),

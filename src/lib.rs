@@ -54,6 +54,7 @@ pub mod lab;
 pub(crate) mod notation;
 pub mod plain;
 pub mod report;
+pub mod rules;
 pub mod session;
 pub(crate) mod shipped;
 pub mod tools;

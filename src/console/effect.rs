@@ -16,7 +16,7 @@ impl Effect {
     pub fn changes_run(&self) -> bool {
         match self {
             Effect::Request(request) => request.changes_run(),
-            Effect::ConfirmCall { .. } => true,
+            Effect::ConfirmCall { .. } | Effect::ConfirmCalls { .. } => true,
             _ => false,
         }
     }
@@ -98,6 +98,13 @@ pub enum Effect {
         /// Arguments.
         arguments: Value,
         /// What it means.
+        text: String,
+    },
+    /// Ask once before calls that cannot be taken back.
+    ConfirmCalls {
+        /// Tools and arguments, in their order.
+        calls: Vec<(ToolId, Value)>,
+        /// What they mean.
         text: String,
     },
     /// Explain something over what is open.

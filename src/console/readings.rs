@@ -28,6 +28,7 @@ readings! {
     Service "service" "The service by day: day, usage, capacity, tier, latency, errors, minutes of outage."
     OpenIssues "open_issues" "Open issues: group, and a count for each of four ages."
     EnterpriseTurns "enterprise_turns" "Turns of negotiations, the newest first: thread, company, kind, turn, sender, words, offer, day, seats, end."
+    LastLetters "last_letters" "The newest price of each company that asked in the last eight days: thread, words."
     Companies "companies" "The companies of these negotiations: profile and subscription."
     Research "research" "R&D projects: id, tier, status, started, expected, boost; the newest first."
     OwnPosts "own_posts" "Our posts, the newest first: number, day, text, post it answers, views, numbers of comments."

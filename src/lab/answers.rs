@@ -114,7 +114,7 @@ impl EnterpriseRule {
             waiting.iter().filter(|thread| self.types.hold(thread.kind)).collect();
         threads.sort_by_key(|thread| thread.thread);
         let given_up =
-            |thread: &&&WaitingThread| self.give_up_after.is_some_and(|turns| thread.own_turns >= turns);
+            |thread: &&&WaitingThread| self.give_up_after.is_some_and(|turns| thread.offers_so_far >= turns);
         let offers: Vec<Value> =
             threads.iter().filter(|thread| !given_up(thread)).map(|thread| self.offer(thread)).collect();
         let rejections: Vec<Value> =
@@ -131,7 +131,7 @@ impl EnterpriseRule {
     }
 
     fn offer(&self, thread: &WaitingThread) -> Value {
-        let factor = self.factor.after(thread.own_turns);
+        let factor = self.factor.after(thread.offers_so_far);
         let cents = |price: f64| (price * factor * 100.0).round() / 100.0;
         let offerings: Vec<Value> =
             self.offerings.iter().map(|own| json!([own.plan.id(), cents(own.price)])).collect();
@@ -157,7 +157,8 @@ mod tests {
             seats: 60,
             kind,
             turn: 2 * own_turns,
-            own_turns,
+            offers_so_far: own_turns,
+            last_offer: Vec::new(),
             asked: None,
             days_left: 3,
         }

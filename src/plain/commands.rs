@@ -4,6 +4,7 @@ mod check;
 mod groups;
 mod readings;
 mod report;
+mod rules;
 mod words;
 
 use std::io::{self, BufRead};
@@ -36,6 +37,7 @@ const COMMANDS: [(&str, &str); 28] = [
     ("dashboard", "dashboard                the dashboard of the last week"),
     ("status", "status                   run, day, cash, runway, subscribers and what waits"),
     ("inbox", "inbox                    threads that wait for an answer"),
+    ("rules", "rules [send] RULES       what rules would send to waiting threads; with send, sends it"),
     (
         "needs",
         "needs                    what needs you, ranked by money at risk, with the call that addresses it",
@@ -111,6 +113,7 @@ impl Interpreter {
             "memo" => self.add_to_memo(rest),
             "explain" | "what" => explain(word, rest, &self.session.numbers()),
             "glossary" => glossary(rest),
+            "rules" => self.rules(rest),
             _ => self.query(rest, QuerySource::Typed),
         }
     }

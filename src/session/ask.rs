@@ -53,6 +53,16 @@ impl Session {
         answer
     }
 
+    /// Answers a statement of the program's own, which is not recorded: what a person did not ask.
+    ///
+    /// # Errors
+    /// The `sql_` codes.
+    pub fn look_into_database(&mut self, sql: &str) -> Result<Rows, Refusal> {
+        let ticket = self.interrupt()?.ticket();
+        let limits = limits(self);
+        self.connection().and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from))
+    }
+
     /// A handle that stops the running query.
     ///
     /// # Errors

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use novamind::rules::AskingThread;
 use novamind::session::{
-    Access, Configuration, NewRun, Record, Session, Storage, Trajectory, Via, WaitingThread, verify,
+    Access, Configuration, NewRun, Record, Session, Storage, Trajectory, Via, WaitingThread, text_at, verify,
 };
 use serde_json::{Value, json};
 
@@ -299,8 +300,9 @@ fn the_week_counts_threads_replies_and_what_waits() {
             "SELECT count(*) FROM enterprise_turns WHERE thread_id = {} AND sender = 'agent'",
             thread.thread
         );
-        assert_eq!(number(run, &sql), f64::from(thread.own_turns));
+        assert_eq!(number(run, &sql), f64::from(thread.offers_so_far));
     }
+    rules_see_what_the_tables_say(run);
     // What was written since the week is told, and cannot be taken back: equal offers of a call as one sentence.
     answer(run);
     let done = run.observe().purchases;
@@ -312,4 +314,41 @@ fn the_week_counts_threads_replies_and_what_waits() {
     assert!(companies.clone().count() > 0, "{done:?}");
     assert_eq!(companies.sum::<f64>(), number(run, offered), "{done:?}");
     assert_eq!(run.undo(Via::Script).expect_err("nothing was set").code, "nothing_to_undo");
+}
+
+/// What rules ask of a thread stands in the tables: price and plan that a company named, and the last offer.
+fn rules_see_what_the_tables_say(run: &mut Session) {
+    let (threads, _) = AskingThread::all(run).expect("threads");
+    let mut asked = 0;
+    for thread in &threads {
+        let newest = |sender: &str| {
+            format!(
+                "SELECT message_text, offer_json FROM enterprise_turns WHERE thread_id = {} AND sender = '{sender}' \
+                 AND offer_json <> '{{}}' ORDER BY message_id DESC LIMIT 1",
+                thread.waiting.thread
+            )
+        };
+        let theirs = run.query(&newest("customer")).expect("rows").rows;
+        let ours = run.query(&newest("agent")).expect("rows").rows;
+        let price =
+            theirs.first().map(|row| serde_json::from_str::<Value>(text_at(row, 1)).expect("an offer"));
+        let price = price.and_then(|offer| offer["price"].as_f64());
+        assert_eq!(price, thread.waiting.asked);
+        if let Some(row) = theirs.first() {
+            let plan = thread.asked_plan.expect("a plan").id();
+            assert!(text_at(row, 0).to_lowercase().contains(&format!("plan {}", plan.to_lowercase())));
+            asked += 1;
+        }
+        let last: Vec<Value> =
+            thread.waiting.last_offer.iter().map(|(plan, price)| json!([plan.id(), price])).collect();
+        let told =
+            ours.first().map_or(json!([]), |row| serde_json::from_str(text_at(row, 1)).expect("offers"));
+        let told = told.as_array().expect("a list").iter();
+        assert_eq!(last, told.map(|own| json!([own["plan"], own["price_per_seat"]])).collect::<Vec<_>>());
+    }
+    assert!(asked > 3, "{asked} companies asked");
+    let row = threads[0].row(run.company_names());
+    for field in ["company", "customer", "asked_plan", "last_offer", "offers_so_far", "needed_quota"] {
+        assert!(row.get(field).is_some(), "{field}: {row}");
+    }
 }

@@ -161,10 +161,12 @@ fn may_use(house: &str) -> &'static [&'static str] {
         "world" => &[],
         "tools" | "database" | "voice" => &["world", "notation"],
         "session" => &["tools", "database", "voice", "world", "notation"],
-        "report" => &["session", "world", "notation"],
+        "report" | "rules" => &["session", "world", "notation"],
         "glossary" => &["tools", "database", "notation"],
         "lab" => &["report", "session", "tools", "database", "world", "notation"],
-        "console" | "plain" => &["report", "session", "glossary", "tools", "database", "world", "notation"],
+        "console" | "plain" => {
+            &["report", "rules", "session", "glossary", "tools", "database", "world", "notation"]
+        }
         "cli" => &[
             "console", "plain", "lab", "report", "session", "glossary", "tools", "database", "world",
             "notation",
@@ -175,7 +177,7 @@ fn may_use(house: &str) -> &'static [&'static str] {
 
 /// What of `world` the upper floors may use: plain identifiers. The laboratory works on debug runs and reads all.
 fn of_world(house: &str) -> Option<&'static str> {
-    matches!(house, "report" | "console" | "plain" | "cli").then_some("crate::world::identifiers")
+    matches!(house, "report" | "rules" | "console" | "plain" | "cli").then_some("crate::world::identifiers")
 }
 
 #[test]

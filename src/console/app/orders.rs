@@ -92,6 +92,11 @@ impl App {
                 let confirm = Confirm::new(tool.name(), text, vec![Effect::call(tool, arguments)]);
                 self.layers.push(Layer::Dialog(Box::new(confirm)));
             }
+            Effect::ConfirmCalls { calls, text } => {
+                let calls = calls.into_iter().map(|(tool, arguments)| Effect::call(tool, arguments));
+                let confirm = Confirm::new("send by rules", text, calls.collect());
+                self.layers.push(Layer::Dialog(Box::new(confirm)));
+            }
             Effect::Explain(subject) => self.explain_subject(subject),
             Effect::StartTour => self.start_tour(),
             Effect::Receive(study) => self.receive(study),

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::super::seed_in_words;
-use super::{COMMANDS, Interpreter, NEXT, problem, tool_called, words};
+use super::{COMMANDS, Interpreter, NEXT, problem, rules, tool_called, words};
 use crate::database;
 use crate::glossary;
 use crate::notation::{dollars, grouped, nearest, signed_dollars};
@@ -18,9 +18,8 @@ use crate::report::needs::{Need, Place, needs};
 use crate::report::peak::PeakProjection;
 use crate::report::research::late_lines;
 use crate::report::review::{alike_lines, money_lines};
-use crate::session::{
-    Bands, Change, CompanyNames, JournalEntry, Numbers, Reversal, WaitingThread, undone_calls,
-};
+use crate::rules::AskingThread;
+use crate::session::{Bands, Change, CompanyNames, JournalEntry, Numbers, Reversal, undone_calls};
 use crate::tools::describe::{self, ToolDocument, document};
 use crate::tools::{self, Kind};
 
@@ -105,8 +104,11 @@ impl Interpreter {
         Answer::done("needs", lines.join("\n"), data)
     }
 
-    pub(super) fn inbox(&self) -> Answer {
-        let waiting = self.session.observe().waiting;
+    pub(super) fn inbox(&mut self) -> Answer {
+        let waiting = match AskingThread::all(&mut self.session) {
+            Ok((waiting, _)) => waiting,
+            Err(refusal) => return Answer::refused("inbox", refusal),
+        };
         let funnel = |own: &Funnel| {
             json!({
                 "group": own.group.id(),
@@ -118,7 +120,7 @@ impl Interpreter {
         };
         let funnels_so_far: Vec<Value> = funnels(&self.session).iter().map(funnel).collect();
         let names = self.session.company_names();
-        let threads: Vec<Value> = waiting.iter().map(|thread| thread_row(thread, names)).collect();
+        let threads: Vec<Value> = waiting.iter().map(|thread| thread.row(names)).collect();
         let data = json!({ "threads": threads, "funnels": funnels_so_far });
         if waiting.is_empty() {
             let mut lines = vec!["no threads waiting".to_owned()];
@@ -164,15 +166,6 @@ impl Interpreter {
         }
         Answer::done("history", text, json!({ "entries": last }))
     }
-}
-
-/// A waiting thread with the name of its company, which stands beside the number that calls take.
-fn thread_row(thread: &WaitingThread, names: &CompanyNames) -> Value {
-    let mut row = json!({ "company": names.of(thread.customer) });
-    if let (Value::Object(row), Value::Object(fields)) = (&mut row, json!(thread)) {
-        row.extend(fields);
-    }
-    row
 }
 
 /// A need in one line, and the call that would mend it in another.
@@ -237,6 +230,9 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers
         );
         return Ok(Answer::done("help", text, json!({ "commands": lines, "tools": tools })));
     };
+    if name == "rules" {
+        return Ok(Answer::done("help", rules::IN_FULL.to_owned(), json!({ "command": rules::IN_FULL })));
+    }
     if NEXT.contains(&name) {
         let text = next_in_full();
         return Ok(Answer::done("help", text.clone(), json!({ "command": text })));

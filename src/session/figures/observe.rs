@@ -14,7 +14,7 @@ use crate::session::play::irrevocable::Irrevocable;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Ended;
 use crate::world::day::closing_figures;
-use crate::world::identifiers::Group;
+use crate::world::identifiers::{Group, Plan};
 
 /// The company at a glance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -96,8 +96,10 @@ pub struct WaitingThread {
     pub kind: &'static str,
     /// Number of its last turn.
     pub turn: u32,
-    /// Turns of the player in it.
-    pub own_turns: u32,
+    /// Offers of the player in it.
+    pub offers_so_far: u32,
+    /// What the player offered last: plans with dollars a month and seat.
+    pub last_offer: Vec<(Plan, f64)>,
     /// Price that the company named last, dollars a month and seat.
     pub asked: Option<f64>,
     /// Days left before it is lost.
@@ -223,7 +225,8 @@ impl Session {
                 seats: row.map_or(1, |row| row.seats as u32),
                 kind: thread.kind.id(),
                 turn: thread.last().number,
-                own_turns: thread.agent_turns(),
+                offers_so_far: thread.agent_turns(),
+                last_offer: thread.offerings().iter().map(|own| (own.plan, own.price)).collect(),
                 asked: thread.asked(),
                 days_left: (thread.last().day + patience).saturating_sub(self.simulation.world.day),
             }

@@ -48,6 +48,7 @@ impl Pane<Inbox> for ThreadListPane {
             Action::Mark,
             Action::MarkAll,
             Action::RejectOffer,
+            Action::InboxRules,
             Action::OtherThreads,
             Action::Filter,
             Action::Sort,
@@ -152,7 +153,17 @@ pub(super) fn columns(view: InboxView) -> Vec<Column> {
         Column::numbers("they ask"),
         Column::words("kind"),
         Column::words(if view == InboxView::Over { "end" } else { "you offered" }).at_most(34),
+        Column::numbers("offers"),
+        Column::numbers("needs quota"),
     ]
+}
+
+/// A whole number, where there is one.
+fn figure(value: Option<f64>) -> Cell {
+    match value {
+        Some(value) => Cell::number(value, grouped(value, 0)),
+        None => Cell::words("–").role(Role::Dim),
+    }
 }
 
 /// A thread in the list.
@@ -194,5 +205,7 @@ pub(super) fn row_of(thread: &Thread, marked: bool) -> Vec<Cell> {
         asked,
         Cell::words(thread.kind_in_words()),
         end,
+        figure(thread.asking.as_ref().map(|own| f64::from(own.waiting.offers_so_far))),
+        figure(thread.asking.as_ref().and_then(|own| own.needed_quota)),
     ]
 }

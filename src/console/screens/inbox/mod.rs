@@ -7,6 +7,7 @@ mod offer;
 mod offer_pane;
 mod post;
 mod preview;
+mod ruling;
 #[cfg(test)]
 mod tests;
 mod thread;
@@ -16,10 +17,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use self::estimate::Usage;
+use self::estimate::market_of;
 use self::list::{columns, row_of};
 use self::model::{Letters, State, Thread};
 use self::offer::{TermChoice, Offer, TERMS};
+use self::ruling::Ruling;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenId, ScreenState};
 use crate::console::action::Action;
@@ -30,6 +32,7 @@ use crate::console::message::News;
 use crate::console::readings::Reading;
 use crate::console::widgets::Table;
 use crate::console::widgets::field::{Field, ONLY_NUMBERS, parse_number};
+use crate::rules::{self, AskingThread, SeatUsage};
 use crate::session::Rows;
 use crate::tools::ToolId;
 use crate::world::identifiers::Group;
@@ -55,6 +58,19 @@ const OFFER_HINTS: [Action; 6] = [
     Action::TakeAsk,
     Action::Close,
 ];
+
+/// Actions that do nothing without a thread.
+const NEEDS_A_THREAD: [Action; 8] = [
+    Action::Mark,
+    Action::MarkAll,
+    Action::TakeAsk,
+    Action::OfferPlan,
+    Action::OfferBasis,
+    Action::OfferPrice,
+    Action::InboxGroup,
+    Action::InboxSql,
+];
+const NO_THREAD: &str = "there is no thread here";
 
 /// Height of the offer, with its border.
 const OFFER_HEIGHT: u16 = 10;
@@ -96,7 +112,12 @@ pub struct Inbox {
     view: InboxView,
     letters: Letters,
     /// What seats of companies use.
-    usage: Usage,
+    usage: SeatUsage,
+    /// Plans that companies named with their prices.
+    named: rules::Letters,
+    /// Rules while they are typed, and those that were sent last.
+    ruling: Option<Ruling>,
+    last_rules: Option<String>,
     table: Table,
     /// Threads of the rows of the table, as places among all threads.
     rows: Vec<usize>,
@@ -121,7 +142,7 @@ impl Inbox {
     fn refresh(&mut self, company: &Company) {
         let shown: Vec<u32> = self.table.shown().iter().filter_map(|row| self.number_of(*row)).collect();
         let here = self.here().map(|thread| thread.number);
-        self.letters.settle(&company.seen.waiting, &company.names);
+        self.letters.settle(self.asking(company), &company.names);
         let threads = &self.letters.threads;
         let open =
             |number: &u32| threads.iter().any(|thread| thread.number == *number && thread.state.is_open());
@@ -135,6 +156,13 @@ impl Inbox {
         if let Some(row) = next {
             self.table.select(row);
         }
+    }
+
+    /// Threads that wait, with everything that rules ask.
+    fn asking(&self, company: &Company) -> Vec<AskingThread> {
+        let market = market_of(company, &self.usage);
+        let waiting = company.seen.waiting.iter();
+        waiting.map(|own| AskingThread::of(own, &self.named, &market)).collect()
     }
 
     /// Shows a thread among those that wait.
@@ -267,15 +295,15 @@ impl ScreenState for Inbox {
     }
 
     fn readings(&self) -> &'static [Reading] {
-        &[Reading::EnterpriseTurns, Reading::Companies, Reading::Usage]
+        &[Reading::EnterpriseTurns, Reading::Companies, Reading::Usage, Reading::LastLetters]
     }
 
     fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
-        if reading == Reading::Usage {
-            self.usage = Usage::read(rows);
-            return;
+        match reading {
+            Reading::Usage => self.usage = SeatUsage::read(rows),
+            Reading::LastLetters => self.named = rules::Letters::read(rows),
+            _ => self.letters.take(reading, rows),
         }
-        self.letters.take(reading, rows);
         self.refresh(look.company);
     }
 
@@ -287,6 +315,7 @@ impl ScreenState for Inbox {
         match news {
             News::Called(_, Ok(answer), _) => {
                 let effects = self.sent(answer);
+                self.ruling = None;
                 self.refresh(look.company);
                 effects
             }
@@ -321,10 +350,23 @@ impl Paned for Inbox {
     fn focus_on(&mut self, name: InboxPane) {
         self.focus = name;
         self.typing = None;
+        if let Some(ruling) = &mut self.ruling {
+            ruling.typing = name == InboxPane::Offer;
+        }
     }
 
     fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
         let lists = list_prices(look.company);
+        if let Some(ruling) = &mut self.ruling {
+            match action {
+                Action::SendOffer => return Some(self.send_by_rules(look.company)),
+                Action::Discard | Action::Close => self.ruling = None,
+                Action::Commit => ruling.typing = false,
+                Action::InboxRules | Action::Open => ruling.typing = true,
+                _ => return None,
+            }
+            return Some(Vec::new());
+        }
         if self.typing.is_some() {
             if action == Action::Discard {
                 self.typing = None;
@@ -334,6 +376,9 @@ impl Paned for Inbox {
             if !problem.is_empty() || action == Action::Commit {
                 return Some(problem);
             }
+        }
+        if self.here().is_none() && NEEDS_A_THREAD.contains(&action) {
+            return Some(vec![Effect::Complain(NO_THREAD.to_owned())]);
         }
         match action {
             Action::Mark | Action::MarkAll => {
@@ -359,6 +404,7 @@ impl Paned for Inbox {
             Action::OfferPlan => self.turn_plan(),
             Action::OfferBasis => self.turn_basis(lists),
             Action::OfferPrice => self.type_value(),
+            Action::InboxRules => return Some(self.start_ruling(look.company)),
             Action::SendOffer => return Some(self.send(look.company)),
             Action::RejectOffer => return Some(self.reject(look.company)),
             Action::InboxGroup => {

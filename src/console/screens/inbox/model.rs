@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde_json::Value;
 
 use crate::console::readings::Reading;
-use crate::session::{CompanyNames, Rows, WaitingThread};
+use crate::rules::{AskingThread, plan_in};
+use crate::session::{CompanyNames, Rows};
 use crate::session::{number_at, text_at};
 use crate::world::identifiers::Plan;
 
@@ -81,6 +82,8 @@ pub struct Thread {
     pub state: State,
     /// Its rows, the oldest first.
     pub turns: Vec<Turn>,
+    /// What rules see of it while it waits for the player.
+    pub asking: Option<AskingThread>,
 }
 
 impl Thread {
@@ -102,6 +105,9 @@ impl Thread {
 
     /// Price that the company named last, and the plan its words name with it.
     pub fn asked(&self) -> Option<(Option<Plan>, f64)> {
+        if let Some(own) = &self.asking {
+            return Some((own.asked_plan, own.waiting.asked?));
+        }
         let turn = self.turns.iter().rev().find(|turn| turn.price.is_some())?;
         Some((plan_in(&turn.text).or_else(|| self.only_offer()), turn.price?))
     }
@@ -130,21 +136,12 @@ impl Thread {
 
     /// What the player offered last.
     pub fn offered(&self) -> &[(Plan, f64)] {
+        if let Some(own) = &self.asking {
+            return &own.waiting.last_offer;
+        }
         let own = self.turns.iter().rev().find(|turn| !turn.offers.is_empty());
         own.map_or(&[], |turn| &turn.offers)
     }
-}
-
-/// The plan that words name.
-fn plan_in(text: &str) -> Option<Plan> {
-    let lower = text.to_lowercase();
-    let named = |(at, _): (usize, &str)| {
-        let mut rest = lower[at + 5..].chars();
-        let letter = rest.next()?.to_ascii_uppercase().to_string();
-        let ends = rest.next().is_none_or(|next| !next.is_alphanumeric());
-        Plan::parse(&letter).filter(|_| ends)
-    };
-    lower.match_indices("plan ").find_map(named)
 }
 
 /// A company.
@@ -191,9 +188,9 @@ impl Letters {
     }
 
     /// Brings threads and those that wait together.
-    pub fn settle(&mut self, waiting: &[WaitingThread], names: &CompanyNames) {
+    pub fn settle(&mut self, waiting: Vec<AskingThread>, names: &CompanyNames) {
         let mut left = self.read.clone();
-        let mut threads: Vec<Thread> = waiting.iter().map(|own| of_waiting(own, &mut left)).collect();
+        let mut threads: Vec<Thread> = waiting.into_iter().map(|own| of_waiting(own, &mut left)).collect();
         // A company has one open thread at the most, its newest.
         let mut newest: BTreeSet<u32> = threads.iter().map(|thread| thread.customer).collect();
         for (_, mut thread) in left.into_iter().rev() {
@@ -215,7 +212,8 @@ impl Letters {
     }
 }
 
-fn of_waiting(waiting: &WaitingThread, read: &mut BTreeMap<u32, Thread>) -> Thread {
+fn of_waiting(asking: AskingThread, read: &mut BTreeMap<u32, Thread>) -> Thread {
+    let waiting = &asking.waiting;
     let known = read.remove(&waiting.thread).unwrap_or_default();
     Thread {
         number: waiting.thread,
@@ -226,6 +224,7 @@ fn of_waiting(waiting: &WaitingThread, read: &mut BTreeMap<u32, Thread>) -> Thre
         seats: f64::from(waiting.seats),
         state: State::Waiting(waiting.days_left),
         turns: known.turns,
+        asking: Some(asking),
     }
 }
 
@@ -296,20 +295,6 @@ fn firms_of(rows: &Rows) -> BTreeMap<u32, Firm> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn plans_are_found_in_words() {
-        for (text, plan) in [
-            ("At $27.34 a seat for plan B we can sign.", Some(Plan::B)),
-            ("Plan C, please", Some(Plan::C)),
-            ("we plan better; plan A it is", Some(Plan::A)),
-            ("we plan a move to plan", Some(Plan::A)),
-            ("a plan", None),
-            ("plan Bravo", None),
-        ] {
-            assert_eq!(plan_in(text), plan, "{text}");
-        }
-    }
 
     #[test]
     fn offers_are_read_from_their_json() {

@@ -3,7 +3,7 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::estimate::Money;
+use super::estimate::{Money, per_seat};
 use super::model::Thread;
 use super::offer::{TermChoice, Offer, TERMS};
 use super::post::{self, summary};
@@ -31,9 +31,10 @@ pub struct OfferPane;
 
 impl Pane<Inbox> for OfferPane {
     fn scopes(&self, inbox: &Inbox) -> Vec<Scope> {
-        match inbox.typing {
-            Some(_) => vec![Scope::Field, Scope::Inbox],
-            None => vec![Scope::Inbox, Scope::List],
+        match (&inbox.typing, &inbox.ruling) {
+            (_, Some(ruling)) if !ruling.typing => vec![Scope::Inbox, Scope::List],
+            (Some(_), _) | (_, Some(_)) => vec![Scope::Field, Scope::Inbox],
+            (None, None) => vec![Scope::Inbox, Scope::List],
         }
     }
 
@@ -65,9 +66,21 @@ impl Pane<Inbox> for OfferPane {
         Vec::new()
     }
 
-    fn key(&self, inbox: &mut Inbox, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
+    fn key(&self, inbox: &mut Inbox, key: &KeyEvent, look: &Look<'_>) -> Vec<Effect> {
+        if inbox.ruling.is_some() {
+            inbox.rules_key(key, look.company);
+            return Vec::new();
+        }
         let taken = inbox.typing.as_mut().is_none_or(|field| field.number_key(key));
         if taken { Vec::new() } else { vec![Effect::Complain(ONLY_NUMBERS.to_owned())] }
+    }
+
+    fn paste(&self, inbox: &mut Inbox, text: &str, look: &Look<'_>) -> Vec<Effect> {
+        match inbox.ruling {
+            Some(_) => inbox.type_rules(look.company, &mut |field| field.insert(text)),
+            None => self.filter(inbox, &mut |field| field.insert(text)),
+        }
+        Vec::new()
     }
 
     fn filter(&self, inbox: &mut Inbox, edit: &mut dyn FnMut(&mut Field)) {
@@ -86,6 +99,9 @@ impl Pane<Inbox> for OfferPane {
     }
 
     fn border(&self, inbox: &Inbox, _: Rect, look: &Look<'_>) -> Border {
+        if inbox.ruling.is_some() {
+            return inbox.rules_border(look);
+        }
         let title = match inbox.marked.len() {
             0 => "Your offer".to_owned(),
             marked => format!("Bulk offer for {marked}"),
@@ -97,6 +113,9 @@ impl Pane<Inbox> for OfferPane {
     }
 
     fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        if let Some(ruling) = &inbox.ruling {
+            return inbox.draw_rules(ruling, canvas, seat);
+        }
         let (inside, batch) = (seat.area, !inbox.marked.is_empty());
         if inbox.here().is_none() && !batch {
             return;
@@ -171,7 +190,7 @@ fn offer_notes(
         let sign = if best < 0.0 { "-" } else { "+" };
         notes.push((format!("they ask {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
     }
-    let Some((units, source)) = inbox.usage.per_seat(look.company, &thread.group) else {
+    let Some((units, source)) = per_seat(&inbox.usage, look.company, &thread.group) else {
         notes.push(("compute unknown: nobody in the group uses it yet".to_owned(), Role::Dim));
         return notes;
     };

@@ -28,7 +28,8 @@ fn crowded() -> (Company, Rows, Rows) {
             seats: 50 + number,
             kind: if asks { "churn_prevention" } else { "new_lead" },
             turn: if asks { 3 } else { 0 },
-            own_turns: u32::from(asks),
+            offers_so_far: u32::from(asks),
+            last_offer: if asks { vec![(Plan::B, 30.0)] } else { Vec::new() },
             asked: asks.then_some(20.0),
             days_left: number % 7 + 1,
         });
@@ -149,6 +150,29 @@ fn two_hundred_threads_are_worked_with_rules_in_under_forty_keys() {
 }
 
 #[test]
+fn rules_answer_every_thread_after_one_confirmation() {
+    let (mut screen, company) = crowded_screen();
+    let rules = "'accept\u{a0}asked>=20;\u{a0}offer\u{a0}where\u{a0}group=E1:\u{a0}B\u{a0}85,C\u{a0}list*0.9;\u{a0}reject\u{a0}seats<60'";
+    press(&mut screen, &company, &format!("R {rules}"));
+    let text = drawn(&screen, &company, 120, 37);
+    for words in ["Rules", "accept asked>=20: 66 companies", "What 72 would get", "$20.00 → B $20.00"] {
+        assert!(text.replace('\u{a0}', " ").contains(words), "{words} in\n{text}");
+    }
+    let (effects, _) = press(&mut screen, &company, "ctrl-s");
+    let [Effect::ConfirmCalls { calls, text }] = &effects[..] else { panic!("{effects:?}") };
+    let sizes: Vec<(ToolId, usize)> =
+        calls.iter().map(|(tool, call)| (*tool, call["deals"].as_array().expect("deals").len())).collect();
+    // Leads of E1 are those whose number is a multiple of three: all of them have asked.
+    assert_eq!(sizes, [(ToolId::SendEnterpriseDeal, 66), (ToolId::RejectEnterpriseDeal, 6)]);
+    assert!(text.contains("128 left as they are"), "{text}");
+    press(&mut screen, &company, "esc R");
+    assert!(drawn(&screen, &company, 120, 37).contains("seats<60"), "rules that were sent come back");
+    let (effects, _) = press(&mut screen, &company, "'ofer' ctrl-s");
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("did you mean offer")));
+    sweep(&mut screen, &company);
+}
+
+#[test]
 fn one_by_one_the_list_goes_on_to_the_next_thread() {
     let (mut screen, mut company) = crowded_screen();
     let mut seen = BTreeSet::new();
@@ -236,11 +260,8 @@ fn without_threads_it_says_what_brings_companies() {
             "{text}"
         );
     }
-    for action in [Action::SendOffer, Action::RejectOffer] {
-        assert!(matches!(&act(&mut screen, action, &company)[..], [Effect::Complain(_)]));
-    }
-    for action in [Action::Mark, Action::MarkAll, Action::TakeAsk, Action::OfferPlan, Action::OfferPrice] {
-        assert!(act(&mut screen, action, &company).is_empty());
+    for action in [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(NEEDS_A_THREAD) {
+        assert!(matches!(&act(&mut screen, action, &company)[..], [Effect::Complain(_)]), "{action:?}");
     }
     sweep(&mut screen, &company);
 }

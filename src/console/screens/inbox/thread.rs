@@ -32,7 +32,7 @@ impl Pane<Inbox> for ThreadPane {
 
     fn act(&self, inbox: &mut Inbox, action: Action, look: &Look<'_>) -> Vec<Effect> {
         // A thread is read from its end, a preview from its start.
-        let back = if inbox.marked.is_empty() { Action::Up } else { Action::Down };
+        let back = if inbox.marked.is_empty() && inbox.ruling.is_none() { Action::Up } else { Action::Down };
         inbox.scroll = match action {
             Action::Open => {
                 inbox.focus = InboxPane::Offer;
@@ -55,16 +55,18 @@ impl Pane<Inbox> for ThreadPane {
     }
 
     fn border(&self, inbox: &Inbox, area: Rect, look: &Look<'_>) -> Border {
-        match inbox.marked.is_empty() {
-            true => Conversation.border(inbox, area, look),
-            false => preview::border(inbox, look),
+        match (&inbox.ruling, inbox.marked.is_empty()) {
+            (Some(ruling), _) => inbox.rules_preview_border(ruling),
+            (None, true) => Conversation.border(inbox, area, look),
+            (None, false) => preview::border(inbox, look),
         }
     }
 
     fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
-        match inbox.marked.is_empty() {
-            true => Conversation.draw(inbox, canvas, seat, look),
-            false => preview::draw(inbox, canvas, seat, look),
+        match (&inbox.ruling, inbox.marked.is_empty()) {
+            (Some(ruling), _) => inbox.draw_rules_preview(ruling, canvas, seat, look),
+            (None, true) => Conversation.draw(inbox, canvas, seat, look),
+            (None, false) => preview::draw(inbox, canvas, seat, look),
         }
     }
 }

@@ -1,0 +1,165 @@
+//! Rules that are typed: what every waiting thread would be sent by them, and sending it once it was confirmed.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use super::Inbox;
+use super::estimate::market_of;
+use crate::console::canvas::{Canvas, rows_of};
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::Look;
+use crate::console::screens::panes::{Border, Seat};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::Field;
+use crate::notation::cents;
+use crate::rules::{self, AskingThread, Batch, Problem, RuledThread};
+
+/// What is typed at first.
+const EXAMPLE: &str = "accept asked >= 18; offer where asked is null: B list*0.9";
+
+/// Rules that are typed, and what they do.
+#[derive(Debug, Clone)]
+pub struct Ruling {
+    /// The rules.
+    pub field: Field,
+    /// Letters go into the field.
+    pub typing: bool,
+    /// What they do, or what is wrong with them.
+    outcome: Result<Batch, Problem>,
+}
+
+impl Ruling {
+    /// Starts with the rules of before, or an example.
+    pub fn new(before: Option<&str>, threads: &[AskingThread], company: &Company, inbox: &Inbox) -> Ruling {
+        let mut ruling = Ruling {
+            field: Field::to_replace(before.unwrap_or(EXAMPLE)),
+            typing: true,
+            outcome: Err(Problem { text: String::new(), column: 1 }),
+        };
+        ruling.judge(threads, company, inbox);
+        ruling
+    }
+
+    /// Finds out anew what the rules do.
+    pub fn judge(&mut self, threads: &[AskingThread], company: &Company, inbox: &Inbox) {
+        self.outcome = rules::parse(self.field.text())
+            .map(|rules| Batch::of(rules, threads.to_vec(), &market_of(company, &inbox.usage)));
+    }
+
+    /// The threads that a rule means.
+    fn meant(&self) -> impl Iterator<Item = &RuledThread> {
+        let all = self.outcome.as_ref().map_or(&[][..], |batch| batch.threads.as_slice());
+        all.iter().filter(|ruled| ruled.rule.is_some())
+    }
+}
+
+impl Inbox {
+    /// Opens the rules.
+    pub(super) fn start_ruling(&mut self, company: &Company) -> Vec<Effect> {
+        let threads = self.asking(company);
+        if threads.is_empty() {
+            return vec![Effect::Complain("no thread waits for you: rules have nothing to answer".to_owned())];
+        }
+        self.ruling = Some(Ruling::new(self.last_rules.as_deref(), &threads, company, self));
+        self.focus = super::InboxPane::Offer;
+        self.scroll = 0;
+        Vec::new()
+    }
+
+    /// Takes a key that is typed into the rules.
+    pub(super) fn type_rules(&mut self, company: &Company, edit: &mut dyn FnMut(&mut Field)) {
+        let Some(mut ruling) = self.ruling.take() else { return };
+        edit(&mut ruling.field);
+        ruling.judge(&self.asking(company), company, self);
+        self.ruling = Some(ruling);
+    }
+
+    /// A key of the rules.
+    pub(super) fn rules_key(&mut self, key: &KeyEvent, company: &Company) {
+        self.type_rules(company, &mut |field| {
+            field.key(key);
+        });
+    }
+
+    /// Asks whether to send what the rules say.
+    pub(super) fn send_by_rules(&mut self, company: &Company) -> Vec<Effect> {
+        let Some(ruling) = &self.ruling else { return Vec::new() };
+        if !company.is_running() {
+            return vec![Effect::Complain("the run is over: offers go unanswered".to_owned())];
+        }
+        let batch = match &ruling.outcome {
+            Ok(batch) => batch,
+            Err(problem) => {
+                return vec![Effect::Complain(format!("{} (column {})", problem.text, problem.column))];
+            }
+        };
+        let calls = batch.calls();
+        if calls.is_empty() {
+            return vec![Effect::Complain("these rules send nothing".to_owned())];
+        }
+        let text = batch.summary().join("\n");
+        self.last_rules = Some(ruling.field.text().to_owned());
+        vec![Effect::ConfirmCalls { calls, text }]
+    }
+
+    /// The border of the rules.
+    pub(super) fn rules_border(&self, look: &Look<'_>) -> Border {
+        use crate::console::action::Action::{Discard, SendOffer};
+        let keys = look.hints(&[SendOffer, Discard]);
+        Border { title: "Rules".to_owned(), note: "first match answers".to_owned(), keys, ..Border::default() }
+    }
+
+    /// Draws the field, and below it a line for each rule or what is wrong.
+    pub(super) fn draw_rules(&self, ruling: &Ruling, canvas: &mut Canvas<'_>, seat: Seat) {
+        let mut rows = rows_of(seat.area);
+        let Some(first) = rows.next() else { return };
+        match ruling.typing {
+            true => ruling.field.draw(canvas, first),
+            false => canvas.text(first, ruling.field.text(), Role::Strong),
+        }
+        rows.next();
+        let width = seat.area.width as usize;
+        let (lines, role) = match &ruling.outcome {
+            Ok(batch) => (batch.summary(), Role::Text),
+            Err(problem) => (vec![format!("column {}: {}", problem.column, problem.text)], Role::Warning),
+        };
+        for (row, line) in rows.zip(lines.iter().flat_map(|line| wrapped(line, width))) {
+            canvas.text(row, &line, role);
+        }
+    }
+
+    /// The border of the preview.
+    pub(super) fn rules_preview_border(&self, ruling: &Ruling) -> Border {
+        let title = format!("What {} would get", ruling.meant().count());
+        Border { title, note: "rule: asked → sent".to_owned(), ..Border::default() }
+    }
+
+    /// Draws a line for each thread that a rule means.
+    pub(super) fn draw_rules_preview(&self, ruling: &Ruling, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let (inside, count) = (seat.area, ruling.meant().count());
+        if seat.focused {
+            canvas.page = inside.height.max(1);
+        }
+        let from = (self.scroll as usize).min(count.saturating_sub(inside.height as usize));
+        for (row, ruled) in rows_of(inside).zip(ruling.meant().skip(from)) {
+            draw_ruled(canvas, row, ruled, look);
+        }
+    }
+}
+
+fn draw_ruled(canvas: &mut Canvas<'_>, row: Rect, ruled: &RuledThread, look: &Look<'_>) {
+    let own = &ruled.thread.waiting;
+    let rule = ruled.rule.map_or(0, |at| at + 1);
+    let asked = own.asked.map_or("–".to_owned(), cents);
+    let words = format!(
+        "{rule}  #{} {}  {asked} → {}  {}",
+        own.customer,
+        own.group,
+        ruled.reply_in_words(),
+        look.company.names.of(own.customer)
+    );
+    let role = if ruled.reply.is_ok() { Role::Text } else { Role::Warning };
+    canvas.text(row, &words, role);
+}

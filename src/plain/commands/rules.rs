@@ -1,0 +1,111 @@
+//! `rules`: what rules would send to the threads that wait, and sending it.
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::Interpreter;
+use crate::database::text::aligned;
+use crate::notation::{cents, grouped};
+use crate::rules::{self, AskingThread, Batch, RuledThread};
+use crate::session::{CompanyNames, Refusal, ToolId, Via};
+
+/// Threads that a preview lists; programs get all.
+const LISTED: usize = 20;
+
+/// What `help rules` says.
+pub const IN_FULL: &str = "\
+rules RULES         what each waiting thread would be sent; nothing is sent
+rules send RULES    the same, and sends it: one call of send_enterprise_deal, one of reject_enterprise_deal
+A rule is an action with conditions; a semicolon separates rules, and the first that means a thread answers it.
+  offer where group = E2 and asked is null: B 85
+  offer where asked_plan = B and seats >= 500: B asked*1.05, C list*0.9
+  accept asked >= 18
+  reject rest
+accept offers what the company asked. A price is dollars, or asked, list or last_offer, with a factor.
+Conditions ask: group, type, seats, asked, asked_plan, last_offer, offers_so_far, turn, days_left, needed_quota, customer.
+They are compared with = != < <= > >=, in (…), is null, is not null, and joined with and. rest means all others.";
+
+impl Interpreter {
+    pub(super) fn rules(&mut self, text: &str) -> Answer {
+        let (send, text, before) = match text.split_once(char::is_whitespace) {
+            Some(("send", rest)) => (true, rest.trim_start(), text.len() - rest.trim_start().len()),
+            _ => (false, text, 0),
+        };
+        let rules = match rules::parse(text) {
+            Ok(rules) => rules,
+            Err(problem) => return Answer::usage(problem.text, "rules ".len() + before + problem.column),
+        };
+        let (threads, market) = match AskingThread::all(&mut self.session) {
+            Ok(all) => all,
+            Err(refusal) => return Answer::refused("rules", refusal),
+        };
+        let batch = Batch::of(rules, threads, &market);
+        if send { self.send(&batch) } else { preview(&batch, self.session.company_names()) }
+    }
+
+    fn send(&mut self, batch: &Batch) -> Answer {
+        let calls = batch.calls();
+        if calls.is_empty() {
+            let text = format!("nothing to send\n{}", batch.summary().join("\n"));
+            return Answer::refused("rules", Refusal::new("nothing_to_send", text));
+        }
+        let (mut lines, mut data) = (batch.summary(), Vec::new());
+        for (tool, arguments) in calls {
+            let what = if tool == ToolId::SendEnterpriseDeal { "offers sent" } else { "threads ended" };
+            match self.session.call(tool.name(), &arguments, Via::Plain) {
+                Ok(answer) => {
+                    let answer = answer.to_json();
+                    let results = answer.get("results").and_then(Value::as_array);
+                    let failed = |result: &&Value| result.get("error").is_some();
+                    let (all, failed) =
+                        results.map_or((0, 0), |all| (all.len(), all.iter().filter(failed).count()));
+                    let refused = if failed > 0 { format!(", {failed} refused") } else { String::new() };
+                    lines.push(format!("{} {what}{refused}", grouped((all - failed) as f64, 0)));
+                    data.push(json!({ "tool": tool, "answer": answer }));
+                }
+                Err(refusal) if data.is_empty() => return Answer::refused("rules", refusal),
+                // What was sent before it stays sent.
+                Err(refusal) => {
+                    lines.push(format!("{tool} refused {}: {}", refusal.code, refusal.message));
+                    data.push(json!({ "tool": tool, "code": refusal.code, "error": refusal.message }));
+                }
+            }
+        }
+        Answer::done("rules", lines.join("\n"), json!({ "rules": batch.sums_as_json(), "calls": data }))
+    }
+}
+
+fn preview(batch: &Batch, names: &CompanyNames) -> Answer {
+    let mut lines = batch.summary();
+    let meant: Vec<&RuledThread> = batch.threads.iter().filter(|ruled| ruled.rule.is_some()).collect();
+    if !meant.is_empty() {
+        let head = ["rule", "company", "group", "seats", "asked", "last offer", "left", "sends"];
+        let rows: Vec<Vec<String>> = meant.iter().take(LISTED).map(|ruled| row(ruled, names)).collect();
+        lines.push(aligned(&head.map(str::to_owned), &rows).trim_end().to_owned());
+    }
+    if meant.len() > LISTED {
+        lines.push(format!("and {} more", grouped((meant.len() - LISTED) as f64, 0)));
+    }
+    lines.push("nothing is sent; rules send … sends it".to_owned());
+    let threads: Vec<Value> = batch.threads.iter().map(|ruled| ruled.row(names)).collect();
+    let data = json!({ "rules": batch.sums_as_json(), "threads": threads });
+    Answer::done("rules", lines.join("\n"), data)
+}
+
+fn row(ruled: &RuledThread, names: &CompanyNames) -> Vec<String> {
+    let thread = &ruled.thread;
+    let own = &thread.waiting;
+    let plan = thread.asked_plan.map_or(String::new(), |plan| format!("{plan} "));
+    let last: Vec<String> =
+        own.last_offer.iter().map(|(plan, price)| format!("{plan} {}", cents(*price))).collect();
+    vec![
+        ruled.rule.map_or(String::new(), |at| (at + 1).to_string()),
+        names.with_number(own.customer),
+        own.group.to_owned(),
+        own.seats.to_string(),
+        own.asked.map_or(String::new(), |asked| format!("{plan}{}", cents(asked))),
+        last.join(" or "),
+        own.days_left.to_string(),
+        ruled.reply_in_words(),
+    ]
+}

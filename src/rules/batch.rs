@@ -1,0 +1,363 @@
+//! What every waiting thread would be sent by rules: the first rule that means a thread answers it.
+
+use serde_json::{Value, json};
+
+use super::grammar::{Action, OfferLine, Price, Rule};
+use super::thread::{AskingThread, Market, TOOLS};
+use crate::notation::{cents, dollars, grouped, percent};
+use crate::session::{CompanyNames, ToolId};
+use crate::world::identifiers::Plan;
+
+/// What a thread would be sent.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Reply {
+    /// Plans at prices.
+    Offer(Vec<(Plan, f64)>),
+    /// Its end.
+    Rejection,
+}
+
+/// A thread, the rule that means it, and what it would be sent, or why nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RuledThread {
+    /// The thread.
+    pub thread: AskingThread,
+    /// Place of the rule; none where no rule means it.
+    pub rule: Option<usize>,
+    /// What it would be sent, or why nothing.
+    pub reply: Result<Reply, &'static str>,
+}
+
+/// Sums over the threads of a rule.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sums {
+    /// Threads that are sent something.
+    pub companies: u32,
+    /// Their seats.
+    pub seats: u32,
+    /// What they would pay at most, dollars a month.
+    pub monthly: f64,
+    /// What of it comes from companies whose compute is known, and that compute, dollars a month.
+    known: (f64, f64),
+    /// Offers with a plan whose quota does not cover the company.
+    pub above_quota: u32,
+    /// Threads that are sent nothing.
+    pub skipped: u32,
+}
+
+impl Sums {
+    /// Share of the payments that compute leaves; none where no compute is known.
+    pub fn margin(&self) -> Option<f64> {
+        (self.known.0 > 0.0).then(|| 1.0 - self.known.1 / self.known.0)
+    }
+
+    fn add(&mut self, ruled: &RuledThread, market: &Market) {
+        let Ok(reply) = &ruled.reply else {
+            self.skipped += 1;
+            return;
+        };
+        let seats = ruled.thread.waiting.seats;
+        self.companies += 1;
+        self.seats += seats;
+        let Reply::Offer(lines) = reply else { return };
+        let Some(dearest) = lines.iter().copied().max_by(|left, right| left.1.total_cmp(&right.1)) else {
+            return;
+        };
+        let monthly = dearest.1 * f64::from(seats);
+        self.monthly += monthly;
+        if let Some(wanted) = ruled.thread.needed_quota {
+            self.known = (self.known.0 + monthly, self.known.1 + market.compute(dearest.0, wanted));
+            let short = |(plan, _): &(Plan, f64)| market.quotas[*plan as usize] < wanted;
+            self.above_quota += u32::from(lines.iter().any(short));
+        }
+    }
+
+    fn in_words(&self, rejects: bool) -> String {
+        let noun = if self.companies == 1 { "company" } else { "companies" };
+        let seats = if self.seats == 1 { "seat" } else { "seats" };
+        let count = |value: u32| grouped(f64::from(value), 0);
+        let mut words = format!("{} {noun}, {} {seats}", count(self.companies), count(self.seats));
+        if self.companies > 0 && !rejects {
+            words += &format!(", at most {} a month", dollars(self.monthly));
+            words += &self
+                .margin()
+                .map_or(String::new(), |margin| format!(", margin after compute {}", percent(margin, 0)));
+        }
+        if self.above_quota > 0 {
+            words += &format!(", {} above the quota of a plan offered", count(self.above_quota));
+        }
+        if self.skipped > 0 {
+            words += &format!(", {} skipped", count(self.skipped));
+        }
+        words
+    }
+}
+
+/// What rules do with every thread that waits.
+#[derive(Debug, Clone)]
+pub struct Batch {
+    /// The rules, in their order.
+    pub rules: Vec<Rule>,
+    /// Every thread, in the order in which they end.
+    pub threads: Vec<RuledThread>,
+    /// Sums by rule, then those of threads that no rule means.
+    pub sums: Vec<Sums>,
+}
+
+impl Batch {
+    /// What rules do with threads.
+    pub fn of(rules: Vec<Rule>, threads: Vec<AskingThread>, market: &Market) -> Batch {
+        let threads: Vec<RuledThread> =
+            threads.into_iter().map(|thread| ruled(&rules, thread, market)).collect();
+        let mut sums = vec![Sums::default(); rules.len() + 1];
+        for ruled in &threads {
+            sums[ruled.rule.unwrap_or(rules.len())].add(ruled, market);
+        }
+        Batch { rules, threads, sums }
+    }
+
+    /// The calls that send it: offers, then rejections; none where nothing is sent.
+    pub fn calls(&self) -> Vec<(ToolId, Value)> {
+        let (mut offers, mut ends) = (Vec::new(), Vec::new());
+        for ruled in &self.threads {
+            let customer = ruled.thread.waiting.customer;
+            match &ruled.reply {
+                Ok(Reply::Offer(lines)) => {
+                    let lines: Vec<Value> =
+                        lines.iter().map(|(plan, price)| json!([plan.id(), price])).collect();
+                    offers.push(json!([customer, lines]));
+                }
+                Ok(Reply::Rejection) => ends.push(json!({ "customer_id": customer })),
+                Err(_) => {}
+            }
+        }
+        let calls = TOOLS.into_iter().zip([offers, ends]);
+        let calls = calls.filter(|(_, deals)| !deals.is_empty());
+        calls.map(|(tool, deals)| (tool, json!({ "deals": deals }))).collect()
+    }
+
+    /// A line for each rule, and one for threads that no rule means.
+    pub fn summary(&self) -> Vec<String> {
+        let rule = |(at, rule): (usize, &Rule)| {
+            let sums = self.sums[at].in_words(rule.action == Action::Reject);
+            format!("{}  {}: {sums}", at + 1, rule.text)
+        };
+        let mut lines: Vec<String> = self.rules.iter().enumerate().map(rule).collect();
+        let others = self.sums[self.rules.len()].skipped;
+        if others > 0 {
+            lines.push(format!("–  no rule: {} left as they are", grouped(f64::from(others), 0)));
+        }
+        lines
+    }
+
+    /// Sums by rule for programs.
+    pub fn sums_as_json(&self) -> Vec<Value> {
+        let one = |(rule, sums): (&Rule, &Sums)| {
+            json!({
+                "rule": rule.text,
+                "companies": sums.companies,
+                "seats": sums.seats,
+                "monthly": json_rounded(sums.monthly, 100.0),
+                "margin": sums.margin().map(|margin| json_rounded(margin, 1e4)),
+                "above_quota": sums.above_quota,
+                "skipped": sums.skipped,
+            })
+        };
+        self.rules.iter().zip(&self.sums).map(one).collect()
+    }
+}
+
+fn json_rounded(value: f64, steps: f64) -> f64 {
+    (value * steps).round() / steps
+}
+
+impl RuledThread {
+    /// What it would be sent, in words.
+    pub fn reply_in_words(&self) -> String {
+        match &self.reply {
+            Ok(Reply::Offer(lines)) => {
+                let line = |(plan, price): &(Plan, f64)| format!("{plan} {}", cents(*price));
+                lines.iter().map(line).collect::<Vec<_>>().join(" or ")
+            }
+            Ok(Reply::Rejection) => "end the thread".to_owned(),
+            Err(why) => (*why).to_owned(),
+        }
+    }
+
+    /// Its fields for programs.
+    pub fn row(&self, names: &CompanyNames) -> Value {
+        let mut row = json!({ "rule": self.rule.map(|at| at + 1), "sends": self.reply_in_words() });
+        if let (Value::Object(row), Value::Object(fields)) = (&mut row, self.thread.row(names)) {
+            row.extend(fields);
+        }
+        row
+    }
+}
+
+fn ruled(rules: &[Rule], thread: AskingThread, market: &Market) -> RuledThread {
+    let rule = rules.iter().position(|rule| rule.means(&thread));
+    let reply = match rule.map(|at| &rules[at].action) {
+        None => Err("no rule means it"),
+        Some(Action::Reject) => Ok(Reply::Rejection),
+        Some(Action::Accept) => {
+            priced(&[OfferLine { plan: None, price: Price::Asked(1.0) }], &thread, market)
+        }
+        Some(Action::Offer(lines)) => priced(lines, &thread, market),
+    };
+    RuledThread { thread, rule, reply }
+}
+
+/// The lines of an offer at their prices; none is left out, so that nobody gets another offer than the rule says.
+fn priced(lines: &[OfferLine], thread: &AskingThread, market: &Market) -> Result<Reply, &'static str> {
+    let line = |line: &OfferLine| {
+        let plan = line.plan.or(thread.asked_plan).ok_or("skipped: it has named no plan")?;
+        let last = || thread.waiting.last_offer.iter().find(|(own, _)| *own == plan).map(|(_, price)| *price);
+        let price = match line.price {
+            Price::Dollars(price) => price,
+            Price::Asked(factor) => factor * thread.waiting.asked.ok_or("skipped: it has named no price")?,
+            Price::List(factor) => factor * market.lists[plan as usize],
+            Price::Last(factor) => factor * last().ok_or("skipped: it was not offered that plan last")?,
+        };
+        let price = (price * 100.0).round() / 100.0;
+        if price > 0.0 && price.is_finite() {
+            Ok((plan, price))
+        } else {
+            Err("skipped: the price would be 0")
+        }
+    };
+    lines.iter().map(line).collect::<Result<_, _>>().map(Reply::Offer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::parse;
+    use super::super::usage::SeatUsage;
+    use super::*;
+    use crate::session::WaitingThread;
+
+    fn thread(customer: u32, seats: u32, asked: Option<(Plan, f64)>, last: &[(Plan, f64)]) -> AskingThread {
+        let waiting = WaitingThread {
+            thread: customer + 1_000,
+            customer,
+            group: if customer % 2 == 0 { "E2" } else { "E1" },
+            seats,
+            kind: "new_lead",
+            turn: 2 * last.len() as u32,
+            offers_so_far: last.len() as u32,
+            last_offer: last.to_vec(),
+            asked: asked.map(|(_, price)| price),
+            days_left: customer,
+        };
+        AskingThread {
+            waiting,
+            asked_plan: asked.map(|(plan, _)| plan),
+            needed_quota: Some(10.0 * f64::from(seats)),
+        }
+    }
+
+    fn market() -> Market {
+        Market {
+            lists: [14.0, 32.0, 55.0],
+            quotas: [1_000.0, 1_000.0, 5_000.0],
+            unit_costs: [0.001, 0.01, 0.1],
+            usage: SeatUsage::default(),
+            studied: Default::default(),
+        }
+    }
+
+    fn threads() -> Vec<AskingThread> {
+        vec![
+            thread(1, 50, None, &[]),
+            thread(2, 100, None, &[]),
+            thread(3, 200, Some((Plan::B, 20.004)), &[(Plan::B, 30.0)]),
+            thread(4, 300, Some((Plan::C, 10.0)), &[(Plan::C, 60.0), (Plan::B, 30.0)]),
+        ]
+    }
+
+    fn told(rules: &str) -> Vec<(Option<usize>, String)> {
+        let batch = Batch::of(parse(rules).expect("rules"), threads(), &market());
+        batch.threads.iter().map(|ruled| (ruled.rule, ruled.reply_in_words())).collect()
+    }
+
+    #[test]
+    fn the_first_rule_that_means_a_thread_answers_it() {
+        let own = |rule: Option<usize>, words: &str| (rule, words.to_owned());
+        assert_eq!(
+            told("offer where group = E2 and asked is null: B 85; accept asked >= 18; reject rest"),
+            [
+                own(Some(2), "end the thread"),
+                own(Some(0), "B $85.00"),
+                own(Some(1), "B $20.00"),
+                own(Some(2), "end the thread"),
+            ]
+        );
+        assert_eq!(
+            told("offer where asked is not null: asked_plan asked*1.1, A list*0.5"),
+            [
+                own(None, "no rule means it"),
+                own(None, "no rule means it"),
+                own(Some(0), "B $22.00 or A $7.00"),
+                own(Some(0), "C $11.00 or A $7.00"),
+            ]
+        );
+        assert_eq!(
+            told("offer where customer in (3, 1): B last_offer*0.5; accept rest"),
+            [
+                own(Some(0), "skipped: it was not offered that plan last"),
+                own(Some(1), "skipped: it has named no plan"),
+                own(Some(0), "B $15.00"),
+                own(Some(1), "C $10.00"),
+            ]
+        );
+    }
+
+    #[test]
+    fn every_field_is_asked() {
+        for (condition, meant) in [
+            ("group != e2", vec![1, 3]),
+            ("type in (new_lead, plan_change)", vec![1, 2, 3, 4]),
+            ("seats <= 100", vec![1, 2]),
+            ("asked < 15", vec![4]),
+            ("asked_plan = C", vec![4]),
+            ("last_offer = 30", vec![3, 4]),
+            ("offers_so_far = 0", vec![1, 2]),
+            ("turn > 2", vec![4]),
+            ("days_left >= 3 and asked_plan != C", vec![3]),
+            ("needed_quota > 1_000", vec![3, 4]),
+            ("customer in (2, 4) and asked is null", vec![2]),
+        ] {
+            let rules = parse(&format!("reject where {condition}")).expect(condition);
+            let batch = Batch::of(rules, threads(), &market());
+            let ruled = batch.threads.iter().filter(|ruled| ruled.rule.is_some());
+            let found: Vec<u32> = ruled.map(|ruled| ruled.thread.waiting.customer).collect();
+            assert_eq!(found, meant, "{condition}");
+        }
+    }
+
+    #[test]
+    fn sums_count_companies_seats_money_and_quotas() {
+        let rules = parse("accept asked > 0; offer rest: B 10, A 5").expect("rules");
+        let batch = Batch::of(rules, threads(), &market());
+        let accepted = batch.sums[0];
+        assert_eq!((accepted.companies, accepted.seats, accepted.above_quota), (2, 500, 1));
+        assert_eq!(accepted.monthly, 200.0 * 20.0 + 300.0 * 10.0);
+        // B: its quota of 1,000 units; C: 3,000 units.
+        let compute = 1_000.0 * 30.0 * 0.01 + 3_000.0 * 30.0 * 0.1;
+        assert_eq!(accepted.margin(), Some(1.0 - compute / accepted.monthly));
+        assert_eq!(batch.sums[1].monthly, 10.0 * 150.0);
+        assert_eq!(batch.sums[2], Sums::default());
+        let calls = batch.calls();
+        assert_eq!(calls.len(), 1);
+        assert_eq!(
+            calls[0].1,
+            json!({ "deals": [
+                [1, [["B", 10.0], ["A", 5.0]]], [2, [["B", 10.0], ["A", 5.0]]], [3, [["B", 20.0]]], [4, [["C", 10.0]]],
+            ]})
+        );
+        let lines = batch.summary();
+        assert!(
+            lines[0].starts_with("1  accept asked > 0: 2 companies, 500 seats, at most $7,000 a month"),
+            "{lines:?}"
+        );
+    }
+}

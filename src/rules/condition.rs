@@ -1,0 +1,128 @@
+//! Whom a rule means: comparisons of what a thread shows.
+
+use super::thread::AskingThread;
+use crate::world::identifiers::Plan;
+
+/// What a condition asks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Field {
+    Group,
+    Type,
+    Seats,
+    Asked,
+    AskedPlan,
+    LastOffer,
+    Offers,
+    Turn,
+    DaysLeft,
+    NeededQuota,
+    Customer,
+}
+
+/// Names of the fields, in the order of the documentation; two have a second name.
+pub(super) const FIELDS: [(&str, Field); 13] = [
+    ("group", Field::Group),
+    ("type", Field::Type),
+    ("kind", Field::Type),
+    ("seats", Field::Seats),
+    ("asked", Field::Asked),
+    ("asked_plan", Field::AskedPlan),
+    ("last_offer", Field::LastOffer),
+    ("offers_so_far", Field::Offers),
+    ("offers", Field::Offers),
+    ("turn", Field::Turn),
+    ("days_left", Field::DaysLeft),
+    ("needed_quota", Field::NeededQuota),
+    ("customer", Field::Customer),
+];
+
+/// A value of a field.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Value {
+    Number(f64),
+    Word(String),
+}
+
+impl Field {
+    /// Whether its values are words.
+    pub(super) fn is_word(self) -> bool {
+        matches!(self, Field::Group | Field::Type | Field::AskedPlan)
+    }
+
+    /// The value of a thread; none where it has none.
+    fn of(self, thread: &AskingThread) -> Option<Value> {
+        let (own, number) = (&thread.waiting, |value: u32| Value::Number(f64::from(value)));
+        Some(match self {
+            Field::Group => Value::Word(own.group.to_owned()),
+            Field::Type => Value::Word(own.kind.to_owned()),
+            Field::AskedPlan => Value::Word(thread.asked_plan.map(Plan::id)?.to_owned()),
+            Field::Seats => number(own.seats),
+            Field::Asked => Value::Number(own.asked?),
+            Field::LastOffer => Value::Number(lowest(&own.last_offer)?),
+            Field::Offers => number(own.offers_so_far),
+            Field::Turn => number(own.turn),
+            Field::DaysLeft => number(own.days_left),
+            Field::NeededQuota => Value::Number(thread.needed_quota?),
+            Field::Customer => number(own.customer),
+        })
+    }
+}
+
+fn lowest(offer: &[(Plan, f64)]) -> Option<f64> {
+    offer.iter().map(|(_, price)| *price).reduce(f64::min)
+}
+
+/// How a value is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Comparison {
+    Equal,
+    NotEqual,
+    Less,
+    AtMost,
+    More,
+    AtLeast,
+}
+
+impl Comparison {
+    fn holds(self, left: &Value, right: &Value) -> bool {
+        use Comparison::{AtLeast, AtMost, Equal, Less, More, NotEqual};
+        match (left, right) {
+            (Value::Number(left), Value::Number(right)) => match self {
+                Equal => left == right,
+                NotEqual => left != right,
+                Less => left < right,
+                AtMost => left <= right,
+                More => left > right,
+                AtLeast => left >= right,
+            },
+            (Value::Word(left), Value::Word(right)) => left.eq_ignore_ascii_case(right) == (self == Equal),
+            _ => false,
+        }
+    }
+}
+
+/// A condition. A missing value fulfils `is null` alone.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Condition {
+    Compared(Field, Comparison, Value),
+    OneOf(Field, Vec<Value>),
+    IsNull(Field),
+    IsThere(Field),
+}
+
+impl Condition {
+    /// Whether a thread fulfils it.
+    pub(super) fn holds(&self, thread: &AskingThread) -> bool {
+        match self {
+            Condition::Compared(field, comparison, value) => {
+                field.of(thread).is_some_and(|own| comparison.holds(&own, value))
+            }
+            Condition::OneOf(field, values) => {
+                let is_one = |own: Value| values.iter().any(|value| Comparison::Equal.holds(&own, value));
+                field.of(thread).is_some_and(is_one)
+            }
+            Condition::IsNull(field) => field.of(thread).is_none(),
+            Condition::IsThere(field) => field.of(thread).is_some(),
+        }
+    }
+}

@@ -1,0 +1,445 @@
+//! The grammar of rules (docs/interfaces/rules.md#grammar).
+
+use super::condition::{Comparison, Condition, FIELDS, Field, Value};
+use super::thread::AskingThread;
+use crate::notation::nearest;
+use crate::world::identifiers::Plan;
+
+/// Lines that an offer may have.
+const MOST_LINES: usize = 3;
+/// Groups of companies that every run knows; those that are found later begin with `D_E`.
+const FIRST_GROUPS: [&str; 3] = ["E1", "E2", "E3"];
+/// Kinds of threads that can wait.
+const KINDS: [&str; 4] = ["new_lead", "churn_prevention", "plan_change", "renegotiation"];
+
+/// A rule: whom it means and what they get.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// As it was written.
+    pub text: String,
+    pub(super) conditions: Vec<Condition>,
+    pub(super) action: Action,
+}
+
+impl Rule {
+    /// Whether it means a thread.
+    pub(super) fn means(&self, thread: &AskingThread) -> bool {
+        self.conditions.iter().all(|condition| condition.holds(thread))
+    }
+}
+
+/// What a thread gets.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Action {
+    Offer(Vec<OfferLine>),
+    Accept,
+    Reject,
+}
+
+/// A plan at a price.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct OfferLine {
+    /// None: the plan that the company asked for.
+    pub(super) plan: Option<Plan>,
+    pub(super) price: Price,
+}
+
+/// A price: dollars, or a factor on another price.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Price {
+    Dollars(f64),
+    Asked(f64),
+    List(f64),
+    Last(f64),
+}
+
+/// What is wrong with rules, and in which column.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// What is wrong, and what is near.
+    pub text: String,
+    /// Column, from 1, in characters.
+    pub column: usize,
+}
+
+/// Reads rules, which a semicolon or a line end separates.
+///
+/// # Errors
+/// The first thing that is no rule.
+pub fn parse(text: &str) -> Result<Vec<Rule>, Problem> {
+    let tokens = tokens(text)?;
+    let mut reader = Reader { text, tokens: &tokens, at: 0 };
+    let mut rules = Vec::new();
+    loop {
+        while reader.take(";") {}
+        if reader.is_at_end() {
+            break;
+        }
+        rules.push(reader.rule()?);
+        if !reader.is_at_end() && !reader.take(";") {
+            return Err(reader.problem("a rule ends here: put ; before the next one"));
+        }
+    }
+    match rules.is_empty() {
+        true => Err(reader.problem("a rule is expected, for instance offer where asked is null: B 85")),
+        false => Ok(rules),
+    }
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Token {
+    text: String,
+    /// Bytes.
+    from: usize,
+    to: usize,
+}
+
+fn column(text: &str, at: usize) -> usize {
+    text[..at].chars().count() + 1
+}
+
+fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
+    let mut tokens = Vec::new();
+    let mut at = 0;
+    while let Some(letter) = text[at..].chars().next() {
+        let rest = &text[at..];
+        let is_word = |letter: char| letter.is_alphanumeric() || ['_', '.'].contains(&letter);
+        let length = match letter {
+            '\n' | ';' => 1,
+            _ if letter.is_whitespace() || letter == '$' => {
+                at += letter.len_utf8();
+                continue;
+            }
+            '"' | '\'' => match rest[1..].find(letter) {
+                Some(end) => end + 2,
+                None => {
+                    let text_of = "the quotation mark is not closed".to_owned();
+                    return Err(Problem { text: text_of, column: column(text, at) });
+                }
+            },
+            _ if is_word(letter) => rest.find(|next| !is_word(next)).unwrap_or(rest.len()),
+            _ => {
+                let two = ["<=", ">=", "!=", "<>", "=="].into_iter().find(|two| rest.starts_with(two));
+                match two {
+                    Some(two) => two.len(),
+                    None if "<>=:,*()-".contains(letter) => 1,
+                    None => {
+                        let text_of = format!("{letter} means nothing in a rule");
+                        return Err(Problem { text: text_of, column: column(text, at) });
+                    }
+                }
+            }
+        };
+        let own = &rest[..length];
+        let said = if own == "\n" { ";" } else { own.trim_matches(['"', '\'']) };
+        tokens.push(Token { text: said.to_owned(), from: at, to: at + length });
+        at += length;
+    }
+    Ok(tokens)
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    tokens: &'a [Token],
+    at: usize,
+}
+
+impl Reader<'_> {
+    fn peek(&self) -> Option<&str> {
+        self.tokens.get(self.at).map(|token| token.text.as_str())
+    }
+
+    fn is_at_end(&self) -> bool {
+        self.at == self.tokens.len()
+    }
+
+    fn take(&mut self, word: &str) -> bool {
+        let found = self.peek().is_some_and(|own| own.eq_ignore_ascii_case(word));
+        self.at += usize::from(found);
+        found
+    }
+
+    fn word(&mut self) -> Option<String> {
+        let own = self.peek()?.to_owned();
+        self.at += 1;
+        Some(own)
+    }
+
+    fn problem(&self, text: impl Into<String>) -> Problem {
+        let at = self.tokens.get(self.at).map_or(self.text.len(), |token| token.from);
+        Problem { text: text.into(), column: column(self.text, at) }
+    }
+
+    /// The problem with the word before.
+    fn wrong(&mut self, text: impl Into<String>) -> Problem {
+        self.at -= 1;
+        self.problem(text)
+    }
+
+    fn rule(&mut self) -> Result<Rule, Problem> {
+        let from = self.at;
+        let action = self.word().unwrap_or_default().to_lowercase();
+        let known = ["offer", "accept", "reject"];
+        if !known.contains(&action.as_str()) {
+            let near = or_known(nearest(&action, known.into_iter()), &known);
+            return Err(self.wrong(format!("{action} is no action; {near}")));
+        }
+        let conditions = self.conditions(&action)?;
+        let action = match action.as_str() {
+            "offer" => Action::Offer(self.lines()?),
+            "accept" => Action::Accept,
+            _ => Action::Reject,
+        };
+        let (first, last) = (&self.tokens[from], &self.tokens[self.at - 1]);
+        Ok(Rule { text: self.text[first.from..last.to].to_owned(), conditions, action })
+    }
+
+    fn conditions(&mut self, action: &str) -> Result<Vec<Condition>, Problem> {
+        if self.take("rest") || self.take("all") {
+            return Ok(Vec::new());
+        }
+        let named = self.take("where");
+        match self.peek() {
+            None | Some(";") => {
+                return Err(self.problem(format!("{action} needs a condition, or rest for all others")));
+            }
+            Some(":") if !named => {
+                return Err(self.problem("whom this is offered is missing: where …, or rest for all others"));
+            }
+            _ => {}
+        }
+        let mut conditions = vec![self.condition()?];
+        while self.take("and") {
+            conditions.push(self.condition()?);
+        }
+        Ok(conditions)
+    }
+
+    fn condition(&mut self) -> Result<Condition, Problem> {
+        let Some(name) = self.word() else { return Err(self.problem("a condition is missing")) };
+        let lower = name.to_lowercase();
+        let Some((_, field)) = FIELDS.into_iter().find(|(known, _)| *known == lower) else {
+            let names: Vec<&str> = FIELDS.iter().map(|(name, _)| *name).collect();
+            let near = or_known(nearest(&lower, names.iter().copied()), &names);
+            return Err(self.wrong(format!("{name} is nothing a rule can ask; {near}")));
+        };
+        if self.take("is") {
+            let there = self.take("not");
+            if !self.take("null") {
+                return Err(self.problem("null is expected: is null, or is not null"));
+            }
+            return Ok(if there { Condition::IsThere(field) } else { Condition::IsNull(field) });
+        }
+        if self.take("in") {
+            return self.one_of(field);
+        }
+        let comparison = self.comparison(field)?;
+        Ok(Condition::Compared(field, comparison, self.value(field)?))
+    }
+
+    fn comparison(&mut self, field: Field) -> Result<Comparison, Problem> {
+        use Comparison::{AtLeast, AtMost, Equal, Less, More, NotEqual};
+        let comparison = match self.peek() {
+            Some("=" | "==") => Equal,
+            Some("!=" | "<>") => NotEqual,
+            Some("<") => Less,
+            Some("<=") => AtMost,
+            Some(">") => More,
+            Some(">=") => AtLeast,
+            _ => return Err(self.problem("a comparison is expected: = != < <= > >=, in, is null")),
+        };
+        if field.is_word() && !matches!(comparison, Equal | NotEqual) {
+            return Err(self.problem("words are only equal or not: = or !="));
+        }
+        self.at += 1;
+        Ok(comparison)
+    }
+
+    fn one_of(&mut self, field: Field) -> Result<Condition, Problem> {
+        if !self.take("(") {
+            return Err(self.problem("a list is expected, for instance in (E1, E2)"));
+        }
+        let mut values = vec![self.value(field)?];
+        while self.take(",") {
+            values.push(self.value(field)?);
+        }
+        if !self.take(")") {
+            return Err(self.problem("the bracket of the list is not closed"));
+        }
+        Ok(Condition::OneOf(field, values))
+    }
+
+    fn value(&mut self, field: Field) -> Result<Value, Problem> {
+        if !field.is_word() {
+            return Ok(Value::Number(self.number()?));
+        }
+        let Some(word) = self.word() else { return Err(self.problem("a value is missing")) };
+        // Whether a group is still to be found is not said here.
+        let word = if field == Field::Group { word.to_uppercase() } else { word };
+        if word.starts_with("D_E") {
+            return Ok(Value::Word(word));
+        }
+        let known: Vec<&str> = match field {
+            Field::Group => FIRST_GROUPS.to_vec(),
+            Field::AskedPlan => Plan::ALL.map(Plan::id).to_vec(),
+            _ => KINDS.to_vec(),
+        };
+        match known.iter().find(|known| known.eq_ignore_ascii_case(&word)) {
+            Some(known) => Ok(Value::Word((*known).to_owned())),
+            None => {
+                let near = or_known(nearest(&word, known.iter().copied()), &known);
+                Err(self.wrong(format!("{word} is no such value; {near}")))
+            }
+        }
+    }
+
+    fn number(&mut self) -> Result<f64, Problem> {
+        let Some(word) = self.word() else { return Err(self.problem("a number is missing")) };
+        match word.replace('_', "").parse::<f64>().ok().filter(|number| number.is_finite()) {
+            Some(number) => Ok(number),
+            None => Err(self.wrong(format!("a number is expected, not {word}"))),
+        }
+    }
+
+    fn lines(&mut self) -> Result<Vec<OfferLine>, Problem> {
+        if !self.take(":") {
+            return Err(self.problem("a colon and the offer are missing, for instance : B 85"));
+        }
+        let mut lines = vec![self.line()?];
+        while self.take(",") {
+            if lines.len() == MOST_LINES {
+                return Err(self.problem(format!("an offer has at most {MOST_LINES} plans")));
+            }
+            lines.push(self.line()?);
+        }
+        Ok(lines)
+    }
+
+    fn line(&mut self) -> Result<OfferLine, Problem> {
+        let Some(word) = self.word() else { return Err(self.problem("a plan and a price are missing")) };
+        let plan = match Plan::parse(&word.to_uppercase()) {
+            Some(plan) => Some(plan),
+            None if word.eq_ignore_ascii_case("asked_plan") => None,
+            None => return Err(self.wrong(format!("{word} is no plan: A, B, C, or asked_plan"))),
+        };
+        Ok(OfferLine { plan, price: self.price()? })
+    }
+
+    fn price(&mut self) -> Result<Price, Problem> {
+        const NAMES: [&str; 3] = ["asked", "list", "last_offer"];
+        let Some(word) = self.peek().map(str::to_lowercase) else {
+            return Err(self.problem("a price is missing"));
+        };
+        if !word.starts_with(char::is_alphabetic) {
+            let price = self.number()?;
+            return if price > 0.0 {
+                Ok(Price::Dollars(price))
+            } else {
+                Err(self.wrong("a price is above 0"))
+            };
+        }
+        if !NAMES.contains(&word.as_str()) {
+            let near = or_known(nearest(&word, NAMES.into_iter()), &NAMES);
+            return Err(self.problem(format!("{word} is no price: dollars, or {near}")));
+        }
+        self.at += 1;
+        let factor = if self.take("*") { self.number()? } else { 1.0 };
+        if factor <= 0.0 {
+            return Err(self.wrong("a factor is above 0"));
+        }
+        Ok(match word.as_str() {
+            "asked" => Price::Asked(factor),
+            "list" => Price::List(factor),
+            _ => Price::Last(factor),
+        })
+    }
+}
+
+/// What was meant, or what there is.
+fn or_known(near: Vec<&str>, known: &[&str]) -> String {
+    match near.is_empty() {
+        true => format!("there are {}", known.join(", ")),
+        false => format!("did you mean {}?", near.join(" or ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn rules_are_read_with_their_words() {
+        let text = "offer where group = E2 and asked is null: b $85, asked_plan asked*0.95, C list * 0.9;\n\
+                    accept asked >= 18\nreject rest";
+        let rules = parse(text).expect("rules");
+        let words: Vec<&str> = rules.iter().map(|rule| rule.text.as_str()).collect();
+        assert_eq!(words[1..], ["accept asked >= 18", "reject rest"]);
+        assert!(words[0].starts_with("offer where") && words[0].ends_with("0.9"));
+        let line = |plan, price| OfferLine { plan, price };
+        let lines = vec![
+            line(Some(Plan::B), Price::Dollars(85.0)),
+            line(None, Price::Asked(0.95)),
+            line(Some(Plan::C), Price::List(0.9)),
+        ];
+        assert_eq!(rules[0].action, Action::Offer(lines));
+        assert_eq!(rules[0].conditions.len(), 2);
+        assert!(rules[2].conditions.is_empty() && rules[2].action == Action::Reject);
+        assert_eq!(parse("accept rest;;").expect("one").len(), 1);
+    }
+
+    #[test]
+    fn problems_name_their_column_and_what_is_near() {
+        for (text, column, part) in [
+            ("", 1, "a rule is expected"),
+            ("ofer rest: B 3", 1, "did you mean offer"),
+            ("offer where grup = E2: B 3", 13, "did you mean group"),
+            ("offer where group = E9: B 3", 21, "did you mean"),
+            ("offer where type = new: B 3", 20, "new_lead"),
+            ("offer where group > E1: B 3", 19, "= or !="),
+            ("offer rest", 11, "colon"),
+            ("offer: B 3", 6, "rest for all others"),
+            ("offer rest: D 3", 13, "no plan"),
+            ("offer rest: B -3", 15, "number is expected"),
+            ("offer rest: B 0", 15, "above 0"),
+            ("offer rest: B aked*2", 15, "did you mean asked"),
+            ("offer rest: A 1, B 2, C 3, A 4", 28, "at most 3"),
+            ("accept", 7, "needs a condition"),
+            ("accept asked 18", 14, "comparison"),
+            ("accept asked >= x", 17, "number is expected"),
+            ("accept asked is 3", 17, "null"),
+            ("accept seats in 3", 17, "list"),
+            ("reject rest reject rest", 13, "put ;"),
+            ("reject where größe > 3", 14, "nothing a rule can ask"),
+            ("reject where seats ? 3", 20, "means nothing"),
+        ] {
+            let problem = parse(text).expect_err(text);
+            assert_eq!(problem.column, column, "{text}: {problem:?}");
+            assert!(problem.text.contains(part), "{text}: {problem:?}");
+        }
+    }
+
+    #[test]
+    fn groups_that_nobody_found_are_not_named() {
+        let problem = parse("accept group = D_S0").expect_err("no group of companies");
+        assert!(problem.text.ends_with("there are E1, E2, E3"), "{problem:?}");
+        for group in ["D_E01", "d_e99"] {
+            assert!(parse(&format!("accept group = {group}")).is_ok(), "{group}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(text in "\\PC{0,60}") {
+            let _ = parse(&text);
+        }
+
+        #[test]
+        fn no_words_panic(words in proptest::collection::vec(
+            prop::sample::select(vec!["offer", "where", "asked", "is", "null", "in", "(", ")", ":", ",", "B", "3", "*",
+                ";", "rest", "and", "=", "group", "E1", "not", "accept", "\n", "$"]), 0..12)) {
+            let _ = parse(&words.join(" "));
+        }
+    }
+}

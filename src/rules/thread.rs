@@ -1,0 +1,161 @@
+//! What rules see of a thread that waits for an answer, and of what the company sells.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use super::usage::{SEAT_USAGE, SeatUsage};
+use crate::notation::json_number;
+use crate::session::{CompanyNames, Refusal, Rows, Session, ToolId, WaitingThread, number_at, text_at};
+use crate::world::identifiers::{Group, Plan};
+
+/// The statement for what companies wrote last: a thread ends a week after it.
+pub const LAST_LETTERS: &str = include_str!("../../assets/readings/last_letters.sql");
+
+/// Days of a month of compute.
+const MONTH: f64 = 30.0;
+
+/// The plan that companies named with their price, by thread.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Letters(BTreeMap<u32, Plan>);
+
+impl Letters {
+    /// Reads the answer to [`LAST_LETTERS`].
+    pub fn read(rows: &Rows) -> Letters {
+        let plan =
+            |row: &Vec<crate::session::Cell>| Some((number_at(row, 0) as u32, plan_in(text_at(row, 1))?));
+        Letters(rows.rows.iter().filter_map(plan).collect())
+    }
+}
+
+/// The plan that words name.
+pub fn plan_in(text: &str) -> Option<Plan> {
+    let lower = text.to_lowercase();
+    let named = |(at, _): (usize, &str)| {
+        let mut rest = lower[at + 5..].chars();
+        let letter = rest.next()?.to_ascii_uppercase().to_string();
+        let ends = rest.next().is_none_or(|next| !next.is_alphanumeric());
+        Plan::parse(&letter).filter(|_| ends)
+    };
+    lower.match_indices("plan ").find_map(named)
+}
+
+/// What the company sells, and what a seat uses of it.
+#[derive(Debug, Clone, Default)]
+pub struct Market {
+    /// List prices, dollars a month.
+    pub lists: [f64; 3],
+    /// Quotas, units a day and customer.
+    pub quotas: [f64; 3],
+    /// Compute, dollars a unit.
+    pub unit_costs: [f64; 3],
+    /// Measured use.
+    pub usage: SeatUsage,
+    /// Use by the last study, units a day and seat.
+    pub studied: BTreeMap<Group, f64>,
+}
+
+impl Market {
+    /// What a run sells today.
+    pub fn of(session: &Session, usage: SeatUsage) -> Market {
+        let (core, terms) = (&session.settings().core, session.terms());
+        let unit_cost = |plan: Plan| {
+            let model = terms.models.iter().find(|model| model.tier == core.tiers[plan]);
+            model.map_or(0.0, |model| model.unit_cost)
+        };
+        let studied = session.estimates().into_iter().map(|own| (own.group, own.usage)).collect();
+        Market {
+            lists: Plan::ALL.map(|plan| core.prices[plan]),
+            quotas: Plan::ALL.map(|plan| core.quotas[plan].units()),
+            unit_costs: Plan::ALL.map(unit_cost),
+            usage,
+            studied,
+        }
+    }
+
+    /// Units a day that all seats of a company would use.
+    pub fn wanted(&self, group: &str, seats: u32) -> Option<f64> {
+        let studied = || Group::parse(group).and_then(|group| self.studied.get(&group)).copied();
+        self.usage.measured(group).or_else(studied).map(|units| units * f64::from(seats))
+    }
+
+    /// Dollars a month for the compute of a company on a plan: all its seats share one quota.
+    pub fn compute(&self, plan: Plan, wanted: f64) -> f64 {
+        wanted.min(self.quotas[plan as usize]) * MONTH * self.unit_costs[plan as usize]
+    }
+}
+
+/// A thread that waits, with everything that rules ask.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AskingThread {
+    /// What the run says.
+    pub waiting: WaitingThread,
+    /// The plan that the company named with its price.
+    pub asked_plan: Option<Plan>,
+    /// Units a day that all its seats would use: the quota that covers them.
+    pub needed_quota: Option<f64>,
+}
+
+impl AskingThread {
+    /// Of a thread that waits.
+    pub fn of(waiting: &WaitingThread, letters: &Letters, market: &Market) -> AskingThread {
+        let only = || match waiting.last_offer.as_slice() {
+            [(plan, _)] => Some(*plan),
+            _ => None,
+        };
+        AskingThread {
+            asked_plan: waiting.asked.and_then(|_| letters.0.get(&waiting.thread).copied().or_else(only)),
+            needed_quota: market.wanted(waiting.group, waiting.seats),
+            waiting: waiting.clone(),
+        }
+    }
+
+    /// Every thread that waits, with what the run sells. Asks the database two questions, which are not recorded.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn all(session: &mut Session) -> Result<(Vec<AskingThread>, Market), Refusal> {
+        let letters = Letters::read(&session.look_into_database(LAST_LETTERS)?);
+        let usage = SeatUsage::read(&session.look_into_database(SEAT_USAGE)?);
+        let market = Market::of(session, usage);
+        let waiting = session.observe().waiting;
+        let threads = waiting.iter().map(|own| AskingThread::of(own, &letters, &market));
+        Ok((threads.collect(), market))
+    }
+
+    /// Its fields for programs, with the name of its company.
+    pub fn row(&self, names: &CompanyNames) -> Value {
+        let mut row = json!({ "company": names.of(self.waiting.customer) });
+        if let (Value::Object(row), Value::Object(fields)) = (&mut row, json!(self.waiting)) {
+            row.extend(fields);
+            row.insert("asked_plan".to_owned(), json!(self.asked_plan.map(Plan::id)));
+            row.insert(
+                "needed_quota".to_owned(),
+                json!(self.needed_quota.map(|units| json_number(units.round()))),
+            );
+        }
+        row
+    }
+}
+
+/// The tools that rules become calls of.
+pub(super) const TOOLS: [ToolId; 2] = [ToolId::SendEnterpriseDeal, ToolId::RejectEnterpriseDeal];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plans_are_found_in_words() {
+        for (text, plan) in [
+            ("At $27.34 a seat for plan B we can sign.", Some(Plan::B)),
+            ("Plan C, please", Some(Plan::C)),
+            ("we plan better; plan A it is", Some(Plan::A)),
+            ("we plan a move to plan", Some(Plan::A)),
+            ("a plan", None),
+            ("plan Bravo", None),
+        ] {
+            assert_eq!(plan_in(text), plan, "{text}");
+        }
+    }
+}

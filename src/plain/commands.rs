@@ -30,7 +30,7 @@ use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 const NEXT: [&str; 3] = ["next", "next-week", "next_week"];
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 28] = [
+const COMMANDS: [(&str, &str); 29] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("queries", "queries [NAME]           the library of queries, or the result of one of them"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, run a week (also: next-week)"),

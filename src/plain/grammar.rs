@@ -46,8 +46,7 @@ pub struct Problem {
 }
 
 /// Commands whose text is the rest of the line as it stands.
-const TEXT_COMMANDS: [&str; 8] =
-    ["sql", "query", "memo", "explain", "what", "glossary", "check", "rules"];
+const TEXT_COMMANDS: [&str; 8] = ["sql", "query", "memo", "explain", "what", "glossary", "check", "rules"];
 
 /// Reads a line.
 pub fn parse(line: &str) -> Result<Line, Problem> {

@@ -239,7 +239,7 @@ mod tests {
         let waiting = WaitingThread {
             thread: customer + 1_000,
             customer,
-            group: if customer % 2 == 0 { "E2" } else { "E1" },
+            group: if customer.is_multiple_of(2) { "E2" } else { "E1" },
             seats,
             kind: "new_lead",
             turn: 2 * last.len() as u32,

@@ -153,7 +153,12 @@ mod tests {
         assert_eq!(card.turning_points[2].value, whole(most));
         assert_eq!(card.turning_points[2].name, format!("peak subscribers, day {day}"));
         assert_eq!(card.numbers[0].value, whole(by_week[4]));
-        assert_eq!(card.numbers[1].value, "0");
+        let seats = number(
+            &mut session,
+            "SELECT total(s.seat_count) FROM subscriptions s JOIN customers c USING (customer_id) WHERE \
+             c.customer_type = 'enterprise' AND s.status = 'subscribed'",
+        );
+        assert_eq!(card.numbers[1].value, whole(seats));
         let grew = (1..=5).filter(|week| cash[week * 7] > cash[week * 7 - 7]).count();
         assert_eq!(card.numbers[2].value, format!("{grew} of 5"));
         assert_eq!(card.headline, format!("{} after 35 days", money(cash[35])));

@@ -12,7 +12,7 @@ use crate::session::{Ended, WeekFigures};
 
 /// A fact with what it is.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Fact {
+struct CardFigure {
     /// The figure.
     value: String,
     /// What it is, and of which day.
@@ -29,8 +29,8 @@ struct Card {
     cash_by_day: Vec<f64>,
     /// Days on which cash was highest and lowest.
     marks: Vec<u32>,
-    turning_points: Vec<Fact>,
-    numbers: [Fact; 3],
+    turning_points: Vec<CardFigure>,
+    numbers: [CardFigure; 3],
     /// Scenario, seed, version.
     source: String,
 }
@@ -48,7 +48,7 @@ pub fn as_svg(story: &Story) -> String {
 impl Card {
     fn of(story: &Story) -> Card {
         let (highest, lowest) = (highest_cash(&story.cash_by_day), lowest_cash(&story.cash_by_day));
-        let fact = |value: String, name: String| Fact { value, name };
+        let fact = |value: String, name: String| CardFigure { value, name };
         let mut turning_points = Vec::new();
         if let Some((day, cash)) = highest {
             turning_points.push(fact(money(cash), format!("highest cash, day {day}")));
@@ -142,8 +142,9 @@ mod tests {
         assert_eq!(card.turning_points[1].value, money(least));
         let mut active = |day: usize| {
             let sql = format!(
-                "SELECT count(*) FROM subscriptions s JOIN customers c USING (customer_id) WHERE c.customer_type = \
-                 'individual' AND s.status IN ('subscribed', 'cancelled') AND s.start_day <= {day} AND (s.end_day IS NULL OR s.end_day > {day})"
+                "SELECT count(*) FROM subscriptions s JOIN customers c USING (customer_id) WHERE c.customer_type = 'small' AND \
+                 s.status IN ('subscribed', 'cancelled') AND s.start_day <= {day} AND \
+                 (s.end_day IS NULL OR s.end_day > {day})"
             );
             number(&mut session, &sql)
         };
@@ -153,11 +154,9 @@ mod tests {
         assert_eq!(card.turning_points[2].value, whole(most));
         assert_eq!(card.turning_points[2].name, format!("peak subscribers, day {day}"));
         assert_eq!(card.numbers[0].value, whole(by_week[4]));
-        let seats = number(
-            &mut session,
-            "SELECT total(s.seat_count) FROM subscriptions s JOIN customers c USING (customer_id) WHERE \
-             c.customer_type = 'enterprise' AND s.status = 'subscribed'",
-        );
+        let seats = "SELECT total(seat_count) FROM subscriptions s JOIN customers c USING (customer_id) \
+                     WHERE c.customer_type = 'large' AND s.status = 'subscribed'";
+        let seats = number(&mut session, seats);
         assert_eq!(card.numbers[1].value, whole(seats));
         let grew = (1..=5).filter(|week| cash[week * 7] > cash[week * 7 - 7]).count();
         assert_eq!(card.numbers[2].value, format!("{grew} of 5"));

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Card, Fact};
+use super::{Card, CardFigure};
 use crate::report::html::escaped;
 use crate::report::words::dollar_tick;
 
@@ -60,7 +60,7 @@ fn text(svg: &mut String, (x, y): (f64, f64), size: f64, colour: &str, bold: boo
 }
 
 /// Facts beside each other: figures, and what they are below.
-fn row(svg: &mut String, y: f64, facts: &[Fact]) {
+fn row(svg: &mut String, y: f64, facts: &[CardFigure]) {
     for (at, fact) in facts.iter().enumerate() {
         let x = EDGE + at as f64 * 370.0;
         text(svg, (x, y), 30.0, INK, true, &fact.value);
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     fn card(cash: &[f64], marks: &[u32]) -> Card {
-        let fact = |value: &str| Fact { value: value.to_owned(), name: "n".to_owned() };
+        let fact = |value: &str| CardFigure { value: value.to_owned(), name: "n".to_owned() };
         Card {
             headline: "h".to_owned(),
             rank: None,

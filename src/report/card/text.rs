@@ -1,6 +1,6 @@
 //! The card as text: a curve of blocks, facts below it.
 
-use super::{Card, Fact};
+use super::{Card, CardFigure};
 use crate::report::words::dollar_tick;
 
 /// Columns and rows of the curve.
@@ -27,8 +27,8 @@ pub fn write(card: &Card) -> String {
 }
 
 /// Figures in a row, their names below.
-fn facts(facts: &[Fact]) -> [String; 2] {
-    let row = |text: fn(&Fact) -> &String| {
+fn facts(facts: &[CardFigure]) -> [String; 2] {
+    let row = |text: fn(&CardFigure) -> &String| {
         facts.iter().map(|fact| format!("{:<FACT$}", text(fact))).collect::<String>().trim_end().to_owned()
     };
     [row(|fact| &fact.value), row(|fact| &fact.name)]

@@ -41,29 +41,27 @@ fn the_first_run_of_a_person_begins_with_the_tour() {
     let mut terminal = Terminal::start(runs.path(), &[], (80, 24));
     terminal.wait_for("New here?");
     terminal.type_keys("\r");
-    terminal.wait_for("Tour · 1 of 11");
-    terminal.type_keys("8");
-    terminal.wait_for("Tour · 2 of 11");
-    terminal.type_keys("\r\r12\t25\t55\r\x13");
-    terminal.wait_for("Tour · 3 of 11");
+    terminal.wait_for("Tour · 1 of 18");
+    terminal.type_keys("3");
+    terminal.wait_for("Tour · 2 of 18");
+    terminal.type_keys("j\r");
+    terminal.wait_for("Tour · 3 of 18");
+    terminal.type_keys("8\rj\r45\r\x13");
+    terminal.wait_for("Tour · 4 of 18");
     // F3 passes over a step.
-    terminal.type_keys("\x1bOR");
-    terminal.wait_for("Tour · 4 of 11");
-    terminal.type_keys("\x1bOR");
-    terminal.wait_for("Tour · 5 of 11");
-    terminal.type_keys("\x1bOR");
-    terminal.wait_for("Tour · 6 of 11");
+    for step in 5..=8 {
+        terminal.type_keys("\x1bOR");
+        terminal.wait_for(&format!("Tour · {step} of 18"));
+    }
     terminal.type_keys("n");
-    terminal.wait_for("Tour · 7 of 11");
+    terminal.wait_for("Tour · 9 of 18");
     terminal.type_keys("\rcurious\r");
-    terminal.wait_for("Tour · 8 of 11");
+    terminal.wait_for("Tour · 10 of 18");
     terminal.type_keys("f\r");
-    terminal.wait_for("Tour · 9 of 11");
+    terminal.wait_for("Tour · 11 of 18");
     terminal.type_keys("\x1b");
-    terminal.wait_for("Tour · 10 of 11");
-    // F2 explains, F4 closes the tour.
-    terminal.type_keys("\x1bOQ");
-    terminal.wait_for("Tour · 11 of 11");
+    terminal.wait_for("Tour · 12 of 18");
+    // F4 closes the tour.
     terminal.type_keys("\x1bOS");
     terminal.wait_until_gone("Tour ·");
     terminal.type_keys("\x03");

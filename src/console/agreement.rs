@@ -9,6 +9,7 @@ use super::action::Action;
 use super::canvas::{Canvas, rows_of};
 use super::text::wrapped;
 use super::theme::Role;
+use super::widgets::Scroll;
 use crate::session::{ConsentGiven, ConsentMeans};
 
 /// Widest lines that read well.
@@ -21,12 +22,10 @@ pub const READ_FIRST: &str = "the text goes on: scroll to its end first";
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     text: String,
-    from: usize,
+    scroll: Scroll,
     shown: Instant,
     /// Rows of text in the last frame.
     room: Cell<usize>,
-    /// The farthest that shows anything new, as it was drawn last.
-    last: Cell<usize>,
     /// The last line was on the screen.
     read: Cell<bool>,
 }
@@ -36,10 +35,9 @@ impl Agreement {
     pub fn new(text: impl Into<String>) -> Agreement {
         Agreement {
             text: text.into(),
-            from: 0,
+            scroll: Scroll::default(),
             shown: Instant::now(),
             room: Cell::new(1),
-            last: Cell::new(0),
             read: Cell::new(false),
         }
     }
@@ -53,18 +51,7 @@ impl Agreement {
 
     /// Moves through the text; true if the action does that.
     pub fn scroll(&mut self, action: Action) -> bool {
-        let page = self.room.get().max(1);
-        let to = match action {
-            Action::Up | Action::ScrollUp => self.from.saturating_sub(1),
-            Action::Down | Action::ScrollDown => self.from + 1,
-            Action::PageUp => self.from.saturating_sub(page),
-            Action::PageDown => self.from + page,
-            Action::First => 0,
-            Action::Last => usize::MAX,
-            _ => return false,
-        };
-        self.from = to.min(self.last.get());
-        true
+        self.scroll.act(action, self.room.get().max(1))
     }
 
     /// Draws the text, and below it what can be done: `agree` and `decline` in words with their keys.
@@ -74,9 +61,8 @@ impl Agreement {
         let lines = wrapped(self.text.trim_end(), width as usize);
         let room = area.height.saturating_sub(4) as usize;
         let last = lines.len().saturating_sub(room);
-        let from = self.from.min(last);
+        let from = self.scroll.within(last);
         self.room.set(room);
-        self.last.set(last);
         if from == last && room > 0 {
             self.read.set(true);
         }

@@ -7,6 +7,7 @@ pub mod fan;
 pub mod field;
 pub mod raster;
 pub mod scale;
+pub mod scroll;
 pub mod spark;
 pub mod table;
 
@@ -14,5 +15,6 @@ pub use chart::{Axis, Band, Line, Plot, Side, chart};
 pub use editor::Editor;
 pub use field::Field;
 pub use scale::Unit;
+pub use scroll::Scroll;
 pub use spark::spark;
 pub use table::{Cell, Column, Table};

@@ -1,7 +1,5 @@
 //! The first step of a week's end: what it costs, what was changed, and what needs an answer before.
 
-use std::cell::Cell;
-
 use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
 
@@ -10,6 +8,7 @@ use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::text::{number, wrapped};
 use crate::console::theme::Role;
+use crate::console::widgets::Scroll;
 use crate::report::research::late_lines;
 use crate::report::review::{alike_lines, money_lines};
 use crate::tools::ToolId;
@@ -17,24 +16,13 @@ use crate::tools::ToolId;
 /// How far the review is scrolled.
 #[derive(Default)]
 pub struct Review {
-    from: usize,
-    /// The farthest that shows anything new, as it was drawn last.
-    last: Cell<usize>,
+    scroll: Scroll,
 }
 
 impl Review {
     /// Goes through a review that is longer than its window.
     pub fn scroll(&mut self, action: Action, page: usize) {
-        self.from = match action {
-            Action::Up | Action::ScrollUp => self.from.saturating_sub(1),
-            Action::Down | Action::ScrollDown => self.from + 1,
-            Action::PageUp => self.from.saturating_sub(page),
-            Action::PageDown => self.from + page,
-            Action::First => 0,
-            Action::Last => usize::MAX,
-            _ => self.from,
-        }
-        .min(self.last.get());
+        self.scroll.act(action, page);
     }
 
     /// Draws what fits.
@@ -44,8 +32,7 @@ impl Review {
         let fits = lines.len() <= room;
         // One row tells how much is not shown.
         let shown = if fits { room } else { room.saturating_sub(1) };
-        self.last.set(lines.len().saturating_sub(shown));
-        let from = self.from.min(self.last.get());
+        let from = self.scroll.within(lines.len().saturating_sub(shown));
         canvas.page = (shown as u16).max(1);
         canvas.lines(area, &lines[from..(from + shown).min(lines.len())]);
         if !fits && area.height > 0 {

@@ -1,0 +1,57 @@
+//! How far a text is scrolled that is longer than its window.
+
+use std::cell::Cell;
+
+use crate::console::action::Action;
+
+/// The row that stands first, and the farthest that may.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Scroll {
+    from: usize,
+    /// The farthest that shows anything new, as it was drawn last.
+    last: Cell<usize>,
+}
+
+impl Scroll {
+    /// Moves through the text by rows, by pages of so many rows, or to an end; true if the action does that.
+    pub fn act(&mut self, action: Action, page: usize) -> bool {
+        let to = match action {
+            Action::Up | Action::ScrollUp => self.from.saturating_sub(1),
+            Action::Down | Action::ScrollDown => self.from + 1,
+            Action::PageUp => self.from.saturating_sub(page),
+            Action::PageDown => self.from + page,
+            Action::First => 0,
+            Action::Last => usize::MAX,
+            _ => return false,
+        };
+        self.from = to.min(self.last.get());
+        true
+    }
+
+    /// The row to begin with where rows up to this one can stand first.
+    pub fn within(&self, last: usize) -> usize {
+        self.last.set(last);
+        self.from.min(last)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_stays_between_the_first_row_and_the_last_page() {
+        let mut scroll = Scroll::default();
+        assert_eq!(scroll.within(20), 0);
+        let mut after = |action| {
+            assert!(scroll.act(action, 8));
+            scroll.within(20)
+        };
+        let moves =
+            [Action::PageDown, Action::Down, Action::Last, Action::ScrollDown, Action::PageUp, Action::First];
+        assert_eq!(moves.map(&mut after), [8, 9, 20, 20, 12, 0]);
+        assert!(!scroll.act(Action::Confirm, 8));
+        scroll.act(Action::Last, 8);
+        assert_eq!(scroll.within(3), 3, "the window has grown");
+    }
+}

@@ -2,8 +2,8 @@
 //! cash lasts at that.
 
 use super::words::{count, money};
-use crate::notation::{cents, dollars};
-use crate::session::{AlikePlans, Observation};
+use crate::notation::{cents, dollars, signed_dollars};
+use crate::session::{AlikePlans, Observation, Preview};
 
 /// Lines on the money of a company before its next week.
 pub fn money_lines(seen: &Observation) -> Vec<String> {
@@ -65,6 +65,17 @@ fn alike_in_words(plans: &AlikePlans) -> String {
 /// A price with the decimals it has.
 fn price(value: f64) -> String {
     if value.fract() == 0.0 { dollars(value) } else { cents(value) }
+}
+
+/// What a call costs and from when it acts, in a line; none where there is nothing to say.
+pub fn terms_line(preview: &Preview) -> Option<String> {
+    let parts = [
+        (preview.cost_now > 0.0).then(|| format!("costs {} at once", dollars(preview.cost_now))),
+        (preview.cost_per_day != 0.0).then(|| format!("{} a day", signed_dollars(preview.cost_per_day))),
+        preview.effect_day.map(|day| format!("from day {day}")),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| parts.join(" · "))
 }
 
 #[cfg(test)]

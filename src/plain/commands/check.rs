@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{self, Line, Problem, as_object};
 use super::{Interpreter, change_line, only_required, tool_called, unknown};
-use crate::notation::{dollars, signed_dollars};
 use crate::report::plan_margins::{Lever, PlanTerms, Sales, margin_lines};
 use crate::report::research::outlook_lines;
+use crate::report::review::terms_line;
 use crate::session::{Preview, ToolId};
 use crate::world::identifiers::ByPlan;
 
@@ -30,19 +30,7 @@ impl Interpreter {
     fn told(&self, preview: &Preview, arguments: &Value) -> Answer {
         let mut lines = vec![format!("{} would be accepted; nothing was done", preview.tool)];
         lines.extend(preview.changes.iter().map(|change| format!("  {}", change_line(change))));
-        let mut parts = Vec::new();
-        if preview.cost_now > 0.0 {
-            parts.push(format!("costs {} at once", dollars(preview.cost_now)));
-        }
-        if preview.cost_per_day != 0.0 {
-            parts.push(format!("{} a day", signed_dollars(preview.cost_per_day)));
-        }
-        if let Some(day) = preview.effect_day {
-            parts.push(format!("from day {day}"));
-        }
-        if !parts.is_empty() {
-            lines.push(format!("  {}", parts.join(" · ")));
-        }
+        lines.extend(terms_line(preview).map(|line| format!("  {line}")));
         let notes =
             preview.research.iter().flat_map(outlook_lines).chain(self.margins(preview.tool, arguments));
         lines.extend(notes.map(|note| format!("  {note}")));

@@ -12,9 +12,10 @@ use crate::console::action::Action;
 use crate::console::screens::Look;
 use crate::console::text::{count, number, wrapped};
 use crate::console::theme::Role;
-use crate::notation::{dollars, grouped, signed_dollars};
+use crate::notation::{dollars, grouped};
 use crate::report::plan_margins::Sales;
 use crate::report::research::outlook_lines;
+use crate::report::review::terms_line;
 use crate::session::Rows;
 use crate::session::{number_at, text_at};
 use crate::tools::{ArgumentKind, Key};
@@ -86,18 +87,8 @@ pub(super) fn outcome_lines(
     }
     match &form.preview {
         Some(Ok(preview)) => {
-            let mut parts = Vec::new();
-            if preview.cost_now > 0.0 {
-                parts.push(format!("costs {} at once", dollars(preview.cost_now)));
-            }
-            if preview.cost_per_day != 0.0 {
-                parts.push(format!("{} a day", signed_dollars(preview.cost_per_day)));
-            }
-            if let Some(day) = preview.effect_day {
-                parts.push(format!("from day {day}"));
-            }
-            if !parts.is_empty() {
-                paragraph(&format!("→ {}", parts.join(" · ")), Role::Strong);
+            if let Some(terms) = terms_line(preview) {
+                paragraph(&format!("→ {terms}"), Role::Strong);
             }
             for line in preview.research.iter().flat_map(outlook_lines) {
                 paragraph(&line, Role::Text);

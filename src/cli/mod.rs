@@ -147,6 +147,14 @@ impl Context {
         }
     }
 
+    /// Folders of runs of several machines, or of this one where none is named.
+    ///
+    /// # Errors
+    /// As [`Context::runs`].
+    fn machines(&self, named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+        if named.is_empty() { Ok(vec![self.runs()?]) } else { Ok(named.to_vec()) }
+    }
+
     /// Folder of the runs.
     ///
     /// # Errors

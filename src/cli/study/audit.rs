@@ -28,10 +28,7 @@ pub struct Options {
 /// Runs the command; 1 where something was found.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let study = Study::read(&options.folder)?;
-    let machines = match options.machines.is_empty() {
-        true => vec![context.runs()?],
-        false => options.machines.clone(),
-    };
+    let machines = context.machines(&options.machines)?;
     let audit = audit(&study, &machines, options.witness.as_deref())?;
     if options.json {
         print(&(serde_json::to_string_pretty(&audit).unwrap_or_default() + "\n"))?;

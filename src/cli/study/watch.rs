@@ -38,10 +38,7 @@ const BETWEEN_LOOKS: Duration = Duration::from_secs(2);
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let study = Study::read(&options.folder)?;
-    let machines = match options.machines.is_empty() {
-        true => vec![context.runs()?],
-        false => options.machines.clone(),
-    };
+    let machines = context.machines(&options.machines)?;
     if let Some([label, text]) = options.note.as_deref() {
         participant_folder(Path::new(""), label).map_err(Failure::usage)?;
         return Ok(write_remark(&machines[0], label, text)?);

@@ -1,7 +1,7 @@
 //! The way of a participant through a study, line by line: label, consent, practice, session, questions, thanks.
 
 use std::io::{self, BufRead, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde_json::json;
@@ -61,10 +61,19 @@ impl<R: BufRead> Host<'_, R> {
         self.say("study", &study.protocol.title)?;
         let visit = self.label(study, runs)?;
         loop {
-            match visit.next()? {
-                NextStep::Consent(_) if self.consent.is_some() => self.play_next(&visit)?,
+            let step = match visit.next()? {
+                // Agreement stands in the first run, which does not exist yet.
+                NextStep::Consent(_) if self.consent.is_some() => visit.after_consent()?,
+                step => step,
+            };
+            match step {
                 NextStep::Consent(text) => self.consent(&visit, &text.text)?,
-                NextStep::Practice { .. } | NextStep::Session(_) => self.play_next(&visit)?,
+                NextStep::Practice { unfinished, may_pass } => self.practise(&visit, unfinished, may_pass)?,
+                NextStep::Session(unfinished) => {
+                    self.say("session", "The session begins. quit leaves it; everything confirmed is kept.")?;
+                    let session = self.begin(&visit, false, unfinished.as_deref())?;
+                    self.play(&visit, session)?;
+                }
                 NextStep::Questions(folder) => {
                     self.play(&visit, Session::open(&folder, Access::Write, true)?)?
                 }
@@ -122,33 +131,17 @@ impl<R: BufRead> Host<'_, R> {
         }
     }
 
-    /// Plays what comes after consent: the practice, or the session.
-    fn play_next(&mut self, visit: &Visit) -> Result<(), Stop> {
-        let step = match visit.next()? {
-            // Agreement stands in the first run.
-            NextStep::Consent(_) => visit.after_consent()?,
-            step => step,
-        };
-        match step {
-            NextStep::Practice { unfinished, may_pass } => {
-                if may_pass && !self.wants_practice()? {
-                    visit.pass_practice();
-                    return Ok(());
-                }
-                self.say(
-                    "practice",
-                    "Practice: another company, which does not count. It ends by itself, or with quit.",
-                )?;
-                let session = self.begin(visit, true, unfinished.as_deref())?;
-                self.play(visit, session)
-            }
-            NextStep::Session(unfinished) => {
-                self.say("session", "The session begins. quit leaves it; everything confirmed is kept.")?;
-                let session = self.begin(visit, false, unfinished.as_deref())?;
-                self.play(visit, session)
-            }
-            _ => Ok(()),
+    fn practise(&mut self, visit: &Visit, unfinished: Option<PathBuf>, may_pass: bool) -> Result<(), Stop> {
+        if may_pass && !self.wants_practice()? {
+            visit.pass_practice();
+            return Ok(());
         }
+        self.say(
+            "practice",
+            "Practice: another company, which does not count. It ends by itself, or with quit.",
+        )?;
+        let session = self.begin(visit, true, unfinished.as_deref())?;
+        self.play(visit, session)
     }
 
     fn wants_practice(&mut self) -> Result<bool, Stop> {

@@ -6,6 +6,7 @@ use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::all_run_folders;
 use crate::session::folder::world_log::{WORLDS, WorldLog};
+use crate::session::study::tombstone::Tombstone;
 use crate::session::trajectory::Trajectory;
 
 /// A machine's folder of runs, or a copy of it.
@@ -34,18 +35,9 @@ impl MachineRecord {
         let is_run =
             |place: &PathBuf| place.is_dir() && place.file_name().is_some_and(|name| name.len() == 8);
         let runs = places.into_iter().filter(is_run).map(RunRecord::read).collect();
-        let stones =
-            folders.iter().filter_map(|folder| std::fs::read_to_string(folder.join("withdrawn.toml")).ok());
-        let erased = |text: String| {
-            let table: toml::Table = text.parse().unwrap_or_default();
-            let runs = table.get("run").and_then(toml::Value::as_str).unwrap_or_default().to_owned();
-            runs.split_whitespace().map(str::to_owned).collect::<Vec<_>>()
-        };
-        MachineRecord {
-            runs,
-            worlds: WorldLog::read(&base.join(WORLDS)),
-            withdrawn: stones.flat_map(erased).collect(),
-        }
+        let stones: Vec<Tombstone> = folders.iter().filter_map(|folder| Tombstone::read(folder)).collect();
+        let withdrawn = stones.iter().flat_map(Tombstone::runs).map(str::to_owned).collect();
+        MachineRecord { runs, worlds: WorldLog::read(&base.join(WORLDS)), withdrawn }
     }
 }
 

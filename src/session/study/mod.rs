@@ -10,5 +10,6 @@ pub mod remarks;
 pub mod rules;
 pub mod sittings;
 pub mod stamp;
+pub(in crate::session) mod tombstone;
 pub mod visit;
 pub mod visit_log;

@@ -4,25 +4,21 @@
 
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
-
 use super::assignment::Place;
 use super::definition::{PracticeOffer, SeedPlan, Study};
 use super::stamp::StudyStamp;
+use super::tombstone::Tombstone;
 use super::visit_log::{VisitEvent, VisitLog};
 use crate::session::error::RunError;
 use crate::session::folder::consent::{ConsentGiven, ConsentText};
 use crate::session::folder::create::{NewRun, Storage, StudyEntry};
 use crate::session::folder::derived::Derived;
+use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
-use crate::session::folder::runs::{RunSummary, list_runs, participant_folder};
+use crate::session::folder::runs::{RunSummary, delete_run, list_runs, participant_folder};
 use crate::session::play::machine::Machine;
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
-use crate::session::trajectory::now;
-
-/// Name of the file that is left of what somebody has withdrawn.
-const TOMBSTONE: &str = "withdrawn.toml";
 
 /// A participant who has given a label.
 #[derive(Debug, Clone)]
@@ -35,6 +31,9 @@ pub struct Visit {
     log: VisitLog,
     refused_labels: u32,
 }
+
+/// A run of a study: what it is, and how far it has come.
+type OwnRun = (Manifest, RunSummary);
 
 /// What comes next for a participant.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,17 +55,6 @@ pub enum NextStep {
     Thanks,
     /// They have withdrawn.
     Withdrawn,
-}
-
-/// What is left of what somebody has withdrawn.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Tombstone {
-    /// Run that was erased.
-    pub run: String,
-    /// Digest of the study's protocol.
-    pub study: String,
-    /// When it was erased, RFC 3339.
-    pub at: String,
 }
 
 impl Visit {
@@ -124,12 +112,13 @@ impl Visit {
     /// # Errors
     /// The participant's runs cannot be read.
     pub fn next(&self) -> Result<NextStep, RunError> {
-        if self.runs.join(TOMBSTONE).exists() {
+        if Tombstone::is_in(&self.runs) {
             return Ok(NextStep::Withdrawn);
         }
-        match self.open_consent(&self.own_runs()?)? {
+        let own = self.own_runs()?;
+        match self.open_consent(&own) {
             Some(text) => Ok(NextStep::Consent(text)),
-            None => self.after_consent(),
+            None => self.after(&own),
         }
     }
 
@@ -138,9 +127,14 @@ impl Visit {
     /// # Errors
     /// As [`Visit::next`].
     pub fn after_consent(&self) -> Result<NextStep, RunError> {
-        let own = self.own_runs()?;
-        let find =
-            |practice: bool| own.iter().find(|(stamp, _)| stamp.practice == practice).map(|(_, run)| run);
+        self.after(&self.own_runs()?)
+    }
+
+    fn after(&self, own: &[OwnRun]) -> Result<NextStep, RunError> {
+        let is = |manifest: &Manifest, practice| {
+            manifest.study.as_ref().is_some_and(|own| own.practice == practice)
+        };
+        let find = |practice| own.iter().find(|(manifest, _)| is(manifest, practice)).map(|(_, run)| run);
         let (practice, session) = (find(true), find(false));
         let has_practised = practice.is_some_and(|run| run.ended.is_some());
         if session.is_none() && !has_practised && self.study.protocol.practice.offer != PracticeOffer::None {
@@ -221,18 +215,9 @@ impl Visit {
     /// # Errors
     /// They are in use, or cannot be removed.
     pub fn withdraw(&self) -> Result<(), RunError> {
-        let own = self.own_runs()?;
-        for (_, run) in &own {
-            crate::session::folder::runs::delete_run(&self.runs, &run.id)?;
-        }
-        let stone = Tombstone {
-            run: own.iter().map(|(_, run)| run.id.clone()).collect::<Vec<_>>().join(" "),
-            study: self.study.digest.clone(),
-            at: now(),
-        };
-        let path = self.runs.join(TOMBSTONE);
-        std::fs::create_dir_all(&self.runs).map_err(RunError::io(&self.runs))?;
-        std::fs::write(&path, toml::to_string(&stone).unwrap_or_default()).map_err(RunError::io(&path))?;
+        let own: Vec<String> = self.own_runs()?.into_iter().map(|(_, run)| run.id).collect();
+        own.iter().try_for_each(|run| delete_run(&self.runs, run))?;
+        Tombstone::of(&own, &self.study.digest).write(&self.runs)?;
         self.log.write(&self.label, VisitEvent::Withdrew);
         Ok(())
     }
@@ -242,30 +227,35 @@ impl Visit {
         self.study.consent.clone().map(|text| ConsentText { file, text })
     }
 
-    /// The text that nobody has agreed to yet.
-    fn open_consent(&self, own: &[(StudyStamp, RunSummary)]) -> Result<Option<ConsentText>, RunError> {
-        let Some(text) = self.consent_text() else { return Ok(None) };
+    /// The text that the participant has not agreed to yet.
+    fn open_consent(&self, own: &[OwnRun]) -> Option<ConsentText> {
+        let text = self.consent_text()?;
         let digest = text.digest();
-        let has_agreed = own.iter().any(|(_, run)| {
-            let manifest = Derived::of(&self.runs.join(&run.id)).ok().map(|derived| derived.manifest);
-            manifest.and_then(|manifest| manifest.consent).is_some_and(|consent| consent.digest == digest)
-        });
-        Ok((!has_agreed).then_some(text))
+        let agreed =
+            |(manifest, _): &OwnRun| manifest.consent.as_ref().is_some_and(|own| own.digest == digest);
+        (!own.iter().any(agreed)).then_some(text)
     }
 
-    /// The participant's runs of this study with their stamps, the last played first.
-    fn own_runs(&self) -> Result<Vec<(StudyStamp, RunSummary)>, RunError> {
-        let stamped = |run: RunSummary| {
-            let stamp = Derived::of(&self.runs.join(&run.id)).ok()?.manifest.study?;
-            (stamp.digest == self.study.digest).then_some((stamp, run))
+    /// The participant's runs of this study, the last played first.
+    fn own_runs(&self) -> Result<Vec<OwnRun>, RunError> {
+        let is_own = |stamp: &StudyStamp| stamp.digest == self.study.digest;
+        let all = self.stamped_runs()?.into_iter();
+        Ok(all.filter(|(manifest, _)| manifest.study.as_ref().is_some_and(is_own)).collect())
+    }
+
+    /// The participant's runs of any study, the last played first.
+    fn stamped_runs(&self) -> Result<Vec<OwnRun>, RunError> {
+        let with_manifest = |run: RunSummary| {
+            let manifest = Derived::of(&self.runs.join(&run.id)).ok()?.manifest;
+            manifest.study.is_some().then_some((manifest, run))
         };
-        Ok(list_runs(&self.runs)?.into_iter().filter_map(stamped).collect())
+        Ok(list_runs(&self.runs)?.into_iter().filter_map(with_manifest).collect())
     }
 
     /// A participant goes on under the protocol that they began with.
     fn refuse_other_protocol(&self) -> Result<(), RunError> {
-        let other = list_runs(&self.runs)?.into_iter().find_map(|run| {
-            let stamp = Derived::of(&self.runs.join(&run.id)).ok()?.manifest.study?;
+        let other = self.stamped_runs()?.into_iter().find_map(|(manifest, run)| {
+            let stamp = manifest.study?;
             (stamp.name == self.study.protocol.name && stamp.digest != self.study.digest).then_some(run.id)
         });
         match other {

@@ -1,0 +1,54 @@
+//! What is left where a participant has withdrawn: `withdrawn.toml` in the folder of their runs.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::session::error::RunError;
+use crate::session::trajectory::now;
+
+/// Name of the file.
+const FILE: &str = "withdrawn.toml";
+
+/// That somebody has withdrawn, and which runs were erased.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(in crate::session) struct Tombstone {
+    /// Runs that were erased, with blanks between them.
+    run: String,
+    /// Digest of the study's protocol.
+    study: String,
+    /// When they were erased, RFC 3339.
+    at: String,
+}
+
+impl Tombstone {
+    /// That these runs of a study are erased now.
+    pub(in crate::session) fn of(runs: &[String], study: &str) -> Tombstone {
+        Tombstone { run: runs.join(" "), study: study.to_owned(), at: now() }
+    }
+
+    /// Whether there is one in a folder of runs, whatever it says.
+    pub(in crate::session) fn is_in(folder: &Path) -> bool {
+        folder.join(FILE).exists()
+    }
+
+    /// The one in a folder of runs; none where there is none that can be read.
+    pub(in crate::session) fn read(folder: &Path) -> Option<Tombstone> {
+        toml::from_str(&std::fs::read_to_string(folder.join(FILE)).ok()?).ok()
+    }
+
+    /// Leaves it in a folder of runs.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub(in crate::session) fn write(&self, folder: &Path) -> Result<(), RunError> {
+        let path = folder.join(FILE);
+        std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+        std::fs::write(&path, toml::to_string(self).unwrap_or_default()).map_err(RunError::io(&path))
+    }
+
+    /// The runs that were erased.
+    pub(in crate::session) fn runs(&self) -> impl Iterator<Item = &str> {
+        self.run.split_whitespace()
+    }
+}

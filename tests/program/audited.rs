@@ -316,4 +316,22 @@ fn rehearsals_on_the_machine_are_found() {
     fs::write(&list, kept).expect("written");
     let kinds = study.kinds(&["one"]);
     assert!(kinds.contains(&"world_list".to_owned()), "{kinds:?}");
+    // One that was taken out after the sitting had seen the list, before another world was opened.
+    let study = Study::new();
+    session(&study);
+    let run = |seed: &str| study.run("one", &["run", "--policy", "P0", "--seed", seed, "--until", "7"]).code;
+    assert_eq!((run("2718"), run("3")), (0, 0));
+    let list = study.machine("one").join("worlds.jsonl");
+    let whole = fs::read_to_string(&list).expect("a list");
+    let kept: Vec<&str> = whole
+        .lines()
+        .filter(|line| !line.contains("\"to_seed\":2718,\"scenario\":\"default\",\"prev\""))
+        .collect();
+    assert_eq!(kept.len() + 1, whole.lines().count());
+    fs::write(&list, kept.join("\n") + "\n").expect("written");
+    let found = study.audit(&["one"]);
+    assert!(
+        found.iter().any(|(kind, _, words)| kind == "world_list" && words.contains("line 2")),
+        "{found:?}"
+    );
 }

@@ -261,8 +261,15 @@ impl Inspection<'_> {
                 "the machine's list of opened worlds had {lines} lines at this line; it is not that list any more"
             )
         };
-        lost.map(|(line, seen)| {
+        let lost = lost.map(|(line, seen)| {
             self.finding(AuditKind::WorldList, Some(line.seq + 1), &line.at, words(seen.lines))
+        });
+        lost.or_else(|| {
+            let words = format!(
+                "line {} of the machine's list of opened worlds does not follow from the one before",
+                log.broken_at?
+            );
+            Some(self.finding(AuditKind::WorldList, None, "", words))
         })
     }
 }

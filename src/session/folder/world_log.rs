@@ -88,8 +88,7 @@ fn append(path: &Path, line: WorldLine) -> std::io::Result<()> {
     let mut text = String::new();
     file.seek(SeekFrom::Start(0))?;
     file.read_to_string(&mut text)?;
-    let prev = text.lines().last().map(head_of).unwrap_or_default();
-    let line = WorldLine { prev, ..line };
+    let line = WorldLine { prev: last_head(&text), ..line };
     let text = serde_json::to_string(&line).unwrap_or_default() + "\n";
     file.write_all(text.as_bytes())
 }
@@ -98,10 +97,15 @@ fn head_of(line: &str) -> String {
     blake3::hash(line.as_bytes()).to_hex()[..16].to_owned()
 }
 
+/// How a list ends; empty where there is none.
+fn last_head(text: &str) -> String {
+    text.lines().last().map(head_of).unwrap_or_default()
+}
+
 /// How long the list of this process is now, and how it ends; none where none is kept.
 pub(in crate::session) fn worlds_seen() -> Option<WorldsSeen> {
-    let log = WorldLog::read(PLACE.get()?);
-    Some(WorldsSeen { lines: log.lines.len() as u64, head: log.heads.last().cloned().unwrap_or_default() })
+    let text = std::fs::read_to_string(PLACE.get()?).unwrap_or_default();
+    Some(WorldsSeen { lines: text.lines().count() as u64, head: last_head(&text) })
 }
 
 impl WorldLog {

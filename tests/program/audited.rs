@@ -1,9 +1,11 @@
 //! The audit of a study: what people do to their records is found, with its line, and honest sessions raise nothing.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use novamind::session::{nanoseconds_of, written_moment};
 use serde_json::{Map, Value, json};
 
 use crate::support::home::{Home, Said, said};
@@ -334,4 +336,61 @@ fn rehearsals_on_the_machine_are_found() {
         found.iter().any(|(kind, _, words)| kind == "world_list" && words.contains("line 2")),
         "{found:?}"
     );
+}
+
+/// The rows of a table, by the names of its columns.
+fn rows_of(path: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut table = csv::Reader::from_path(path).expect("a table");
+    let rows = table.deserialize().collect::<Result<Vec<_>, _>>();
+    rows.expect("rows")
+}
+
+#[test]
+fn the_audit_counts_as_the_tables_do() {
+    let study = Study::new();
+    study.visit("one", &format!("P01\nyes\nset_prices A=-1\n{}quit\n", WEEKS.concat()));
+    study.visit("one", "P01\nnext \"six\" naive\n");
+    let own =
+        "next \"own\" 990000 980000 999000 960000 940000 980000 900000 800000 990000 800000 700000 990000\n";
+    study.visit("two", &format!("P02\nyes\n{own}{}quit\n", WEEKS[..2].concat()));
+    study.visit("two", &format!("P03\nyes\n{own}{own}"));
+    // Of the second participant one week has one forecast of the person, and half a minute passed before the last.
+    let run = study.only_run("two", "P02");
+    let mut told = lines(&run);
+    let weeks: Vec<usize> = (0..told.len()).filter(|at| told[*at]["kind"] == "advance").collect();
+    told[weeks[1]]["forecasts"][0]["filled_naively"] = json!(false);
+    for line in told.iter_mut().skip(weeks[2]) {
+        let at = nanoseconds_of(line["at"].as_str().expect("a moment")) + 30_000_000_000;
+        line.insert("at".to_owned(), json!(written_moment(at)));
+    }
+    forge(&run, told);
+    let out = study.home.0.path().join("data");
+    let [one, two, out] =
+        [study.machine("one"), study.machine("two"), out].map(|path| path.display().to_string());
+    let collected = study.home.run(&["study", "collect", &one, &two, "--out", &out]);
+    assert!(collected.out.contains("3 runs verified"), "{}{}", collected.out, collected.err);
+    let said = study.home.run(&["study", "audit", "--json", &study.folder(), &one, &two]);
+    let audit: Value = serde_json::from_str(&said.out).expect("JSON");
+    let table = rows_of(&Path::new(&out).join("runs.csv"));
+    let same = [
+        ("weeks", "weeks"),
+        ("sittings", "sittings"),
+        ("unclosed_sittings", "sittings_not_closed"),
+        ("refusals", "refused"),
+        ("naive_weeks", "weeks_filled_naively"),
+        ("fast_weeks", "implausibly_fast_weeks"),
+        ("pasted", "pasted_characters"),
+    ];
+    let mut seen = BTreeMap::new();
+    for facts in audit["runs"].as_array().expect("runs") {
+        let row = table.iter().find(|row| facts["run"] == row["run"]).expect("its row");
+        for (name, column) in same {
+            assert_eq!(facts[name].to_string(), row[column], "{name} of {}", row["participant"]);
+        }
+        let counts = ["naive_weeks", "fast_weeks", "refusals"].map(|name| facts[name].as_u64());
+        seen.insert(row["participant"].clone(), counts);
+    }
+    let expected = [("P01", [6, 6, 1]), ("P02", [2, 2, 0]), ("P03", [0, 2, 0])];
+    let expected = expected.map(|(label, counts)| (label.to_owned(), counts.map(Some)));
+    assert_eq!(seen, BTreeMap::from(expected));
 }

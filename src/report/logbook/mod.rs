@@ -7,8 +7,6 @@ mod effort;
 mod summary;
 mod timeline;
 
-use std::collections::BTreeSet;
-
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -19,8 +17,8 @@ pub use timeline::Pause;
 use super::books::{Books, ChannelRow};
 use super::chapters::change_in_words;
 use super::measures::{Measures, Wording};
-use crate::session::record::{ClockEvent, FiledForecast, PresenceEvent};
-use crate::session::{Activity, Consent, Ended, Line, Mode, Record, ScoredForecast, Session, StudyStamp};
+use crate::session::record::FiledForecast;
+use crate::session::{Consent, Ended, Line, Mode, Record, ScoredForecast, Session, SittingCount, StudyStamp};
 use timeline::{Span, Timeline};
 
 /// How a run was played.
@@ -77,7 +75,7 @@ pub struct Logbook {
     /// How often the clock of the machine was set back while the run was played.
     pub clock_set_back: u32,
     /// How often the program took it up, as its lines tell.
-    pub sittings: Sittings,
+    pub sittings: SittingCount,
     /// Its notes.
     pub notes: NotesLog,
     /// Weeks that were decided in less than ten active seconds.
@@ -98,23 +96,6 @@ pub struct Logbook {
     pub last_seq: u64,
     /// Hash of the last line: names the whole trajectory.
     pub last_hash: String,
-}
-
-/// Active seconds below which a week was decided implausibly fast: nobody reads a week in them.
-pub const FAST_WEEK_SECONDS: f64 = 10.0;
-
-/// How often the program took up the run.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
-pub struct Sittings {
-    /// How often; 0 where lines do not tell.
-    pub opened: u32,
-    /// How often it did not leave the run before it took it up again, or, of an unfinished run, at all: it was killed, or
-    /// still plays.
-    pub not_closed: u32,
-    /// How often the clock was stopped.
-    pub clock_stopped: u32,
-    /// Machines it was played on.
-    pub machines: u32,
 }
 
 /// The notes of a run.
@@ -139,6 +120,8 @@ pub struct WeekLog {
     pub days_run: u32,
     /// It was taken over from the run that this one branched from: nobody played it here.
     pub inherited: bool,
+    /// It was decided here, in less than ten active seconds.
+    pub implausibly_fast: bool,
     /// When deciding began, RFC 3339.
     pub began_at: String,
     /// When it was decided, RFC 3339.
@@ -202,9 +185,9 @@ impl Logbook {
             open_week: timeline.open.effort,
             format: manifest.format,
             study: manifest.study.clone(),
-            sittings: Sittings::of(lines),
+            sittings: SittingCount::of(lines),
             notes: NotesLog::of(lines),
-            fast_weeks: weeks.iter().filter(|week| week.is_implausibly_fast()).count() as u32,
+            fast_weeks: weeks.iter().filter(|week| week.implausibly_fast).count() as u32,
             breaks: timeline.breaks,
             clock_set_back: timeline.clock_set_back,
             total,
@@ -216,44 +199,6 @@ impl Logbook {
             last_seq: last.map_or(0, |line| line.seq),
             last_hash: last.map(|line| line.hash.clone()).unwrap_or_default(),
         }
-    }
-}
-
-impl WeekLog {
-    /// Whether it was decided here, in less than ten active seconds.
-    pub fn is_implausibly_fast(&self) -> bool {
-        !self.inherited && self.effort.time.active_seconds() < FAST_WEEK_SECONDS
-    }
-}
-
-impl Sittings {
-    fn of(lines: &[Line]) -> Sittings {
-        let (mut sittings, mut machines, mut is_open) = (Sittings::default(), BTreeSet::new(), false);
-        for line in lines {
-            let presence = match &line.record {
-                Record::Activity(Activity::Session(presence)) => presence,
-                Record::Activity(Activity::Clock(clock)) => {
-                    sittings.clock_stopped += u32::from(clock.event == ClockEvent::Stopped);
-                    continue;
-                }
-                _ => continue,
-            };
-            machines.insert(presence.machine.as_str());
-            match presence.event {
-                PresenceEvent::Opened => {
-                    sittings.opened += 1;
-                    sittings.not_closed += u32::from(is_open);
-                    is_open = true;
-                }
-                PresenceEvent::Closed => is_open = false,
-                _ => {}
-            }
-        }
-        // What closes the sitting in which a run ends stands after its end.
-        let is_over = lines.last().is_some_and(|line| matches!(line.record, Record::End(_)));
-        sittings.not_closed += u32::from(is_open && !is_over);
-        sittings.machines = machines.len() as u32;
-        sittings
     }
 }
 
@@ -280,7 +225,8 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
         decision_day: span.decision_day,
         day: span.day,
         days_run: span.days_run,
-        inherited: span.inherited,
+        inherited: span.attended.inherited,
+        implausibly_fast: span.attended.is_implausibly_fast(&span.effort.time),
         began_at: span.began_at.clone(),
         decided_at: span.decided_at.clone(),
         effort: span.effort.clone(),
@@ -288,8 +234,7 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
         decisions,
         forecasts: span.forecasts.iter().map(scored).collect(),
         naive_forecasts: span.forecasts.iter().map(|forecast| forecast.filled_naively).collect(),
-        filled_naively: (!span.forecasts.is_empty())
-            .then(|| span.forecasts.iter().any(|forecast| forecast.filled_naively)),
+        filled_naively: span.filled_naively,
         figures: span.figures.clone(),
         state_hash: span.state_hash.clone(),
     }

@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use super::Effort;
 use crate::session::record::{Closing, FiledForecast, Outcome, View};
 use crate::session::{
-    Activity, Attendance, Attention, BREAK_SECONDS, Line, Record, Reversal, written_moment,
+    Activity, Attendance, AttendedWeek, Attention, BREAK_SECONDS, Line, Record, Reversal, written_moment,
 };
 
 /// A time of more than ten minutes in which nobody played.
@@ -28,17 +28,17 @@ pub(super) struct Span {
     pub decision_day: u32,
     pub day: u32,
     pub days_run: u32,
-    pub inherited: bool,
     pub began_at: String,
     pub decided_at: String,
     pub effort: Effort,
     pub rationale: Option<String>,
     pub forecasts: Vec<FiledForecast>,
+    /// At least one of them was filled by the naive projection; none if none was filed.
+    pub filled_naively: Option<bool>,
     pub figures: Map<String, Value>,
     pub state_hash: String,
-    /// Where it begins and ends on the axis of the run.
-    from: i64,
-    to: i64,
+    /// Where it stands on the axis of the run.
+    pub attended: AttendedWeek,
 }
 
 /// All spans of a run.
@@ -56,22 +56,17 @@ impl Timeline {
     /// Reads lines in their order.
     pub fn of(lines: &[Line]) -> Timeline {
         let mut timeline = Timeline::default();
-        // What a branch took over was played in another run, at another time.
-        let copied = lines.iter().position(|line| matches!(line.record, Record::Branch(_))).unwrap_or(0);
         let mut before: Option<&Line> = None;
         let mut attendance = Attendance::default();
         let mut places = Vec::with_capacity(lines.len());
         let mut views = Vec::new();
-        for (at, line) in lines.iter().enumerate() {
+        for line in lines {
             if timeline.open.began_at.is_empty() {
                 timeline.open.began_at = before.unwrap_or(line).at.clone();
                 timeline.open.decision_day = before.unwrap_or(line).day;
-                timeline.open.from = attendance.place();
             }
             attendance.note(line.nanoseconds(), &line.record);
             places.push(attendance.place());
-            timeline.open.inherited = at < copied;
-            timeline.open.to = attendance.place();
             if let Record::Activity(Activity::View(view)) = &line.record {
                 views.push((timeline.spans.len(), attendance.place(), view));
             }
@@ -80,8 +75,11 @@ impl Timeline {
         }
         timeline.clock_set_back = attendance.clock_set_back();
         // Idleness is told by a line that comes after it began: only now is known what the time was.
-        for span in timeline.spans.iter_mut().chain([&mut timeline.open]) {
-            span.effort.time = attendance.between(span.from, span.to);
+        let last = AttendedWeek { from: attendance.week_from(), to: attendance.place(), inherited: false };
+        let spans = timeline.spans.iter_mut().chain([&mut timeline.open]);
+        for (span, week) in spans.zip(attendance.weeks().iter().chain([&last])) {
+            span.attended = *week;
+            span.effort.time = attendance.between(week.from, week.to);
         }
         timeline.tell_breaks(&attendance, lines, &places);
         for (week, place, view) in views {
@@ -113,7 +111,7 @@ impl Timeline {
                 to: lines[last].at.clone(),
                 seconds,
             });
-            let own = self.spans.iter_mut().find(|span| span.from < to && to <= span.to);
+            let own = self.spans.iter_mut().find(|span| span.attended.from < to && to <= span.attended.to);
             own.unwrap_or(&mut self.open).effort.breaks += 1;
         }
     }
@@ -123,8 +121,9 @@ impl Timeline {
         let length = i64::try_from(view.for_ms).unwrap_or(i64::MAX).saturating_mul(1_000_000);
         let began = place.saturating_sub(length).max(0);
         let spans = self.spans.iter_mut().chain([&mut self.open]).take(week + 1);
-        for span in spans.filter(|span| span.to > began && !span.inherited) {
-            let time = attendance.between(began.max(span.from), place.min(span.to));
+        for span in spans.filter(|span| span.attended.to > began && !span.attended.inherited) {
+            let AttendedWeek { from, to, .. } = span.attended;
+            let time = attendance.between(began.max(from), place.min(to));
             *span.effort.screens.entry(view.screen.clone()).or_default() += time;
         }
     }
@@ -148,6 +147,7 @@ impl Timeline {
                 self.open.decided_at.clone_from(&line.at);
                 self.open.rationale = Some(filed.rationale.clone());
                 self.open.forecasts.clone_from(&filed.forecasts);
+                self.open.filled_naively = filed.filled_naively();
             }
             Record::Week(closing) | Record::Step(closing) => self.close(line, closing),
             Record::Start(_)
@@ -280,8 +280,11 @@ mod tests {
             ("10:01:03", advance()),
             ("10:01:04", week()),
         ]));
-        let seen: Vec<(bool, f64)> =
-            timeline.spans.iter().map(|span| (span.inherited, span.effort.time.active_seconds())).collect();
+        let seen: Vec<(bool, f64)> = timeline
+            .spans
+            .iter()
+            .map(|span| (span.attended.inherited, span.effort.time.active_seconds()))
+            .collect();
         assert_eq!(seen, [(true, 0.0), (false, 60.0)]);
     }
 }

@@ -93,7 +93,7 @@ pub const WEEKS: &[WeekColumn] = &[
         week.effort.breaks.to_string()
     }),
     column("implausibly_fast", "0 or 1", "1: decided in less than ten active seconds", |_, week| {
-        flag(week.is_implausibly_fast())
+        flag(week.implausibly_fast)
     }),
     column("calls", "count", "calls of tools that were accepted", |_, week| week.effort.calls.to_string()),
     column("refused", "count", "calls of tools that were refused", |_, week| week.effort.refused.to_string()),

@@ -1,21 +1,13 @@
 //! Whether the clock of a machine was set while a run was played.
 
 use crate::session::trajectory::record::{Activity, Presence};
-use crate::session::trajectory::{Line, Record};
-
-/// Seconds that a clock may be corrected by before it counts as set.
-const CORRECTION: f64 = 2.0;
+use crate::session::trajectory::{CLOCK_CORRECTION, Line, Record, clock_went_back};
 
 /// Places where the clock was set: the line, and in words.
 pub(super) fn settings_of_clock(lines: &[Line]) -> Vec<(&Line, String)> {
-    let mut found: Vec<(&Line, String)> = lines
-        .windows(2)
-        .filter_map(|pair| {
-            let back = pair[0].moment() - pair[1].moment();
-            let words = || format!("the clock went back by {back:.0} seconds before this line");
-            (back > CORRECTION).then(|| (&pair[1], words()))
-        })
-        .collect();
+    let words = |back: f64| format!("the clock went back by {back:.0} seconds before this line");
+    let mut found: Vec<(&Line, String)> =
+        clock_went_back(lines).map(|(_, line, back)| (line, words(back))).collect();
     let sittings: Vec<(&Line, &Presence)> = lines.iter().filter_map(presence).collect();
     for pair in sittings.windows(2) {
         let ((before, earlier), (line, later)) = (pair[0], pair[1]);
@@ -25,7 +17,7 @@ pub(super) fn settings_of_clock(lines: &[Line]) -> Vec<(&Line, String)> {
         let steady = later.monotonic_ms as f64 / 1e3 - earlier.monotonic_ms as f64 / 1e3;
         let off = line.moment() - before.moment() - steady;
         let known = found.iter().any(|(known, _)| (before.seq..=line.seq).contains(&known.seq));
-        if off.abs() > CORRECTION && !known {
+        if off.abs() > CLOCK_CORRECTION && !known {
             let way = if off < 0.0 { "back" } else { "forward" };
             let words =
                 format!("the clock was set {way} by {:.0} seconds since line {}", off.abs(), before.seq + 1);

@@ -2,9 +2,11 @@
 
 use serde::Serialize;
 
+use crate::session::figures::attendance::Attendance;
+use crate::session::figures::sitting_count::SittingCount;
 use crate::session::folder::manifest::Manifest;
-use crate::session::trajectory::record::{Activity, Outcome, PresenceEvent};
-use crate::session::trajectory::{Record, Trajectory, seconds};
+use crate::session::trajectory::record::{Activity, Outcome};
+use crate::session::trajectory::{Record, Trajectory};
 
 /// How a run of a study was played.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -29,13 +31,13 @@ pub struct RunFacts {
     pub ended: Option<String>,
     /// Sittings.
     pub sittings: u32,
-    /// Sittings that were not closed: the program was killed, or the machine lost power.
+    /// Sittings that no line closes: the program was killed, or still plays.
     pub unclosed_sittings: u32,
     /// Calls and weeks that were refused.
     pub refusals: u32,
-    /// Weeks that were filed with the naive projection.
+    /// Weeks in which at least one forecast was filled by the naive projection.
     pub naive_weeks: u32,
-    /// Weeks that were decided in less than ten seconds.
+    /// Weeks that were decided in less than ten active seconds.
     pub fast_weeks: u32,
     /// Characters that came from the clipboard.
     pub pasted: u64,
@@ -45,12 +47,10 @@ pub struct RunFacts {
     pub longest_gap: f64,
 }
 
-/// Seconds below which deciding a week is implausibly fast.
-const FAST: f64 = 10.0;
-
 impl RunFacts {
     pub(super) fn of(manifest: &Manifest, trajectory: &Trajectory) -> Option<RunFacts> {
         let stamp = manifest.study.as_ref()?;
+        let sittings = SittingCount::of(&trajectory.lines);
         let mut facts = RunFacts {
             run: manifest.id.clone(),
             participant: manifest.participant.clone(),
@@ -61,16 +61,16 @@ impl RunFacts {
             lines: trajectory.lines.len() as u64,
             weeks: 0,
             ended: None,
-            sittings: 0,
-            unclosed_sittings: 0,
+            sittings: sittings.opened,
+            unclosed_sittings: sittings.not_closed,
             refusals: 0,
             naive_weeks: 0,
-            fast_weeks: 0,
+            fast_weeks: Attendance::of(&trajectory.lines).fast_weeks(),
             pasted: 0,
             failed_checks: 0,
             longest_gap: 0.0,
         };
-        let (mut began, mut before, mut open) = (seconds(&manifest.created), None::<f64>, false);
+        let mut before = None::<f64>;
         for line in &trajectory.lines {
             let moment = line.moment();
             facts.longest_gap = facts.longest_gap.max(before.map_or(0.0, |before| moment - before));
@@ -78,30 +78,19 @@ impl RunFacts {
             match &line.record {
                 Record::Call(call) if matches!(call.outcome, Outcome::Refused(_)) => facts.refusals += 1,
                 Record::Advance(filed) => {
-                    facts.fast_weeks += u32::from(moment - began < FAST);
-                    let naive = filed.forecasts.iter().all(|forecast| forecast.filled_naively);
-                    facts.naive_weeks += u32::from(naive);
+                    facts.naive_weeks += u32::from(filed.filled_naively() == Some(true));
                 }
-                Record::Week(_) => {
-                    facts.weeks += 1;
-                    began = moment;
-                }
+                Record::Week(_) => facts.weeks += 1,
                 Record::End(end) => facts.ended = Some(end.reason.id().to_owned()),
-                Record::Activity(activity) => facts.note(activity, &mut open),
+                Record::Activity(activity) => facts.note(activity),
                 _ => {}
             }
         }
         Some(facts)
     }
 
-    fn note(&mut self, activity: &Activity, open: &mut bool) {
+    fn note(&mut self, activity: &Activity) {
         match activity {
-            Activity::Session(own) if own.event == PresenceEvent::Opened => {
-                self.sittings += 1;
-                self.unclosed_sittings += u32::from(*open);
-                *open = true;
-            }
-            Activity::Session(own) if own.event == PresenceEvent::Closed => *open = false,
             Activity::Draft(draft) => self.pasted += draft.pasted,
             Activity::Answer(answer) => self.failed_checks += u32::from(answer.as_expected == Some(false)),
             _ => {}

@@ -19,6 +19,7 @@ pub use facts::RunFacts;
 pub use finding::{AuditFinding, AuditKind};
 
 use crate::session::error::RunError;
+use crate::session::folder::derived::departures_of_file;
 use crate::session::folder::manifest::Manifest;
 use crate::session::resume::integrity::Integrity;
 use crate::session::resume::sealing::SealKey;
@@ -172,25 +173,9 @@ impl Inspection<'_> {
 
     /// What `run.toml` says beside the first line.
     fn manifest(&self) -> Vec<AuditFinding> {
-        let of_line = self.run.manifest.as_ref();
-        let text = std::fs::read_to_string(self.run.folder.join("run.toml")).unwrap_or_default();
-        let file: toml::Table = text.parse().unwrap_or_default();
-        let said = of_line.and_then(|manifest| toml::Table::try_from(manifest).ok()).unwrap_or_default();
-        let mut keys: Vec<&String> = said.keys().chain(file.keys()).collect();
-        keys.sort_unstable();
-        keys.dedup();
-        // The file is older than the line by the time it took to write it.
-        let differ = keys.into_iter().filter(|key| *key != "created" && said.get(*key) != file.get(*key));
-        let shown = |value: Option<&toml::Value>| value.map_or("nothing".to_owned(), toml::Value::to_string);
-        differ
-            .map(|key| {
-                let words = format!(
-                    "run.toml says {key} = {}, the first line {}",
-                    shown(file.get(key)),
-                    shown(said.get(key))
-                );
-                self.finding(AuditKind::Manifest, Some(1), "", words)
-            })
+        let told = self.run.manifest.iter();
+        told.flat_map(|told| departures_of_file(&self.run.folder, told))
+            .map(|words| self.finding(AuditKind::Manifest, Some(1), "", words))
             .collect()
     }
 

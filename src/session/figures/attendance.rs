@@ -7,6 +7,7 @@
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
+use super::attended_week::AttendedWeek;
 use crate::session::trajectory::record::{Activity, ClockEvent, LimitScope, Presence, PresenceEvent};
 use crate::session::trajectory::{Line, Record};
 
@@ -163,6 +164,7 @@ pub struct Attendance {
     is_suspended: bool,
     has_focus_elsewhere: bool,
     clock_set_back: u32,
+    weeks: Vec<AttendedWeek>,
     week_from: i64,
     sitting_from: i64,
 }
@@ -190,9 +192,13 @@ impl Attendance {
             // What a branch took over was played in another run, at another time.
             Record::Branch(_) => {
                 self.times.clear();
+                self.weeks.iter_mut().for_each(|week| week.inherited = true);
                 (self.week_from, self.sitting_from) = (self.place, self.place);
             }
-            record if record.closing().is_some() => self.week_from = self.place,
+            record if record.closing().is_some() => {
+                self.weeks.push(AttendedWeek { from: self.week_from, to: self.place, inherited: false });
+                self.week_from = self.place;
+            }
             record if is_act(record) => (self.is_idle, self.has_focus_elsewhere) = (false, false),
             _ => {}
         }
@@ -206,6 +212,16 @@ impl Attendance {
     /// How often the wall clock was set back between two lines.
     pub fn clock_set_back(&self) -> u32 {
         self.clock_set_back
+    }
+
+    /// The weeks, or single days, that ran, in order.
+    pub fn weeks(&self) -> &[AttendedWeek] {
+        &self.weeks
+    }
+
+    /// Where the week that has not run yet begins.
+    pub fn week_from(&self) -> i64 {
+        self.week_from
     }
 
     /// Its times in order, without gaps but for what was taken over from another run.

@@ -2,6 +2,7 @@
 
 pub(in crate::session) mod alike_plans;
 pub(in crate::session) mod attendance;
+pub(in crate::session) mod attended_week;
 pub(in crate::session) mod best_channels;
 pub(in crate::session) mod booked;
 pub(in crate::session) mod changes;
@@ -16,6 +17,7 @@ pub(in crate::session) mod pace;
 pub(in crate::session) mod research_outlook;
 pub(in crate::session) mod scored_forecast;
 pub(in crate::session) mod setting;
+pub(in crate::session) mod sitting_count;
 pub(in crate::session) mod tool_limits;
 pub(in crate::session) mod truth;
 pub(in crate::session) mod week;

@@ -1,5 +1,6 @@
 //! What a run is, as the first line of its trajectory says; `run.toml` repeats it, and is made anew where it does not.
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -90,21 +91,39 @@ fn unusable(error: &RunError) -> String {
     }
 }
 
+/// What `run.toml` says otherwise than the first line, a sentence each; `told` is what the line says.
+pub(in crate::session) fn departures_of_file(folder: &Path, told: &Manifest) -> Vec<String> {
+    let own = match Manifest::read(folder) {
+        Ok(own) => own,
+        Err(error) => return vec![unusable(&error)],
+    };
+    let shown = |value: Option<Value>| value.map_or("nothing".to_owned(), |value| value.to_string());
+    let differ = differences(&own, &with_what_no_line_says(told.clone(), &own)).into_iter();
+    let words = |(name, own, told): (String, Option<Value>, Option<Value>)| {
+        format!("run.toml says {name} = {}, the first line {}", shown(own), shown(told))
+    };
+    differ.map(words).collect()
+}
+
 /// Names of the fields in which two manifests differ.
 fn difference(own: &Manifest, told: &Manifest) -> Option<String> {
+    let names: Vec<String> = differences(own, told).into_iter().map(|(name, ..)| name).collect();
+    (!names.is_empty()).then(|| format!("run.toml said otherwise ({})", names.join(", ")))
+}
+
+/// The fields in which two manifests differ, with the values of both.
+fn differences(own: &Manifest, told: &Manifest) -> Vec<(String, Option<Value>, Option<Value>)> {
     if own == told {
-        return None;
+        return Vec::new();
     }
     let fields = |manifest: &Manifest| match Value::try_from(manifest) {
         Ok(Value::Table(table)) => table,
         _ => Table::new(),
     };
     let (own, told) = (fields(own), fields(told));
-    let mut names: Vec<&str> = own.keys().chain(told.keys()).map(String::as_str).collect();
-    names.sort_unstable();
-    names.dedup();
-    names.retain(|name| own.get(*name) != told.get(*name));
-    Some(format!("run.toml said otherwise ({})", names.join(", ")))
+    let names: BTreeSet<&String> = own.keys().chain(told.keys()).collect();
+    let differ = names.into_iter().filter(|name| own.get(*name) != told.get(*name));
+    differ.map(|name| (name.clone(), own.get(name).cloned(), told.get(name).cloned())).collect()
 }
 
 #[cfg(test)]

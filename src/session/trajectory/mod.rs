@@ -4,6 +4,7 @@
 //! what is cut, flipped or inserted shows, in the last line too. A line whose last byte is missing was never
 //! confirmed and is dropped.
 
+mod clock;
 mod line;
 mod medium;
 pub mod record;
@@ -11,6 +12,7 @@ mod writer;
 
 use std::path::Path;
 
+pub use clock::{CLOCK_CORRECTION, clock_went_back};
 pub(super) use line::hash_of_first_line;
 pub use line::{Line, nanoseconds, now, seconds, written_moment};
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use serde::Serialize;
 
 use super::record::Told;
-use crate::session::trajectory::{Line, Record, Trajectory, seconds};
+use crate::session::trajectory::{Line, Record, Trajectory, clock_went_back, seconds};
 
 /// What a comparison found.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -36,12 +36,9 @@ pub enum FindingKind {
     Unseen,
     /// The run went on on another machine.
     OtherMachine,
-    /// A line is older than the one before it.
+    /// A line is older than the one before it, by more than a correction of the clock takes.
     ClockBack,
 }
-
-/// Seconds that a clock may go back between two lines before it is told: what a correction of a running clock takes.
-const CORRECTION: f64 = 1.0;
 
 /// Compares a trajectory with what witnesses were told of its run, in the order of the lines. What follows from an honest
 /// session on one machine is no finding, nor is a line that was told twice.
@@ -209,18 +206,16 @@ impl Comparison<'_> {
     }
 
     fn clock_back(&self) -> Vec<Finding> {
-        let backwards = self.lines.windows(2).filter(|pair| pair[1].moment() < pair[0].moment() - CORRECTION);
-        backwards
-            .map(|pair| {
-                let back = pair[0].moment() - pair[1].moment();
+        clock_went_back(self.lines)
+            .map(|(before, line, back)| {
                 let words = format!(
                     "the clock went back by {back:.0} seconds: line {} carries {}, line {} carries {}",
-                    pair[0].seq + 1,
-                    pair[0].at,
-                    pair[1].seq + 1,
-                    pair[1].at
+                    before.seq + 1,
+                    before.at,
+                    line.seq + 1,
+                    line.at
                 );
-                self.finding(FindingKind::ClockBack, pair[1].seq, &pair[1].at, words)
+                self.finding(FindingKind::ClockBack, line.seq, &line.at, words)
             })
             .collect()
     }

@@ -25,6 +25,14 @@ pub struct Advance {
     pub calculations: Vec<Calculated>,
 }
 
+impl Advance {
+    /// Whether the naive projection filled in at least one forecast; none if none was filed.
+    pub fn filled_naively(&self) -> Option<bool> {
+        let any = self.forecasts.iter().any(|forecast| forecast.filled_naively);
+        (!self.forecasts.is_empty()).then_some(any)
+    }
+}
+
 /// A forecast as a line has it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FiledForecast {

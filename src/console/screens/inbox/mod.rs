@@ -138,15 +138,26 @@ pub struct Inbox {
 }
 
 impl Inbox {
-    /// Builds the table again; the selected thread stays selected, or the one that followed it.
+    /// Brings the threads up to date and lists them.
     fn refresh(&mut self, company: &Company) {
-        let shown: Vec<u32> = self.table.shown().iter().filter_map(|row| self.number_of(*row)).collect();
-        let here = self.here().map(|thread| thread.number);
+        let place = self.place();
         self.letters.settle(self.asking(company), &company.names);
+        let threads = self.letters.threads.iter();
+        let open: BTreeSet<u32> =
+            threads.filter(|thread| thread.state.is_open()).map(|thread| thread.number).collect();
+        self.marked.retain(|number| open.contains(number));
+        self.list(place);
+    }
+
+    /// Threads as shown, and the selected one.
+    fn place(&self) -> (Vec<u32>, Option<u32>) {
+        let shown = self.table.shown().iter().filter_map(|row| self.number_of(*row)).collect();
+        (shown, self.here().map(|thread| thread.number))
+    }
+
+    /// Builds the table again; the selected thread stays selected, or the one that followed it.
+    fn list(&mut self, (shown, here): (Vec<u32>, Option<u32>)) {
         let threads = &self.letters.threads;
-        let open =
-            |number: &u32| threads.iter().any(|thread| thread.number == *number && thread.state.is_open());
-        self.marked.retain(open);
         self.rows = (0..threads.len()).filter(|at| self.view.holds(threads[*at].state)).collect();
         let row = |at: &usize| row_of(&threads[*at], self.marked.contains(&threads[*at].number));
         let rows = self.rows.iter().map(row).collect();
@@ -383,14 +394,15 @@ impl Paned for Inbox {
         match action {
             Action::Mark | Action::MarkAll => {
                 self.mark(action == Action::MarkAll);
-                self.refresh(look.company);
+                self.list(self.place());
                 if action == Action::Mark {
                     self.table.act(Action::Down, look.page);
                 }
             }
             Action::OtherThreads => {
+                let place = self.place();
                 self.view = self.view.next();
-                self.refresh(look.company);
+                self.list(place);
                 self.table.act(Action::First, look.page);
                 self.scroll = 0;
             }

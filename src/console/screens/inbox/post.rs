@@ -1,5 +1,7 @@
 //! From offers on screen to calls, and what their answers say.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Value, json};
 
 use super::model::{State, Thread};
@@ -143,7 +145,7 @@ impl Inbox {
             Answer::RejectEnterpriseDeal(answer) => (false, &answer.results),
             _ => return Vec::new(),
         };
-        let done: Vec<u32> = results.iter().filter_map(DealResult::done).collect();
+        let done: BTreeSet<u32> = results.iter().filter_map(DealResult::done).collect();
         if offered && self.marked.is_empty() && self.offer().is_rule() {
             self.last =
                 self.here().and_then(|thread| self.drafts.get(&thread.number)).cloned().or(self.last.take());

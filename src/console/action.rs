@@ -265,6 +265,7 @@ actions! {
         OfferPrice "price" "price" "Enter the price of this line of the offer."
         OtherThreads "other-threads" "other threads" "Switch between threads waiting for you, waiting for the company, and closed."
         InboxRules "rules" "rules" "Answer waiting threads by rules you type; nothing is sent before you confirm."
+        InboxOutcomes "outcomes" "outcomes" "Show what became of leads by your first offer and its week, or the threads again."
         RejectOffer "reject" "reject" "End the threads without a deal, after confirmation."
         InboxGroup "group" "group" "Show the group of the company."
         InboxSql "thread-sql" "SQL" "Query the thread in SQL."

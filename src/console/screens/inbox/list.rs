@@ -49,6 +49,7 @@ impl Pane<Inbox> for ThreadListPane {
             Action::MarkAll,
             Action::RejectOffer,
             Action::InboxRules,
+            Action::InboxOutcomes,
             Action::OtherThreads,
             Action::Filter,
             Action::Sort,

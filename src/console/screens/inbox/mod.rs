@@ -5,6 +5,7 @@ mod list;
 mod model;
 mod offer;
 mod offer_pane;
+mod outcomes;
 mod post;
 mod preview;
 mod ruling;
@@ -15,12 +16,12 @@ mod thread;
 use std::collections::{BTreeMap, BTreeSet};
 
 use ratatui::layout::{Constraint, Layout, Rect};
-use strum::VariantArray;
 
 use self::estimate::market_of;
 use self::list::{columns, row_of};
 use self::model::{Letters, State, Thread};
 use self::offer::{TermChoice, Offer, TERMS};
+use self::outcomes::Outcomes;
 use self::ruling::Ruling;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenId, ScreenState};
@@ -37,8 +38,8 @@ use crate::session::Rows;
 use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
-/// Its panes, in the order of the tab key.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
+/// Its panes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum InboxPane {
     /// The threads of a view.
     #[default]
@@ -47,7 +48,24 @@ pub enum InboxPane {
     Thread,
     /// The offer that is made.
     Offer,
+    /// What became of first offers, in the place of the list.
+    Outcomes,
 }
+
+/// The panes in the order of the tab key: with the threads, and with what became of first offers.
+const LISTED: [InboxPane; 3] = [InboxPane::List, InboxPane::Thread, InboxPane::Offer];
+const COUNTED: [InboxPane; 3] = [InboxPane::Outcomes, InboxPane::Thread, InboxPane::Offer];
+
+/// What it asks the database for: with the threads, and with what became of first offers.
+const READINGS: [Reading; 4] =
+    [Reading::EnterpriseTurns, Reading::Companies, Reading::Usage, Reading::LastLetters];
+const READINGS_COUNTED: [Reading; 5] = [
+    Reading::EnterpriseTurns,
+    Reading::Companies,
+    Reading::Usage,
+    Reading::LastLetters,
+    Reading::FirstOffers,
+];
 
 /// Actions worth showing where one thread is looked at.
 const OFFER_HINTS: [Action; 6] = [
@@ -117,6 +135,8 @@ pub struct Inbox {
     named: rules::Letters,
     /// Rules while they are typed, and those that were sent last.
     ruling: Option<Ruling>,
+    /// What became of first offers, while it stands in the place of the list.
+    outcomes: Option<Outcomes>,
     last_rules: Option<String>,
     table: Table,
     /// Threads of the rows of the table, as places among all threads.
@@ -179,7 +199,7 @@ impl Inbox {
     /// Shows a thread among those that wait.
     pub fn show(&mut self, number: u32, company: &Company) {
         self.view = InboxView::Waiting;
-        self.focus = InboxPane::List;
+        self.close_outcomes();
         self.typing = None;
         self.table.act(Action::Close, 0);
         self.refresh(company);
@@ -298,19 +318,26 @@ fn list_prices(company: &Company) -> [f64; 3] {
 
 impl ScreenState for Inbox {
     fn open_here(&self, _: &Look<'_>) -> Option<String> {
-        self.here().map(|thread| format!("#{}", thread.customer))
+        match self.focus {
+            InboxPane::Outcomes => Some("outcomes".to_owned()),
+            _ => self.here().map(|thread| format!("#{}", thread.customer)),
+        }
     }
 
     fn opened(&self) -> usize {
-        usize::from(self.focus != InboxPane::List)
+        usize::from(self.outcomes.is_some()) + usize::from(self.focus != self.first_pane())
     }
 
     fn readings(&self) -> &'static [Reading] {
-        &[Reading::EnterpriseTurns, Reading::Companies, Reading::Usage, Reading::LastLetters]
+        if self.outcomes.is_some() { &READINGS_COUNTED } else { &READINGS }
     }
 
     fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
         match reading {
+            Reading::FirstOffers => {
+                self.outcomes.iter_mut().for_each(|own| own.take(rows));
+                return;
+            }
             Reading::Usage => self.usage = SeatUsage::read(rows),
             Reading::LastLetters => self.named = rules::Letters::read(rows),
             _ => self.letters.take(reading, rows),
@@ -343,7 +370,7 @@ impl Paned for Inbox {
     type Name = InboxPane;
 
     fn panes(&self) -> &'static [InboxPane] {
-        InboxPane::VARIANTS
+        if self.outcomes.is_some() { &COUNTED } else { &LISTED }
     }
 
     fn pane(name: InboxPane) -> &'static dyn Pane<Inbox> {
@@ -351,6 +378,7 @@ impl Paned for Inbox {
             InboxPane::List => &list::ThreadListPane,
             InboxPane::Thread => &thread::ThreadPane,
             InboxPane::Offer => &offer_pane::OfferPane,
+            InboxPane::Outcomes => &outcomes::OutcomesPane,
         }
     }
 
@@ -367,6 +395,9 @@ impl Paned for Inbox {
     }
 
     fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
+        if let Some(effects) = self.turn_outcomes(action) {
+            return Some(effects);
+        }
         let lists = list_prices(look.company);
         if let Some(ruling) = &mut self.ruling {
             match action {
@@ -431,13 +462,14 @@ impl Paned for Inbox {
     }
 
     fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        use InboxPane::{List, Offer, Thread};
+        use InboxPane::{Offer, Thread};
+        let first = self.first_pane();
         if area.width < 104 {
             let below = (OFFER_HEIGHT + 1).min(area.height.div_ceil(2));
             let [list, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(below)]).areas(area);
             let [thread, offer] =
                 Layout::horizontal([Constraint::Min(0), Constraint::Length(44)]).areas(below);
-            for (pane, place) in [(List, list), (Thread, thread), (Offer, offer)] {
+            for (pane, place) in [(first, list), (Thread, thread), (Offer, offer)] {
                 draw_pane(self, pane, canvas, place, look);
             }
             return;
@@ -447,7 +479,7 @@ impl Paned for Inbox {
         let [list, right] = Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
         let [above, offer] =
             Layout::vertical([Constraint::Min(0), Constraint::Length(OFFER_HEIGHT)]).areas(right);
-        draw_pane(self, List, canvas, list, look);
+        draw_pane(self, first, canvas, list, look);
         // What was said stands above what every marked thread would get, where there is room.
         let beside = match !self.marked.is_empty() && above.height >= 20 {
             true => Constraint::Percentage(45),

@@ -7,7 +7,7 @@ use super::estimate::{Money, per_seat};
 use super::model::Thread;
 use super::offer::{TermChoice, Offer, TERMS};
 use super::post::{self, summary};
-use super::{Inbox, InboxPane, list_prices};
+use super::{Inbox, list_prices};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::effect::Effect;
@@ -60,7 +60,7 @@ impl Pane<Inbox> for OfferPane {
             Action::Open => inbox.type_value(),
             Action::Right => inbox.turn_plan(),
             Action::Left => inbox.turn_basis(list_prices(look.company)),
-            Action::Close => inbox.focus = InboxPane::List,
+            Action::Close => inbox.focus = inbox.first_pane(),
             _ => {}
         }
         Vec::new()
@@ -182,7 +182,11 @@ fn offer_notes(
     let mut notes = Vec::new();
     for (plan, (quota, wanted)) in priced().filter_map(|(plan, money)| Some((plan, money.covered?))) {
         let (quota, share) = (grouped(quota, 0), percent(quota / wanted, 0));
-        let text = format!("! {plan}: quota {quota} covers {share} of {} units a day", grouped(wanted, 0));
+        let wanted = grouped(wanted, 0);
+        let text = match width >= WORTH {
+            true => format!("! {plan}: quota {quota} covers {share} of {wanted} units a day"),
+            false => format!("! {plan}: quota covers {share} of {wanted} a day"),
+        };
         notes.push((text, Role::Warning));
     }
     if let Some((_, price)) = thread.asked() {

@@ -1,12 +1,13 @@
 use serde_json::{Value, json};
 
 use super::model::Turn;
+use super::outcomes::OutcomesPane;
 use super::*;
 use crate::console::keys::{Chord, Keys};
 use crate::console::screens::Screen;
 use crate::console::test_kit::{act, company, courted, drawn, shown, sweep};
 use crate::console::request::Request;
-use crate::session::{Cell as Datum, Via, WaitingThread};
+use crate::session::{Cell as Datum, Via, WaitingThread, number_at};
 use crate::tools::{Answer, DealResult, DealResults, ToolId};
 use crate::world::identifiers::Plan;
 
@@ -321,4 +322,111 @@ fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() 
     screen.focus_on(InboxPane::List);
     let turns = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
     assert_eq!(session.query(&turns).expect("rows").rows.len(), thread.turns.len());
+}
+
+/// A run whose leads were sent first offers of several plans and prices, some of them twice, over three weeks.
+fn offered() -> crate::session::Session {
+    let mut session = courted();
+    for week in 0..3 {
+        for (at, thread) in session.observe().waiting.into_iter().enumerate() {
+            let offer = [json!([["C", 16.5]]), json!([["B", 12.0], ["C", 16.5]]), json!([["C", 129.99]])];
+            let deals = json!({ "deals": [[thread.customer, offer[(at + week) % 3]]] });
+            session.call("send_enterprise_deal", &deals, Via::Form).expect("sent");
+        }
+        let forecasts = session.naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+    }
+    session
+}
+
+#[test]
+fn outcomes_of_first_offers_are_those_that_the_turns_and_subscriptions_tell() {
+    let mut session = offered();
+    let company = Company::of(&session);
+    let mut screen: Inbox = shown(&mut session, &company);
+    let asked = act(&mut screen, Action::InboxOutcomes, &company);
+    assert!(matches!(&asked[..], [Effect::Read(Reading::FirstOffers)]), "{asked:?}");
+    assert!(drawn(&screen, &company, 80, 21).contains("reading …"));
+    let keys = Keys::shipped();
+    let look = Look { company: &company, keys: &keys, page: 20 };
+    let rows = session.query(Reading::FirstOffers.sql()).expect("rows");
+    screen.take(Reading::FirstOffers, &rows, &look);
+    let cells: Vec<Vec<String>> = {
+        let table = OutcomesPane.table(&screen).expect("a table");
+        table.rows().iter().map(|row| row.iter().map(|cell| cell.text.clone()).collect()).collect()
+    };
+    assert!(cells.len() >= 5, "{cells:?}");
+    let mut threads = 0.0;
+    for (at, row) in cells.iter().enumerate() {
+        let number = |text: &str| parse_number(&text.replace(',', "")).expect("a number");
+        let (low, high) = row[3].split_once('–').expect("a band");
+        let of_row = format!(
+            "FROM customers JOIN subscriptions USING (customer_id) JOIN (
+                 SELECT thread_id, customer_id, offer_json ->> '$[0].plan' AS offered, min(day) AS day,
+                     offer_json ->> '$[0].price_per_seat' AS price
+                 FROM enterprise_turns WHERE sender = 'agent' AND thread_type = 'new_lead' AND turn_number = 1
+                 GROUP BY thread_id
+             ) AS offer USING (customer_id)
+             LEFT JOIN (SELECT DISTINCT thread_id, 1 AS yes FROM enterprise_turns WHERE close_reason = 'accepted') AS deal
+                 USING (thread_id)
+             WHERE group_id = '{}' AND offered = '{}' AND price BETWEEN {} AND {} AND day >= {} AND day < {}",
+            row[1],
+            row[2],
+            number(low),
+            number(high),
+            7.0 * (number(&row[0]) - 1.0),
+            7.0 * number(&row[0]),
+        );
+        let mut count = |condition: &str| {
+            let rows = session.query(&format!("SELECT count(*) {of_row} {condition}")).expect("a count");
+            number_at(&rows.rows[0], 0)
+        };
+        let (all, signed) = (count(""), count("AND deal.yes"));
+        assert_eq!(number(&row[4]), all, "{row:?}");
+        assert_eq!(number(&row[5]), signed, "{row:?}");
+        assert_eq!(row[6], format!("{:.1} %", 100.0 * signed / all), "{row:?}");
+        assert_eq!(number(&row[7]), count("AND deal.yes IS NULL AND status <> 'lead'"), "{row:?}");
+        assert_eq!(number(&row[8]), count("AND deal.yes IS NULL AND status = 'lead'"), "{row:?}");
+        threads += all;
+        // The rows behind it are its threads.
+        OutcomesPane.table_mut(&mut screen).expect("a table").select(at);
+        let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
+        let behind = session.query(&sql).expect("rows");
+        assert_eq!(behind.rows.len() as f64, all, "{row:?}");
+        assert_eq!(behind.rows.iter().map(|own| number_at(own, 5)).sum::<f64>(), signed, "{row:?}");
+    }
+    let first = "SELECT count(DISTINCT thread_id) FROM enterprise_turns WHERE sender = 'agent' AND thread_type = 'new_lead'";
+    assert_eq!(threads, number_at(&session.query(first).expect("a count").rows[0], 0));
+    let led = act(&mut screen, Action::Open, &company);
+    assert!(matches!(&led[..], [Effect::RunSql(sql)] if sql == include_str!("../../../../assets/queries/first-offers.sql")));
+    for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
+        let text = drawn(&screen, &company, width, height);
+        for words in ["y first offer and week", "$/seat", "threads", "signed", "share", &cells[0][6], "Your offer"] {
+            assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
+        }
+    }
+    sweep(&mut screen, &company);
+}
+
+#[test]
+fn outcomes_stand_in_the_place_of_the_list_until_they_are_closed() {
+    let (mut screen, company) = crowded_screen();
+    press(&mut screen, &company, "O");
+    assert_eq!((screen.focus, Screen::depth(&screen)), (InboxPane::Outcomes, 1));
+    screen.focus_on(InboxPane::Offer);
+    press(&mut screen, &company, "esc");
+    assert_eq!(screen.focus, InboxPane::Outcomes, "the offer leads back to what it was looked at beside");
+    for marks in ["space", "a"] {
+        assert!(matches!(&press(&mut screen, &company, marks).0[..], [Effect::Complain(_)]));
+    }
+    assert_eq!(screen.marked.len(), 0);
+    for closes in ["esc", "O", "o"] {
+        press(&mut screen, &company, closes);
+        assert_eq!((screen.focus, Screen::depth(&screen)), (InboxPane::List, 0), "{closes}");
+        press(&mut screen, &company, "O");
+    }
+    screen.take(Reading::FirstOffers, &Rows::default(), &Look { company: &company, keys: &Keys::shipped(), page: 20 });
+    assert!(drawn(&screen, &company, 60, 13).contains("No new lead has been sent an offer yet"));
+    screen.show(7, &company);
+    assert_eq!(screen.focus, InboxPane::List);
 }

@@ -39,7 +39,7 @@ impl Pane<Inbox> for ThreadPane {
                 inbox.scroll
             }
             Action::Close => {
-                inbox.focus = InboxPane::List;
+                inbox.focus = inbox.first_pane();
                 inbox.scroll
             }
             Action::Up | Action::Down if action == back => inbox.scroll.saturating_add(1).min(500),

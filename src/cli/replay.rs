@@ -10,7 +10,7 @@ use super::{Context, Failure, play, print};
 use crate::console::effect::Effect;
 use crate::console::request::Recorded;
 use crate::console::request::Request;
-use crate::session::{Goal, find_run_to_read, verify};
+use crate::session::{Goal, find_run_to_read, record_look, verify};
 
 /// Options of `replay`.
 #[derive(Debug, Args)]
@@ -38,11 +38,23 @@ fn show(options: &Options, context: &Context) -> Result<(), Failure> {
         ));
     }
     let recorded = recorded(&options.run);
-    if let Recorded::Run(id) = &recorded {
-        find_run_to_read(&context.runs()?, id)?;
-    }
+    note_look(&recorded, &format!("week {}", options.week), context)?;
     let effect = Effect::Request(Request::Replay { recorded, goal: Goal::Week(options.week), follow: false });
     show_console(&play::Options::default(), Some(effect), context)
+}
+
+/// Records that a run is read: one of the folder of runs, or in a folder of its own.
+fn note_look(recorded: &Recorded, detail: &str, context: &Context) -> Result<(), Failure> {
+    let folder = match recorded {
+        Recorded::Run(id) => find_run_to_read(&context.runs()?, id)?,
+        Recorded::File(path) if path.join("run.toml").is_file() => path.clone(),
+        // A trajectory that lies where a run is.
+        Recorded::File(path) => match path.parent().filter(|folder| folder.join("run.toml").is_file()) {
+            Some(folder) => folder.to_owned(),
+            None => return Ok(()),
+        },
+    };
+    Ok(record_look(&folder, "replay", detail)?)
 }
 
 /// A file or folder, if there is one of that name; otherwise a run.
@@ -52,7 +64,9 @@ fn recorded(name: &str) -> Recorded {
 }
 
 fn check(options: &Options, context: &Context) -> Result<(), Failure> {
-    let found = verify(&match recorded(&options.run) {
+    let recorded = recorded(&options.run);
+    note_look(&recorded, "verify", context)?;
+    let found = verify(&match recorded {
         Recorded::File(path) => path,
         Recorded::Run(id) => find_run_to_read(&context.runs()?, &id)?,
     })?;

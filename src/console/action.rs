@@ -41,11 +41,15 @@ pub enum Scope {
     Viewer,
     /// The pages of a participant of a study.
     Visit,
+    /// The offer of texts that were typed and not sent.
+    Unsent,
+    /// The cover while the clock is stopped.
+    Cover,
 }
 
 impl Scope {
     /// All scopes, in the order of the help.
-    pub const ALL: [Scope; 19] = [
+    pub const ALL: [Scope; 21] = [
         Scope::Global,
         Scope::List,
         Scope::Form,
@@ -65,6 +69,8 @@ impl Scope {
         Scope::Final,
         Scope::Viewer,
         Scope::Visit,
+        Scope::Unsent,
+        Scope::Cover,
     ];
 
     /// Name in the key file.
@@ -89,6 +95,8 @@ impl Scope {
             Scope::Market => "market",
             Scope::Viewer => "viewer",
             Scope::Visit => "visit",
+            Scope::Unsent => "unsent",
+            Scope::Cover => "cover",
         }
     }
 
@@ -114,6 +122,8 @@ impl Scope {
             Scope::Market => "Market",
             Scope::Viewer => "Replay of a run",
             Scope::Visit => "Pages of a participant",
+            Scope::Unsent => "Unsent text",
+            Scope::Cover => "While the clock is stopped",
         }
     }
 
@@ -188,6 +198,7 @@ actions! {
         TourClose "tour-close" "close" "Close the tour; it can be resumed at any time."
         NextTheme "next-theme" "next theme" "Switch to the next colour theme."
         NextMarker "next-marker" "next marker" "Draw charts with braille dots, blocks or ASCII characters."
+        StopClock "stop-clock" "stop the clock" "Stop the clock for a break: the screen is covered, and the time does not count."
         Mouse "mouse" "mouse" "Turn mouse support on or off; when off, the terminal selects text."
         Redraw "redraw" "redraw" "Redraw the screen."
         WriteReport "write-report" "write the report" "Write the report of the run as Markdown and HTML."
@@ -357,6 +368,14 @@ actions! {
         PassPractice "pass-practice" "pass over" "Pass over the practice."
         Withdraw "withdraw" "withdraw" "Withdraw from the study: erase everything you did in it, after two confirmations."
         Experimenter "experimenter" "experimenter" "Give the experimenter's code, which opens the start menu."
+    }
+    Unsent {
+        RestoreTexts "restore-texts" "restore" "Put the texts back where you typed them."
+        DropTexts "drop-texts" "drop" "Drop the texts."
+    }
+    Cover {
+        StartClock "start-clock" "start" "Start the clock again."
+        QuitStopped "quit-stopped" "quit" "Save and quit; the clock is started when the run is opened again."
     }
 }
 

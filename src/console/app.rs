@@ -4,20 +4,26 @@
 
 mod guide;
 mod input;
+mod leaving;
+mod limits;
 mod news;
 mod orders;
+mod record;
+mod stopped;
 mod trail;
+mod unsent;
 mod viewer;
 mod visit;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
+use super::attention::{Edit, Layers, PresenceWatch, Stopwatch, Typing};
 use super::canvas::Click;
 use super::company::Company;
 use super::dialogs::Dialog;
@@ -36,7 +42,11 @@ use super::visit::{VisitPage, VisitState};
 use super::worker::{Job, Question};
 use crate::console::request::Request;
 use crate::report::Story;
-use crate::session::{Configuration, Library};
+use crate::session::{CodeCheck, Configuration, Library, TimeLeft};
+
+pub use super::attention::Layer;
+use leaving::Closing;
+pub use stopped::Cover;
 
 /// Screens that back remembers.
 const SCREENS_KEPT: usize = 50;
@@ -70,14 +80,6 @@ pub struct Note {
     pub text: String,
     /// Something was refused or went wrong.
     pub bad: bool,
-}
-
-/// A dialog over the screen.
-pub enum Layer {
-    /// The dialog before a week; its drafts outlive it.
-    Filing,
-    /// Any other.
-    Dialog(Box<dyn Dialog>),
 }
 
 /// Days that are simulated one after the other.
@@ -137,8 +139,12 @@ pub struct Run {
     pub after: Vec<ScreenId>,
     /// The focused pane has the whole screen.
     pub zoomed: bool,
-    /// When it was shown.
-    pub shown: Instant,
+    /// Since when it is shown, or the week is this one.
+    shown: Option<Duration>,
+    /// The screen that was left for it.
+    came_from: Option<ScreenId>,
+    /// The object that was open last: its screen, what it is, and which.
+    selected: Option<(ScreenId, &'static str, String)>,
     /// Every screen.
     pub screens: Screens,
     /// The dialog before a week.
@@ -153,6 +159,8 @@ pub struct Run {
     pub tour: Option<Tour>,
     /// The run is a recorded one that is played again.
     pub viewer: Option<Viewer>,
+    /// Time that is left to each limit of the rules.
+    pub time_left: Vec<TimeLeft>,
     /// Why the database is behind, while it is.
     pub behind: Option<String>,
 }
@@ -186,7 +194,21 @@ pub struct App {
     /// Where the person is.
     pub stage: Stage,
     /// Dialogs, the topmost last.
-    pub layers: Vec<Layer>,
+    pub layers: Layers,
+    /// What lies over everything while the clock is stopped.
+    pub cover: Option<Cover>,
+    /// Time as the person has it.
+    pub stopwatch: Stopwatch,
+    presence: PresenceWatch,
+    typing: Typing,
+    /// Where the last change of a text came from.
+    edit: Edit,
+    /// The term that is explained.
+    term: Option<String>,
+    /// Says whether a word is the experimenter's code; none where there is no experimenter.
+    pub code_check: Option<CodeCheck>,
+    /// Texts as they were kept last, and when they are kept again.
+    unsent: unsent::TextsKept,
     /// The last line.
     pub note: Option<Note>,
     /// What the person waits for.
@@ -216,12 +238,6 @@ pub struct App {
     /// Columns and rows of the window in the last frame.
     pub window: (u16, u16),
     orders: Vec<Order>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Closing {
-    ToMenu,
-    ToShell(u8),
 }
 
 /// How the console looks and where it keeps things.
@@ -255,7 +271,15 @@ impl App {
             configuration: settings.configuration,
             again: settings.again,
             stage: Stage::Menu(menu),
-            layers: Vec::new(),
+            layers: Layers::default(),
+            cover: None,
+            stopwatch: Stopwatch::default(),
+            presence: PresenceWatch::default(),
+            typing: Typing::default(),
+            edit: Edit::Typed,
+            term: None,
+            code_check: None,
+            unsent: unsent::TextsKept::default(),
             note: None,
             busy: None,
             checks: 0,
@@ -282,17 +306,27 @@ impl App {
     /// Takes a message; what has to be done outside is collected for [`App::take_orders`].
     pub fn update(&mut self, message: Message) {
         match message {
-            Message::Input(event) => self.input(event),
+            Message::Input(event) => self.take_input(event),
             Message::News(news) => self.news(news),
-            Message::Signal(number) => self.leave(Closing::ToShell(128u8.saturating_add(number as u8))),
+            Message::Signal(number) => self.leave(Closing::BySignal(number)),
+            Message::Time => self.pass_time(),
         }
         self.settle_tour();
         self.settle_visit();
+        self.settle_record();
     }
 
     /// What has to be done outside since the last time.
     pub fn take_orders(&mut self) -> Vec<Order> {
         std::mem::take(&mut self.orders)
+    }
+
+    /// The work for the session's thread of it; other orders stay.
+    pub fn take_jobs(&mut self) -> Vec<Job> {
+        let (jobs, others) = self.take_orders().into_iter().partition(|order| matches!(order, Order::Job(_)));
+        self.orders = others;
+        let job = |order: Order| if let Order::Job(job) = order { Some(job) } else { None };
+        Vec::into_iter(jobs).filter_map(job).collect()
     }
 
     /// The run on the screen.
@@ -340,70 +374,6 @@ impl App {
         self.note = Some(Note { text: text.into(), bad: true });
     }
 
-    /// Saves, closes the run, and goes on to something.
-    fn leave(&mut self, closing: Closing) {
-        if self.closing.is_some_and(|planned| planned != Closing::ToMenu) {
-            return;
-        }
-        self.note_view();
-        self.stop_on_the_way();
-        // A participant who leaves a run is still at the study.
-        let at_study = self.leads_participant() && matches!(self.stage, Stage::Run(_));
-        let quits = closing == Closing::ToShell(0);
-        let closing = if at_study && quits { Closing::ToMenu } else { closing };
-        self.closing = Some(closing);
-        match &self.stage {
-            Stage::Run(_) => {
-                self.busy = Some(Busy { what: "saving", days: None, since: Instant::now() });
-                self.orders.push(Order::CancelQuery);
-                self.orders.push(Order::Job(Job::Close));
-            }
-            Stage::Menu(_) | Stage::Visit(_) => self.closed(None),
-        }
-    }
-
-    fn closed(&mut self, problem: Option<String>) {
-        self.busy = None;
-        let was_replay = self.is_replay();
-        let code = match self.closing.take() {
-            Some(Closing::ToShell(code)) => code,
-            Some(Closing::ToMenu) | None if self.leads_participant() => return self.after_run(problem),
-            Some(Closing::ToMenu) | None => {
-                self.layers.clear();
-                self.stage = Stage::Menu(Box::new(Menu::new(&self.configuration)));
-                self.orders.push(Order::Job(Job::Do(Request::ListRuns)));
-                match problem {
-                    Some(problem) => self.complain(problem),
-                    None if was_replay => self.say("replay closed; nothing changed"),
-                    None => self.say("the run is saved"),
-                }
-                return;
-            }
-        };
-        let farewell = self.run().filter(|run| run.viewer.is_none()).map(|run| {
-            let company = &run.company.seen;
-            let end = match company.ended {
-                Some(_) => "It is over.".to_owned(),
-                None => format!("`{}` continues.", self.again),
-            };
-            format!("Run {} is saved at day {}. {end}", company.run, company.day)
-        });
-        let text = match problem {
-            Some(problem) => Some(problem),
-            None => farewell,
-        };
-        self.orders.push(Order::Exit(code, text));
-    }
-
-    /// Records what was looked at, and for how long.
-    fn note_view(&mut self) {
-        let Stage::Run(run) = &mut self.stage else { return };
-        let from = run.before.last().map_or("", |screen| screen.id());
-        let for_ms = run.shown.elapsed().as_millis() as u64;
-        self.orders.push(Order::Job(Job::NoteView(run.here.id(), from, for_ms)));
-        run.shown = Instant::now();
-    }
-
     /// Shows a screen.
     fn show(&mut self, screen: ScreenId) {
         let Stage::Run(run) = &mut self.stage else { return };
@@ -445,8 +415,9 @@ impl App {
     }
 
     fn move_to(&mut self, screen: ScreenId) {
-        self.note_view();
+        self.close_view();
         if let Stage::Run(run) = &mut self.stage {
+            run.came_from = Some(run.here);
             run.go_to(screen);
         }
     }

@@ -113,6 +113,10 @@ pub enum Effect {
     StartTour,
     /// Lead participants through a study; nothing else can be reached.
     Receive(Box<Study>),
+    /// Put texts of an earlier sitting back, or drop them.
+    SettleOffer(bool),
+    /// Stop the clock, with the reason where it was asked.
+    StopClock(Option<String>),
     /// Save and leave, whatever is half typed.
     LeaveNow,
     /// Do what a key would do.

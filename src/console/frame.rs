@@ -16,7 +16,7 @@ use super::text::{arrow, short_dollars};
 use super::theme::Role;
 use super::widgets::spark::bar;
 use crate::notation::{compact, dollars, grouped};
-use crate::session::Ended;
+use crate::session::{Ended, TimeLeft};
 
 /// Smallest window that is drawn.
 pub const LEAST: (u16, u16) = (60, 16);
@@ -59,6 +59,9 @@ pub fn draw(app: &App, buffer: &mut Buffer) -> Drawn {
 }
 
 fn draw_all(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
+    if let Some(cover) = &app.cover {
+        return cover.draw(&app.keys, canvas, area);
+    }
     let last = Rect { y: area.bottom() - 1, height: 1, ..area };
     match &app.stage {
         Stage::Menu(menu) => menu.draw(canvas, Rect { height: area.height - 1, ..area }),
@@ -121,7 +124,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
         canvas.page = page;
         viewer.draw_strip(canvas, Rect { y: body.bottom(), height: 1, ..area });
     }
-    for layer in &app.layers {
+    for layer in app.layers.iter() {
         // What lies below a dialog can be seen but not clicked.
         canvas.clicks.clear();
         canvas.cursor = None;
@@ -183,7 +186,7 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
         Some(Ended::Bankruptcy) => "BANKRUPT".to_owned(),
         Some(Ended::Abandoned) => "GIVEN UP".to_owned(),
     };
-    let state = format!("{state} ");
+    let state = format!("{}{state} ", time_left(app));
     let width = (state.width() as u16).min(row.width);
     let mut left = Rect { width: row.width - width, ..row };
     for (piece, role) in pieces {
@@ -196,6 +199,13 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
         left = Rect { x: left.x + taken, width: left.width - taken, ..left };
     }
     canvas.aligned(Rect { x: row.right() - width, width, ..row }, &state, Role::Title, Align::Right);
+}
+
+/// The least time that is left to a limit, where the rules have one.
+fn time_left(app: &App) -> String {
+    let left = app.run().map_or(&[][..], |run| run.time_left.as_slice());
+    let minutes = left.iter().map(TimeLeft::whole_minutes).min();
+    minutes.map_or(String::new(), |minutes| format!("{} min left · ", minutes.max(0)))
 }
 
 /// Writes a tab: key, title and badge of a screen, and whether it is the one that is shown.

@@ -17,6 +17,7 @@ use super::keys::Chord;
 use super::message::{Message, News, VisitNews};
 use super::request::{Recorded, Request, VisitRequest};
 use super::worker::{Job, Workers};
+use crate::session::record::LeavingCause;
 use crate::session::{Access, Goal, Study};
 
 /// An answer that takes longer than this does not come.
@@ -46,8 +47,10 @@ impl Headless {
     pub fn new(settings: Settings, size: (u16, u16)) -> Headless {
         let (sender, messages) = channel();
         let workers = Workers::start(sender.clone(), settings.configuration.clone(), settings.runs.clone());
+        let mut app = App::new(settings);
+        app.window = size;
         Headless {
-            app: App::new(settings),
+            app,
             size,
             left: None,
             copied: Vec::new(),
@@ -185,7 +188,11 @@ impl Headless {
         let unasked = |news: &News| {
             matches!(
                 news,
-                News::Day(..)
+                News::Held
+                    | News::Unsent(_)
+                    | News::TimeLeft(_)
+                    | News::Limit(_)
+                    | News::Day(..)
                     | News::WentOn(_)
                     | News::DatabaseBehind(_)
                     | News::DatabaseWhole(_)
@@ -204,7 +211,12 @@ impl Headless {
                     let silent = matches!(
                         job,
                         Job::NoteQuery(..)
-                            | Job::NoteView(..)
+                            | Job::Note(_)
+                            | Job::NotePresence(..)
+                            | Job::TakeUp(_)
+                            | Job::StopClock(_)
+                            | Job::StartClock
+                            | Job::KeepDrafts(_)
                             | Job::GoOn(_)
                             | Job::Hold
                             | Job::Remember(_)
@@ -248,8 +260,19 @@ impl Headless {
         self.cursor = drawn.cursor;
     }
 
+    /// Lets time pass without waiting for it, and what follows.
+    ///
+    /// # Errors
+    /// An answer does not come.
+    pub fn pass(&mut self, time: Duration) -> io::Result<()> {
+        self.app.stopwatch.turn_on(time);
+        self.app.update(Message::Time);
+        self.settle()
+    }
+
     /// Saves the run and ends the threads.
     pub fn finish(self) {
+        self.workers.send(Job::Close(LeavingCause::Quit));
         self.workers.finish();
     }
 }

@@ -8,8 +8,10 @@ use crossterm::event::Event;
 use super::company::Company;
 use super::readings::Reading;
 use crate::report::Story;
+use crate::session::record::Limit;
 use crate::session::{
-    Change, DueQuestion, Interrupt, Library, NextStep, PlaybackPosition, Preview, Refusal, Rows, Week,
+    Change, DueQuestion, Interrupt, Library, NextStep, PlaybackPosition, Preview, Refusal, Rows, TimeLeft,
+    UnsentTexts, Week,
 };
 use crate::tools::{Answer, ToolId};
 
@@ -21,6 +23,8 @@ pub enum Message {
     News(News),
     /// A signal asks the program to end, to stop for a while, or to go on.
     Signal(i32),
+    /// Time has passed, as [`super::app::App::wakes_after`] has asked.
+    Time,
 }
 
 /// A moment of a replay that was reached.
@@ -71,6 +75,14 @@ pub enum News {
     SeekResult(Box<Arrival>),
     /// The replay has gone on by itself: it plays, or somebody else has played.
     WentOn(Box<Arrival>),
+    /// Minutes that are left to a time limit have changed.
+    TimeLeft(Vec<TimeLeft>),
+    /// A time limit is near or reached.
+    Limit(Limit),
+    /// A time limit had stopped the clock of the run that was opened, and nobody has started it.
+    Held,
+    /// Texts that were typed when the program was stopped in the run that was opened.
+    Unsent(Box<UnsentTexts>),
     /// A run could not be opened or created; with what can be done instead.
     NotOpened(String, Option<Instead>),
     /// What a call would do; the number says which question this answers.

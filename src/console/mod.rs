@@ -8,6 +8,7 @@ mod action;
 mod agreement;
 pub mod app;
 mod ascii;
+mod attention;
 mod canvas;
 mod company;
 mod dialogs;
@@ -53,6 +54,10 @@ const BETWEEN_SECONDS: Duration = Duration::from_millis(500);
 /// How long is waited for a message when nothing on the screen depends on the time.
 const FOREVER: Duration = Duration::from_secs(3600);
 
+/// How long the shell waits for the record of a program that it suspends, should a week be simulated just then.
+#[cfg(unix)]
+const BEFORE_SUSPENSION: Duration = Duration::from_millis(500);
+
 /// Runs the console; returns the exit code and what to print on the way out.
 ///
 /// # Errors
@@ -62,6 +67,7 @@ pub fn play(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option
     let workers = Workers::start(sender.clone(), settings.configuration.clone(), settings.runs.clone());
     let again = settings.again.clone();
     let mut app = App::new(settings);
+    app.window = crossterm::terminal::size().unwrap_or_default();
     if let Some(effect) = start {
         app.start_with(effect);
     }
@@ -92,9 +98,12 @@ impl Console {
             self.screen.draw(&mut self.app)?;
             // A query that is being answered shows how long it has taken.
             let patience = if self.app.is_asking() { BETWEEN_SECONDS } else { FOREVER };
-            match self.messages.recv_timeout(patience) {
+            match self
+                .messages
+                .recv_timeout(self.app.wakes_after().map_or(patience, |wake| wake.min(patience)))
+            {
                 Ok(message) => self.hear(message)?,
-                Err(RecvTimeoutError::Timeout) => continue,
+                Err(RecvTimeoutError::Timeout) => self.app.update(Message::Time),
                 Err(RecvTimeoutError::Disconnected) => return Ok((1, None)),
             }
             // Everything that has arrived meanwhile is drawn once.
@@ -109,9 +118,19 @@ impl Console {
         fail_on_purpose(&message);
         match message {
             #[cfg(unix)]
-            Message::Signal(signal_hook::consts::SIGTSTP) => self.screen.suspend(self.app.mouse)?,
+            Message::Signal(signal_hook::consts::SIGTSTP) => {
+                self.app.suspend();
+                for job in self.app.take_jobs() {
+                    self.workers.send(job);
+                }
+                self.workers.settle(BEFORE_SUSPENSION);
+                self.screen.suspend(self.app.mouse)?;
+            }
             #[cfg(unix)]
-            Message::Signal(signal_hook::consts::SIGCONT) => self.screen.resume(self.app.mouse)?,
+            Message::Signal(signal_hook::consts::SIGCONT) => {
+                self.app.resume();
+                self.screen.resume(self.app.mouse)?;
+            }
             message => self.app.update(message),
         }
         Ok(())

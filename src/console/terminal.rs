@@ -5,7 +5,8 @@ use std::sync::Mutex;
 
 use crossterm::clipboard::CopyToClipboard;
 use crossterm::event::{
-    DisableBracketedPaste, DisableMouseCapture, EnableBracketedPaste, EnableMouseCapture,
+    DisableBracketedPaste, DisableFocusChange, DisableMouseCapture, EnableBracketedPaste, EnableFocusChange,
+    EnableMouseCapture,
 };
 use crossterm::execute;
 use crossterm::terminal::{
@@ -133,10 +134,10 @@ impl Drop for TerminalScreen {
     }
 }
 
-/// Raw mode, the alternate screen, pasted text as a whole, the mouse.
+/// Raw mode, the alternate screen, pasted text as a whole, whether the window has the focus, the mouse.
 fn prepare() -> io::Result<()> {
     enable_raw_mode()?;
-    execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste, EnableMouseCapture)
+    execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste, EnableFocusChange, EnableMouseCapture)
 }
 
 /// Gives the terminal back. May be called more than once.
@@ -146,6 +147,7 @@ fn restore() {
     let _ = execute!(
         out,
         DisableMouseCapture,
+        DisableFocusChange,
         DisableBracketedPaste,
         LeaveAlternateScreen,
         crossterm::cursor::Show

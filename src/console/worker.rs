@@ -6,6 +6,7 @@
 
 mod desk;
 mod folder;
+mod limits;
 mod mending;
 mod player;
 mod queries;
@@ -26,7 +27,11 @@ use super::company::Company;
 use super::message::{Message, News};
 use super::preferences::Preferences;
 use super::request::Request;
-use crate::session::{Configuration, Goal, Playback, QuerySource, Refusal, Rows, Session};
+use crate::session::record::{LeavingCause, PresenceEvent};
+use crate::session::{
+    Activity, Configuration, Goal, Interface, Playback, QuerySource, Refusal, Rows, RunError, Session,
+    UnsentTexts,
+};
 use crate::tools::ToolId;
 use desk::Desk;
 use queries::QueryThreads;
@@ -50,12 +55,24 @@ pub enum Job {
     Ask(Question),
     /// Record what the person asked.
     NoteQuery(String, Result<Rows, Refusal>, Duration, QuerySource),
-    /// Record what the person looked at: screen, screen before, milliseconds.
-    NoteView(&'static str, &'static str, u64),
+    /// Record that the person takes up the run.
+    TakeUp(Interface),
+    /// Record what the person did besides acting.
+    Note(Activity),
+    /// Record that the person went away or came back, or that the window changed: milliseconds without a key, its size.
+    NotePresence(PresenceEvent, Option<u64>, Option<(u16, u16)>),
+    /// Record that the clock was stopped, and why.
+    StopClock(Option<String>),
+    /// Record that it was started again.
+    StartClock,
+    /// Keep texts that were typed and not sent.
+    KeepDrafts(Box<UnsentTexts>),
+    /// Say that everything handed over before is done.
+    Settle(Sender<()>),
     /// Start with this look the next time, too. One after the other: what was chosen last counts.
     Remember(Preferences),
-    /// Save and close the run.
-    Close,
+    /// Save and close the run, which is left for a reason.
+    Close(LeavingCause),
     /// Save, close the run and end the thread.
     End,
 }
@@ -81,6 +98,8 @@ impl Workers {
                 looked: Instant::now(),
                 mending: None,
                 desk: None,
+                limits: None,
+                minutes_left: Vec::new(),
                 news,
                 runs,
                 queries: for_session,
@@ -99,6 +118,13 @@ impl Workers {
     /// Asks at once, without waiting for the session's thread.
     pub fn ask_now(&self, question: Question) {
         self.queries.ask(question);
+    }
+
+    /// Waits until everything handed over is done, but not for a week that is simulated.
+    pub fn settle(&self, patience: Duration) {
+        let (done, waits) = channel();
+        self.send(Job::Settle(done));
+        let _ = waits.recv_timeout(patience);
     }
 
     /// Waits until everything handed over is done and the run is closed.
@@ -140,6 +166,10 @@ struct SessionThread {
     mending: Option<Instant>,
     /// The study whose participants are led.
     desk: Option<Desk>,
+    /// When time limits are looked at next; none where the rules have none.
+    limits: Option<Instant>,
+    /// Minutes that are left to each limit, as they were told last.
+    minutes_left: Vec<i64>,
     news: Sender<Message>,
     queries: QueryThreads,
     configuration: Configuration,
@@ -190,11 +220,9 @@ impl SessionThread {
                     self.say(News::Written(Err(error.to_string())));
                 }
             }
-            Job::Close | Job::End => {
-                let problem = self.open.as_mut().and_then(|open| open.session().save().err());
-                (self.open, self.company, self.due, self.mending) = (None, None, None, None);
-                self.say(News::Closed(problem.map(|error| error.to_string())));
-            }
+            Job::Close(cause) => self.close(cause),
+            // A run that is still open was not left in good order: the terminal has failed.
+            Job::End => self.close(LeavingCause::Hangup),
             Job::Check(number, tool, arguments) => {
                 self.with_run(|run| Some(News::Checked(number, run.session.check(tool, &arguments))))
             }
@@ -208,11 +236,62 @@ impl SessionThread {
                 run.session.note_query(&sql, answer.as_ref(), took, via);
                 None
             }),
-            Job::NoteView(screen, from, for_ms) => self.with_run(|run| {
-                run.session.note_view(screen, from, for_ms);
-                None
-            }),
+            Job::TakeUp(interface) => self.take_up(interface),
+            Job::Note(activity) => self.with_session(|session| session.note_activity(activity)),
+            Job::NotePresence(event, idle_ms, window) => {
+                self.with_session(|session| session.note_presence(event, idle_ms, window));
+            }
+            // The screen is covered already; a disk that refuses the line is no reason to uncover it.
+            Job::StopClock(reason) => {
+                self.with_session(|session| drop(session.stop_clock(reason.as_deref())));
+            }
+            Job::StartClock => {
+                self.with_session(|session| drop(session.start_clock()));
+                // Questions may be due after a break.
+                self.tell_due();
+            }
+            Job::KeepDrafts(texts) => self.with_session(|session| session.keep_drafts(&texts)),
+            Job::Settle(done) => drop(done.send(())),
         }
+    }
+
+    fn with_session(&mut self, work: impl FnOnce(&mut Session)) {
+        if let Some(open) = &mut self.open {
+            work(open.session());
+        }
+    }
+
+    fn take_up(&mut self, interface: Interface) {
+        self.with_session(|session| session.take_up(interface));
+        let Some(Open::Played(session)) = &self.open else { return };
+        let (texts, held) = (session.kept_drafts(), session.is_held());
+        self.minutes_left.clear();
+        self.limits = (!session.time_left().is_empty()).then(Instant::now);
+        if !texts.is_empty() {
+            self.say(News::Unsent(Box::new(texts)));
+        }
+        if held {
+            self.say(News::Held);
+        }
+        self.tell_due();
+    }
+
+    /// Records that the run is left, and puts everything on the disk.
+    fn put_down(&mut self, cause: LeavingCause) -> Result<(), RunError> {
+        match &mut self.open {
+            Some(Open::Played(session)) => {
+                session.leave(cause);
+                session.save()
+            }
+            Some(Open::Replayed(playback)) => playback.session_mut().save(),
+            None => Ok(()),
+        }
+    }
+
+    fn close(&mut self, cause: LeavingCause) {
+        let problem = self.put_down(cause).err();
+        (self.open, self.company, self.due, self.mending, self.limits) = (None, None, None, None, None);
+        self.say(News::Closed(problem.map(|error| error.to_string())));
     }
 
     /// Does what a person asked for.

@@ -7,7 +7,7 @@ mod report;
 mod rules;
 mod words;
 
-use std::io::{self, BufRead};
+use std::io;
 
 use serde_json::{Value, json};
 
@@ -16,21 +16,24 @@ use words::{explain, glossary};
 
 use super::answers::Answer;
 use super::grammar::{self, Argument, Line, Problem, as_object};
-use super::input::Input;
+use super::lines::Lines;
 use super::next;
 use super::signals::{Phase, Watch};
 use crate::database::text::table;
 use crate::notation::nearest;
 use crate::report::research::late_in_words;
 use crate::session::library::NamedQuery;
-use crate::session::{Change, Library, Mode, QuerySource, Refusal, Session, Via, rows_as_json};
+use crate::session::record::{Help, LeavingCause, Select};
+use crate::session::{
+    Activity, Change, CodeCheck, Interface, Library, Mode, QuerySource, Refusal, Session, Via, rows_as_json,
+};
 use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 
 /// Words that run a week: the command, and the tool as agents call it.
 const NEXT: [&str; 3] = ["next", "next-week", "next_week"];
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 29] = [
+const COMMANDS: [(&str, &str); 31] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("queries", "queries [NAME]           the library of queries, or the result of one of them"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, run a week (also: next-week)"),
@@ -68,10 +71,29 @@ const COMMANDS: [(&str, &str); 29] = [
     ("branch", "branch WEEK              continue in a branch from the start of that week"),
     ("step", "step [DAYS]              debug: run single days (1)"),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),
+    ("pause", "pause [REASON]           stop the clock for a break; only resume, help and quit work then"),
+    ("resume", "resume                   start the clock again"),
     ("quit", "quit                     leave; everything confirmed is saved (also: exit)"),
     ("query", ""),
     ("next-week", ""),
     ("what", ""),
+];
+
+/// Commands that show something and change nothing.
+const LOOKS: [&str; 13] = [
+    "dashboard",
+    "status",
+    "inbox",
+    "changes",
+    "needs",
+    "fit",
+    "leads",
+    "history",
+    "report",
+    "tools",
+    "tables",
+    "queries",
+    "help",
 ];
 
 /// The session and how the dialogue reaches it.
@@ -80,21 +102,32 @@ pub struct Interpreter {
     pub session: Session,
     library: Library,
     watch: Watch,
-    prompts: bool,
+    /// A person types and can be asked.
+    pub(super) prompts: bool,
+    /// A time limit has stopped the clock.
+    pub(super) locked: bool,
+    /// Says whether a word is the experimenter's code; none where there is no experimenter.
+    pub(super) code_check: Option<CodeCheck>,
 }
 
 impl Interpreter {
     /// An interpreter with named queries; `prompts` says that a person types and can be asked.
     pub fn new(session: Session, library: Library, watch: Watch, prompts: bool) -> Interpreter {
-        Interpreter { session, library, watch, prompts }
+        Interpreter { session, library, watch, prompts, locked: false, code_check: None }
     }
 
     /// Does what a line says; none for empty lines and comments.
     ///
     /// # Errors
     /// The input fails while a question waits for its answer.
-    pub fn answer(&mut self, line: &str, input: &mut Input<impl BufRead>) -> io::Result<Option<Answer>> {
-        let answer = match grammar::parse(line) {
+    pub fn answer(&mut self, line: &str, input: &mut Lines) -> io::Result<Option<Answer>> {
+        let parsed = grammar::parse(line);
+        if let Ok(line) = &parsed
+            && let Some(refused) = self.refuse_while_stopped(line)
+        {
+            return Ok(Some(refused));
+        }
+        let answer = match parsed {
             Ok(Line::Empty) => return Ok(None),
             Ok(Line::Text { word, .. }) if word == "check" => self.check(line).unwrap_or_else(usage),
             Ok(Line::Text { word, rest }) => self.text(&word, &rest),
@@ -111,9 +144,11 @@ impl Interpreter {
         match word {
             "memo" if rest.is_empty() => self.show_memo(),
             "memo" => self.add_to_memo(rest),
-            "explain" | "what" => explain(word, rest, &self.session.numbers()),
+            "explain" | "what" => self.explain(word, rest),
             "glossary" => glossary(rest),
             "rules" => self.rules(rest),
+            "pause" => self.pause(rest),
+            "resume" => self.resume(rest),
             _ => self.query(rest, QuerySource::Typed),
         }
     }
@@ -125,7 +160,7 @@ impl Interpreter {
             self.watch.enter_query(interrupt);
             self.session.query_as(ticket, sql, via)
         });
-        self.watch.enter(Phase::Working, String::new());
+        self.watch.enter(Phase::Working);
         match answer {
             Ok(rows) => Answer::done("sql", table(&rows), Value::Object(rows_as_json(&rows))),
             Err(refusal) => Answer::refused("sql", refusal),
@@ -181,7 +216,27 @@ impl Interpreter {
         }
     }
 
-    fn next(&mut self, arguments: &[Argument], input: &mut Input<impl BufRead>) -> io::Result<Answer> {
+    fn explain(&mut self, word: &str, rest: &str) -> Answer {
+        let answer = explain(word, rest, &self.session.numbers());
+        if let Ok(subject) = crate::glossary::find(rest) {
+            let help = Help { term: subject.name(), place: "plain".to_owned() };
+            self.session.note_activity(Activity::Help(help));
+        }
+        answer
+    }
+
+    /// Records that something was looked at.
+    fn note_look(&mut self, word: &str, arguments: &[Argument]) {
+        let words = arguments.iter().map(|argument| match &argument.value {
+            Value::String(text) => text.clone(),
+            other => other.to_string(),
+        });
+        let which = std::iter::once(word.to_owned()).chain(words).collect::<Vec<_>>().join(" ");
+        let (screen, what) = ("plain".to_owned(), "command".to_owned());
+        self.session.note_activity(Activity::Select(Select { screen, what, which }));
+    }
+
+    fn next(&mut self, arguments: &[Argument], input: &mut Lines) -> io::Result<Answer> {
         let filing = match next::read(arguments, &self.session, self.prompts) {
             Ok(next::Filing::Ask) => match next::ask(&self.session, input)? {
                 Some(filing) => filing,
@@ -226,6 +281,9 @@ impl Interpreter {
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
             _ => self.call(word, column, arguments),
         };
+        if outcome.is_ok() && LOOKS.contains(&word) {
+            self.note_look(word, arguments);
+        }
         outcome.unwrap_or_else(usage)
     }
 
@@ -282,8 +340,10 @@ impl Interpreter {
         let mode = if own == Mode::Baseline { Mode::Sandbox } else { own };
         Ok(match self.session.branch(week, mode) {
             Ok(branch) => {
+                self.session.leave(LeavingCause::Quit);
                 let _ = self.session.save();
                 self.session = branch;
+                self.session.take_up(Interface { name: "plain", window: None });
                 let (run, day) = (self.session.manifest().id.clone(), self.session.day());
                 let text = format!("run {run} continues from day {day} · {mode}");
                 Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode }))

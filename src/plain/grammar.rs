@@ -46,7 +46,8 @@ pub struct Problem {
 }
 
 /// Commands whose text is the rest of the line as it stands.
-const TEXT_COMMANDS: [&str; 8] = ["sql", "query", "memo", "explain", "what", "glossary", "check", "rules"];
+const TEXT_COMMANDS: [&str; 10] =
+    ["sql", "query", "memo", "explain", "what", "glossary", "check", "rules", "pause", "resume"];
 
 /// Reads a line.
 pub fn parse(line: &str) -> Result<Line, Problem> {

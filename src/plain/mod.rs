@@ -5,14 +5,17 @@
 
 mod answers;
 mod commands;
+mod ending;
 mod grammar;
 mod input;
+mod lines;
 mod next;
+mod pause;
 mod questions;
 mod signals;
 mod visit;
 
-use std::io::{self, BufRead, IsTerminal, Write};
+use std::io::{self, IsTerminal, Write};
 
 use serde_json::{Value, json};
 
@@ -25,8 +28,9 @@ use crate::session::record::LeavingCause;
 use crate::session::{Interface, Library, Session, Study};
 use answers::Answer;
 use commands::Interpreter;
-use input::{Input, Read};
-use signals::{Phase, Watch};
+use ending::End;
+use input::Read;
+use lines::Lines;
 
 /// How answers look and when the dialogue ends.
 #[derive(Debug, Clone, Copy, Default)]
@@ -39,63 +43,13 @@ pub struct Style {
     pub strict: bool,
 }
 
-/// How a dialogue ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
-    Quit,
-    InputOver,
-    Strict,
-    /// The run's file is no longer there.
-    RecordLost,
-    Signal(i32),
-    /// The run of a study is over, and its questions are answered.
-    Over,
-    /// The person withdrew from the study.
-    Withdrawn,
-}
-
-impl End {
-    fn id(self) -> &'static str {
-        match self {
-            End::Quit => "quit",
-            End::InputOver => "end_of_input",
-            End::Strict => "strict",
-            End::RecordLost => "record_lost",
-            End::Signal(_) => "signal",
-            End::Over => "over",
-            End::Withdrawn => "withdrawn",
-        }
-    }
-
-    fn cause(self) -> LeavingCause {
-        match self {
-            End::Quit | End::Over => LeavingCause::Quit,
-            End::InputOver => LeavingCause::EndOfInput,
-            End::Strict => LeavingCause::Strict,
-            // No line can say it.
-            End::RecordLost => LeavingCause::Quit,
-            End::Signal(_) => LeavingCause::Signal,
-            End::Withdrawn => LeavingCause::Withdrawn,
-        }
-    }
-
-    fn code(self) -> u8 {
-        match self {
-            End::Quit | End::InputOver | End::Over | End::Withdrawn => 0,
-            End::Strict => 1,
-            End::RecordLost => 3,
-            End::Signal(number) => 128u8.saturating_add(number as u8),
-        }
-    }
-}
-
 /// Plays on standard input and output; returns the exit code.
 ///
 /// # Errors
 /// Standard input or output fails.
 pub fn play(session: Session, library: Library, style: Style) -> io::Result<u8> {
-    let mut input = Input::new(io::stdin().lock());
-    dialogue(session, library, style, None, &mut input).map(|(end, _)| end.code())
+    let mut lines = Lines::of_standard_input();
+    dialogue(session, library, style, None, &mut lines).map(|(end, _)| end.code())
 }
 
 /// A dialogue about a run, until the person or the input leaves it.
@@ -104,72 +58,104 @@ fn dialogue(
     library: Library,
     style: Style,
     study: Option<&Study>,
-    input: &mut Input<impl BufRead>,
+    lines: &mut Lines,
 ) -> io::Result<(End, Session)> {
-    let prompts = io::stdin().is_terminal();
     session.take_up(Interface { name: "plain", window: None });
-    let watch = Watch::start();
-    let mut interpreter = Interpreter::new(session, library, watch.clone(), prompts);
+    let mut interpreter = Interpreter::new(session, library, lines.watch(), io::stdin().is_terminal());
+    interpreter.code_check = study.and_then(Study::code_check);
     let mut out = io::stdout();
-    greet(&mut out, &interpreter.session, style)?;
-    let end = loop {
-        if let Some(study) = study {
-            if !questions::ask_due(study, &mut interpreter.session, style, input)? {
-                break End::InputOver;
-            }
-            if interpreter.session.ended().is_some() {
-                break End::Over;
-            }
+    let end = converse(&mut interpreter, lines, &mut out, style, study);
+    // Whoever cannot be answered any more has gone.
+    interpreter.session.leave(end.as_ref().map_or(LeavingCause::Hangup, |end| end.cause()));
+    // Everything answered `ok` is on the disk already; what is left are rows that can be made again.
+    let _ = interpreter.session.save();
+    let end = end?;
+    let told = writeln!(out, "{}", farewell(&interpreter.session, style, end)).and_then(|()| out.flush());
+    match end {
+        // The terminal may be what has gone.
+        End::Signal(_) => {}
+        _ => told?,
+    }
+    Ok((end, interpreter.session))
+}
+
+fn converse(
+    interpreter: &mut Interpreter,
+    lines: &mut Lines,
+    out: &mut io::Stdout,
+    style: Style,
+    study: Option<&Study>,
+) -> io::Result<End> {
+    greet(out, &interpreter.session, style)?;
+    if let Some(held) = interpreter.hold_limit() {
+        answer(out, style, lines.number(), None, &held, interpreter.session.day())?;
+    }
+    loop {
+        for told in interpreter.check_limits() {
+            answer(out, style, lines.number(), None, &told, interpreter.session.day())?;
         }
-        if prompts {
-            prompt(&format!("day {}> ", interpreter.session.day()))?;
+        if let Some(end) = ask_questions(interpreter, lines, style, study)? {
+            return Ok(end);
         }
-        let number = input.next_number();
-        watch.enter(Phase::Prompt, farewell(&interpreter.session, style, End::Signal(0)));
-        let read = input.read()?;
-        watch.enter(Phase::Working, String::new());
+        if interpreter.prompts && !lines.is_waiting() {
+            prompt(&interpreter.prompt_text())?;
+        }
+        let read = lines.wait(interpreter.patience())?;
+        let number = lines.number();
         let (line, day) = match read {
-            Read::End => break End::InputOver,
-            Read::Line(line) => (line, interpreter.session.day()),
-            Read::Unreadable(problem) => {
-                answer(&mut out, style, number, None, &Answer::usage(problem, 1), interpreter.session.day())?;
+            None => continue,
+            Some(Read::End) => return Ok(lines.end()),
+            Some(Read::Line(line)) => (line, interpreter.session.day()),
+            Some(Read::Unreadable(problem)) => {
+                let problem = Answer::usage(problem, 1);
+                answer(out, style, number, None, &problem, interpreter.session.day())?;
                 if style.strict {
-                    break End::Strict;
+                    return Ok(End::Strict);
                 }
                 continue;
             }
         };
         if study.is_some() && line.trim() == "withdraw" {
-            if withdraws(style, input)? {
-                break End::Withdrawn;
+            if withdraws(style, lines)? {
+                return Ok(End::Withdrawn);
             }
             continue;
         }
-        let Some(reply) = interpreter.answer(&line, input)? else { continue };
+        let Some(reply) = interpreter.answer(&line, lines)? else { continue };
         if reply.is_quit() {
-            break End::Quit;
+            return Ok(End::Quit);
         }
-        answer(&mut out, style, number, style.echo.then_some(line.as_str()), &reply, day)?;
-        if let Some(signal) = watch.caught() {
-            break End::Signal(signal);
+        answer(out, style, number, style.echo.then_some(line.as_str()), &reply, day)?;
+        if lines.watch().caught().is_some() {
+            return Ok(lines.end());
         }
         if interpreter.session.record_loss().is_some() {
-            break End::RecordLost;
+            return Ok(End::RecordLost);
         }
         if style.strict && !reply.is_ok() {
-            break End::Strict;
+            return Ok(End::Strict);
         }
+    }
+}
+
+/// Asks the questions of a study that are due; how the dialogue ends, if it ends with them.
+fn ask_questions(
+    interpreter: &mut Interpreter,
+    lines: &mut Lines,
+    style: Style,
+    study: Option<&Study>,
+) -> io::Result<Option<End>> {
+    let Some(study) = study.filter(|_| !lines.is_waiting() && !interpreter.session.clock_stands()) else {
+        return Ok(None);
     };
-    interpreter.session.leave(end.cause());
-    // Everything answered `ok` is on the disk already; what is left are rows that can be made again.
-    let _ = interpreter.session.save();
-    writeln!(out, "{}", farewell(&interpreter.session, style, end))?;
-    out.flush()?;
-    Ok((end, interpreter.session))
+    if !questions::ask_due(study, &mut interpreter.session, style, lines)? {
+        return Ok(Some(lines.end()));
+    }
+    Ok(interpreter.session.ended().map(|_| End::Over))
 }
 
 /// Asks whether a participant really withdraws.
-fn withdraws(style: Style, input: &mut Input<impl BufRead>) -> io::Result<bool> {
+fn withdraws(style: Style, lines: &mut Lines) -> io::Result<bool> {
     let question = "Withdrawing erases everything that you did in this study, for good. Type withdraw again to do so, \
                     anything else to go on:";
     if style.json {
@@ -178,7 +164,7 @@ fn withdraws(style: Style, input: &mut Input<impl BufRead>) -> io::Result<bool> 
         println!("{question}");
     }
     io::stdout().flush()?;
-    Ok(matches!(input.read()?, Read::Line(line) if line.trim() == "withdraw"))
+    Ok(matches!(lines.read()?, Read::Line(line) if line.trim() == "withdraw"))
 }
 
 /// Shows a prompt where a person sees it.

@@ -1,17 +1,18 @@
 //! `next`: rationale, forecasts, a week (docs/interfaces/plain-mode.md#next).
 
-use std::io::{self, BufRead};
+use std::io;
 
 use serde_json::{Value, json};
 
 use super::answers::Answer;
 use super::grammar::{Argument, Problem};
-use super::input::{Input, Read};
+use super::input::Read;
+use super::lines::Lines;
 use super::prompt;
 use crate::notation::{dollars, grouped, signed_dollars};
 use crate::report::research::late_lines;
 use crate::report::review::alike_lines;
-use crate::session::{Mode, Session, Via, Week};
+use crate::session::{Mode, Session, TIME_LIMIT, Via, Week};
 use crate::tools::{FORECAST_KEYS, Forecast};
 
 /// What is filed before a week.
@@ -28,6 +29,14 @@ pub enum Filing {
     },
     /// The person has to be asked.
     Ask,
+}
+
+impl Filing {
+    /// What is filed for somebody whose time is over.
+    pub fn at_limit(session: &Session) -> Filing {
+        let predictions = session.naive_forecasts().as_predictions();
+        Filing::Given { rationale: json!(TIME_LIMIT), predictions, naive: [true; 4] }
+    }
 }
 
 /// Reads the forms of the command.
@@ -141,7 +150,7 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
 ///
 /// # Errors
 /// The input or the prompt fails.
-pub fn ask(session: &Session, input: &mut Input<impl BufRead>) -> io::Result<Option<Filing>> {
+pub fn ask(session: &Session, input: &mut Lines) -> io::Result<Option<Filing>> {
     let seen = session.observe();
     let changes = seen.changes.iter().map(super::commands::change_line);
     let mut lines: Vec<String> = changes.chain(seen.purchases.iter().cloned()).collect();
@@ -173,11 +182,7 @@ pub fn ask(session: &Session, input: &mut Input<impl BufRead>) -> io::Result<Opt
 }
 
 /// One forecast and whether it is the naive one.
-fn ask_forecast(
-    input: &mut Input<impl BufRead>,
-    weeks: u32,
-    naive: Forecast,
-) -> io::Result<Option<(Forecast, bool)>> {
+fn ask_forecast(input: &mut Lines, weeks: u32, naive: Forecast) -> io::Result<Option<(Forecast, bool)>> {
     let whole = |value: f64| grouped(value, 0).replace(',', "");
     let text = format!(
         "{weeks} {}: point lower upper [naive {} {} {}]> ",
@@ -221,7 +226,7 @@ fn read_forecast(line: &str, horizon_days: u32) -> Result<Forecast, String> {
 }
 
 /// A line of the person; none for a dot and the end of input.
-fn ask_line(input: &mut Input<impl BufRead>, text: &str) -> io::Result<Option<String>> {
+fn ask_line(input: &mut Lines, text: &str) -> io::Result<Option<String>> {
     loop {
         prompt(text)?;
         match input.read()? {

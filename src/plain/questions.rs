@@ -1,12 +1,13 @@
 //! Questions of a study, asked line by line between the commands.
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, Write};
 use std::time::Instant;
 
 use serde_json::{Value, json};
 
 use super::Style;
-use super::input::{Input, Read};
+use super::input::Read;
+use super::lines::Lines;
 use crate::notation::printable;
 use crate::session::{DueQuestion, Form, Session, Study};
 
@@ -18,7 +19,7 @@ pub(super) fn ask_due(
     study: &Study,
     session: &mut Session,
     style: Style,
-    input: &mut Input<impl BufRead>,
+    lines: &mut Lines,
 ) -> io::Result<bool> {
     let due = study.due(session);
     for (number, question) in due.iter().enumerate() {
@@ -28,7 +29,7 @@ pub(super) fn ask_due(
         }
         session.ask_question(question);
         show(question, style)?;
-        if !answer(question, session, style, input)? {
+        if !answer(question, session, style, lines)? {
             return Ok(false);
         }
     }
@@ -36,16 +37,11 @@ pub(super) fn ask_due(
 }
 
 /// Reads lines until one of them is an answer.
-fn answer(
-    due: &DueQuestion,
-    session: &mut Session,
-    style: Style,
-    input: &mut Input<impl BufRead>,
-) -> io::Result<bool> {
+fn answer(due: &DueQuestion, session: &mut Session, style: Style, lines: &mut Lines) -> io::Result<bool> {
     let shown = Instant::now();
     let mut changes = 0;
     loop {
-        let typed = match input.read()? {
+        let typed = match lines.read()? {
             Read::End => return Ok(false),
             Read::Unreadable(_) => continue,
             Read::Line(line) => line,

@@ -21,41 +21,48 @@ pub struct Watch(Arc<Mutex<State>>);
 
 struct State {
     phase: Phase,
-    /// What to print when the prompt is left.
-    farewell: String,
     interrupt: Option<Interrupt>,
     caught: Option<i32>,
+    /// The dialogue was asked to leave its prompt.
+    leaving: bool,
 }
 
 impl Watch {
-    /// Starts watching. Where signals cannot be watched they end the program as ever; nothing is lost by it.
-    pub fn start() -> Watch {
-        let state = State { phase: Phase::Working, farewell: String::new(), interrupt: None, caught: None };
+    /// Starts watching; a prompt is told of signals. Where signals cannot be watched they end the program as ever; nothing
+    /// is lost by it.
+    pub fn start(prompt: impl Fn(i32) + Send + 'static) -> Watch {
+        let state = State { phase: Phase::Working, interrupt: None, caught: None, leaving: false };
         let watch = Watch(Arc::new(Mutex::new(state)));
         #[cfg(unix)]
-        watch.listen();
+        watch.listen(prompt);
+        #[cfg(not(unix))]
+        drop(prompt);
         watch
     }
 
     #[cfg(unix)]
-    fn listen(&self) {
+    fn listen(&self, prompt: impl Fn(i32) + Send + 'static) {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
         let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]) else { return };
         let watch = self.clone();
         std::thread::spawn(move || {
             for signal in signals.forever() {
-                watch.handle(signal, signal == SIGINT);
+                watch.handle(signal, signal == SIGINT, &prompt);
             }
         });
     }
 
     #[cfg(unix)]
-    fn handle(&self, signal: i32, by_key: bool) {
+    fn handle(&self, signal: i32, by_key: bool, prompt: &impl Fn(i32)) {
         let mut state = self.state();
-        if state.phase == Phase::Prompt {
-            // Everything confirmed is on the disk; the prompt has nothing to finish.
-            println!("{}", state.farewell);
+        if state.leaving {
+            // A disk that hangs keeps the last line; everything confirmed is on it already.
             std::process::exit(128 + signal);
+        }
+        if state.phase == Phase::Prompt {
+            state.leaving = true;
+            prompt(signal);
+            return;
         }
         if let (Phase::Query, Some(interrupt)) = (state.phase, &state.interrupt) {
             interrupt.stop();
@@ -67,15 +74,19 @@ impl Watch {
     }
 
     /// Says what the dialogue is doing now.
-    pub fn enter(&self, phase: Phase, farewell: String) {
-        let mut state = self.state();
-        (state.phase, state.farewell) = (phase, farewell);
+    pub fn enter(&self, phase: Phase) {
+        self.state().phase = phase;
     }
 
     /// Says that a query is asked, which this stops.
     pub fn enter_query(&self, interrupt: Interrupt) {
         let mut state = self.state();
         (state.phase, state.interrupt) = (Phase::Query, Some(interrupt));
+    }
+
+    /// A signal has ended the wait at a prompt.
+    pub fn catch(&self, signal: i32) {
+        self.state().caught = Some(signal);
     }
 
     /// The signal that asked to leave, if one did.

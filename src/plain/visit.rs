@@ -1,12 +1,13 @@
 //! The way of a participant through a study, line by line: label, consent, practice, session, questions, thanks.
 
-use std::io::{self, BufRead, IsTerminal, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde_json::json;
 
-use super::input::{Input, Read};
+use super::input::Read;
+use super::lines::Lines;
 use super::{End, Style, dialogue, prompt};
 use crate::notation::printable;
 use crate::session::{
@@ -40,8 +41,8 @@ impl From<io::Error> for Stop {
 /// # Errors
 /// A run or a file of the study cannot be read; standard input or output fails.
 pub fn visit(study: Study, runs: &Path, configuration: &Configuration, style: Style) -> Result<u8, RunError> {
-    let input = Input::new(io::stdin().lock());
-    let mut host = Host { input, configuration, style, consent: None };
+    let lines = Lines::of_standard_input();
+    let mut host = Host { lines, configuration, style, consent: None };
     match host.lead(study, runs) {
         Ok(code) | Err(Stop::Left(code)) => Ok(code),
         Err(Stop::Run(error)) => Err(error),
@@ -49,14 +50,14 @@ pub fn visit(study: Study, runs: &Path, configuration: &Configuration, style: St
     }
 }
 
-struct Host<'a, R> {
-    input: Input<R>,
+struct Host<'a> {
+    lines: Lines,
     configuration: &'a Configuration,
     style: Style,
     consent: Option<ConsentGiven>,
 }
 
-impl<R: BufRead> Host<'_, R> {
+impl Host<'_> {
     fn lead(&mut self, study: Study, runs: &Path) -> Result<u8, Stop> {
         self.say("study", &study.protocol.title)?;
         let visit = self.label(study, runs)?;
@@ -166,7 +167,7 @@ impl<R: BufRead> Host<'_, R> {
     /// Plays a run until it is over and its questions are answered, or the person leaves.
     fn play(&mut self, visit: &Visit, session: Session) -> Result<(), Stop> {
         let library = Library::of(self.configuration);
-        let (end, session) = dialogue(session, library, self.style, Some(visit.study()), &mut self.input)?;
+        let (end, session) = dialogue(session, library, self.style, Some(visit.study()), &mut self.lines)?;
         let goes_on = session.ended().is_some() && visit.study().due(&session).is_empty();
         // The run has to be free before it is erased.
         drop(session);
@@ -188,10 +189,10 @@ impl<R: BufRead> Host<'_, R> {
             io::stdout().flush()?;
         }
         loop {
-            match self.input.read()? {
+            match self.lines.read()? {
                 Read::Line(line) => return Ok(line),
                 Read::Unreadable(_) => {}
-                Read::End => return Err(Stop::Left(0)),
+                Read::End => return Err(Stop::Left(self.lines.end().code())),
             }
         }
     }

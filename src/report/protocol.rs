@@ -132,7 +132,7 @@ fn rules(rules: &SessionRules) -> String {
          | Participants see how their forecasts have done while they make new ones | {} |\n\
          | The final page shows | {results} |\n\
          | Texts of notes and answers | {texts} |\n\
-         | Texts that were edited (not recorded by this version) | {drafts} |\n\
+         | Texts that were edited | {drafts} |\n\
          | Lines that are left out | {} |\n",
         yes(rules.advice),
         yes(rules.calibration),
@@ -143,7 +143,7 @@ fn rules(rules: &SessionRules) -> String {
         [("week", limits.week_minutes), ("sitting", limits.session_minutes), ("study", limits.study_minutes)];
     for (what, minutes) in all {
         text += &format!(
-            "| Active minutes for a {what} (not enforced by this version) | {} |\n",
+            "| Active minutes for a {what} | {} |\n",
             minutes.map_or("no limit".to_owned(), |own| own.to_string())
         );
     }
@@ -152,7 +152,7 @@ fn rules(rules: &SessionRules) -> String {
         AtLimit::Naive => "the week is filed with the naive projection",
         AtLimit::Pause => "the clock is stopped until the experimenter starts it",
     };
-    text + &format!("| At a limit (not enforced by this version) | {at_limit} |\n")
+    text + &format!("| At a limit | {at_limit} |\n")
 }
 
 fn questions(study: &Study) -> String {

@@ -13,6 +13,7 @@ use crate::session::figures::week::WeekFigures;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::world_log::list_world;
 use crate::session::play::history::History;
+use crate::session::play::personal_clock::PersonalClock;
 use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
@@ -43,6 +44,8 @@ pub struct Session {
     pub(super) history: History,
     /// What is kept with the run besides its company.
     pub(super) surroundings: RunSurroundings,
+    /// Whether the person has stopped the clock, and what was told of limits.
+    pub(super) clock: PersonalClock,
     /// The last line that was written, or applied again.
     pub(super) position: Position,
     /// Hash of the line that closed the last week, or the run; empty before the first.

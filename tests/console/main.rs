@@ -9,6 +9,7 @@ mod harness;
 mod looks;
 mod monkey;
 mod pictures;
+mod record;
 mod replay;
 mod roles;
 mod sizes;

@@ -22,20 +22,20 @@ impl App {
             Some(figure) => Explain::figure(&figure, numbers),
             None => Explain::screen(run.here, numbers),
         };
-        self.layers.push(Layer::Dialog(Box::new(dialog)));
+        self.lay(Layer::Dialog(Box::new(dialog)));
     }
 
     /// Explains a subject over what is open.
     pub(super) fn explain_subject(&mut self, subject: Subject) {
         let Stage::Run(run) = &mut self.stage else { return };
         let explain = Explain::subject(subject, run.company.numbers.clone());
-        self.layers.push(Layer::Dialog(Box::new(explain)));
+        self.lay(Layer::Dialog(Box::new(explain)));
     }
 
     pub(super) fn show_glossary(&mut self) {
         let Stage::Run(run) = &self.stage else { return };
         let glossary = Glossary::new(run.company.numbers.clone());
-        self.layers.push(Layer::Dialog(Box::new(glossary)));
+        self.lay(Layer::Dialog(Box::new(glossary)));
     }
 
     /// Opens the run for practice with the tour in it, or a new one.

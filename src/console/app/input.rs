@@ -5,6 +5,7 @@ use ratatui::layout::Position;
 
 use super::{App, Closing, Layer, Order, Stage};
 use crate::console::action::{Action, Scope};
+use crate::console::attention::Edit;
 use crate::console::canvas::Click;
 use crate::console::dialogs::confirm::Confirm;
 use crate::console::dialogs::help::Help;
@@ -177,6 +178,7 @@ impl App {
     /// Does an action where the focus is.
     pub(super) fn act(&mut self, action: Action) {
         let global = action.entry().scope == Scope::Global;
+        self.edit = Edit::Filled;
         match action {
             Action::Quit => return self.quit(),
             Action::Redraw => return self.orders.push(Order::Redraw),
@@ -224,13 +226,15 @@ impl App {
             None => return,
         };
         if outcome.close {
-            self.layers.pop();
+            self.close_layer(outcome.confirmed);
+        } else {
+            self.note_step();
         }
         self.follow(outcome.effects);
     }
 
     pub(super) fn open(&mut self, dialog: impl Dialog + 'static) {
-        self.layers.push(Layer::Dialog(Box::new(dialog)));
+        self.lay(Layer::Dialog(Box::new(dialog)));
     }
 
     fn act_globally(&mut self, action: Action) {
@@ -279,6 +283,7 @@ impl App {
                 self.remember(Preferences { marker: Some(self.glyphs), ..Preferences::default() });
             }
             Action::Mouse => self.hand_over_mouse(),
+            Action::StopClock => self.ask_to_stop_clock(),
             Action::LeaveRun => self.leave(Closing::ToMenu),
             _ => {}
         }
@@ -313,6 +318,7 @@ impl App {
         match found {
             Some(Figure { title, sql: Some(sql), .. }) => {
                 let here = self.run().map_or("", |run| run.here.action().entry().title);
+                self.note_opened("figure", title.clone());
                 self.open(RowsBehind::new(format!("{here} › {title}"), sql.clone()));
                 self.follow(vec![Effect::AskBehind(sql)]);
             }
@@ -362,7 +368,7 @@ impl App {
             return self.show_end();
         }
         run.filing.reopen(run.screens.tools.unsent());
-        self.layers.push(Layer::Filing);
+        self.lay(Layer::Filing);
     }
 
     fn show_report(&mut self) {
@@ -407,6 +413,6 @@ impl App {
             self.open(Confirm::new("Leave", text, vec![Effect::LeaveNow]));
             return;
         }
-        self.leave(Closing::ToShell(0));
+        self.leave(Closing::ToShell);
     }
 }

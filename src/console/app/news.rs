@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 use super::{App, Layer, Order, Run, Stage};
 use crate::console::action::Action;
@@ -86,6 +85,14 @@ impl App {
                 self.library = library;
                 self.say(text);
             }
+            News::TimeLeft(left) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    run.time_left = left;
+                }
+            }
+            News::Limit(limit) => self.reach_limit(&limit),
+            News::Held => self.hold_limit(),
+            News::Unsent(texts) => self.offer_texts(*texts),
             News::QuerySaved(Err(problem)) => self.complain(problem),
             News::DatabaseBehind(problem) => {
                 if let Stage::Run(run) = &mut self.stage {
@@ -184,7 +191,7 @@ impl App {
         self.busy = None;
         // Whoever takes a replay over goes on where they look.
         let here = self.run().filter(|run| run.viewer.is_some()).map_or(ScreenId::Overview, |run| run.here);
-        self.layers.clear();
+        self.close_layers();
         let over = !company.is_running() && viewer.is_none();
         let tour = std::mem::take(&mut self.tour_planned).then(Tour::default);
         match company.remarks.last() {
@@ -206,7 +213,9 @@ impl App {
             trail: Vec::new(),
             after: Vec::new(),
             zoomed: false,
-            shown: Instant::now(),
+            shown: Some(self.stopwatch.now()),
+            came_from: None,
+            selected: None,
             screens: Screens::default(),
             filing: FilingDialog::default(),
             story: None,
@@ -214,11 +223,14 @@ impl App {
             asked: BTreeMap::new(),
             tour,
             viewer,
+            time_left: Vec::new(),
             behind: None,
         }));
         if let Stage::Run(run) = &mut self.stage {
             run.screens.sql.learn(self.library.clone());
         }
+        self.forget_texts();
+        self.take_up();
         self.renew();
         // The questions at the end come at once.
         if over && !self.leads_participant() {
@@ -235,14 +247,14 @@ impl App {
         }
         let page = FinalPage::new(story);
         let page = if self.leads_participant() { page.leading_on() } else { page };
-        self.layers.push(Layer::Dialog(Box::new(page)));
+        self.lay(Layer::Dialog(Box::new(page)));
     }
 
     fn told(&mut self, story: &Arc<Story>) {
         if let Stage::Run(run) = &mut self.stage {
             run.story = Some(story.clone());
         }
-        for layer in &mut self.layers {
+        for layer in self.layers.iter_mut() {
             if let Layer::Dialog(dialog) = layer {
                 dialog.take_story(story);
             }
@@ -290,6 +302,10 @@ impl App {
 
     fn advanced(&mut self, week: Result<Box<Week>, Refusal>, company: Arc<Company>) {
         self.busy = None;
+        let now = self.stopwatch.now();
+        if let Stage::Run(run) = &mut self.stage {
+            run.look_again(now);
+        }
         self.changed(company);
         let week = match week {
             Ok(week) => week,
@@ -297,7 +313,7 @@ impl App {
                 let text = refusal.to_string();
                 if let Stage::Run(run) = &mut self.stage {
                     run.filing.refused(text.clone());
-                    self.layers.push(Layer::Filing);
+                    self.lay(Layer::Filing);
                 }
                 return self.complain(text);
             }
@@ -315,7 +331,7 @@ impl App {
         self.say(text);
         match week.ended {
             Some(_) => self.show_end(),
-            None => self.layers.push(Layer::Dialog(Box::new(Report::new(week.remark)))),
+            None => self.lay(Layer::Dialog(Box::new(Report::new(week.remark)))),
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::console::request::Request;
 use crate::console::screens::ScreenId;
 use crate::console::worker::{Job, Question};
 use crate::session::QuerySource;
+use crate::session::record::DraftOutcome;
 
 impl App {
     /// Lets effects follow, in their order.
@@ -31,7 +32,17 @@ impl App {
                 self.checker = self.run().map_or(ScreenId::Tools, |run| run.here);
                 self.orders.push(Order::Job(Job::Check(self.checks, tool, arguments)));
             }
-            Effect::Ask(sql) => self.sql_question = self.ask(sql, QuerySource::Typed),
+            Effect::Ask(sql) => {
+                self.end_text("sql", DraftOutcome::Sent);
+                let named = self.library.queries().iter().any(|query| query.sql.trim() == sql.trim());
+                let derived = self.run().is_some_and(|run| run.screens.sql.is_derived(&sql));
+                let via = match (named, derived) {
+                    (true, _) => QuerySource::Library,
+                    (false, true) => QuerySource::Derived,
+                    (false, false) => QuerySource::Typed,
+                };
+                self.sql_question = self.ask(sql, via);
+            }
             Effect::AskBehind(sql) => self.rows_question = self.ask(sql, QuerySource::DrillDown),
             Effect::CancelQuery => self.orders.push(Order::CancelQuery),
             Effect::Read(reading) => {
@@ -45,7 +56,7 @@ impl App {
                 self.orders.push(Order::Copy(text));
             }
             Effect::ShowText(title, text) => {
-                self.layers.push(Layer::Dialog(Box::new(Reader::new(title, text))));
+                self.lay(Layer::Dialog(Box::new(Reader::new(title, text))));
             }
             Effect::Write(name, contents) => self.write(vec![(name.as_str(), contents)]),
             Effect::Say(text) => self.say(text),
@@ -90,17 +101,22 @@ impl App {
             Effect::SaveQuery { name, title, sql } => self.save_query([name, title, sql]),
             Effect::ConfirmCall { tool, arguments, text } => {
                 let confirm = Confirm::new(tool.name(), text, vec![Effect::call(tool, arguments)]);
-                self.layers.push(Layer::Dialog(Box::new(confirm)));
+                self.lay(Layer::Dialog(Box::new(confirm)));
             }
             Effect::ConfirmCalls { calls, text } => {
                 let calls = calls.into_iter().map(|(tool, arguments)| Effect::call(tool, arguments));
                 let confirm = Confirm::new("send by rules", text, calls.collect());
-                self.layers.push(Layer::Dialog(Box::new(confirm)));
+                self.lay(Layer::Dialog(Box::new(confirm)));
             }
             Effect::Explain(subject) => self.explain_subject(subject),
             Effect::StartTour => self.start_tour(),
             Effect::Receive(study) => self.receive(study),
-            Effect::LeaveNow => self.leave(Closing::ToShell(0)),
+            Effect::SettleOffer(restore) => self.settle_offer(restore),
+            Effect::StopClock(reason) => self.stop_clock(reason, false),
+            Effect::LeaveNow => {
+                self.discard_texts();
+                self.leave(Closing::ToShell);
+            }
             Effect::Do(action) => self.act(action),
         }
     }
@@ -126,6 +142,10 @@ impl App {
         if request.waits_for_week() && self.busy.is_some() {
             return self.complain("a week is running; nothing was sent: try again when it is done");
         }
+        if matches!(request, Request::Replay { .. }) {
+            // What is played here is left for it.
+            self.put_down();
+        }
         if let Some(what) = request.busy_with() {
             let is_advance = matches!(request, Request::Advance { .. });
             if self.busy.is_some() {
@@ -133,12 +153,21 @@ impl App {
                     self.complain("a week is running already")
                 };
             }
+            if is_advance {
+                // Everything before the week belongs to the week before.
+                self.send_texts(&request);
+                self.close_view();
+                if let Stage::Run(run) = &mut self.stage {
+                    run.stop_looking();
+                }
+            }
             let days = self
                 .run()
                 .filter(|_| is_advance)
                 .map(|run| DaysRun::between(run.company.seen.day, run.company.next_decision_day));
             self.busy = Some(Busy { what, days, since: Instant::now() });
         }
+        self.send_texts(&request);
         if matches!(request, Request::WriteReport) {
             self.say("writing the report …");
         }

@@ -16,6 +16,7 @@ impl App {
     /// Receives participants of a study from now on.
     pub(super) fn receive(&mut self, study: Box<Study>) {
         let visit = VisitState::of(&study);
+        self.code_check = study.code_check();
         self.stage = Stage::Visit(Box::new(VisitPage::wait(&visit.title)));
         self.visit = Some(visit);
         self.ask_visit(VisitRequest::Receive(study));
@@ -61,8 +62,8 @@ impl App {
     }
 
     fn turn_to(&mut self, page: impl FnOnce(&str) -> VisitPage) {
+        self.close_layers();
         let Some(visit) = &self.visit else { return };
-        self.layers.clear();
         self.stage = Stage::Visit(Box::new(page(&visit.title)));
     }
 
@@ -144,13 +145,13 @@ impl App {
     pub(super) fn settle_visit(&mut self) {
         let Some(visit) = &self.visit else { return };
         let Stage::Run(run) = &self.stage else { return };
-        if !self.layers.is_empty() || self.busy.is_some() || self.closing.is_some() {
+        if !self.layers.is_empty() || self.busy.is_some() || self.closing.is_some() || self.cover.is_some() {
             return;
         }
         let over = !run.company.is_running();
         match QuestionPage::first_of(&visit.due) {
             Some((page, shown)) => {
-                self.layers.push(Layer::Dialog(Box::new(page)));
+                self.lay(Layer::Dialog(Box::new(page)));
                 self.follow(vec![shown]);
             }
             None if over => self.leave(Closing::ToMenu),

@@ -26,6 +26,10 @@ impl Confirm {
 }
 
 impl Dialog for Confirm {
+    fn what(&self) -> String {
+        format!("confirm {}", self.title)
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         vec![Scope::Dialog]
     }

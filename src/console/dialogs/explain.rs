@@ -38,6 +38,8 @@ impl Link {
 
 /// One explanation, and where the person is in it.
 struct OpenPage {
+    /// What is explained, as the glossary, tools and tables name it.
+    term: String,
     title: String,
     note: String,
     /// Heading and text of each part.
@@ -51,6 +53,7 @@ impl OpenPage {
         let told = Explanation::of(subject, numbers);
         let places = told.places.iter().filter_map(|name| Action::named(Scope::Global, name));
         OpenPage {
+            term: subject.name(),
             title: told.title,
             note: told.note,
             parts: told.sections.into_iter().map(|own| (own.name.to_owned(), own.text)).collect(),
@@ -81,6 +84,7 @@ impl Explain {
         let mut page = match glossary::subject(figure.term) {
             Some(subject) => OpenPage::of(subject, &numbers),
             None => OpenPage {
+                term: figure.term.to_owned(),
                 title: String::new(),
                 note: String::new(),
                 parts: Vec::new(),
@@ -104,6 +108,7 @@ impl Explain {
         let entry = screen.action().entry();
         let help = "Select a figure or a field to have it explained, or choose a term of this screen.";
         let page = OpenPage {
+            term: entry.name.to_owned(),
             title: entry.title.to_owned(),
             note: "screen".to_owned(),
             parts: vec![(String::new(), entry.doc.to_owned()), (String::new(), help.to_owned())],
@@ -150,6 +155,14 @@ impl Explain {
 }
 
 impl Dialog for Explain {
+    fn what(&self) -> String {
+        "explanation".to_owned()
+    }
+
+    fn term(&self) -> Option<String> {
+        Some(self.page().term.clone())
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         vec![Scope::List, Scope::Dialog, Scope::Global]
     }

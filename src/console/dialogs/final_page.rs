@@ -81,6 +81,10 @@ impl FinalPage {
 }
 
 impl Dialog for FinalPage {
+    fn what(&self) -> String {
+        "final page".to_owned()
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         if self.led { vec![Scope::Visit] } else { vec![Scope::Final] }
     }

@@ -63,6 +63,10 @@ impl Glossary {
 }
 
 impl Dialog for Glossary {
+    fn what(&self) -> String {
+        "glossary".to_owned()
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         if self.table.is_typing() { vec![Scope::Field] } else { vec![Scope::List, Scope::Dialog] }
     }

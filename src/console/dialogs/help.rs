@@ -105,6 +105,10 @@ fn of(scope: Scope) -> impl Iterator<Item = Action> {
 }
 
 impl Dialog for Help {
+    fn what(&self) -> String {
+        "keys".to_owned()
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         if self.table.is_typing() { vec![Scope::Field] } else { vec![Scope::List, Scope::Dialog] }
     }

@@ -7,8 +7,10 @@ pub mod final_page;
 pub mod glossary;
 pub mod help;
 pub mod palette;
+pub mod pause;
 pub mod reader;
 pub mod report;
+pub mod restore;
 pub mod rows;
 pub mod seek;
 pub mod take_over;
@@ -32,6 +34,8 @@ pub struct Outcome {
     pub effects: Vec<Effect>,
     /// The dialog is done with.
     pub close: bool,
+    /// It is done with because the person did what it is for.
+    pub confirmed: bool,
 }
 
 impl Outcome {
@@ -47,17 +51,40 @@ impl Outcome {
 
     /// The dialog closes and something follows.
     pub fn close_with(effects: Vec<Effect>) -> Outcome {
-        Outcome { effects, close: true }
+        Outcome { effects, close: true, confirmed: true }
+    }
+
+    /// The dialog is left, and something follows all the same.
+    pub fn leave_with(effects: Vec<Effect>) -> Outcome {
+        Outcome { effects, close: true, confirmed: false }
     }
 
     /// Something follows; the dialog stays.
     pub fn with(effects: Vec<Effect>) -> Outcome {
-        Outcome { effects, close: false }
+        Outcome { effects, ..Outcome::default() }
     }
 }
 
 /// One dialog.
 pub trait Dialog {
+    /// What it is, as the record names it.
+    fn what(&self) -> String;
+
+    /// The step it is at, if it has steps.
+    fn step(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// The term that it explains now.
+    fn term(&self) -> Option<String> {
+        None
+    }
+
+    /// The text that is being edited in it: its place, as the record names it, and what it says.
+    fn edited(&self) -> Option<(String, String)> {
+        None
+    }
+
     /// Scopes, the innermost first.
     fn scopes(&self) -> Vec<Scope>;
 

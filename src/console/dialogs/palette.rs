@@ -287,6 +287,10 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntr
 }
 
 impl Dialog for Palette {
+    fn what(&self) -> String {
+        "palette".to_owned()
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         vec![Scope::Field]
     }

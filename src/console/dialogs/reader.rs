@@ -25,6 +25,10 @@ impl Reader {
 }
 
 impl Dialog for Reader {
+    fn what(&self) -> String {
+        format!("text {}", self.title)
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         vec![Scope::Dialog, Scope::List]
     }

@@ -41,6 +41,10 @@ impl Report {
 type Section<'a> = Vec<Line<'a>>;
 
 impl Dialog for Report {
+    fn what(&self) -> String {
+        "week report".to_owned()
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         vec![Scope::Dialog]
     }

@@ -63,6 +63,10 @@ impl RowsBehind {
 }
 
 impl Dialog for RowsBehind {
+    fn what(&self) -> String {
+        format!("rows behind {}", self.title)
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         if self.table.is_typing() { vec![Scope::Field] } else { vec![Scope::List, Scope::Dialog] }
     }
@@ -86,7 +90,7 @@ impl Dialog for RowsBehind {
         }
         match action {
             Action::Close | Action::Cancel if self.answer.is_none() => {
-                Outcome::close_with(vec![Effect::CancelQuery])
+                Outcome::leave_with(vec![Effect::CancelQuery])
             }
             Action::Close | Action::Cancel => Outcome::close(),
             _ => Outcome::stay(),

@@ -42,6 +42,10 @@ impl Seek {
 }
 
 impl Dialog for Seek {
+    fn what(&self) -> String {
+        "seek a week".to_owned()
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         vec![Scope::Field]
     }

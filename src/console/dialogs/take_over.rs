@@ -34,6 +34,10 @@ impl TakeOver {
 }
 
 impl Dialog for TakeOver {
+    fn what(&self) -> String {
+        "take over".to_owned()
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         vec![Scope::List, Scope::Dialog]
     }

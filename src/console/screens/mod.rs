@@ -172,6 +172,16 @@ pub trait ScreenState {
         0
     }
 
+    /// The object that is open on it: what kind of object, and which, as the record names them.
+    fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
+        None
+    }
+
+    /// The text that is being edited: its place, as the record names it, and what it says.
+    fn edited(&self) -> Option<(String, String)> {
+        None
+    }
+
     /// Whether text would be lost with the program.
     fn holds_unsent_text(&self) -> bool {
         false

@@ -4,29 +4,37 @@ use super::told::time;
 use crate::console::theme::Role;
 use crate::session::Activity;
 use crate::session::record::{
-    ClockEvent, DialogOutcome, DraftOutcome, LimitEvent, LimitScope, Presence, PresenceEvent,
+    ClockEvent, DialogOutcome, DraftOutcome, LeavingCause, LimitEvent, LimitScope, Presence, PresenceEvent,
 };
 
 /// An activity in a line.
 pub(super) fn brief(activity: &Activity) -> (String, Role) {
     let text = match activity {
         Activity::View(view) => format!("viewed {} for {}", view.screen, time(view.for_ms)),
+        Activity::Select(select) if select.what == "command" => format!("asked for {}", select.which),
         Activity::Select(select) => format!("opened {} {}", select.what, select.which),
         Activity::Dialog(dialog) => {
             let end = match dialog.outcome {
                 DialogOutcome::Confirmed => "confirmed",
                 DialogOutcome::Cancelled => "left",
             };
-            format!("{}: {end} after {}", dialog.what, time(dialog.for_ms))
+            let steps = dialog.steps.iter().map(|step| format!("{} {}", step.step, time(step.for_ms)));
+            let steps = steps.collect::<Vec<_>>().join(", ");
+            let steps = if steps.is_empty() { steps } else { format!(" ({steps})") };
+            format!("{}: {end} after {}{steps}", dialog.what, time(dialog.for_ms))
         }
-        Activity::Help(help) => format!("looked up {}", help.term),
+        Activity::Help(help) => format!("looked up {} in {}", help.term, help.place),
         Activity::Draft(draft) => {
             let end = match draft.outcome {
                 DraftOutcome::Sent => "sent",
                 DraftOutcome::Left => "left unsent",
                 DraftOutcome::Restored => "restored after a crash",
             };
-            format!("{}: {} characters {end}", draft.place, draft.length)
+            let pasted = match draft.pasted {
+                0 => String::new(),
+                pasted => format!(", {pasted} pasted"),
+            };
+            format!("{}: {} characters {end}{pasted}", draft.place, draft.length)
         }
         Activity::Session(presence) => return (presence_in_words(presence), Role::Header),
         Activity::Clock(clock) => {
@@ -36,7 +44,8 @@ pub(super) fn brief(activity: &Activity) -> (String, Role) {
                 ClockEvent::Forgotten => "the clock stood when the program ended",
             };
             let reason = clock.reason.as_ref().map_or(String::new(), |reason| format!(": {reason}"));
-            return (format!("{what}{reason}"), Role::Header);
+            let stood = clock.stood_ms.map_or(String::new(), |ms| format!(" after {}", time(ms)));
+            return (format!("{what}{reason}{stood}"), Role::Header);
         }
         Activity::Limit(limit) => {
             let scope = match limit.limit {
@@ -66,9 +75,16 @@ fn presence_in_words(presence: &Presence) -> String {
             Some(interface) => format!("opened in {interface}"),
             None => "opened".to_owned(),
         },
-        PresenceEvent::Closed => "closed".to_owned(),
-        PresenceEvent::Idle => format!("idle for {}", time(presence.idle_ms.unwrap_or(0))),
-        PresenceEvent::Active => "active again".to_owned(),
+        PresenceEvent::Closed => match presence.cause {
+            None | Some(LeavingCause::Quit) => "closed".to_owned(),
+            Some(LeavingCause::EndOfInput) => "closed: the input ended".to_owned(),
+            Some(LeavingCause::Signal) => "closed by a signal".to_owned(),
+            Some(LeavingCause::Hangup) => "closed with its terminal".to_owned(),
+            Some(LeavingCause::Strict) => "closed by a refusal".to_owned(),
+            Some(LeavingCause::Withdrawn) => "closed: the participant withdrew".to_owned(),
+        },
+        PresenceEvent::Idle => format!("no key for {}", time(presence.idle_ms.unwrap_or(0))),
+        PresenceEvent::Active => format!("a key after {}", time(presence.idle_ms.unwrap_or(0))),
         PresenceEvent::FocusLost => "another window had the focus".to_owned(),
         PresenceEvent::FocusGained => "this window had the focus again".to_owned(),
         PresenceEvent::Suspended => "suspended by the shell".to_owned(),
@@ -77,5 +93,44 @@ fn presence_in_words(presence: &Presence) -> String {
             Some((columns, rows)) => format!("window {columns}×{rows}"),
             None => "window resized".to_owned(),
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::record::{Clock, DialogStep, DialogUse, Draft, Help, Select};
+
+    #[test]
+    fn activities_say_what_counts() {
+        let step = |step: &str, for_ms| DialogStep { step: step.to_owned(), for_ms };
+        let dialog = DialogUse {
+            what: "next week".to_owned(),
+            outcome: DialogOutcome::Confirmed,
+            for_ms: 61_000,
+            steps: vec![step("review", 1_000), step("rationale", 60_000)],
+        };
+        let draft = Draft {
+            place: "notes".to_owned(),
+            outcome: DraftOutcome::Left,
+            length: 20,
+            typed: 8,
+            deleted: 0,
+            pasted: 12,
+            pauses: 0,
+            for_ms: 4_000,
+            text: None,
+        };
+        let help = Help { term: "churn".to_owned(), place: "customers".to_owned() };
+        let (screen, what) = ("plain".to_owned(), "command".to_owned());
+        let select = Select { screen, what, which: "fit S1".to_owned() };
+        let clock = Clock { event: ClockEvent::Started, reason: None, stood_ms: Some(300_000) };
+        let told = |activity: Activity| brief(&activity).0;
+        let words = told(Activity::Dialog(dialog));
+        assert!(words.starts_with("next week: confirmed after ") && words.contains("rationale "), "{words}");
+        assert_eq!(told(Activity::Draft(draft)), "notes: 20 characters left unsent, 12 pasted");
+        assert_eq!(told(Activity::Help(help)), "looked up churn in customers");
+        assert_eq!(told(Activity::Select(select)), "asked for fit S1");
+        assert!(told(Activity::Clock(clock)).starts_with("started the clock after "));
     }
 }

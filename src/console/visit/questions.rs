@@ -112,6 +112,10 @@ impl QuestionPage {
 }
 
 impl Dialog for QuestionPage {
+    fn what(&self) -> String {
+        "questions".to_owned()
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         match self.draft().entered {
             Entered::One(_) | Entered::Several(..) => vec![Scope::Visit, Scope::List],

@@ -10,6 +10,7 @@ use super::{BETWEEN_DAYS, Open, SessionThread};
 use crate::console::company::Company;
 use crate::console::message::{Arrival, Instead, Message, News};
 use crate::console::request::Recorded;
+use crate::session::record::LeavingCause;
 use crate::session::{Goal, Mode, Playback, RunError, SeekResult, find_run, find_run_to_read};
 
 /// Lines of somebody else are looked for this often.
@@ -27,13 +28,14 @@ impl SessionThread {
     pub(super) fn patience(&mut self) -> Option<Duration> {
         let follows = self.playback().is_some_and(|playback| playback.follows());
         let look = follows.then(|| self.looked + BETWEEN_LOOKS);
-        let next = [self.due, look, self.mending].into_iter().flatten().min();
+        let next = [self.due, look, self.mending, self.limits].into_iter().flatten().min();
         next.map(|moment| moment.saturating_duration_since(Instant::now()))
     }
 
     /// Goes on with what is due: a week of the replay, what somebody else has played since, a database to be mended.
     pub(super) fn go_on(&mut self) {
         self.mend();
+        self.look_at_limits();
         let now = Instant::now();
         if self.due.is_some_and(|due| due <= now) {
             self.due = None;
@@ -88,10 +90,8 @@ impl SessionThread {
                 return self.say(News::NotOpened(problem.to_string(), instead));
             }
         };
-        if let Some(open) = &mut self.open {
-            // Everything confirmed is on the disk already; what is left are rows that can be made again.
-            let _ = open.session().save();
-        }
+        // Everything confirmed is on the disk already; what is left are rows that can be made again.
+        let _ = self.put_down(LeavingCause::Quit);
         let interrupt = self.queries.connect(playback.session());
         let company = Arc::new(company_of(&playback, None));
         let place = playback.place();

@@ -12,6 +12,7 @@ use super::runs::{earlier_runs_of, label_of};
 use crate::database::{Location, Position, Projector};
 use crate::session::error::RunError;
 use crate::session::play::history::History;
+use crate::session::play::personal_clock::PersonalClock;
 use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
@@ -159,6 +160,7 @@ impl Session {
             surroundings: RunSurroundings::default(),
             answers: AnswerBook::default(),
             seal_key: SealKey::default(),
+            clock: PersonalClock::default(),
             memo_in_memory: String::new(),
             remarks: Vec::new(),
             recorder: None,

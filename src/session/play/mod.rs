@@ -3,6 +3,8 @@
 pub(in crate::session) mod act;
 pub(in crate::session) mod advance;
 pub(in crate::session) mod afterwards;
+pub(in crate::session) mod clock;
+pub(in crate::session) mod drafts;
 pub(in crate::session) mod entry;
 pub(in crate::session) mod facts_chain;
 pub(in crate::session) mod feed;
@@ -11,6 +13,7 @@ pub(in crate::session) mod irrevocable;
 pub(in crate::session) mod judging;
 pub(in crate::session) mod machine;
 pub(in crate::session) mod memo;
+pub(in crate::session) mod personal_clock;
 pub(in crate::session) mod presence;
 pub(in crate::session) mod projection;
 pub(in crate::session) mod recorder;

@@ -28,6 +28,7 @@ impl Session {
             ..presence(PresenceEvent::Opened)
         };
         self.note_activity(Activity::Session(Box::new(presence)));
+        self.start_forgotten_clock();
     }
 
     /// Records that the program leaves the run.

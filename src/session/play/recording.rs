@@ -8,7 +8,7 @@ use crate::database::Entry;
 use crate::session::error::RunError;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Activity, View};
-use crate::session::trajectory::{Durability, Record};
+use crate::session::trajectory::{Durability, Record, now, seconds};
 use crate::session::witness::Witness;
 
 impl Session {
@@ -41,6 +41,7 @@ impl Session {
         }
         let at = recorder.append(self.simulation.world.day, record, durability)?;
         self.position = recorder.position();
+        self.clock.pass(record, seconds(&at));
         Ok(at)
     }
 
@@ -49,6 +50,7 @@ impl Session {
         let recorder = self.recorder.as_mut()?;
         let problem = recorder.append_done(self.simulation.world.day, record);
         self.position = recorder.position();
+        self.clock.pass(record, seconds(&now()));
         problem
     }
 

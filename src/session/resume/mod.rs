@@ -2,6 +2,7 @@
 
 pub(in crate::session) mod branch;
 pub(in crate::session) mod integrity;
+pub(in crate::session) mod look;
 pub(in crate::session) mod mend;
 pub(in crate::session) mod open;
 pub(in crate::session) mod rebuild;

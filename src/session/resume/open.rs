@@ -12,6 +12,7 @@ use crate::session::folder::derived::Derived;
 use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::Manifest;
 use crate::session::play::facts_chain::StateHash;
+use crate::session::play::personal_clock::PersonalClock;
 use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
 use crate::session::play::surroundings::RunSurroundings;
@@ -94,6 +95,7 @@ impl Session {
             ));
         }
         session.replay_afterwards(&trajectory);
+        session.clock = PersonalClock::of(&trajectory);
         session.check_memo(&trajectory, access);
         session.finish_week(&trajectory);
         Ok(session)

@@ -4,10 +4,12 @@
 //! it stands in the first line of every run, so that no two protocols pass for one.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use super::assignment::Assignment;
+use super::code::CodeCheck;
 use super::questions::Questionnaire;
 use super::rules::{DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
 use crate::session::error::RunError;
@@ -299,6 +301,12 @@ impl Study {
     /// Folder that is told of every line; one that is named without its place lies in the folder of the study.
     pub fn witness(&self) -> Option<PathBuf> {
         self.protocol.integrity.witness.as_ref().map(|witness| self.folder.join(witness))
+    }
+
+    /// What says whether a word is the experimenter's code; none where the protocol has no code.
+    pub fn code_check(&self) -> Option<CodeCheck> {
+        let digest = self.protocol.access.code.clone()?;
+        Some(Arc::new(move |code: &str| digest.opens(code)))
     }
 
     /// By which rules its sessions are played.

@@ -2,6 +2,7 @@
 
 pub mod answer_book;
 pub mod assignment;
+pub mod code;
 pub mod definition;
 pub mod due;
 pub mod gather;

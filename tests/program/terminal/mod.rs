@@ -4,3 +4,4 @@ mod hardship;
 mod kill;
 mod play;
 mod pty;
+mod record;

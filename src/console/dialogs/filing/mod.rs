@@ -9,6 +9,7 @@ use ratatui::layout::Rect;
 use self::review::Review;
 use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
+use crate::console::attention::BETWEEN_CELLS;
 use crate::console::canvas::{Align, Canvas, Click, centered, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
@@ -85,6 +86,28 @@ impl FilingDialog {
     /// Whether a draft would be lost.
     pub fn has_draft(&self) -> bool {
         !self.rationale.is_blank() || self.typed().any(|(row, column)| !self.cells[row][column].is_empty())
+    }
+
+    /// The rationale and the cells of the forecasts as they were typed.
+    pub fn unsent(&self) -> (String, [[String; 3]; 4]) {
+        let mut cells: [[String; 3]; 4] = Default::default();
+        for (row, column) in self.typed() {
+            cells[row][column] = self.cells[row][column].text().to_owned();
+        }
+        (self.rationale.text(), cells)
+    }
+
+    /// Puts what was typed back.
+    pub fn restore(&mut self, rationale: &str, cells: &[[String; 3]; 4]) {
+        self.rationale = Editor::of(rationale);
+        self.cells = cells.each_ref().map(|row| row.each_ref().map(|text| Field::of(text.as_str())));
+        self.filled = Default::default();
+    }
+
+    /// The typed cells in a line each.
+    fn typed_text(&self) -> String {
+        let texts = self.typed().map(|(row, column)| self.cells[row][column].text());
+        texts.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(BETWEEN_CELLS)
     }
 
     /// Number of the step, from 1.
@@ -213,6 +236,26 @@ impl FilingDialog {
 }
 
 impl Dialog for FilingDialog {
+    fn what(&self) -> String {
+        "next week".to_owned()
+    }
+
+    fn step(&self) -> Option<&'static str> {
+        Some(match self.step {
+            FilingStep::Review => "review",
+            FilingStep::Rationale => "rationale",
+            FilingStep::Forecasts => "forecasts",
+        })
+    }
+
+    fn edited(&self) -> Option<(String, String)> {
+        match self.step {
+            FilingStep::Review => None,
+            FilingStep::Rationale => Some(("rationale".to_owned(), self.rationale.text())),
+            FilingStep::Forecasts => Some(("forecasts".to_owned(), self.typed_text())),
+        }
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         match self.step {
             FilingStep::Review => vec![Scope::Filing, Scope::List],

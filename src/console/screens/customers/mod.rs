@@ -168,6 +168,11 @@ impl ScreenState for Customers {
     fn opened(&self) -> usize {
         usize::from(self.open.is_some())
     }
+
+    fn open_object(&self, look: &Look<'_>) -> Option<(&'static str, String)> {
+        let group = look.company.seen.known_groups.get(self.open?)?;
+        Some(("group", group.id().to_owned()))
+    }
 }
 
 impl Paned for Customers {

@@ -361,6 +361,10 @@ impl ScreenState for Inbox {
         }
     }
 
+    fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
+        Some(("thread", self.here()?.number.to_string()))
+    }
+
     fn holds_unsent_text(&self) -> bool {
         !self.drafts.is_empty() || (self.rule.is_some() && !self.marked.is_empty())
     }

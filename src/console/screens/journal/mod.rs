@@ -67,6 +67,16 @@ impl Journal {
         self.notes.text() != self.kept
     }
 
+    /// Notes that differ from those that are kept.
+    pub fn unsaved(&self) -> Option<String> {
+        self.is_draft().then(|| self.notes.text())
+    }
+
+    /// Puts notes that were not saved back.
+    pub fn restore(&mut self, notes: &str) {
+        self.notes = Editor::of(notes);
+    }
+
     fn save(&mut self) -> Vec<Effect> {
         self.editing = false;
         if self.is_draft() {
@@ -101,6 +111,10 @@ impl ScreenState for Journal {
             self.notes = kept.clone();
         }
         self.kept = kept.text();
+    }
+
+    fn edited(&self) -> Option<(String, String)> {
+        self.editing.then(|| ("notes".to_owned(), self.notes.text()))
     }
 
     fn holds_unsent_text(&self) -> bool {

@@ -222,6 +222,11 @@ impl ScreenState for Market {
         self.refresh(look.company);
     }
 
+    fn open_object(&self, look: &Look<'_>) -> Option<(&'static str, String)> {
+        let group = self.group().filter(|group| level_of(look.company, *group) > 0)?;
+        Some(("study", group.id().to_owned()))
+    }
+
     fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
         match news {
             News::Checked(_, preview) => match (preview, self.asking.take()) {

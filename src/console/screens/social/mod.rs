@@ -208,6 +208,16 @@ impl Social {
         Effect::ConfirmCall { tool: POST, arguments, text }
     }
 
+    /// The post that is being written, and the post that it answers.
+    pub fn unsent(&self) -> (String, Option<u32>) {
+        (self.draft.text(), self.answers)
+    }
+
+    /// Puts a post that was being written back.
+    pub fn restore(&mut self, text: &str, answers: Option<u32>) {
+        (self.draft, self.answers) = (Editor::of(text), answers);
+    }
+
     fn change_filter(&mut self, action: Action) {
         let last = self.last_week();
         self.focus = SocialPane::Feed;
@@ -273,6 +283,14 @@ impl ScreenState for Social {
             }
             _ => Vec::new(),
         }
+    }
+
+    fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
+        self.filter.thread.map(|(own, _)| ("post", own.to_string()))
+    }
+
+    fn edited(&self) -> Option<(String, String)> {
+        self.editing.then(|| ("post".to_owned(), self.draft.text()))
     }
 
     fn holds_unsent_text(&self) -> bool {

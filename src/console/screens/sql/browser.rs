@@ -69,6 +69,12 @@ impl Browser {
         self.entries().get(self.selected).copied()
     }
 
+    /// Name of the selected table, if its columns are shown.
+    pub fn opened(&self) -> Option<&'static str> {
+        let row = self.selected().filter(|row| self.open.contains(&row.table))?;
+        Some(&row.table().name)
+    }
+
     /// Selects a row as shown; whether it was selected before.
     pub fn select(&mut self, row: usize) -> bool {
         let again = self.selected == row;

@@ -71,6 +71,8 @@ pub struct Sql {
     running: Option<Running>,
     /// The last thing that happened was a column put in from the tables: another one follows after a comma.
     column_put_in: bool,
+    /// The statement that was made of a result last.
+    derived: String,
 }
 
 impl Default for Sql {
@@ -85,6 +87,7 @@ impl Default for Sql {
             focus: SqlPane::Editor,
             running: None,
             column_put_in: false,
+            derived: String::new(),
         }
     }
 }
@@ -112,6 +115,22 @@ impl Sql {
         // Nothing was typed: the keys are those of the result.
         self.focus = SqlPane::Results;
         self.run()
+    }
+
+    /// Puts a statement into the editor that was made of a result, and runs it.
+    fn edit_and_run_derived(&mut self, sql: &str) -> Vec<Effect> {
+        self.derived = sql.trim().to_owned();
+        self.edit_and_run(sql)
+    }
+
+    /// Whether a statement was made of a result, as it stands.
+    pub fn is_derived(&self, sql: &str) -> bool {
+        self.derived == sql.trim()
+    }
+
+    /// What stands in the editor.
+    pub fn unsent(&self) -> String {
+        self.editor.text()
     }
 
     /// Whether a statement is being answered.
@@ -149,6 +168,16 @@ impl ScreenState for Sql {
     fn opened(&self) -> usize {
         let filtered = self.focus == SqlPane::Tables && self.browser.is_filtered();
         usize::from(self.results.shown().is_chart()) + usize::from(filtered)
+    }
+
+    fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
+        let table = self.browser.opened().filter(|_| self.focus == SqlPane::Tables)?;
+        Some(("table", table.to_owned()))
+    }
+
+    fn edited(&self) -> Option<(String, String)> {
+        let typing = self.focus == SqlPane::Editor && self.over.is_none();
+        typing.then(|| ("sql".to_owned(), self.editor.text()))
     }
 
     fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {

@@ -181,7 +181,7 @@ impl PivotPane {
         match step {
             PivotStep::Choosing => return Vec::new(),
             PivotStep::Left => sql.over = None,
-            PivotStep::Run(statement) => return sql.edit_and_run(&statement),
+            PivotStep::Run(statement) => return sql.edit_and_run_derived(&statement),
         }
         Vec::new()
     }

@@ -226,7 +226,7 @@ impl Sql {
             return Vec::new();
         }
         let Some(counting) = count(sql, &rows.columns, at) else { return complain(NOT_A_TABLE) };
-        self.edit_and_run(&counting)
+        self.edit_and_run_derived(&counting)
     }
 
     /// Puts the selected name of the tables into the editor.

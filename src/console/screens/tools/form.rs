@@ -6,6 +6,7 @@ use serde_json::Value;
 use super::earlier;
 use super::sheet::{CellPlace, Sheet};
 use crate::console::action::Action;
+use crate::console::attention::BETWEEN_CELLS;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::widgets::Field;
@@ -247,6 +248,13 @@ impl Form {
         if self.typing.is_some() {
             self.settle();
         }
+    }
+
+    /// What is typed into it, in the order of its cells.
+    pub fn typed_text(&self) -> String {
+        let adding = self.adding.iter().map(|(_, field)| field.text());
+        let drafts = self.sheet.places().filter_map(|place| self.sheet.slot(place)?.draft.as_ref());
+        drafts.map(Field::text).chain(adding).collect::<Vec<_>>().join(BETWEEN_CELLS)
     }
 
     fn same_down(&mut self) -> Vec<Effect> {

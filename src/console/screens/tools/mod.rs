@@ -137,6 +137,24 @@ impl Tools {
         unsent.map(|form| form.spec.id).collect()
     }
 
+    /// Name of the tool whose form is shown.
+    pub fn form_name(&self) -> Option<&'static str> {
+        self.here().map(Spec::name)
+    }
+
+    /// Values that were typed into forms and not sent, by tool and path.
+    pub fn typed_values(&self) -> BTreeMap<ToolId, BTreeMap<String, String>> {
+        let unsent = self.unsent().into_iter();
+        unsent.filter_map(|tool| Some((tool, self.forms.get(&tool)?.sheet.typed()))).collect()
+    }
+
+    /// Types values into a form again.
+    pub fn restore(&mut self, tool: ToolId, values: &BTreeMap<String, String>, company: &Company) {
+        let Some(spec) = CATALOGUE.iter().map(|own| own.spec()).find(|spec| spec.id == tool) else { return };
+        let form = self.forms.entry(tool).or_insert_with(|| Form::of(spec, company));
+        form.sheet.retype(values);
+    }
+
     /// Tools that have a screen or a dialog of their own lead there.
     fn elsewhere(&self) -> Option<Effect> {
         match self.here()?.id {
@@ -230,6 +248,16 @@ impl ScreenState for Tools {
     fn opened(&self) -> usize {
         usize::from(self.focus == ToolsPane::Form)
             + usize::from(!self.filter.is_empty() || self.typing.is_some())
+    }
+
+    fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
+        let tool = self.here().filter(|_| self.focus == ToolsPane::Form)?;
+        Some(("tool", tool.name().to_owned()))
+    }
+
+    fn edited(&self) -> Option<(String, String)> {
+        let form = self.seen_form().filter(|_| self.focus == ToolsPane::Form)?;
+        Some((format!("form {}", form.spec.id), form.typed_text()))
     }
 
     fn holds_unsent_text(&self) -> bool {

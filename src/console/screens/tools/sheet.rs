@@ -1,5 +1,7 @@
 //! The values of a form: one block per argument, made from the catalogue, with drafts over what holds.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value};
 
 use crate::console::company::Company;
@@ -280,6 +282,34 @@ impl Sheet {
                 && let Some(slot) = self.slot_mut(place)
             {
                 slot.draft = Some(Field::of(plain(number)));
+            }
+        }
+    }
+
+    /// What is typed into its cells, by their paths.
+    pub fn typed(&self) -> BTreeMap<String, String> {
+        let typed = |place: CellPlace| {
+            let draft = self.slot(place)?.draft.as_ref()?;
+            Some((self.blocks[place.block].path(place.row, place.column), draft.text().to_owned()))
+        };
+        self.places().filter_map(typed).collect()
+    }
+
+    /// Types it in again; rows that were added for customers come back.
+    pub fn retype(&mut self, values: &BTreeMap<String, String>) {
+        for block in 0..self.blocks.len() {
+            if self.blocks[block].is_open() {
+                let own = format!("{}.", self.blocks[block].argument.name);
+                for customer in values.keys().filter_map(|path| path.strip_prefix(&own)) {
+                    self.add_customer(block, customer);
+                }
+            }
+        }
+        let places: Vec<CellPlace> = self.places().collect();
+        for place in places {
+            let path = self.blocks[place.block].path(place.row, place.column);
+            if let (Some(text), Some(slot)) = (values.get(&path), self.slot_mut(place)) {
+                slot.draft = Some(Field::of(text.as_str()));
             }
         }
     }

@@ -50,7 +50,7 @@ pub struct View {
 pub struct Select {
     /// Screen.
     pub screen: String,
-    /// What kind of object: `group`, `thread`, `tool`, `post`, `study`, `table`, `figure`.
+    /// What kind of object: `group`, `thread`, `tool`, `post`, `study`, `table`, `figure`, `command`.
     pub what: String,
     /// Which, as tools and tables name it.
     pub which: String,
@@ -101,7 +101,7 @@ pub struct Help {
 /// A text that was edited.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Draft {
-    /// Where: `rationale`, `notes`, `sql`, `post`, or `form` and the tool.
+    /// Where: `rationale`, `forecasts`, `notes`, `sql`, `post`, or `form` and the tool.
     pub place: String,
     /// What became of it.
     pub outcome: DraftOutcome,

@@ -1,0 +1,111 @@
+//! Dialogs over the screen, the topmost last, each with the time since it was opened and what its steps took.
+
+use std::time::Duration;
+
+use super::stopwatch::ms;
+use crate::console::dialogs::Dialog;
+use crate::session::record::{DialogOutcome, DialogStep, DialogUse};
+
+/// A dialog over the screen.
+pub enum Layer {
+    /// The dialog before a week; its drafts outlive it.
+    Filing,
+    /// Any other.
+    Dialog(Box<dyn Dialog>),
+}
+
+/// The dialogs that are open.
+#[derive(Default)]
+pub struct Layers {
+    open: Vec<OpenLayer>,
+}
+
+struct OpenLayer {
+    layer: Layer,
+    what: String,
+    since: Duration,
+    /// Steps that were entered, and when.
+    steps: Vec<(&'static str, Duration)>,
+}
+
+impl Layers {
+    /// Opens a dialog over the others.
+    pub fn push(&mut self, layer: Layer, now: Duration) {
+        let what = match &layer {
+            Layer::Filing => "next week".to_owned(),
+            Layer::Dialog(dialog) => dialog.what(),
+        };
+        self.open.push(OpenLayer { layer, what, since: now, steps: Vec::new() });
+    }
+
+    /// Closes the topmost; what it was used for.
+    pub fn pop(&mut self, outcome: DialogOutcome, now: Duration) -> Option<DialogUse> {
+        let OpenLayer { what, since, steps, .. } = self.open.pop()?;
+        let ends = steps.iter().skip(1).map(|(_, entered)| *entered).chain([now]);
+        let step = |((step, entered), end): (&(&'static str, Duration), Duration)| DialogStep {
+            step: (*step).to_owned(),
+            for_ms: ms(end.saturating_sub(*entered)),
+        };
+        let steps = steps.iter().zip(ends).map(step).collect();
+        Some(DialogUse { what, outcome, for_ms: ms(now.saturating_sub(since)), steps })
+    }
+
+    /// The topmost dialog is at a step now.
+    pub fn enter_step(&mut self, step: &'static str, now: Duration) {
+        if let Some(top) = self.open.last_mut()
+            && top.steps.last().is_none_or(|(last, _)| *last != step)
+        {
+            top.steps.push((step, now));
+        }
+    }
+
+    /// What the one below the topmost is.
+    pub fn below(&self) -> Option<&str> {
+        self.open.iter().rev().nth(1).map(|below| below.what.as_str())
+    }
+
+    /// The topmost.
+    pub fn last(&self) -> Option<&Layer> {
+        self.open.last().map(|open| &open.layer)
+    }
+
+    /// The topmost, to change it.
+    pub fn last_mut(&mut self) -> Option<&mut Layer> {
+        self.open.last_mut().map(|open| &mut open.layer)
+    }
+
+    /// All of them, the topmost last.
+    pub fn iter(&self) -> impl Iterator<Item = &Layer> {
+        self.open.iter().map(|open| &open.layer)
+    }
+
+    /// All of them, to change them.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Layer> {
+        self.open.iter_mut().map(|open| &mut open.layer)
+    }
+
+    /// Whether the screen is free.
+    pub fn is_empty(&self) -> bool {
+        self.open.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_told_in_the_order_in_which_they_were_entered() {
+        let at = Duration::from_millis;
+        let mut layers = Layers::default();
+        layers.push(Layer::Filing, at(100));
+        for (step, now) in [("review", 100), ("review", 110), ("rationale", 150), ("review", 400)] {
+            layers.enter_step(step, at(now));
+        }
+        let used = layers.pop(DialogOutcome::Cancelled, at(1000)).expect("it was open");
+        let steps: Vec<(&str, u64)> = used.steps.iter().map(|own| (own.step.as_str(), own.for_ms)).collect();
+        assert_eq!((used.what.as_str(), used.for_ms), ("next week", 900));
+        assert_eq!(steps, [("review", 50), ("rationale", 250), ("review", 600)]);
+        assert!(layers.is_empty() && layers.pop(DialogOutcome::Cancelled, at(1)).is_none());
+    }
+}

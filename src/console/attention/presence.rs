@@ -1,0 +1,114 @@
+//! Whether somebody is there: the last key, the focus of the window, its size.
+
+use std::time::Duration;
+
+use super::stopwatch::ms;
+use crate::session::record::PresenceEvent;
+
+/// Time without a key after which the person counts as idle.
+const IDLE: Duration = Duration::from_secs(60);
+/// A window that is being resized is recorded once it has kept its size for this long.
+const SETTLED: Duration = Duration::from_secs(1);
+
+/// Something to record: what happened, milliseconds without a key, and the size of the window.
+pub type Noted = (PresenceEvent, Option<u64>, Option<(u16, u16)>);
+
+/// Watches the keys and the window.
+#[derive(Debug, Default)]
+pub struct PresenceWatch {
+    /// When the last key was pressed.
+    last_key: Duration,
+    idle: bool,
+    unfocused: bool,
+    /// A new size of the window, and since when it has it.
+    resized: Option<((u16, u16), Duration)>,
+}
+
+impl PresenceWatch {
+    /// The person is there from now on.
+    pub fn begin(&mut self, now: Duration) {
+        *self = PresenceWatch { last_key: now, ..PresenceWatch::default() };
+    }
+
+    /// A key was pressed or text was pasted, or the mouse was used, which can be over a window without the focus.
+    pub fn key(&mut self, by_mouse: bool, now: Duration) -> Vec<Noted> {
+        let idle = ms(now.saturating_sub(self.last_key));
+        self.last_key = now;
+        // A terminal that does not tell that it has the focus again has it: keys arrive.
+        let focus = if by_mouse { None } else { self.focus(true) };
+        let active = std::mem::take(&mut self.idle).then_some((PresenceEvent::Active, Some(idle), None));
+        focus.into_iter().chain(active).collect()
+    }
+
+    /// The window has the focus, or another one.
+    pub fn focus(&mut self, has: bool) -> Option<Noted> {
+        let changed = self.unfocused == has;
+        self.unfocused = !has;
+        let event = if has { PresenceEvent::FocusGained } else { PresenceEvent::FocusLost };
+        changed.then_some((event, None, None))
+    }
+
+    /// The window has another size.
+    pub fn resize(&mut self, window: (u16, u16), now: Duration) {
+        self.resized = Some((window, now));
+    }
+
+    /// What time alone brings.
+    pub fn pass(&mut self, now: Duration) -> Vec<Noted> {
+        let mut noted = Vec::new();
+        if let Some((window, _)) = self.resized.take_if(|(_, since)| now >= *since + SETTLED) {
+            noted.push((PresenceEvent::Resized, None, Some(window)));
+        }
+        if !self.idle && now >= self.last_key + IDLE {
+            self.idle = true;
+            noted.push((PresenceEvent::Idle, Some(ms(now.saturating_sub(self.last_key))), None));
+        }
+        noted
+    }
+
+    /// When time alone brings something next.
+    pub fn next(&self) -> Option<Duration> {
+        let idle = (!self.idle).then_some(self.last_key + IDLE);
+        let resized = self.resized.map(|(_, since)| since + SETTLED);
+        [idle, resized].into_iter().flatten().min()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn idleness_begins_after_a_minute_and_ends_with_a_key() {
+        let at = Duration::from_secs;
+        let mut watch = PresenceWatch::default();
+        watch.begin(at(10));
+        assert_eq!((watch.key(false, at(20)), watch.next()), (Vec::new(), Some(at(80))));
+        assert_eq!(watch.pass(at(79)), []);
+        assert_eq!(watch.pass(at(80)), [(PresenceEvent::Idle, Some(60_000), None)]);
+        assert_eq!((watch.pass(at(99)), watch.next()), (Vec::new(), None));
+        assert_eq!(watch.key(false, at(100)), [(PresenceEvent::Active, Some(80_000), None)]);
+        assert_eq!(watch.key(false, at(101)), []);
+    }
+
+    #[test]
+    fn a_window_that_is_dragged_is_recorded_once() {
+        let at = Duration::from_millis;
+        let mut watch = PresenceWatch::default();
+        watch.begin(at(0));
+        watch.resize((90, 30), at(100));
+        watch.resize((100, 30), at(300));
+        assert_eq!((watch.pass(at(1200)), watch.next()), (Vec::new(), Some(at(1300))));
+        assert_eq!(watch.pass(at(1300)), [(PresenceEvent::Resized, None, Some((100, 30)))]);
+    }
+
+    #[test]
+    fn a_focus_that_was_not_lost_is_not_gained() {
+        let mut watch = PresenceWatch::default();
+        assert_eq!(watch.focus(true), None);
+        assert!(watch.focus(false).is_some() && watch.focus(false).is_none() && watch.focus(true).is_some());
+        watch.focus(false);
+        assert_eq!(watch.key(true, Duration::ZERO), []);
+        assert_eq!(watch.key(false, Duration::ZERO), [(PresenceEvent::FocusGained, None, None)]);
+    }
+}

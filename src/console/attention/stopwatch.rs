@@ -1,0 +1,74 @@
+//! Time as the person has it: it stands while their clock is stopped, and while the program is suspended.
+
+use std::time::{Duration, Instant};
+
+/// A watch that can be halted. Everything the record measures is measured with it.
+#[derive(Debug)]
+pub struct Stopwatch {
+    since: Instant,
+    /// Time that passed before `since`.
+    before: Duration,
+    halted: bool,
+}
+
+impl Default for Stopwatch {
+    fn default() -> Self {
+        Stopwatch { since: Instant::now(), before: Duration::ZERO, halted: false }
+    }
+}
+
+impl Stopwatch {
+    /// Time that has passed while it ran.
+    pub fn now(&self) -> Duration {
+        if self.halted { self.before } else { self.before + self.since.elapsed() }
+    }
+
+    /// Halts it.
+    pub fn halt(&mut self) {
+        (self.before, self.halted) = (self.now(), true);
+    }
+
+    /// Lets it run again.
+    pub fn run(&mut self) {
+        if self.halted {
+            (self.since, self.halted) = (Instant::now(), false);
+        }
+    }
+
+    /// Whether it is halted.
+    pub fn is_halted(&self) -> bool {
+        self.halted
+    }
+
+    /// Turns it on, as if time had passed: tests need not wait.
+    pub fn turn_on(&mut self, by: Duration) {
+        if !self.halted {
+            self.before += by;
+        }
+    }
+}
+
+/// Whole milliseconds.
+pub fn ms(time: Duration) -> u64 {
+    u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_time_passes_while_it_is_halted() {
+        let mut watch = Stopwatch::default();
+        watch.turn_on(Duration::from_secs(5));
+        watch.halt();
+        let stood = watch.now();
+        watch.turn_on(Duration::from_secs(100));
+        assert_eq!(watch.now(), stood);
+        watch.run();
+        watch.turn_on(Duration::from_secs(1));
+        assert!(
+            watch.now() >= stood + Duration::from_secs(1) && watch.now() < stood + Duration::from_secs(60)
+        );
+    }
+}

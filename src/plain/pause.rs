@@ -1,0 +1,124 @@
+//! The stopped clock and time limits in plain mode.
+
+use std::time::Duration;
+
+use serde_json::json;
+
+use super::answers::Answer;
+use super::commands::Interpreter;
+use super::grammar::Line;
+use super::next::{self, Filing};
+use crate::session::record::{Limit, LimitEvent, LimitScope};
+use crate::session::{Refusal, TIME_LIMIT};
+
+/// What can be done while the clock stands.
+const WHILE_STOPPED: [&str; 4] = ["resume", "help", "quit", "exit"];
+/// How often limits are looked at while a line is waited for.
+const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
+
+impl Interpreter {
+    /// `pause [REASON]`.
+    pub(super) fn pause(&mut self, reason: &str) -> Answer {
+        match self.session.stop_clock(Some(reason)) {
+            Ok(()) => {
+                let text = "the clock is stopped; resume starts it again".to_owned();
+                Answer::done("pause", text, json!({ "stopped": true }))
+            }
+            Err(refusal) => Answer::refused("pause", refusal),
+        }
+    }
+
+    /// `resume`, with the experimenter's code where a limit has stopped the clock.
+    pub(super) fn resume(&mut self, code: &str) -> Answer {
+        let right = self.code_check.as_ref().is_none_or(|check| check(code));
+        if self.locked && !right {
+            let text = "the time limit is reached; the experimenter starts the clock with resume CODE";
+            return Answer::refused("resume", Refusal::new("code_needed", text));
+        }
+        match self.session.start_clock() {
+            Ok(stood) => {
+                self.locked = false;
+                let text = format!("the clock runs again; it stood for {stood:.0} s");
+                Answer::done("resume", text, json!({ "stood_seconds": stood }))
+            }
+            Err(refusal) => Answer::refused("resume", refusal),
+        }
+    }
+
+    /// Refuses everything that shows the run, or acts, while the clock stands.
+    pub(super) fn refuse_while_stopped(&self, line: &Line) -> Option<Answer> {
+        let word = match line {
+            Line::Empty => return None,
+            Line::Text { word, .. } | Line::Call { word, .. } => word,
+        };
+        if !self.session.clock_stands() || WHILE_STOPPED.contains(&word.as_str()) {
+            return None;
+        }
+        let text = "the clock is stopped: resume starts it; help and quit work, too";
+        Some(Answer::refused(word, Refusal::new("clock_stopped", text)))
+    }
+
+    /// Tells of limits that are near or reached, and does what the rules say.
+    pub(super) fn check_limits(&mut self) -> Vec<Answer> {
+        let told = self.session.check_limits();
+        told.into_iter().flat_map(|limit| self.reach(&limit)).collect()
+    }
+
+    fn reach(&mut self, limit: &Limit) -> Vec<Answer> {
+        let left = self.session.time_left().into_iter().find(|left| left.scope == limit.limit);
+        let words = left.map_or(String::new(), |left| left.in_words());
+        let scope = match limit.limit {
+            LimitScope::Week => "week",
+            LimitScope::Session => "session",
+            LimitScope::Study => "study",
+        };
+        let data = json!({ "limit": scope, "event": limit.event, "minutes": limit.minutes, "used_ms": limit.used_ms });
+        let tell = |what: &str| Answer::done("limit", format!("time limit: {words}{what}"), data.clone());
+        match limit.event {
+            LimitEvent::Warned | LimitEvent::Reminded => vec![tell("")],
+            LimitEvent::FiledNaively => {
+                let filing = Filing::at_limit(&self.session);
+                let filed = next::run(&mut self.session, filing);
+                vec![tell("; the week is filed with the naive projection"), filed]
+            }
+            LimitEvent::Paused => {
+                self.locked = true;
+                let stopped = self.session.stop_clock(Some(TIME_LIMIT));
+                let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
+                let stopped = stopped.map_or("", |()| "; the clock is stopped");
+                vec![tell(&format!("{stopped}; {rest} starts it"))]
+            }
+        }
+    }
+
+    /// How long to wait for a line before limits are looked at again; none where there are none.
+    pub(super) fn patience(&self) -> Option<Duration> {
+        let limits = !self.session.time_left().is_empty() && !self.session.clock_stands();
+        limits.then_some(BETWEEN_LOOKS)
+    }
+
+    /// What is asked for where a person types.
+    pub(super) fn prompt_text(&self) -> String {
+        if self.session.clock_stands() {
+            return "clock stopped> ".to_owned();
+        }
+        let day = self.session.day();
+        let least =
+            self.session.time_left().into_iter().min_by(|one, other| one.seconds.total_cmp(&other.seconds));
+        match least {
+            Some(left) => format!("day {day} · {}> ", left.in_words()),
+            None => format!("day {day}> "),
+        }
+    }
+
+    /// A limit that has stopped the clock holds when the run is opened again.
+    pub(super) fn hold_limit(&mut self) -> Option<Answer> {
+        if !self.session.is_held() {
+            return None;
+        }
+        self.locked = self.session.stop_clock(Some(TIME_LIMIT)).is_ok();
+        let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
+        let text = format!("a time limit has stopped the clock; {rest} starts it");
+        Some(Answer::done("limit", text, json!({ "stopped": true })))
+    }
+}

@@ -1,0 +1,126 @@
+//! Texts that were typed and not sent, kept beside a run for the case that the program is stopped: `drafts.json`.
+//!
+//! The file is written whole and takes the place of the old one. It is no part of the record, and is not exported.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use serde::{Deserialize, Serialize};
+
+use crate::session::state::Session;
+use crate::tools::ToolId;
+
+/// Name of the file in the folder of the run.
+const FILE: &str = "drafts.json";
+/// The file while it is written.
+const UNFINISHED: &str = "drafts.new";
+
+/// Texts that were typed and not sent.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct UnsentTexts {
+    /// Why the next week is as it is.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub rationale: String,
+    /// Low, point, high of every horizon, as far as they were typed.
+    #[serde(skip_serializing_if = "is_unset")]
+    pub forecasts: [[String; 3]; 4],
+    /// Notes that differ from those that are kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub notes: Option<String>,
+    /// A statement that was not asked.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub sql: String,
+    /// A post.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub post: String,
+    /// The post that it answers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub answers: Option<u32>,
+    /// Values in forms of tools, by their paths.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub forms: BTreeMap<ToolId, BTreeMap<String, String>>,
+}
+
+fn is_unset(forecasts: &[[String; 3]; 4]) -> bool {
+    forecasts.as_flattened().iter().all(String::is_empty)
+}
+
+impl UnsentTexts {
+    /// Whether there is nothing.
+    pub fn is_empty(&self) -> bool {
+        *self == UnsentTexts::default()
+    }
+
+    /// Each text with its place, as the record names it.
+    pub fn places(&self) -> Vec<(String, String)> {
+        let mut all = vec![("rationale".to_owned(), self.rationale.clone())];
+        let forecasts = self.forecasts.as_flattened().iter().filter(|text| !text.is_empty()).cloned();
+        all.push(("forecasts".to_owned(), forecasts.collect::<Vec<_>>().join(" ")));
+        all.push(("notes".to_owned(), self.notes.clone().unwrap_or_default()));
+        all.push(("sql".to_owned(), self.sql.clone()));
+        all.push(("post".to_owned(), self.post.clone()));
+        for (tool, cells) in &self.forms {
+            let cells = cells.iter().map(|(path, text)| format!("{path} {text}"));
+            all.push((format!("form {tool}"), cells.collect::<Vec<_>>().join(", ")));
+        }
+        all.retain(|(_, text)| !text.is_empty());
+        all
+    }
+}
+
+impl Session {
+    /// Keeps texts that were typed beside the run; no file where there are none. A disk that refuses them is no reason to
+    /// stop: they are in the window.
+    pub fn keep_drafts(&self, drafts: &UnsentTexts) {
+        let (Some(folder), true) = (&self.folder, self.recorder.is_some()) else { return };
+        let (file, unfinished) = (folder.join(FILE), folder.join(UNFINISHED));
+        if drafts.is_empty() {
+            let _ = std::fs::remove_file(&file);
+            return;
+        }
+        let Ok(text) = serde_json::to_vec(drafts) else { return };
+        let written = std::fs::File::create(&unfinished)
+            .and_then(|mut own| own.write_all(&text).and_then(|()| own.sync_all()))
+            .and_then(|()| std::fs::rename(&unfinished, &file));
+        if written.is_err() {
+            let _ = std::fs::remove_file(&unfinished);
+        }
+    }
+
+    /// Texts that were kept when the program was stopped; none of a run that is only read, and none that cannot be read.
+    pub fn kept_drafts(&self) -> UnsentTexts {
+        let (Some(folder), true) = (&self.folder, self.recorder.is_some()) else {
+            return UnsentTexts::default();
+        };
+        let text = std::fs::read(folder.join(FILE)).unwrap_or_default();
+        serde_json::from_slice(&text).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::folder::configuration::Configuration;
+    use crate::session::folder::create::{NewRun, Storage};
+
+    #[test]
+    fn texts_are_kept_whole_and_leave_no_file_when_there_are_none() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let storage = Storage::Runs(runs.path().to_owned());
+        let new = NewRun { storage, projection: false, days: Some(28), ..NewRun::default() };
+        let session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let mut drafts = UnsentTexts { rationale: "wait\nand see".to_owned(), ..UnsentTexts::default() };
+        drafts.forecasts[1][2] = "1,2".to_owned();
+        drafts.forms.entry(ToolId::SetPrices).or_default().insert("A".to_owned(), "12.".to_owned());
+        session.keep_drafts(&drafts);
+        assert_eq!(session.kept_drafts(), drafts);
+        let places: Vec<String> = drafts.places().into_iter().map(|(place, _)| place).collect();
+        assert_eq!(places, ["rationale", "forecasts", "form set_prices"]);
+        let file = session.folder().expect("a folder").join(FILE);
+        std::fs::write(&file, b"{\"rationale\":").expect("written");
+        assert!(session.kept_drafts().is_empty(), "half a file is none");
+        session.keep_drafts(&UnsentTexts::default());
+        assert!(!file.exists());
+    }
+}

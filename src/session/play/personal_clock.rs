@@ -1,0 +1,143 @@
+//! What the lines of a run tell of its person's clock: whether it was stopped, and what was told of limits.
+
+use std::collections::BTreeSet;
+
+use crate::session::study::rules::{AtLimit, TimeLimits};
+use crate::session::trajectory::record::{Activity, ClockEvent, LimitEvent, LimitScope, PresenceEvent};
+use crate::session::trajectory::{Record, Trajectory};
+
+/// What the lines of a run tell of the clock.
+#[derive(Debug, Clone, Default)]
+pub(in crate::session) struct PersonalClock {
+    /// When it was stopped, in seconds since 1970; none while it runs.
+    pub(super) stopped: Option<f64>,
+    /// A limit has stopped it, and nobody has started it since.
+    pub(super) held: bool,
+    /// What was told of limits, so that it is told once.
+    pub(super) told: BTreeSet<(LimitScope, bool)>,
+}
+
+/// A limit, and the time that is left to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeLeft {
+    /// What the limit is on.
+    pub scope: LimitScope,
+    /// Minutes that are allowed.
+    pub minutes: u32,
+    /// Seconds that are left; below zero once it is exceeded.
+    pub seconds: f64,
+}
+
+impl PersonalClock {
+    /// What the lines of a run tell.
+    pub(in crate::session) fn of(trajectory: &Trajectory) -> PersonalClock {
+        let mut clock = PersonalClock::default();
+        trajectory.lines.iter().for_each(|line| clock.pass(&line.record, line.moment()));
+        clock
+    }
+
+    /// Goes on to a line that was written at a moment, in seconds since 1970.
+    pub(in crate::session) fn pass(&mut self, record: &Record, at: f64) {
+        match record {
+            Record::Branch(_) => *self = PersonalClock::default(),
+            Record::Week(_) => self.told.retain(|(scope, _)| *scope != LimitScope::Week),
+            Record::Activity(Activity::Session(presence)) if presence.event == PresenceEvent::Opened => {
+                self.told.retain(|(scope, _)| *scope != LimitScope::Session);
+            }
+            Record::Activity(Activity::Clock(clock)) => {
+                self.stopped = (clock.event == ClockEvent::Stopped).then_some(at);
+                self.held &= clock.event != ClockEvent::Started;
+            }
+            Record::Activity(Activity::Limit(limit)) => {
+                self.told.insert((limit.limit, limit.event != LimitEvent::Warned));
+                self.held |= limit.event == LimitEvent::Paused;
+            }
+            _ => {}
+        }
+    }
+
+    /// What has to be told of a limit now.
+    pub(super) fn due(&self, left: TimeLeft, limits: &TimeLimits) -> Option<LimitEvent> {
+        let is_told = |reached| self.told.contains(&(left.scope, reached));
+        if left.seconds <= 0.0 {
+            return (!is_told(true)).then_some(match (limits.at_limit, left.scope) {
+                (AtLimit::Remind, _) => LimitEvent::Reminded,
+                (AtLimit::Naive, LimitScope::Week) => LimitEvent::FiledNaively,
+                // A week can be filed; a sitting cannot.
+                (AtLimit::Naive | AtLimit::Pause, _) => LimitEvent::Paused,
+            });
+        }
+        let warning = limits.warning_minutes.map(|minutes| f64::from(minutes) * 60.0)?;
+        (left.seconds <= warning && !is_told(false) && !is_told(true)).then_some(LimitEvent::Warned)
+    }
+}
+
+impl TimeLeft {
+    /// Minutes that are left, the last one begun.
+    pub fn whole_minutes(&self) -> i64 {
+        (self.seconds / 60.0).ceil() as i64
+    }
+
+    /// What the limit is on, and how much is left, in words.
+    pub fn in_words(&self) -> String {
+        let scope = match self.scope {
+            LimitScope::Week => "this week",
+            LimitScope::Session => "this session",
+            LimitScope::Study => "the study",
+        };
+        match self.whole_minutes() {
+            minutes if minutes <= 0 => format!("the {} min for {scope} are over", self.minutes),
+            minutes => format!("{minutes} of {} min left for {scope}", self.minutes),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::trajectory::record::{Clock, Closing, Limit};
+
+    fn limit(limit: LimitScope, event: LimitEvent) -> Record {
+        Record::Activity(Activity::Limit(Limit { limit, event, minutes: 10, used_ms: 0 }))
+    }
+
+    fn clock(event: ClockEvent) -> Record {
+        Record::Activity(Activity::Clock(Clock { event, reason: None, stood_ms: None }))
+    }
+
+    #[test]
+    fn a_limit_is_warned_of_and_told_once_each() {
+        let limits =
+            TimeLimits { warning_minutes: Some(2), at_limit: AtLimit::Naive, ..TimeLimits::default() };
+        let left = |scope, seconds| TimeLeft { scope, minutes: 10, seconds };
+        let mut own = PersonalClock::default();
+        assert_eq!(own.due(left(LimitScope::Week, 121.0), &limits), None);
+        assert_eq!(own.due(left(LimitScope::Week, 119.0), &limits), Some(LimitEvent::Warned));
+        own.pass(&limit(LimitScope::Week, LimitEvent::Warned), 0.0);
+        assert_eq!(own.due(left(LimitScope::Week, 60.0), &limits), None);
+        assert_eq!(own.due(left(LimitScope::Week, 0.0), &limits), Some(LimitEvent::FiledNaively));
+        own.pass(&limit(LimitScope::Week, LimitEvent::FiledNaively), 0.0);
+        assert_eq!(own.due(left(LimitScope::Week, -5.0), &limits), None);
+        let (figures, state_hash, parts) = Default::default();
+        own.pass(&Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts }), 0.0);
+        assert_eq!(own.due(left(LimitScope::Week, 100.0), &limits), Some(LimitEvent::Warned), "a new week");
+        let paused = own.due(left(LimitScope::Session, 0.0), &limits);
+        assert_eq!(paused, Some(LimitEvent::Paused), "a sitting cannot be filed");
+        assert_eq!(left(LimitScope::Week, 61.0).in_words(), "2 of 10 min left for this week");
+    }
+
+    #[test]
+    fn a_clock_that_a_limit_has_stopped_is_held_until_it_is_started() {
+        let mut own = PersonalClock::default();
+        for record in [
+            limit(LimitScope::Study, LimitEvent::Paused),
+            clock(ClockEvent::Stopped),
+            clock(ClockEvent::Forgotten),
+        ] {
+            own.pass(&record, 5.0);
+        }
+        assert!(own.held && own.stopped.is_none(), "leaving the run does not start it");
+        own.pass(&clock(ClockEvent::Started), 6.0);
+        assert!(!own.held);
+    }
+}

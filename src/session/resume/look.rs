@@ -1,0 +1,158 @@
+//! Reading an unfinished baseline run by a command, without playing it: what its participant could learn by that stands in
+//! its trajectory.
+
+use std::path::Path;
+
+use super::open::Access;
+use crate::session::error::RunError;
+use crate::session::folder::lock::lock_run;
+use crate::session::folder::manifest::Manifest;
+use crate::session::folder::mode::Mode;
+use crate::session::state::Session;
+use crate::session::trajectory::record::{Activity, Look};
+use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
+
+/// Records that a command reads the run in a folder. Does nothing for runs that are over, or no baseline, or stand where
+/// nobody can go on with them.
+///
+/// # Errors
+/// Somebody plays the run; it is damaged; the disk refuses the line.
+pub fn record_look(folder: &Path, command: &str, detail: &str) -> Result<(), RunError> {
+    let manifest = Manifest::read(folder)?;
+    if manifest.mode != Mode::Baseline || !manifest.session_rules().records("look") {
+        return Ok(());
+    }
+    let path = folder.join("trajectory.jsonl");
+    if is_over(&Trajectory::read(&path)?) {
+        return Ok(());
+    }
+    let lock = match lock_run(folder, &manifest.id) {
+        Ok(lock) => lock,
+        Err(RunError::NotWritable { .. }) => return Ok(()),
+        Err(RunError::InUse { id, holder }) => {
+            return Err(RunError::NotPossible(format!(
+                "baseline run {id} is being played ({holder}), and {command} would show what its record does not tell; \
+                 try again when it is closed, or watch it with `novamind play --watch {id}`"
+            )));
+        }
+        Err(error) => return Err(error),
+    };
+    let look = Activity::Look(Look { command: command.to_owned(), detail: detail.to_owned() });
+    let trajectory = Trajectory::read(&path)?;
+    if trajectory.unfinished > 0 || lacks_its_week(&trajectory) {
+        // What a stopped program has left has to be healed first, as when the run is opened for play.
+        drop(lock);
+        let mut session = Session::open(folder, Access::Write, true)?;
+        session.note_activity(look);
+        return session.save();
+    }
+    let day = trajectory.lines.last().map_or(0, |line| line.day);
+    let mut writer = TrajectoryWriter::resume(&path, &trajectory)?;
+    writer.append(day, &Record::Activity(look), Durability::Synced)?;
+    drop(lock);
+    Ok(())
+}
+
+fn is_over(trajectory: &Trajectory) -> bool {
+    trajectory.lines.iter().any(|line| matches!(line.record, Record::End(_)))
+}
+
+/// Whether a week was confirmed and not simulated.
+fn lacks_its_week(trajectory: &Trajectory) -> bool {
+    let open = trajectory.lines.iter().rev().find_map(|line| match line.record {
+        Record::Advance(_) => Some(true),
+        Record::Week(_) | Record::Step(_) => Some(false),
+        _ => None,
+    });
+    open == Some(true)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::folder::configuration::Configuration;
+    use crate::session::folder::create::{NewRun, Storage};
+    use crate::session::resume::verify::verify;
+    use crate::session::trajectory::record::Via;
+    use serde_json::json;
+
+    fn baseline(runs: &Path, weeks: usize) -> (std::path::PathBuf, Session) {
+        let new = NewRun {
+            seed: Some(3),
+            days: Some(28),
+            mode: Mode::Baseline,
+            participant: Some("P01".to_owned()),
+            storage: Storage::Runs(runs.to_owned()),
+            ..NewRun::default()
+        };
+        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        for _ in 0..weeks {
+            let forecasts = session.naive_forecasts();
+            session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+        }
+        (session.folder().expect("a folder").to_owned(), session)
+    }
+
+    fn looks(folder: &Path) -> Vec<String> {
+        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines");
+        let look = |record: &Record| match record {
+            Record::Activity(Activity::Look(look)) => Some(format!("{} {}", look.command, look.detail)),
+            _ => None,
+        };
+        trajectory.lines.iter().filter_map(|line| look(&line.record)).collect()
+    }
+
+    #[test]
+    fn looks_stand_in_the_record_and_the_run_goes_on_from_them() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let (folder, mut session) = baseline(runs.path(), 1);
+        let refused = record_look(&folder, "query", "SELECT 1").expect_err("it is played");
+        assert!(refused.to_string().contains("being played"), "{refused}");
+        session.save().expect("saved");
+        drop(session);
+        record_look(&folder, "query", "SELECT 1").expect("recorded");
+        record_look(&folder, "report", "markdown").expect("recorded");
+        let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
+        assert_eq!(session.remarks(), [] as [&str; 0], "database and snapshot are as they were left");
+        let rows = session.query("SELECT max(day) FROM ledger").expect("rows");
+        assert_eq!(rows.rows.len(), 1);
+        session.call(crate::session::ToolId::SetPrices, &json!({"A": 12}), Via::Script).expect("a call");
+        let forecasts = session.naive_forecasts();
+        session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+        drop(session);
+        assert_eq!(looks(&folder), ["query SELECT 1", "report markdown"]);
+        assert_eq!(verify(&folder).expect("it verifies").states, 2);
+    }
+
+    #[test]
+    fn a_look_after_a_kill_heals_first() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let (folder, session) = baseline(runs.path(), 1);
+        drop(session);
+        let path = folder.join("trajectory.jsonl");
+        let text = std::fs::read_to_string(&path).expect("lines");
+        let lines: Vec<&str> = text.lines().collect();
+        let advance = lines.iter().position(|line| line.contains("\"kind\":\"advance\"")).expect("a week");
+        // Killed between the two lines of a week, and with half a line.
+        std::fs::write(&path, lines[..=advance].join("\n") + "\n{\"seq\"").expect("written");
+        for name in ["world.db", "snapshot.bin"] {
+            let _ = std::fs::remove_file(folder.join(name));
+        }
+        record_look(&folder, "query", "SELECT 1").expect("recorded");
+        assert_eq!(looks(&folder), ["query SELECT 1"]);
+        assert_eq!(verify(&folder).expect("it verifies").states, 1);
+    }
+
+    #[test]
+    fn other_runs_are_read_without_a_trace() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let storage = Storage::Runs(runs.path().to_owned());
+        let new = NewRun { days: Some(28), storage, ..NewRun::default() };
+        let session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let folder = session.folder().expect("a folder").to_owned();
+        record_look(&folder, "query", "SELECT 1").expect("a sandbox may be read while it is played");
+        drop(session);
+        record_look(&folder, "query", "SELECT 1").expect("and later");
+        assert_eq!(looks(&folder), [] as [&str; 0]);
+    }
+}

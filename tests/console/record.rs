@@ -1,0 +1,308 @@
+//! What the record tells of a person at the console, compared with what a script did.
+
+use std::path::Path;
+use std::time::Duration;
+
+use crossterm::event::Event;
+use novamind::session::record::{ClockEvent, Draft, DraftOutcome, LeavingCause, PresenceEvent, View};
+use novamind::session::{
+    Activity, Configuration, NewRun, QuerySource, Record, Session, Storage, Trajectory, find_run, verify,
+};
+
+use super::harness::Console;
+
+/// The lines of the only run of a folder.
+fn lines(runs: &Path) -> Vec<Record> {
+    let folder = find_run(runs, "latest").expect("a run");
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines");
+    trajectory.lines.into_iter().map(|line| line.record).collect()
+}
+
+fn activities(runs: &Path) -> Vec<Activity> {
+    let activity = |record| if let Record::Activity(activity) = record { Some(activity) } else { None };
+    lines(runs).into_iter().filter_map(activity).collect()
+}
+
+fn views(runs: &Path) -> Vec<View> {
+    let view = |activity| if let Activity::View(view) = activity { Some(view) } else { None };
+    activities(runs).into_iter().filter_map(view).collect()
+}
+
+fn drafts(runs: &Path) -> Vec<Draft> {
+    let draft = |activity| if let Activity::Draft(draft) = activity { Some(draft) } else { None };
+    activities(runs).into_iter().filter_map(draft).collect()
+}
+
+fn presence(runs: &Path) -> Vec<PresenceEvent> {
+    let event =
+        |activity| if let Activity::Session(presence) = activity { Some(presence.event) } else { None };
+    activities(runs).into_iter().filter_map(event).collect()
+}
+
+fn pass(console: &mut Console, seconds: u64) {
+    console.pass(Duration::from_secs(seconds)).expect("time passes");
+}
+
+/// In words: kind and what counts, one line each.
+fn told(runs: &Path) -> Vec<String> {
+    let one = |record: Record| match record {
+        Record::Activity(Activity::View(view)) => {
+            format!("view {} from {} {} s", view.screen, view.from, view.for_ms / 1000)
+        }
+        Record::Activity(Activity::Select(select)) => format!("select {} {}", select.what, select.which),
+        Record::Activity(Activity::Dialog(dialog)) => {
+            let steps: Vec<String> =
+                dialog.steps.iter().map(|step| format!("{} {}", step.step, step.for_ms / 1000)).collect();
+            format!("dialog {} {:?} {}", dialog.what, dialog.outcome, steps.join(" ")).trim_end().to_owned()
+        }
+        Record::Activity(Activity::Help(help)) => format!("help {} in {}", help.term, help.place),
+        Record::Activity(Activity::Draft(draft)) => {
+            format!("draft {} {:?} {} letters", draft.place, draft.outcome, draft.length)
+        }
+        Record::Activity(Activity::Clock(clock)) => format!("clock {:?}", clock.event),
+        Record::Activity(Activity::Session(presence)) => format!("session {:?}", presence.event),
+        Record::Query(query) => format!("query {:?}", query.via.expect("format 2")),
+        Record::Call(call) => format!("call {}", call.tool),
+        Record::Advance(_) => "advance".to_owned(),
+        Record::Week(_) => "week".to_owned(),
+        Record::Note(_) => "note".to_owned(),
+        Record::Start(_) => "start".to_owned(),
+        other => format!("{other:?}"),
+    };
+    lines(runs).into_iter().map(one).collect()
+}
+
+#[test]
+fn a_scripted_session_is_told_in_its_order() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    pass(&mut console, 5);
+    console.press("2");
+    pass(&mut console, 7);
+    console.press("i");
+    pass(&mut console, 2);
+    console.press("esc 3 enter");
+    pass(&mut console, 3);
+    console.press("n");
+    pass(&mut console, 4);
+    console.press("enter 'wait'");
+    pass(&mut console, 6);
+    console.press("enter f enter");
+    pass(&mut console, 1);
+    console.press("esc 2 q");
+    drop(console);
+    let told = told(runs.path());
+    let term = told.iter().find(|line| line.starts_with("help ")).cloned().unwrap_or_default();
+    assert!(term.ends_with(" in cash"), "{told:#?}");
+    let expected = [
+        "start",
+        "session Opened",
+        "view overview from  5 s",
+        &term,
+        "dialog explanation Cancelled",
+        "view cash from overview 9 s",
+        "select group S1",
+        "dialog next week Confirmed review 4 rationale 6 forecasts 0",
+        "draft rationale Sent 4 letters",
+        "view customers from cash 13 s",
+        "advance",
+        "week",
+        "dialog week report Cancelled",
+        "view customers from cash 1 s",
+        "view cash from customers 0 s",
+        "session Closed",
+    ];
+    assert_eq!(told, expected);
+}
+
+#[test]
+fn time_of_screens_is_never_more_than_the_time_of_their_week() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    for week in 0..3 {
+        for key in ["2", "3", "4", "1", "backspace", "]"] {
+            pass(&mut console, week + 1);
+            console.press(key);
+        }
+        console.week();
+        console.press("esc");
+    }
+    drop(console);
+    let views = views(runs.path());
+    assert!(views.iter().all(|view| view.from != view.screen), "{views:#?}");
+    let mut before_week = vec![0];
+    for record in lines(runs.path()) {
+        match record {
+            Record::Activity(Activity::View(view)) => *before_week.last_mut().expect("one") += view.for_ms,
+            Record::Advance(_) => before_week.push(0),
+            _ => {}
+        }
+    }
+    let turned: Vec<u64> = before_week.iter().map(|ms| ms / 6000).collect();
+    assert_eq!(turned[..3], [1, 2, 3], "{before_week:?}");
+}
+
+#[test]
+fn texts_are_told_by_how_they_came_to_be() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    // Notes: typed, deleted, pasted, with a pause, and saved.
+    console.press("0 tab e 'abcx' backspace");
+    pass(&mut console, 3);
+    console.send(Event::Paste(" pasted".to_owned()));
+    console.press("ctrl-s");
+    // A statement that is left.
+    console.press("9 'SELECT1' esc esc 1");
+    drop(console);
+    let drafts = drafts(runs.path());
+    let [notes, sql] = &drafts[..] else { panic!("{drafts:#?}") };
+    assert_eq!((notes.place.as_str(), notes.outcome), ("notes", DraftOutcome::Sent));
+    assert_eq!((notes.length, notes.typed, notes.deleted, notes.pasted, notes.pauses), (10, 4, 1, 7, 1));
+    assert!(notes.for_ms >= 3000 && notes.text.is_none());
+    assert_eq!((sql.place.as_str(), sql.outcome, sql.typed), ("sql", DraftOutcome::Left, 7));
+}
+
+#[test]
+fn nothing_of_the_run_is_seen_while_the_clock_stands() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    pass(&mut console, 5);
+    console.press("; p");
+    for size in [(120, 40), (60, 16), (200, 60)] {
+        console.size = size;
+        let screen = console.screen();
+        assert!(screen.contains("The clock is stopped."), "{screen}");
+        for word in ["cash", "day", "$", "NovaMind", "SANDBOX", "Overview", "subs"] {
+            assert!(!screen.contains(word), "{word} is seen:\n{screen}");
+        }
+    }
+    // Keys do nothing, and time does not count.
+    console.press("3 n enter");
+    pass(&mut console, 100);
+    console.press("; p esc");
+    drop(console);
+    let told = told(runs.path());
+    let expected = ["start", "session Opened", "view overview from  5 s", "clock Stopped", "clock Started"];
+    assert_eq!(told[..5], expected, "{told:#?}");
+    assert!(told.iter().filter(|line| *line == "clock Stopped").count() == 2, "{told:#?}");
+    // It stood when the program was left: it is started with the next opening.
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    console.shows("NovaMind");
+    drop(console);
+    let forgotten = activities(runs.path()).into_iter().any(
+        |activity| matches!(activity, Activity::Clock(clock) if clock.event == ClockEvent::Forgotten && clock.stood_ms.is_some()),
+    );
+    assert!(forgotten);
+}
+
+#[test]
+fn absences_are_told_and_end_with_a_key() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    pass(&mut console, 59);
+    console.press("2");
+    pass(&mut console, 60);
+    pass(&mut console, 30);
+    console.send(Event::FocusLost);
+    console.send(Event::FocusGained);
+    console.press("3");
+    console.send(Event::Resize(90, 30));
+    pass(&mut console, 1);
+    drop(console);
+    use PresenceEvent::{Active, Closed, FocusGained, FocusLost, Idle, Opened, Resized};
+    assert_eq!(presence(runs.path()), [Opened, Idle, FocusLost, FocusGained, Active, Resized, Closed]);
+    let all = activities(runs.path());
+    let idle = |activity: &Activity| match activity {
+        Activity::Session(presence) => presence.idle_ms.map(|ms| ms / 1000),
+        _ => None,
+    };
+    assert_eq!(all.iter().filter_map(idle).collect::<Vec<_>>(), [60, 90]);
+    let closed = all.iter().rev().find_map(|activity| match activity {
+        Activity::Session(presence) => presence.cause,
+        _ => None,
+    });
+    assert_eq!(closed, Some(LeavingCause::Quit));
+}
+
+#[test]
+fn what_was_typed_comes_back_after_a_crash_and_goes_when_it_is_dropped() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.press("n enter 'because' _ 'of' _ 'S1'");
+    pass(&mut console, 4);
+    console.press("esc 8 enter");
+    console.press("enter '77' enter");
+    pass(&mut console, 4);
+    console.press("9 'SELECT' _ '4'");
+    pass(&mut console, 4);
+    let file = find_run(runs.path(), "latest").expect("a run").join("drafts.json");
+    let all = ["because of S1", "77", "SELECT 4"];
+    let kept = || std::fs::read_to_string(&file).unwrap_or_default();
+    // They are written behind the screen.
+    while !all.iter().all(|text| kept().contains(text)) {
+        std::thread::yield_now();
+    }
+    // A hangup.
+    console.app.update(novamind::console::message::Message::Signal(1));
+    console.settle().expect("it leaves");
+    drop(console);
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    console.shows("you had typed");
+    console.shows("because of S1");
+    console.press("y");
+    console.press("n enter");
+    console.shows("because of S1");
+    drop(console);
+    let restored: Vec<String> = drafts(runs.path())
+        .into_iter()
+        .filter(|draft| draft.outcome == DraftOutcome::Restored)
+        .map(|draft| draft.place)
+        .collect();
+    assert_eq!(restored.len(), 3, "{restored:?}");
+    assert_eq!((restored[0].as_str(), restored[1].as_str()), ("rationale", "sql"));
+    assert!(restored[2].starts_with("form "));
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    console.press("d");
+    console.settle().expect("it is dropped");
+    drop(console);
+    assert!(!file.exists(), "what was dropped is gone");
+}
+
+#[test]
+fn statements_are_told_by_where_they_came_from() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.week();
+    console.press("esc 9 'SELECT' _ '1' esc f5 v ctrl-o enter 2 f esc");
+    drop(console);
+    let via: Vec<QuerySource> = lines(runs.path())
+        .into_iter()
+        .filter_map(|record| if let Record::Query(query) = record { query.via } else { None })
+        .collect();
+    assert_eq!(via, [QuerySource::Typed, QuerySource::Derived, QuerySource::Library, QuerySource::DrillDown]);
+}
+
+#[test]
+fn attention_changes_no_state() {
+    let play = |attentive: bool| {
+        let runs = tempfile::tempdir().expect("a folder");
+        let storage = Storage::Runs(runs.path().to_owned());
+        let new = NewRun { seed: Some(5), days: Some(28), storage, ..NewRun::default() };
+        drop(Session::create(new, &Configuration::shipped()).expect("a run"));
+        let mut console = Console::in_latest_run(runs.path(), (120, 40));
+        for _ in 0..2 {
+            if attentive {
+                console.press("2 i esc 3 enter 9 'SELECT' _ '1' esc esc ; p enter");
+                pass(&mut console, 70);
+            }
+            console.week();
+            console.press("esc");
+        }
+        drop(console);
+        let found = verify(&find_run(runs.path(), "latest").expect("a run")).expect("it verifies");
+        (found.states, found.state_hash, found.lines)
+    };
+    let (attentive, hasty) = (play(true), play(false));
+    assert_eq!((attentive.0, &attentive.1), (hasty.0, &hasty.1));
+    assert!(attentive.2 > hasty.2 + 10, "what was looked at is told");
+}

@@ -1,0 +1,86 @@
+//! How a session ends stands in its record, however it ends; and what was typed survives.
+
+use std::path::{Path, PathBuf};
+
+use novamind::session::record::{LeavingCause, PresenceEvent};
+use novamind::session::{Activity, Record, Trajectory};
+
+use super::pty::Terminal;
+
+fn only_run(runs: &Path) -> PathBuf {
+    let folders = std::fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
+    folders.into_iter().find(|folder| folder.join("run.toml").exists()).expect("a run")
+}
+
+/// What happened to the session, with the cause of its end.
+fn presence(runs: &Path) -> Vec<(PresenceEvent, Option<LeavingCause>)> {
+    let lines = Trajectory::read(&only_run(runs).join("trajectory.jsonl")).expect("it reads").lines;
+    let of = |record: &Record| match record {
+        Record::Activity(Activity::Session(presence)) => Some((presence.event, presence.cause)),
+        _ => None,
+    };
+    lines.iter().filter_map(|line| of(&line.record)).collect()
+}
+
+#[test]
+fn what_was_typed_survives_a_kill_of_the_console() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", "4"], (100, 30));
+    terminal.wait_for("day 0/500");
+    terminal.type_keys("n");
+    terminal.wait_for("[1 review]");
+    terminal.type_keys("\rwe wait for leads");
+    let drafts = only_run(runs.path()).join("drafts.json");
+    terminal.wait_until_true("the text is kept", || {
+        std::fs::read_to_string(&drafts).is_ok_and(|text| text.contains("we wait for leads"))
+    });
+    terminal.signal("-KILL");
+    terminal.killed();
+    let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (100, 30));
+    terminal.wait_for("you had typed");
+    terminal.wait_for("we wait for leads");
+    terminal.type_keys("\r");
+    terminal.wait_until_gone("you had typed");
+    terminal.type_keys("n\r");
+    terminal.wait_for("we wait for leads");
+    terminal.signal("-TERM");
+    terminal.end();
+    assert!(drafts.exists(), "a signal leaves it for the next time");
+}
+
+#[test]
+fn every_end_of_a_session_has_its_cause() {
+    for (arguments, signal, cause) in [
+        (&["--new", "--seed", "4"][..], "-TERM", LeavingCause::Signal),
+        (&["--new", "--seed", "4"], "-HUP", LeavingCause::Hangup),
+        (&["--new", "--seed", "4", "--plain"], "-TERM", LeavingCause::Signal),
+        (&["--new", "--seed", "4", "--plain"], "-HUP", LeavingCause::Hangup),
+        (&["--new", "--seed", "4", "--plain"], "-INT", LeavingCause::Signal),
+    ] {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut terminal = Terminal::start(runs.path(), arguments, (100, 30));
+        terminal.wait_for(if arguments.contains(&"--plain") { "day 0>" } else { "day 0/500" });
+        terminal.signal(signal);
+        let (code, _) = terminal.end();
+        assert!(code > 128, "{arguments:?} {signal}: {code}");
+        let events = presence(runs.path());
+        assert_eq!(events.first(), Some(&(PresenceEvent::Opened, None)), "{arguments:?} {signal}");
+        assert_eq!(events.last(), Some(&(PresenceEvent::Closed, Some(cause))), "{arguments:?} {signal}");
+    }
+}
+
+#[test]
+fn a_suspended_console_says_so() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", "4"], (100, 30));
+    terminal.wait_for("day 0/500");
+    terminal.signal("-TSTP");
+    terminal.wait_until_stopped();
+    terminal.signal("-CONT");
+    terminal.wait_until_raw();
+    terminal.type_keys("\x03");
+    terminal.end();
+    let events: Vec<PresenceEvent> = presence(runs.path()).into_iter().map(|(event, _)| event).collect();
+    use PresenceEvent::{Closed, Opened, Resumed, Suspended};
+    assert_eq!(events, [Opened, Suspended, Resumed, Closed]);
+}

@@ -17,13 +17,16 @@ mod study;
 mod tables;
 mod tools;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
 pub use failure::Failure;
 
-use crate::session::{Configuration, Study, list_worlds_in, participant_folder};
+use crate::session::{
+    Configuration, LabKey, STUDY_FILE, SealKey, Study, lab_key_of, list_worlds_in, participant_folder,
+    seal_key_of,
+};
 
 /// Run a simulated AI subscription company for 500 days.
 ///
@@ -116,22 +119,31 @@ pub struct Context {
     pub participant: Option<String>,
     /// The folder of runs was named on the command line.
     names_runs: bool,
+    /// Folder of the study whose keys count: the one that was named, or the folder of work if it is a study.
+    pub study_folder: Option<PathBuf>,
 }
 
 impl Context {
     /// The command that goes on with the newest run of this folder.
     pub fn again(&self) -> String {
-        let mut words = vec!["novamind".to_owned()];
-        if let Some(folder) = self.runs.as_ref().filter(|_| self.names_runs) {
-            let folder = folder.display().to_string();
-            // As a shell has to be told.
-            let plain = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
-            let quoted = if folder.chars().all(plain) { folder } else { format!("'{folder}'") };
-            words.push(format!("--runs-dir {quoted}"));
-        }
+        let mut words = self.first_words();
         words.extend(self.participant.as_ref().map(|label| format!("--as {label}")));
         words.push("--run latest".to_owned());
         words.join(" ")
+    }
+
+    /// The command that leads participants through a study once more: they give their label again.
+    pub fn again_in_study(&self, study: &Path) -> String {
+        let mut words = self.first_words();
+        words.push(format!("--study {}", for_shell(study)));
+        words.join(" ")
+    }
+
+    fn first_words(&self) -> Vec<String> {
+        let mut words = vec!["novamind".to_owned()];
+        let named = self.runs.as_ref().filter(|_| self.names_runs);
+        words.extend(named.map(|folder| format!("--runs-dir {}", for_shell(folder))));
+        words
     }
 
     /// Checks that a participant who is named is the one whose runs these are.
@@ -155,6 +167,26 @@ impl Context {
         if named.is_empty() { Ok(vec![self.runs()?]) } else { Ok(named.to_vec()) }
     }
 
+    /// What seals the snapshots of runs of the study besides the runs.
+    ///
+    /// # Errors
+    /// The key is there and cannot be read.
+    fn seal_key(&self) -> Result<SealKey, Failure> {
+        Ok(self.study_folder.as_deref().map(seal_key_of).transpose()?.unwrap_or_default())
+    }
+
+    /// The key that signs archives: that of a file, or of the study.
+    ///
+    /// # Errors
+    /// It is there and cannot be read.
+    fn lab_key(&self, named: Option<&Path>) -> Result<Option<LabKey>, Failure> {
+        match (named, &self.study_folder) {
+            (Some(file), _) => Ok(Some(LabKey::read(file)?)),
+            (None, Some(folder)) => Ok(lab_key_of(folder)?),
+            (None, None) => Ok(None),
+        }
+    }
+
     /// Folder of the runs.
     ///
     /// # Errors
@@ -168,6 +200,18 @@ impl Context {
             Some(label) => participant_folder(&base, label).map_err(Failure::usage),
         }
     }
+}
+
+/// A path as a shell has to be told.
+fn for_shell(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
+    if text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
+}
+
+/// The folder of work, if it is that of a study.
+fn study_here() -> Option<PathBuf> {
+    Path::new(STUDY_FILE).is_file().then(|| PathBuf::from("."))
 }
 
 /// Runs a command.
@@ -190,6 +234,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         names_runs: arguments.runs_dir.is_some() && arguments.runs_dir != from_environment,
         runs: arguments.runs_dir.or_else(Configuration::runs_folder),
         participant: arguments.whose.filter(|label| !label.is_empty()),
+        study_folder: arguments.study.clone().or_else(study_here),
     };
     if let Some(runs) = Configuration::runs_folder() {
         list_worlds_in(&runs);
@@ -242,5 +287,28 @@ pub fn print(text: &str) -> Result<(), Failure> {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::quiet()),
         Err(error) => Err(Failure::failed(format!("standard output: {error}"))),
         Ok(()) => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_that_goes_on_can_be_typed_as_it_is() {
+        let context = |runs: &str, names_runs| Context {
+            configuration: Configuration::shipped(),
+            runs: Some(PathBuf::from(runs)),
+            participant: None,
+            names_runs,
+            study_folder: None,
+        };
+        let study = Path::new("pilot");
+        assert_eq!(context("/data/runs", false).again_in_study(study), "novamind --study pilot");
+        assert_eq!(
+            context("/data/my runs", true).again_in_study(Path::new("Jo's study")),
+            r"novamind --runs-dir '/data/my runs' --study 'Jo'\''s study'"
+        );
+        assert_eq!(context("/data/runs", true).again(), "novamind --runs-dir /data/runs --run latest");
     }
 }

@@ -144,7 +144,7 @@ pub fn lead(folder: &Path, options: &Options, context: &Context) -> Result<(), F
     }
     let study = Study::read(folder)?;
     if !asks_for_lines(options) {
-        let again = format!("novamind --study {}", folder.display());
+        let again = context.again_in_study(folder);
         return show_console_again(options, Some(Effect::Receive(Box::new(study))), context, again);
     }
     let style = crate::plain::Style { json: options.json, echo: options.echo, strict: options.strict };

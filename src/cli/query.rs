@@ -9,8 +9,8 @@ use super::{Context, Failure, print};
 use crate::notation::{csv_cell, printable};
 use crate::session::record::Outcome;
 use crate::session::{
-    Access, Cell, Library, Line, Record, Refusal, Rows, RunError, Session, Trajectory, connection_to_file,
-    find_run_to_read, rebuild_database, record_look, rows_as_json,
+    Access, Cell, Library, Line, Record, Refusal, Rows, RunError, SealKey, Session, Trajectory,
+    connection_to_file, find_run_to_read, rebuild_database, record_look, rows_as_json,
 };
 
 /// Options of `query`.
@@ -45,7 +45,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
     let statement = statement(&options.sql, context)?;
     record_look(&folder, "query", &statement)?;
-    let rows = ask(&folder, &statement)?;
+    let rows = ask(&folder, &statement, &context.seal_key()?)?;
     match options.format {
         RowFormat::Table => print(&printable(&crate::plain::table(&rows))),
         RowFormat::Csv => print(&as_csv(&rows)?),
@@ -73,12 +73,12 @@ fn statement(given: &str, context: &Context) -> Result<String, Failure> {
 
 /// Asks the run's database, which is brought up to date on the disk if it is not complete. Where somebody plays the run,
 /// or its folder cannot be written, a database in memory is made from the trajectory.
-fn ask(folder: &Path, sql: &str) -> Result<Rows, Failure> {
-    if let Some(rows) = ask_file(folder, sql)? {
+fn ask(folder: &Path, sql: &str, key: &SealKey) -> Result<Rows, Failure> {
+    if let Some(rows) = ask_file(folder, sql, key)? {
         return Ok(rows);
     }
     let mut progress = None;
-    let rebuilt = rebuild_database(folder, &mut |day, days| {
+    let rebuilt = rebuild_database(folder, key, &mut |day, days| {
         let bar = progress.get_or_insert_with(|| progress_bar(u64::from(days), "days of the database"));
         bar.set_position(u64::from(day));
     });
@@ -87,22 +87,22 @@ fn ask(folder: &Path, sql: &str) -> Result<Rows, Failure> {
     }
     match rebuilt {
         Ok(()) => {
-            if let Some(rows) = ask_file(folder, sql)? {
+            if let Some(rows) = ask_file(folder, sql, key)? {
                 return Ok(rows);
             }
         }
         Err(RunError::InUse { .. } | RunError::NotWritable { .. } | RunError::Projection(_)) => {}
         Err(error) => return Err(error.into()),
     }
-    let mut session = Session::open(folder, Access::Read, true)?;
+    let mut session = Session::open_sealed(folder, Access::Read, true, key.clone())?;
     Ok(session.query(sql)?)
 }
 
 /// Asks the run's database if it is complete.
-fn ask_file(folder: &Path, sql: &str) -> Result<Option<Rows>, Failure> {
+fn ask_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<Rows>, Failure> {
     // Both read long files: each has a thread of its own.
     let (trajectory, opened) = std::thread::scope(|scope| {
-        let opened = scope.spawn(|| connection_to_file(folder));
+        let opened = scope.spawn(|| connection_to_file(folder, key));
         (Trajectory::read(&folder.join("trajectory.jsonl")), opened.join())
     });
     let (trajectory, opened) = (trajectory?, opened.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));

@@ -10,7 +10,7 @@ use super::{Context, Failure, play, print};
 use crate::console::effect::Effect;
 use crate::console::request::Recorded;
 use crate::console::request::Request;
-use crate::session::{Goal, find_run_to_read, record_look, verify};
+use crate::session::{Goal, find_run_to_read, record_look, verify_sealed};
 
 /// Options of `replay`.
 #[derive(Debug, Args)]
@@ -66,10 +66,11 @@ fn recorded(name: &str) -> Recorded {
 fn check(options: &Options, context: &Context) -> Result<(), Failure> {
     let recorded = recorded(&options.run);
     note_look(&recorded, "verify", context)?;
-    let found = verify(&match recorded {
+    let place = match recorded {
         Recorded::File(path) => path,
         Recorded::Run(id) => find_run_to_read(&context.runs()?, &id)?,
-    })?;
+    };
+    let found = verify_sealed(&place, &context.seal_key()?)?;
     print(&format!(
         "run {}: {} lines, {} states reached again, day {}, state {}\n",
         found.run, found.lines, found.states, found.day, found.state_hash

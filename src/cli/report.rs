@@ -8,7 +8,7 @@ use super::{Context, Failure, print};
 use crate::report::{
     Logbook, Story, as_html, as_markdown, card_as_svg, card_as_text, session_as_html, session_as_markdown,
 };
-use crate::session::{Access, Session, Trajectory, find_run_to_read, record_look};
+use crate::session::{Access, Session, Trajectory, find_run_to_read, lines_afterwards, record_look};
 
 /// Options of `report`.
 #[derive(Debug, Args)]
@@ -106,7 +106,8 @@ fn session_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
 pub fn logbook_of(folder: &Path) -> Result<Logbook, Failure> {
     let session = Session::open(folder, Access::Read, true)?;
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
-    Ok(Logbook::of(&session, &trajectory.lines))
+    let afterwards = lines_afterwards(folder, &trajectory)?;
+    Ok(Logbook::of(&session, &trajectory.lines, &afterwards.lines))
 }
 
 #[cfg(test)]
@@ -129,6 +130,7 @@ mod tests {
             runs: Some(runs.path().to_owned()),
             participant: None,
             names_runs: true,
+            study_folder: None,
         };
         let written = |format: ReportFormat, name: &str| {
             let path = runs.path().join(name);

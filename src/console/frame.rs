@@ -176,7 +176,9 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
         (format!("   subs {}", count(seen.subscribers)), Role::Text),
         (format!("   seats {}", count(seen.seats)), Role::Text),
     ];
+    let hides_result = company.rules.hide_result(seen.ended);
     let state = match seen.ended {
+        _ if hides_result => "OVER".to_owned(),
         _ if company.replayed => "REPLAY".to_owned(),
         None => match &company.study {
             Some(study) => if study.practice { "PRACTICE" } else { "SESSION" }.to_owned(),
@@ -189,7 +191,9 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
     let state = format!("{}{state} ", time_left(app));
     let width = (state.width() as u16).min(row.width);
     let mut left = Rect { width: row.width - width, ..row };
-    for (piece, role) in pieces {
+    // Where the result is not shown, the head ends with the day.
+    let shown = if hides_result { 3 } else { pieces.len() };
+    for (piece, role) in pieces.into_iter().take(shown) {
         // Half a figure would be a wrong one.
         let taken = piece.width() as u16;
         if taken + 1 > left.width {

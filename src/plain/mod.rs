@@ -175,6 +175,8 @@ fn prompt(text: &str) -> io::Result<()> {
 
 fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()> {
     let seen = session.observe();
+    let hides_result = session.rules().hide_result(session.ended());
+    let dashboard = if hides_result { "" } else { seen.dashboard.as_str() };
     if style.json {
         let event = json!({
             "event": "start",
@@ -184,7 +186,7 @@ fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()
             "days": seen.last_day,
             "mode": seen.mode,
             "remarks": session.remarks(),
-            "dashboard": seen.dashboard,
+            "dashboard": dashboard,
         });
         writeln!(out, "{event}")?;
     } else {
@@ -193,7 +195,9 @@ fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()
         for remark in session.remarks() {
             writeln!(out, "note: {remark}")?;
         }
-        writeln!(out, "{}", seen.dashboard)?;
+        if !hides_result {
+            writeln!(out, "{dashboard}")?;
+        }
     }
     out.flush()
 }

@@ -126,6 +126,9 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
     } else {
         "stepped".to_owned()
     };
+    if session.rules().hide_result(week.ended) {
+        return over(command, session, week);
+    }
     let mut text = week.dashboard.trim_end().to_owned();
     text += &format!(
         "\n{done} · day {} · cash {} ({})\n",
@@ -144,6 +147,20 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
         text += &format!("note: {remark}\n");
     }
     Answer::done(command, text, week.as_json())
+}
+
+/// What is said of the end where its result is not shown.
+fn over(command: &str, session: &Session, week: &Week) -> Answer {
+    let mut text = "the run is over; the result is not shown in this study\n".to_owned();
+    let mut object = json!({ "ended": true });
+    if session.rules().code_words {
+        text += &format!("code: {}\n", session.code_words());
+        object["code"] = session.code_words().into();
+    }
+    if let Some(remark) = &week.remark {
+        text += &format!("note: {remark}\n");
+    }
+    Answer::done(command, text, object)
 }
 
 /// Asks the person; none when they cancel.

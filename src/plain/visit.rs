@@ -11,7 +11,7 @@ use super::lines::Lines;
 use super::{End, Style, dialogue, prompt};
 use crate::notation::printable;
 use crate::session::{
-    Access, Configuration, ConsentGiven, ConsentMeans, Library, NextStep, RunError, Session, Study, Visit,
+    Configuration, ConsentGiven, ConsentMeans, Library, NextStep, RunError, Session, Study, Visit,
 };
 
 /// What ends a visit early.
@@ -75,9 +75,7 @@ impl Host<'_> {
                     let session = self.begin(&visit, false, unfinished.as_deref())?;
                     self.play(&visit, session)?;
                 }
-                NextStep::Questions(folder) => {
-                    self.play(&visit, Session::open(&folder, Access::Write, true)?)?
-                }
+                NextStep::Questions(folder) => self.play(&visit, visit.open(&folder)?)?,
                 NextStep::Withdrawn => {
                     self.say("withdrawn", "You have withdrawn from this study. Your data were erased.")?;
                     return Ok(0);
@@ -156,12 +154,10 @@ impl Host<'_> {
     }
 
     fn begin(&self, visit: &Visit, practice: bool, unfinished: Option<&Path>) -> Result<Session, Stop> {
-        let mut session = match unfinished {
-            Some(folder) => Session::open(folder, Access::Write, true)?,
-            None => Session::create(visit.new_run(practice, self.consent), self.configuration)?,
-        };
-        visit.watch(&mut session);
-        Ok(session)
+        Ok(match unfinished {
+            Some(folder) => visit.open(folder)?,
+            None => visit.begin_run(practice, self.consent, self.configuration)?,
+        })
     }
 
     /// Plays a run until it is over and its questions are answered, or the person leaves.

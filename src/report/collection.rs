@@ -7,11 +7,12 @@ use super::Logbook;
 use super::tables::StudyTables;
 use crate::session::archive::Workshop;
 use crate::session::{
-    CollectNote, Export, FoundRun, Gathered, RunError, Seal, Study, gather, missing_places,
+    CollectNote, Export, FoundRun, Gathered, LabKey, LabPublicKey, RunError, Seal, SealKey, Study, gather,
+    missing_places,
 };
 
 /// What is collected, and how.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct Collecting<'a> {
     /// Folders of machines, and archives.
     pub sources: &'a [PathBuf],
@@ -21,6 +22,25 @@ pub struct Collecting<'a> {
     pub study: Option<&'a Study>,
     /// New labels by run.
     pub labels: &'a BTreeMap<String, String>,
+    /// The keys of the lab.
+    pub keys: LabKeys<'a>,
+}
+
+/// The keys of the lab that collects.
+#[derive(Clone, Copy, Default)]
+pub struct LabKeys<'a> {
+    /// What signs the archives that are written.
+    pub own: Option<&'a LabKey>,
+    /// Who should have signed the archives that are read.
+    pub public: Option<&'a LabPublicKey>,
+    /// What seals the snapshots of the runs besides the runs.
+    pub seal: Option<&'a SealKey>,
+}
+
+impl LabKeys<'_> {
+    fn seal_key(&self) -> SealKey {
+        self.seal.cloned().unwrap_or_default()
+    }
 }
 
 /// What came of it.
@@ -40,11 +60,12 @@ pub struct Collected {
 /// # Errors
 /// The folder cannot be written.
 pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> Result<Collected, RunError> {
-    let Collecting { sources, out, study, labels } = what;
+    let Collecting { sources, out, study, labels, keys } = what;
     std::fs::create_dir_all(out).map_err(|error| RunError::Io { path: out.to_owned(), error })?;
     // What archives are unpacked into stays hidden, and is gone afterwards.
     let workshop = Workshop::within(out)?;
-    let Gathered { runs, conflicts, mut notes, last_visits } = gather(sources, workshop.path(), out);
+    let Gathered { runs, conflicts, mut notes, last_visits } =
+        gather(sources, workshop.path(), out, keys.public);
     let mut collected = Collected { tables: StudyTables::default(), runs: Vec::new(), notes: Vec::new() };
     let mut present: BTreeSet<String> = BTreeSet::new();
     for (done, run) in runs.iter().enumerate() {
@@ -55,7 +76,7 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
             let from = run.manifest.participant.clone().unwrap_or_default();
             notes.push(CollectNote::Relabelled { run: id.clone(), from, to: to.clone() });
         }
-        match take(run, out, label.clone(), &mut collected.tables) {
+        match take(run, out, label.clone(), keys, &mut collected.tables) {
             Ok((seal, archive)) => {
                 let is_session = run.manifest.study.as_ref().is_none_or(|stamp| !stamp.practice);
                 present.extend(label.clone().filter(|_| is_session));
@@ -68,7 +89,7 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
             }
         }
     }
-    keep_apart(&conflicts, out, &mut notes)?;
+    keep_apart(&conflicts, out, keys, &mut notes)?;
     for id in conflicts.keys() {
         collected.tables.add_unread(id, "two records contradict each other; both are kept in conflicts");
     }
@@ -87,12 +108,13 @@ fn take(
     run: &FoundRun,
     out: &Path,
     label: Option<String>,
+    keys: LabKeys<'_>,
     tables: &mut StudyTables,
 ) -> Result<(Seal, PathBuf), RunError> {
-    let export = Export::prepare(&run.folder, out)?;
+    let export = Export::prepare(&run.folder, out, &keys.seal_key())?;
     let archive = out.join(format!("{}.tar.gz", run.manifest.id));
-    let seal = export.write(&archive, true, None)?;
-    let mut book = Logbook::of(export.session(), &export.trajectory().lines);
+    let seal = export.write(&archive, true, keys.own)?;
+    let mut book = Logbook::of(export.session(), &export.trajectory().lines, export.afterwards());
     book.participant = label;
     tables.add(&book, &export.trajectory().lines, export.afterwards());
     Ok((seal, archive))
@@ -102,6 +124,7 @@ fn take(
 fn keep_apart(
     conflicts: &BTreeMap<String, Vec<FoundRun>>,
     out: &Path,
+    keys: LabKeys<'_>,
     notes: &mut Vec<CollectNote>,
 ) -> Result<(), RunError> {
     if conflicts.is_empty() {
@@ -112,8 +135,8 @@ fn keep_apart(
     for (run, records) in conflicts {
         for (number, record) in records.iter().enumerate() {
             let archive = folder.join(format!("{run}-{}.tar.gz", number + 1));
-            let kept =
-                Export::prepare(&record.folder, &folder).and_then(|own| own.write(&archive, true, None));
+            let kept = Export::prepare(&record.folder, &folder, &keys.seal_key())
+                .and_then(|own| own.write(&archive, true, keys.own));
             notes.extend(kept.err().map(|error| CollectNote::Unreadable {
                 path: record.source.clone(),
                 problem: error.to_string(),

@@ -11,6 +11,7 @@ use crate::database::{
 };
 use crate::notation::json_number;
 use crate::session::resume::integrity::is_as_left;
+use crate::session::resume::sealing::SealKey;
 use crate::session::state::Session;
 use crate::session::trajectory::Record;
 use crate::session::trajectory::record::{Query, QuerySource};
@@ -163,12 +164,16 @@ impl From<QueryError> for Refusal {
     }
 }
 
-/// A connection to the database file of a run as it stands, and the line of the trajectory that it stands at.
+/// A connection to the database file of a run as it stands, and the line of the trajectory that it stands at. The key is
+/// that of the run's snapshots.
 ///
 /// # Errors
 /// The file is missing, no database of a run, or not the one that the program left when the run was closed.
-pub fn connection_to_file(folder: &Path) -> Result<(QueryConnection, crate::database::Position), Refusal> {
-    if !is_as_left(folder) {
+pub fn connection_to_file(
+    folder: &Path,
+    key: &SealKey,
+) -> Result<(QueryConnection, crate::database::Position), Refusal> {
+    if !is_as_left(folder, key) {
         return Err(Refusal::new("sql_error", "world.db was changed after the run was closed"));
     }
     query_connection(&Location::File(folder.join("world.db")))

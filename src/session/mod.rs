@@ -74,13 +74,16 @@ pub use resume::open::Access;
 pub use resume::rebuild::rebuild_database;
 pub use resume::rescue::{Rescued, rescue};
 pub use resume::sealing::SealKey;
-pub use resume::verify::{Verification, verify};
+pub use resume::verify::{Verification, verify, verify_sealed};
 pub use state::Session;
 pub use study::assignment::{ASSIGNMENT_FILE, Assignment, Place};
 pub use study::code::CodeCheck;
 pub use study::definition::{CONSENT_FILE, CodeDigest, PracticeOffer, Protocol, STUDY_FILE, SeedPlan, Study};
 pub use study::due::DueQuestion;
 pub use study::gather::{CollectNote, FoundRun, Gathered, gather, missing_places};
+pub use study::keys::{
+    LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, lab_key_of, lab_public_key_of, make_keys, seal_key_of,
+};
 pub use study::questions::{Form, Moment, Question, Questionnaire};
 pub use study::remarks::{REMARKS, Remark, remarks, write_remark};
 pub use study::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use novamind::console::glyphs::Glyphs;
 use novamind::console::request::{Recorded, Request};
 use novamind::session::{
-    Access, Activity, CodeDigest, ConsentMeans, Goal, Mode, Record, Study, Trajectory, VisitEvent,
-    line_of_code, lines_afterwards, visits,
+    Access, Activity, CodeDigest, ConsentMeans, Goal, Mode, Record, Study, Trajectory, VisitEvent, compare,
+    line_of_code, lines_afterwards, read_witness, visits,
 };
 
 use super::harness::Console;
@@ -341,6 +341,7 @@ fn the_results_page_shows_what_the_protocol_says() {
         console.press("'P01' enter end y enter 4 enter enter n enter 'test' enter f enter");
         let screen = console.screen();
         assert_eq!(screen.contains("You end with"), own, "{screen}");
+        assert_eq!(screen.contains('$'), own, "no figure of a result that is not shown:\n{screen}");
         assert_eq!(screen.contains("Rule-based baseline"), published, "{screen}");
         assert!(!screen.contains("seed 5"), "{screen}");
     }
@@ -395,4 +396,24 @@ fn pages_fit_every_window_and_are_ascii_where_asked() {
     }
     console.size = (100, 30);
     console.shows("Thank you");
+}
+
+#[test]
+fn the_witness_of_the_study_is_told_of_sessions_in_the_console() {
+    let lab = Lab::new();
+    lab.edit("[access]", "[integrity]\nwitness = \"witness\"\n[access]");
+    lab.edit("days = 14", "days = 7");
+    std::fs::create_dir(lab.folder().join("witness")).expect("a folder");
+    let mut console = lab.visit((120, 40));
+    console.press("'P01' enter end y enter 4 enter enter n enter 'test' enter f enter");
+    console.press("enter 2 enter space enter 'I_guessed.' tab enter");
+    console.shows("Type the label");
+    drop(console);
+    let run = &lab.own_runs("P01")[0];
+    let trajectory = Trajectory::read(&run.join("trajectory.jsonl")).expect("it reads");
+    let after = lines_afterwards(run, &trajectory).expect("it reads");
+    assert!(after.lines.iter().any(|line| matches!(line.record, Record::Activity(Activity::Answer(_)))));
+    let told = read_witness(&lab.folder().join("witness")).expect("a witness");
+    let told = told.runs.into_values().next().expect("a run that was told");
+    assert_eq!(compare(&trajectory, &after.lines, &told), []);
 }

@@ -394,3 +394,51 @@ fn the_audit_counts_as_the_tables_do() {
     let expected = expected.map(|(label, counts)| (label.to_owned(), counts.map(Some)));
     assert_eq!(seen, BTreeMap::from(expected));
 }
+
+const END: &str = "title = \"The end\"\nwhen = \"end\"\n[[question]]\nid = \"hard\"\ntext = \"How hard was it?\"\nform = \"likert\"\n\
+                   points = 7\nlow = \"easy\"\nhigh = \"hard\"\n";
+
+#[test]
+fn answers_after_the_end_are_told_and_compared() {
+    let study = Study::new();
+    fs::write(study.home.0.path().join("pilot/questions/9-end.toml"), END).expect("written");
+    study.visit("one", &format!("P01\nyes\n{}quit\n", WEEKS.concat()));
+    study.visit("one", "P01\nnext \"six\" naive\n7\n");
+    assert_eq!(study.audit(&["one"]), []);
+    let run = study.only_run("one", "P01");
+    let path = run.join("afterwards.jsonl");
+    let good = fs::read_to_string(&path).expect("what was done after the end");
+    let last = lines(&run).last().expect("a line").clone();
+    // An answer told anew, chain and sums correct.
+    let (mut text, mut prev) = (String::new(), hash(&Value::Object(last).to_string()));
+    let answer = good.lines().position(|line| line.contains("\"answer\"")).expect("an answer");
+    for (at, line) in good.lines().enumerate() {
+        let mut line: Map<String, Value> = serde_json::from_str(line).expect("JSON");
+        line.insert("prev".to_owned(), json!(prev));
+        line.shift_remove("sum");
+        if at == answer {
+            assert_eq!(line["value"], 7);
+            line.insert("value".to_owned(), json!(1));
+        }
+        let bare = Value::Object(line.clone()).to_string();
+        line.insert("sum".to_owned(), json!(&hash(&bare)[..16]));
+        let whole = Value::Object(line).to_string();
+        prev = hash(&whole);
+        text += &(whole + "\n");
+    }
+    let number = lines(&run).len() + answer + 1;
+    fs::write(&path, text).expect("written");
+    let found = study.audit(&["one"]);
+    assert_eq!((found[0].0.as_str(), found[0].1), ("changed", Some(number as u64)), "{found:?}");
+    // Cut, and removed.
+    let before: String = good.lines().take(answer).map(|line| format!("{line}\n")).collect();
+    fs::write(&path, before).expect("written");
+    assert_eq!(study.kinds(&["one"]), ["cut"]);
+    fs::remove_file(&path).expect("gone");
+    assert_eq!(study.kinds(&["one"]), ["cut"]);
+    // Damaged.
+    fs::write(&path, good.replacen("\"value\":7", "\"value\":1", 1)).expect("written");
+    assert!(study.kinds(&["one"]).contains(&"damaged".to_owned()));
+    fs::write(&path, &good).expect("written");
+    assert_eq!(study.audit(&["one"]), []);
+}

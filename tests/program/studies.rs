@@ -253,3 +253,102 @@ fn the_protocol_tells_every_measure_and_every_rule() {
         }
     }
 }
+
+#[test]
+fn the_end_shows_what_the_protocol_says_and_no_more() {
+    for (results, shows) in [("none", false), ("own", true), ("published", true)] {
+        let lab = Lab::new();
+        lab.edit("results = \"own\"", &format!("results = \"{results}\""));
+        for json in [false, true] {
+            let label = if json { "P02" } else { "P01" };
+            let visit = |lines: &str| {
+                let mut program = lab.0.program();
+                program.args(["--study", &lab.folder()]).args(json.then_some("--json"));
+                said(&mut program, lines)
+            };
+            visit(&format!("{label}\nyes\n5\n{WEEKS}4\n2\nquit\n"));
+            let end = visit(&format!("{label}\nnext \"e\" naive\n"));
+            assert_eq!(end.code, 0, "{}", end.err);
+            // The beginning of the sitting shows the company as it stood: only what the last week brought counts.
+            let (_, after) = match json {
+                true => end.out.split_once('\n').expect("the greeting"),
+                false if shows => end.out.split_at(end.out.find("run ended").expect("the end is told")),
+                false => end.out.split_at(end.out.find("the run is over").expect("the end is told")),
+            };
+            let told = after.contains("horizon") && (json || after.contains("score"));
+            assert_eq!(told, shows, "{results}:\n{after}");
+            if !shows {
+                let after = after.split_once("\"ok\"").map_or(after, |(_, answer)| answer);
+                let told = ["score", "horizon", "dashboard", "cash", "$"].map(|word| after.contains(word));
+                assert_eq!(told, [false; 5], "{after}");
+                assert!(!end.out.contains("day 35 ·") || json, "{}", end.out);
+            }
+            // Who comes back to the questions is not shown it either.
+            let again = visit(&format!("{label}\n"));
+            assert_eq!(again.out.contains('$'), shows, "{results}:\n{}", again.out);
+        }
+    }
+}
+
+#[test]
+fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
+    let lab = Lab::new();
+    lab.assign();
+    let made = lab.0.run(&["study", "key", &lab.folder()]);
+    assert!(made.code == 0 && made.out.contains("fingerprint"), "{}{}", made.out, made.err);
+    let fingerprint =
+        made.out.lines().find_map(|line| line.strip_prefix("fingerprint ")).expect("one").to_owned();
+    let folder = PathBuf::from(lab.folder());
+    #[cfg(unix)]
+    for name in ["lab.key", "seal.key"] {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = fs::metadata(folder.join(name)).expect("a file").permissions().mode();
+        assert_eq!(mode & 0o777, 0o600, "{name}");
+    }
+    let again = lab.0.run(&["study", "key", &lab.folder()]);
+    assert!(again.out.contains("nothing was written") && again.out.contains(&fingerprint), "{}", again.out);
+    assert_eq!(lab.visit(&format!("P01\nyes\n5\n{WEEKS}4\n2\nquit\n")).code, 0);
+    let run = lab.only_run("P01");
+    let sealed_by = || fs::read(run.join("snapshot.bin")).expect("a snapshot")["novamind snapshot 6\n".len()];
+    assert_eq!(sealed_by(), b's');
+    let second = lab.visit("P01\nquit\n");
+    assert!(!second.out.contains("snapshot"), "{}", second.out);
+    // Without the key nothing is lost: the run is simulated from its lines.
+    let aside = folder.join("aside");
+    fs::rename(folder.join("seal.key"), &aside).expect("moved");
+    let without = lab.visit("P01\nset_prices A=7\nquit\n");
+    assert!(without.out.contains("sealed with the key of a study") && without.out.contains("ok set_prices"));
+    fs::rename(&aside, folder.join("seal.key")).expect("moved");
+    let damaged = fs::read(folder.join("seal.key")).expect("a key");
+    fs::write(folder.join("seal.key"), "no key").expect("written");
+    lab.0.run(&["--study", &lab.folder()]).fails(2, &["seal.key is no key of this kind"]);
+    fs::write(folder.join("seal.key"), damaged).expect("written");
+    assert_eq!(lab.visit("P01\nquit\n").code, 0);
+    assert_eq!(sealed_by(), b's');
+    // From the folder of the study every export is signed, and so is what is collected.
+    let out = lab.0.0.path().join("p01.tar.gz").display().to_string();
+    let export = |file: &str, place: &std::path::Path| {
+        said(lab.0.program().current_dir(place).args(["runs", "export", &id(&run), "--out", file]), "")
+    };
+    let signed = export(&out, &folder);
+    assert!(
+        signed.out.contains(&format!("signed by the lab key {fingerprint}")),
+        "{}{}",
+        signed.out,
+        signed.err
+    );
+    let collect = |sources: &[&str], out: &str| {
+        let (data, study) = (lab.0.0.path().join(out).display().to_string(), lab.folder());
+        let all = [&["study", "collect"], sources, &["--out", &data, "--protocol", &study]].concat();
+        lab.0.run(&all)
+    };
+    let collected = collect(&[&out], "data");
+    assert!(collected.out.contains(&format!("signed by the lab key {fingerprint}")), "{}", collected.out);
+    assert!(!collected.out.contains("not signed"), "{}", collected.out);
+    let bare = lab.0.0.path().join("bare.tar.gz").display().to_string();
+    assert_eq!(export(&bare, lab.0.0.path()).code, 0);
+    let noted = collect(&[&bare], "data-2");
+    assert!(noted.code == 1 && noted.out.contains("not signed: "), "{}", noted.out);
+    let audited = lab.0.run(&["study", "audit", &lab.folder()]);
+    assert!(audited.out.contains("Nothing was found"), "{}", audited.out);
+}

@@ -337,6 +337,11 @@ class Run:
             total.update(week.spent)
             screens.update(week.screens)
         row |= time_columns(total)
+        row["active_seconds_after_end"] = ""
+        if self.end:
+            whole = Time(self.lines + self.after)
+            spent = whole.between(whole.place[len(self.lines) - 1], whole.place[-1])
+            row["active_seconds_after_end"] = seconds(spent["active"])
         row["screens"] = pairs(screens)
         row["breaks"] = len(self.time.breaks())
         row["clock_set_back"] = self.time.set_back

@@ -36,7 +36,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         record_look(&own, "compare", &options.runs.join(" "))?;
         let session = Session::open(&own, Access::Read, true)?;
         let trajectory = Trajectory::read(&own.join("trajectory.jsonl"))?;
-        compared.push(Logbook::of(&session, &trajectory.lines));
+        compared.push(Logbook::of(&session, &trajectory.lines, &[]));
         progress.inc(1);
     }
     progress.finish_and_clear();

@@ -109,7 +109,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         }
         Some(RunsCommand::Rescue { run }) => {
             let folder = find_run_to_read(&runs, run)?;
-            let (found, whole) = (rescue(&folder)?, id_of(&folder));
+            let (found, whole) = (rescue(&folder, &context.seal_key()?)?, id_of(&folder));
             print(&format!(
                 "run {} holds lines 1 to {} of run {whole} and stands at day {}, mode {}\n\
                  problem: {}\nrun {whole} is unchanged; `novamind play --run {}` continues\n",
@@ -126,7 +126,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             delete_run(&runs, &id)?;
             print(&format!("run {id} is deleted\n"))
         }
-        Some(RunsCommand::Export(export)) => export.run(&folders, options.json),
+        Some(RunsCommand::Export(export)) => export.run(&folders, options.json, context),
         Some(RunsCommand::Import(import)) => import.run(&runs, options.json),
         Some(RunsCommand::Columns) => transfer::explain_columns(options.json),
         Some(RunsCommand::Schema) => print(SCHEMA),

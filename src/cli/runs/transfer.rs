@@ -7,13 +7,13 @@ use serde_json::{Value, json};
 
 use super::{find_in, list_all};
 use crate::cli::run::progress_bar;
-use crate::cli::{Failure, print};
+use crate::cli::{Context, Failure, print};
 use crate::notation::csv_cell;
 use crate::report::Logbook;
 use crate::report::tables::{StudyTables, columns_table, headings};
 use crate::session::archive::close_workshops;
 use crate::session::{
-    Export as Sealing, Imported, LabKey, LabPublicKey, RunError, RunSummary, Seal, import_run,
+    Export as Sealing, Imported, LabKey, LabPublicKey, RunError, RunSummary, Seal, SealKey, import_run,
 };
 
 /// Options of `runs export`.
@@ -31,7 +31,7 @@ pub struct Export {
     /// File of the archive, compressed when its name ends in .gz or .tgz; with --all a folder.
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
-    /// Sign the archives with this key of a lab.
+    /// Sign the archives with this key of a lab [default: lab.key in the folder of the study, where it is there].
     #[arg(long, value_name = "FILE")]
     lab_key: Option<PathBuf>,
 }
@@ -44,19 +44,22 @@ pub struct Import {
     files: Vec<PathBuf>,
 }
 
+/// What signs archives, and what seals the snapshots of runs besides the runs.
+type Keys = (Option<LabKey>, SealKey);
+
 impl Export {
     /// Runs the command.
-    pub fn run(&self, folders: &[PathBuf], json: bool) -> Result<(), Failure> {
+    pub fn run(&self, folders: &[PathBuf], json: bool, context: &Context) -> Result<(), Failure> {
         tidy_up_on_signals();
         // Before anything is simulated again.
-        let key = self.lab_key.as_deref().map(LabKey::read).transpose()?;
+        let keys = (context.lab_key(self.lab_key.as_deref())?, context.seal_key()?);
         match &self.run {
-            Some(run) => self.export_one(&find_in(folders, run)?, key.as_ref(), json),
-            None => self.export_all(folders, key.as_ref(), json),
+            Some(run) => self.export_one(&find_in(folders, run)?, &keys, json),
+            None => self.export_all(folders, &keys, json),
         }
     }
 
-    fn export_one(&self, folder: &Path, key: Option<&LabKey>, json: bool) -> Result<(), Failure> {
+    fn export_one(&self, folder: &Path, (key, seal_key): &Keys, json: bool) -> Result<(), Failure> {
         let beside = match self.out.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
             _ => PathBuf::from("."),
@@ -72,17 +75,17 @@ impl Export {
                 beside.display()
             )));
         }
-        let export = Sealing::prepare(folder, &beside)?;
-        let seal = export.write(&self.out, false, key)?;
+        let export = Sealing::prepare(folder, &beside, seal_key)?;
+        let seal = export.write(&self.out, false, key.as_ref())?;
         let remarks = export.session().remarks();
         if json {
-            return print(&format!("{}\n", told(&seal, &self.out, export.session().day())));
+            return print(&format!("{}\n", told(&seal, &self.out, export.session().day(), key.as_ref())));
         }
         let remarks: String = remarks.iter().map(|remark| format!("{remark}\n")).collect();
-        print(&format!("{remarks}{}", line(&seal, &self.out, export.session().day())))
+        print(&format!("{remarks}{}", line(&seal, &self.out, export.session().day(), key.as_ref())))
     }
 
-    fn export_all(&self, folders: &[PathBuf], key: Option<&LabKey>, json: bool) -> Result<(), Failure> {
+    fn export_all(&self, folders: &[PathBuf], keys: &Keys, json: bool) -> Result<(), Failure> {
         let mut list = list_all(folders)?;
         // A damaged run does not say whose it is, so it is always named.
         let label = self.participant.as_deref();
@@ -95,16 +98,16 @@ impl Export {
         let progress = progress_bar(list.len() as u64, "runs");
         let (mut tables, mut answers, mut worst, mut good) = (StudyTables::default(), Vec::new(), None, 0);
         for (folder, run) in &list {
-            let exported = self.export_into(folder, run, key);
+            let exported = self.export_into(folder, run, keys);
             progress.inc(1);
             match exported {
                 Ok((export, seal, archive)) => {
-                    let book = Logbook::of(export.session(), &export.trajectory().lines);
+                    let book = Logbook::of(export.session(), &export.trajectory().lines, export.afterwards());
                     tables.add(&book, &export.trajectory().lines, export.afterwards());
                     answers.push(if json {
-                        told(&seal, &archive, book.day).to_string() + "\n"
+                        told(&seal, &archive, book.day, keys.0.as_ref()).to_string() + "\n"
                     } else {
-                        line(&seal, &archive, book.day)
+                        line(&seal, &archive, book.day, keys.0.as_ref())
                     });
                     good += 1;
                 }
@@ -150,11 +153,11 @@ impl Export {
         &self,
         folder: &Path,
         run: &RunSummary,
-        key: Option<&LabKey>,
+        (key, seal_key): &Keys,
     ) -> Result<(Sealing, Seal, PathBuf), RunError> {
-        let export = Sealing::prepare(folder, &self.out)?;
+        let export = Sealing::prepare(folder, &self.out, seal_key)?;
         let archive = self.out.join(format!("{}.tar.gz", run.id));
-        let seal = export.write(&archive, true, key)?;
+        let seal = export.write(&archive, true, key.as_ref())?;
         Ok((export, seal, archive))
     }
 }
@@ -221,9 +224,11 @@ fn markdown_table(rows: &[Vec<String>]) -> String {
     rows.iter().take(1).map(line).chain([line(&rule)]).chain(rows.iter().skip(1).map(line)).collect()
 }
 
-fn line(seal: &Seal, archive: &Path, day: u32) -> String {
+fn line(seal: &Seal, archive: &Path, day: u32, key: Option<&LabKey>) -> String {
+    let signed =
+        key.map_or(String::new(), |key| format!("  signed by the lab key {}\n", key.public().fingerprint()));
     format!(
-        "{}  day {day}, {} lines  {}\n  checksum {}\n",
+        "{}  day {day}, {} lines  {}\n  checksum {}\n{signed}",
         seal.run,
         seal.last_seq + 1,
         archive.display(),
@@ -231,8 +236,9 @@ fn line(seal: &Seal, archive: &Path, day: u32) -> String {
     )
 }
 
-fn told(seal: &Seal, archive: &Path, day: u32) -> Value {
-    json!({ "run": seal.run, "day": day, "lines": seal.last_seq + 1, "file": archive, "checksum": seal.checksum })
+fn told(seal: &Seal, archive: &Path, day: u32, key: Option<&LabKey>) -> Value {
+    let signer = key.map(|key| key.public().fingerprint());
+    json!({ "run": seal.run, "day": day, "lines": seal.last_seq + 1, "file": archive, "checksum": seal.checksum, "signed_by": signer })
 }
 
 impl Import {

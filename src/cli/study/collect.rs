@@ -8,10 +8,10 @@ use serde_json::json;
 
 use crate::cli::run::progress_bar;
 use crate::cli::runs::{tidy_up_on_signals, write_tables};
-use crate::cli::{Failure, print};
+use crate::cli::{Context, Failure, print};
 use crate::notation::printable;
-use crate::report::collection::{Collected, Collecting, collect};
-use crate::session::{CollectNote, Study};
+use crate::report::collection::{Collected, Collecting, LabKeys, collect};
+use crate::session::{CollectNote, LabKey, Study, lab_key_of, lab_public_key_of, seal_key_of};
 
 /// Options of `study collect`.
 #[derive(Debug, Args)]
@@ -34,13 +34,18 @@ pub struct Options {
 }
 
 /// Runs the command; 1 where somebody has to look into something.
-pub fn run(options: &Options) -> Result<(), Failure> {
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     tidy_up_on_signals();
     let study = options.protocol.as_deref().map(Study::read).transpose()?;
     let labels = options.labels.as_deref().map(read_labels).transpose()?.unwrap_or_default();
+    let lab = options.protocol.as_ref().or(context.study_folder.as_ref());
+    let own = lab.map(|folder| lab_key_of(folder)).transpose()?.flatten();
+    let public = lab.map(|folder| lab_public_key_of(folder)).transpose()?.flatten();
+    let seal = lab.map(|folder| seal_key_of(folder)).transpose()?;
+    let keys = LabKeys { own: own.as_ref(), public: public.as_ref(), seal: seal.as_ref() };
     let mut bar = None;
-    let what =
-        Collecting { sources: &options.sources, out: &options.out, study: study.as_ref(), labels: &labels };
+    let (sources, out) = (&options.sources, &options.out);
+    let what = Collecting { sources, out, study: study.as_ref(), labels: &labels, keys };
     let collected = collect(what, &mut |done, all| {
         bar.get_or_insert_with(|| progress_bar(all as u64, "runs")).set_position(done as u64);
     })?;
@@ -59,9 +64,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         let object = json!({ "runs": told.collect::<Vec<_>>(), "notes": notes });
         print(&format!("{object}\n"))?;
     } else {
+        let signed = own
+            .as_ref()
+            .map(LabKey::public)
+            .map_or(String::new(), |key| format!(" and signed by the lab key {}", key.fingerprint()));
         let one = if runs.len() == 1 { "run" } else { "runs" };
         print(&format!(
-            "{log}{} {one} verified; archives, tables and collect.log are in {}\n",
+            "{log}{} {one} verified{signed}; archives, tables and collect.log are in {}\n",
             runs.len(),
             options.out.display()
         ))?;

@@ -6,6 +6,7 @@ mod audit;
 mod check;
 mod code;
 mod collect;
+mod key;
 mod new;
 mod protocol;
 mod watch;
@@ -49,6 +50,12 @@ enum StudyCommand {
         #[arg(value_name = "DIR")]
         folder: PathBuf,
     },
+    /// Make the keys of a study: lab.key signs archives, lab.pub tells who signed, seal.key seals snapshots.
+    Key {
+        /// Folder of the study.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
     /// Print the line of study.toml that asks for an experimenter's code.
     Code,
     /// Lead a participant through the study; as `novamind --study DIR`.
@@ -69,7 +76,8 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
         StudyCommand::Anonymise(options) => anonymise::run(&options),
         StudyCommand::Assign(options) => assign::run(&options),
         StudyCommand::Audit(options) => audit::run(&options, context),
-        StudyCommand::Collect(options) => collect::run(&options),
+        StudyCommand::Collect(options) => collect::run(&options, context),
+        StudyCommand::Key { folder } => key::run(&folder),
         StudyCommand::Watch(options) => watch::run(&options, context),
         StudyCommand::Protocol { folder } => protocol::run(&folder, context),
         StudyCommand::Code => code::run(),

@@ -328,7 +328,8 @@ impl App {
         if let Stage::Run(run) = &mut self.stage {
             run.filing = FilingDialog::default();
         }
-        self.say(text);
+        let hides_result = self.run().is_some_and(|run| run.company.rules.hide_result(week.ended));
+        self.say(if hides_result { "the run is over".to_owned() } else { text });
         match week.ended {
             Some(_) => self.show_end(),
             None => self.lay(Layer::Dialog(Box::new(Report::new(week.remark)))),

@@ -41,6 +41,10 @@ const KEYS: [Action; 6] = [
     Action::ToMenu,
 ];
 
+fn hides_result(company: &Company) -> bool {
+    company.rules.hide_result(company.seen.ended)
+}
+
 /// Shows a moment of the run, from which it can be played again or taken over.
 fn replay(company: &Company, goal: Goal) -> Outcome {
     match (&company.folder, company.replayed) {
@@ -100,7 +104,7 @@ impl Dialog for FinalPage {
             Action::WhatIf => replay(look.company, Goal::Week(look.company.seen.week.saturating_sub(1))),
             Action::ToMenu => Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::GoOn => Outcome::close(),
-            Action::CardOfRun if look.company.rules.results != ResultsShown::None => self.card(),
+            Action::CardOfRun if !hides_result(look.company) => self.card(),
             Action::ReportOfRun => Outcome::with(vec![Effect::Request(Request::WriteReport)]),
             _ => Outcome::stay(),
         }
@@ -114,7 +118,7 @@ impl Dialog for FinalPage {
         let company = look.company;
         let own = centered(area, WIDEST.min(area.width), 42.min(area.height));
         canvas.clear(own, Role::Text);
-        if company.rules.results == ResultsShown::None {
+        if hides_result(company) {
             return self.draw_over(canvas, area, look);
         }
         let inside = canvas.pane(own, &headline(company), "", true);

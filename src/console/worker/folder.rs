@@ -6,8 +6,8 @@ use super::{Open, SessionThread};
 use crate::console::company::Company;
 use crate::console::message::{Instead, News};
 use crate::session::{
-    Access, NewRun, RunError, Session, Storage, delete_run, end_run, find_run, find_run_to_read, list_runs,
-    rescue, run_preview,
+    Access, NewRun, RunError, SealKey, Session, Storage, delete_run, end_run, find_run, find_run_to_read,
+    list_runs, rescue, run_preview,
 };
 
 impl SessionThread {
@@ -58,7 +58,8 @@ impl SessionThread {
 
     /// Opens the good beginning of a damaged run as a branch.
     pub(super) fn rescue(&mut self, id: &str) {
-        let rescued = find_run_to_read(&self.runs, id).and_then(|folder| rescue(&folder));
+        let rescued =
+            find_run_to_read(&self.runs, id).and_then(|folder| rescue(&folder, &SealKey::default()));
         let opened = rescued.and_then(|found| {
             let remark = format!(
                 "run {} holds lines 1 to {} of run {id}, which is unchanged; {}",

@@ -4,7 +4,7 @@ use super::desk::Desk;
 use super::{Open, SessionThread};
 use crate::console::message::{News, VisitNews};
 use crate::console::request::{GivenAnswer, VisitRequest};
-use crate::session::{Access, NextStep, RunError, Session, Visit};
+use crate::session::{NextStep, RunError, Visit};
 
 impl SessionThread {
     /// Does what a participant's way asks for.
@@ -80,8 +80,7 @@ impl SessionThread {
     fn play_next(&mut self) {
         let Some(desk) = &self.desk else { return };
         let Some(visit) = &desk.visit else { return };
-        let begin =
-            |practice: bool| Session::create(visit.new_run(practice, desk.agreed), &self.configuration);
+        let begin = |practice: bool| visit.begin_run(practice, desk.agreed, &self.configuration);
         let opened = desk.next().and_then(|step| match step {
             Some(NextStep::Practice { unfinished: None, .. }) => begin(true),
             Some(NextStep::Session(None)) => begin(false),
@@ -89,7 +88,7 @@ impl SessionThread {
                 NextStep::Practice { unfinished: Some(folder), .. }
                 | NextStep::Session(Some(folder))
                 | NextStep::Questions(folder),
-            ) => Session::open(&folder, Access::Write, true),
+            ) => visit.open(&folder),
             _ => Err(RunError::NotPossible("there is nothing to play".to_owned())),
         });
         self.take(opened, "", None);

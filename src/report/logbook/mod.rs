@@ -18,7 +18,10 @@ use super::books::{Books, ChannelRow};
 use super::chapters::change_in_words;
 use super::measures::{Measures, Wording};
 use crate::session::record::FiledForecast;
-use crate::session::{Consent, Ended, Line, Mode, Record, ScoredForecast, Session, SittingCount, StudyStamp};
+use crate::session::{
+    Attendance, Consent, Ended, Line, Mode, Record, ScoredForecast, Session, SittingCount, StudyStamp,
+    TimeSpent,
+};
 use timeline::{Span, Timeline};
 
 /// How a run was played.
@@ -84,6 +87,8 @@ pub struct Logbook {
     pub total: Effort,
     /// Seconds that a week took to decide, breaks left out: the median; none before the first week.
     pub median_week_seconds: Option<f64>,
+    /// Where the time went from the end to the last line of what was done after it; none before the end.
+    pub after_end: Option<TimeSpent>,
     /// Words of all rationales.
     pub wording: Wording,
     /// Behaviour measures.
@@ -146,8 +151,8 @@ pub struct WeekLog {
 }
 
 impl Logbook {
-    /// The logbook of a run from its lines and the run as they make it. Asks the database what ads brought.
-    pub fn of(session: &Session, lines: &[Line]) -> Logbook {
+    /// The logbook of a run from its lines, those of what was done after its end, and the run as they make it. Asks the database what ads brought.
+    pub fn of(session: &Session, lines: &[Line], afterwards: &[Line]) -> Logbook {
         let timeline = Timeline::of(lines);
         let weeks: Vec<WeekLog> =
             timeline.spans.iter().enumerate().map(|(at, span)| week_of_span(session, span, at)).collect();
@@ -188,6 +193,7 @@ impl Logbook {
             sittings: SittingCount::of(lines),
             notes: NotesLog::of(lines),
             fast_weeks: weeks.iter().filter(|week| week.implausibly_fast).count() as u32,
+            after_end: end.map(|_| time_after(lines, afterwards)),
             breaks: timeline.breaks,
             clock_set_back: timeline.clock_set_back,
             total,
@@ -240,6 +246,14 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
     }
 }
 
+/// Where the time went after the last line of a run, up to the last line of what was done then.
+fn time_after(lines: &[Line], afterwards: &[Line]) -> TimeSpent {
+    let mut attendance = Attendance::of(lines);
+    let end = attendance.place();
+    afterwards.iter().for_each(|line| attendance.note(line.nanoseconds(), &line.record));
+    attendance.between(end, attendance.place())
+}
+
 /// The middle of values; none if there are none.
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
@@ -259,7 +273,7 @@ mod tests {
     #[test]
     fn a_logbook_counts_what_was_done() {
         let (session, lines) = test_kit::recorded();
-        let book = Logbook::of(&session, &lines);
+        let book = Logbook::of(&session, &lines, &[]);
         assert_eq!((book.weeks.len(), book.day, book.participant.as_deref()), (2, 14, Some("P 07")));
         let first = &book.weeks[0];
         let effort = &first.effort;

@@ -236,7 +236,7 @@ mod tests {
     #[test]
     fn a_session_is_told_on_a_page() {
         let (session, lines) = crate::report::test_kit::recorded();
-        let book = Logbook::of(&session, &lines);
+        let book = Logbook::of(&session, &lines, &[]);
         let text = crate::report::markdown::write(&page_of(&book));
         for part in [
             "P 07 played 2 weeks",

@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn cells_hold_what_the_logbook_says() {
         let (session, lines) = crate::report::test_kit::recorded();
-        let book = Logbook::of(&session, &lines);
+        let book = Logbook::of(&session, &lines, &[]);
         let mut tables = StudyTables::default();
         tables.add(&book, &lines, &[]);
         tables.add_unread("0123abcd", "line 3 is damaged");

@@ -3,7 +3,7 @@
 use super::{Column, RunColumn, flag, heading, maybe, number, pairs, rounded, score, screens, tools};
 use crate::report::logbook::Logbook;
 use crate::report::measures::ChannelSkill;
-use crate::session::StudyStamp;
+use crate::session::{StudyStamp, TimeSpent};
 
 fn scored<const DAYS: u32>(run: &Logbook) -> String {
     score(&run.measures.forecasts, DAYS).map_or(0, |score| score.scored).to_string()
@@ -164,6 +164,13 @@ pub const RUNS: &[RunColumn] = &[
     column("paused_seconds", "seconds", "of it, time with the clock stopped", |run| {
         number(run.total.time.paused_seconds())
     }),
+    column(
+        "active_seconds_after_end",
+        "seconds",
+        "time played from the end to the last line of what was done after it, which is in none of the others; empty before the \
+         end",
+        |run| maybe(run.after_end.as_ref().map(TimeSpent::active_seconds)),
+    ),
     column("clock_stopped", "count", "how often the person stopped the clock", |run| {
         run.sittings.clock_stopped.to_string()
     }),

@@ -36,15 +36,15 @@ pub struct Export {
 
 impl Export {
     /// Reads the run in a folder and simulates it again. The files are put together in a hidden folder in `beside`,
-    /// which should be on the disk that the archive goes to.
+    /// which should be on the disk that the archive goes to. The key is that of the run's snapshots.
     ///
     /// # Errors
     /// The run is damaged or of another version; the error names the place and what is safe. Or `beside` cannot be
     /// written.
-    pub fn prepare(folder: &Path, beside: &Path) -> Result<Export, RunError> {
+    pub fn prepare(folder: &Path, beside: &Path, key: &SealKey) -> Result<Export, RunError> {
         let derived = Derived::of(folder)?;
         let manifest = derived.manifest.clone();
-        let (bytes, mut trajectory) = read_settled(folder, &manifest)?;
+        let (bytes, mut trajectory) = read_settled(folder, &manifest, key)?;
         let workshop = Workshop::within(beside)?;
         let own = &workshop.path().join(&manifest.id);
         std::fs::create_dir(own).map_err(RunError::io(own))?;
@@ -169,9 +169,13 @@ impl Export {
 
 /// Reads a trajectory that somebody may be writing, and checks it against manifest and integrity. They are asked first:
 /// whatever they remember is then in what is read.
-fn read_settled(folder: &Path, manifest: &Manifest) -> Result<(Vec<u8>, Trajectory), RunError> {
+fn read_settled(
+    folder: &Path,
+    manifest: &Manifest,
+    key: &SealKey,
+) -> Result<(Vec<u8>, Trajectory), RunError> {
     let path = folder.join(TRAJECTORY);
-    let integrity = Integrity::of(folder, manifest, &SealKey::default());
+    let integrity = Integrity::of(folder, manifest, key);
     let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
     let trajectory = Trajectory::of_file(&path, &bytes)?;
     check_start(&path, trajectory.lines.first(), manifest)?;

@@ -32,13 +32,31 @@ pub enum Imported {
     },
 }
 
+/// The seal of an archive, who signed it, and what became of its run.
+pub type ImportedRun = (Seal, Option<LabPublicKey>, Imported);
+
 /// Takes the run of an archive into a folder of runs; tells whose signature it has, if it has one. Everything is checked before anything is there: the seal, the hash
 /// of every file, the chain of the trajectory, and that nothing else is in the archive.
 ///
 /// # Errors
 /// [`RunError::Archive`] for what is damaged, foreign or dangerous, naming the file; [`RunError::Exists`] when another
 /// state of the run is there. Nothing has changed then.
-pub fn import_run(runs: &Path, archive: &Path) -> Result<(Seal, Option<LabPublicKey>, Imported), RunError> {
+pub fn import_run(runs: &Path, archive: &Path) -> Result<ImportedRun, RunError> {
+    let (seal, signer, imported) = place_run(runs, archive)?;
+    if let Imported::New(place) = &imported
+        && let Ok(Manifest { seed, scenario, study, .. }) = Manifest::read(place)
+    {
+        let study = study.as_ref().map(|stamp| stamp.digest.as_str());
+        list_world("import", (seed, seed), &scenario, Some(&seal.run), study);
+    }
+    Ok((seal, signer, imported))
+}
+
+/// As [`import_run`], for a folder that nobody plays from: the world is not listed as one that was opened.
+///
+/// # Errors
+/// The same.
+pub(in crate::session) fn place_run(runs: &Path, archive: &Path) -> Result<ImportedRun, RunError> {
     let workshop = Workshop::within(runs)?;
     let unpacked = unpack(archive, workshop.path())?;
     let seal = check_seal(archive, &unpacked)?;
@@ -58,10 +76,6 @@ pub fn import_run(runs: &Path, archive: &Path) -> Result<(Seal, Option<LabPublic
     sync_folder(&draft)?;
     std::fs::rename(&draft, &place).map_err(RunError::io(&place))?;
     sync_folder(&folder)?;
-    if let Ok(Manifest { seed, scenario, study, .. }) = Manifest::read(&place) {
-        let study = study.as_ref().map(|stamp| stamp.digest.as_str());
-        list_world("import", (seed, seed), &scenario, Some(&seal.run), study);
-    }
     Ok((seal, signer, Imported::New(place)))
 }
 

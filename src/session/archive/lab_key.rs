@@ -13,6 +13,10 @@ use crate::session::error::RunError;
 const PRIVATE: &str = "novamind lab key 1: keep it secret, and keep a copy";
 /// First line of the file of a public key.
 const PUBLIC: &str = "novamind lab public key 1";
+/// First line of the file of a key that seals snapshots.
+const SEAL: &str = "novamind seal key 1: keep it secret";
+/// Separates the key that seals from every other use of the same hash.
+const SEAL_CONTEXT: &str = "novamind 2026-11 seal key of a lab";
 /// What is signed begins with this, so that no signature can stand for anything else.
 const PURPOSE: &[u8] = b"novamind seal of an archive 1\n";
 
@@ -59,15 +63,12 @@ impl LabKey {
     /// # Errors
     /// It is there already, or cannot be written.
     pub fn write(&self, file: &Path) -> Result<(), RunError> {
-        let mut options = OpenOptions::new();
-        options.write(true).create_new(true);
-        #[cfg(unix)]
-        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-        let text = key_text(PRIVATE, &self.0.to_bytes());
-        let written = options
-            .open(file)
-            .and_then(|mut out| out.write_all(text.as_bytes()).and_then(|()| out.sync_all()));
-        written.map_err(RunError::io(file))
+        write_secret(file, &key_text(PRIVATE, &self.0.to_bytes()))
+    }
+
+    /// The secret that seals the snapshots of a study; it does not lead back to the key.
+    pub(in crate::session) fn seal_secret(&self) -> [u8; 32] {
+        blake3::derive_key(SEAL_CONTEXT, &self.0.to_bytes())
     }
 
     /// The public key.
@@ -129,6 +130,27 @@ pub(super) fn signer_of(seal: &str, signature: &str) -> Result<LabPublicKey, Str
     key.verify_strict(&purposeful(seal), &signature)
         .map(|()| LabPublicKey(key))
         .map_err(|_| "seal.sig does not belong to seal.toml: one of them was changed".to_owned())
+}
+
+/// Reads `seal.key`.
+pub(in crate::session) fn read_seal_key(file: &Path) -> Result<[u8; 32], RunError> {
+    read_key(file, SEAL)
+}
+
+/// Writes `seal.key` into a new file that only its owner can read.
+pub(in crate::session) fn write_seal_key(secret: &[u8; 32], file: &Path) -> Result<(), RunError> {
+    write_secret(file, &key_text(SEAL, secret))
+}
+
+/// Writes a text into a new file that only its owner can read.
+fn write_secret(file: &Path, text: &str) -> Result<(), RunError> {
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    let written =
+        options.open(file).and_then(|mut out| out.write_all(text.as_bytes()).and_then(|()| out.sync_all()));
+    written.map_err(RunError::io(file))
 }
 
 fn purposeful(seal: &str) -> Vec<u8> {

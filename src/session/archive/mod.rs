@@ -26,8 +26,10 @@ mod workshop;
 use std::path::Path;
 
 pub use export::Export;
+pub(in crate::session) use import::place_run;
 pub use import::{Imported, import_run};
 pub use lab_key::{LabKey, LabPublicKey};
+pub(in crate::session) use lab_key::{read_seal_key, write_seal_key};
 pub use seal::Seal;
 pub use workshop::{Workshop, close_workshops};
 

@@ -21,9 +21,9 @@ pub use finding::{AuditFinding, AuditKind};
 use crate::session::error::RunError;
 use crate::session::folder::derived::departures_of_file;
 use crate::session::folder::manifest::Manifest;
+use crate::session::play::afterwards::lines_afterwards;
 use crate::session::resume::integrity::Integrity;
-use crate::session::resume::sealing::SealKey;
-use crate::session::resume::verify::verify;
+use crate::session::resume::verify::verify_sealed;
 use crate::session::study::definition::Study;
 use crate::session::trajectory::record::{Activity, PresenceEvent};
 use crate::session::trajectory::{Record, Trajectory};
@@ -109,6 +109,7 @@ impl Inspection<'_> {
             }
             Ok(trajectory) => {
                 found.extend(told.into_iter().flat_map(|told| self.beside_witness(trajectory, told)));
+                found.extend(self.afterwards(trajectory));
                 found.extend(self.beside_database(trajectory));
                 found.extend(self.simulated());
                 found.extend(self.manifest());
@@ -145,12 +146,20 @@ impl Inspection<'_> {
         let of = |Finding { kind: own, line, at, words, .. }: Finding| {
             Some(self.finding(kind(own)?, Some(line), &at, words))
         };
-        compare(trajectory, told).into_iter().filter_map(of).collect()
+        let afterwards = lines_afterwards(&self.run.folder, trajectory).map(|after| after.lines);
+        let afterwards = afterwards.unwrap_or_default();
+        compare(trajectory, &afterwards, told).into_iter().filter_map(of).collect()
+    }
+
+    /// Whether what was done after the end can be read.
+    fn afterwards(&self, trajectory: &Trajectory) -> Option<AuditFinding> {
+        let problem = lines_afterwards(&self.run.folder, trajectory).err()?;
+        Some(self.finding(AuditKind::Damaged, None, "", problem.to_string()))
     }
 
     /// Whether the lines lead to the states that they record.
     fn simulated(&self) -> Option<AuditFinding> {
-        let problem = verify(&self.run.folder.join("trajectory.jsonl")).err()?;
+        let problem = verify_sealed(&self.run.folder.join("trajectory.jsonl"), &self.study.seal_key).err()?;
         let line = match &problem {
             RunError::Damaged { line, .. } => Some(*line as u64),
             _ => None,
@@ -162,7 +171,7 @@ impl Inspection<'_> {
     fn beside_database(&self, trajectory: &Trajectory) -> Option<AuditFinding> {
         let manifest = self.run.manifest.as_ref()?;
         let path = self.run.folder.join("trajectory.jsonl");
-        let integrity = Integrity::of(&self.run.folder, manifest, &SealKey::default());
+        let integrity = Integrity::of(&self.run.folder, manifest, &self.study.seal_key);
         match integrity.check(&path, trajectory).err()? {
             RunError::Damaged { line, problem, .. } => {
                 Some(self.finding(AuditKind::Cut, Some(line as u64), "", problem))

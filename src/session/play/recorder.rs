@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::database::Position;
 use crate::session::error::RunError;
@@ -116,7 +117,9 @@ impl Recorder {
         let Some(folder) = &self.folder else { return Ok(now()) };
         if self.afterwards.is_none() {
             let path = folder.join(AFTERWARDS);
-            self.afterwards = Some(TrajectoryWriter::open_after(&path, self.trajectory.position())?);
+            let mut afterwards = TrajectoryWriter::open_after(&path, self.trajectory.position())?;
+            self.trajectory.witness().into_iter().for_each(|witness| afterwards.tell(Arc::clone(witness)));
+            self.afterwards = Some(afterwards);
         }
         let Some(writer) = &mut self.afterwards else { return Ok(now()) };
         writer.append(day, record, durability)
@@ -136,7 +139,8 @@ impl Recorder {
 
     /// Puts everything on the disk, also lines that it has refused so far.
     pub(in crate::session) fn sync(&mut self) -> Result<(), RunError> {
-        self.trajectory.sync()
+        self.trajectory.sync()?;
+        self.afterwards.as_mut().map_or(Ok(()), TrajectoryWriter::sync)
     }
 
     /// Puts the lines of calls on the disk that are confirmed already. The database must not know more than the disk.
@@ -146,12 +150,14 @@ impl Recorder {
 
     /// Tells a witness of every line that is on the disk from now on.
     pub(in crate::session) fn tell(&mut self, witness: Witness) {
+        let witness = Arc::new(witness);
+        self.afterwards.iter_mut().for_each(|afterwards| afterwards.tell(Arc::clone(&witness)));
         self.trajectory.tell(witness);
     }
 
     /// Who is told of lines, if somebody is.
     pub(in crate::session) fn witness(&self) -> Option<&Witness> {
-        self.trajectory.witness()
+        self.trajectory.witness().map(Arc::as_ref)
     }
 
     /// Why nothing is saved any more, from the moment on at which that was noticed.

@@ -112,9 +112,9 @@ fn location(folder: &Path) -> Location {
 }
 
 /// Whether nobody has changed the database's file since the run was closed.
-pub(in crate::session) fn is_as_left(folder: &Path) -> bool {
+pub(in crate::session) fn is_as_left(folder: &Path, key: &SealKey) -> bool {
     let Ok(Derived { manifest, .. }) = Derived::of(folder) else { return false };
-    Integrity::of(folder, &manifest, &SealKey::default()).is_as_closed(folder).unwrap_or(true)
+    Integrity::of(folder, &manifest, key).is_as_closed(folder).unwrap_or(true)
 }
 
 /// Line, from 1, that a remembered position shows to be missing or changed.

@@ -14,17 +14,20 @@ use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
 
 /// Brings `world.db` up to the last line of the trajectory, or makes it anew. `progress` is told each day that is reached
-/// and the last day of the run.
+/// and the last day of the run. The key is that of the run's snapshots.
 ///
 /// # Errors
 /// The run is damaged, of another version, or in use; its folder cannot be written.
-pub fn rebuild_database(folder: &Path, progress: &mut dyn FnMut(u32, u32)) -> Result<(), RunError> {
+pub fn rebuild_database(
+    folder: &Path,
+    key: &SealKey,
+    progress: &mut dyn FnMut(u32, u32),
+) -> Result<(), RunError> {
     let Derived { manifest, .. } = Derived::of(folder)?;
     let params = Arc::new(manifest.params()?);
     let _lock = lock_run(folder, &manifest.id)?;
     let path = folder.join("trajectory.jsonl");
-    let key = SealKey::default();
-    let mut integrity = Integrity::of(folder, &manifest, &key);
+    let mut integrity = Integrity::of(folder, &manifest, key);
     let trajectory = Trajectory::read(&path)?;
     check_start(&path, trajectory.lines.first(), &manifest)?;
     integrity.check(&path, &trajectory)?;
@@ -38,7 +41,7 @@ pub fn rebuild_database(folder: &Path, progress: &mut dyn FnMut(u32, u32)) -> Re
     session.projection.wait()?;
     // The file is another one now: what vouched for the old one would call it damaged.
     if let Some(closed) = integrity.snapshot.filter(|snapshot| snapshot.database().is_some()) {
-        let place = SnapshotPlace::of(folder, &key);
+        let place = SnapshotPlace::of(folder, key);
         session.projection.then(true, move |digest| closed.vouch_for(&place, digest));
         session.projection.wait()?;
     }

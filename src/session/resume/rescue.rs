@@ -30,11 +30,11 @@ pub struct Rescued {
 }
 
 /// Makes a branch of the lines that are good beyond doubt: their own sums vouch for them, or the state that was
-/// reached again. A baseline run becomes a sandbox.
+/// reached again. A baseline run becomes a sandbox. The key is that of the run's snapshots.
 ///
 /// # Errors
 /// The run is not damaged; nothing of it can be used; the branch cannot be written.
-pub fn rescue(folder: &Path) -> Result<Rescued, RunError> {
+pub fn rescue(folder: &Path, key: &SealKey) -> Result<Rescued, RunError> {
     let path = folder.join("trajectory.jsonl");
     let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
     let mut trajectory = Trajectory::default();
@@ -45,7 +45,7 @@ pub fn rescue(folder: &Path) -> Result<Rescued, RunError> {
     let good = replayed(&path, &manifest, &trajectory.lines, &mut problem)?;
     let words = match &problem {
         Some((line, problem)) => format!("line {line}: {problem}"),
-        None => match Integrity::of(folder, &manifest, &SealKey::default()).check(&path, &trajectory) {
+        None => match Integrity::of(folder, &manifest, key).check(&path, &trajectory) {
             Err(problem) => problem.to_string(),
             Ok(()) => {
                 let message = format!("run {} is not damaged; there is nothing to rescue", manifest.id);
@@ -105,7 +105,7 @@ mod tests {
         let mut bytes = whole.clone();
         damage(&mut bytes);
         std::fs::write(&path, &bytes).expect("written");
-        let rescued = rescue(&run.folder);
+        let rescued = rescue(&run.folder, &SealKey::default());
         assert_eq!(std::fs::read(&path).expect("a trajectory"), bytes, "the run itself was changed");
         std::fs::write(&path, whole).expect("written");
         rescued
@@ -157,7 +157,9 @@ mod tests {
     fn without_a_manifest_a_damaged_run_is_rescued_all_the_same() {
         let run = recorded(Mode::Sandbox, 2);
         std::fs::write(run.folder.join("run.toml"), "seed = [").expect("written");
-        let whole = rescue(&run.folder).expect_err("the first line tells what it is").to_string();
+        let whole = rescue(&run.folder, &SealKey::default())
+            .expect_err("the first line tells what it is")
+            .to_string();
         assert!(whole.contains("not damaged"), "{whole}");
         let found =
             rescued(&run, |bytes| bytes.truncate(bytes.len() - 1)).err().map(|error| error.to_string());
@@ -172,7 +174,7 @@ mod tests {
     #[test]
     fn nothing_is_rescued_of_a_whole_run_or_without_a_first_line() {
         let run = recorded(Mode::Sandbox, 1);
-        let whole = rescue(&run.folder).expect_err("it is whole").to_string();
+        let whole = rescue(&run.folder, &SealKey::default()).expect_err("it is whole").to_string();
         assert!(whole.contains("not damaged"), "{whole}");
         let problem = rescued(&run, |bytes| bytes[3] ^= 0x04).expect_err("no beginning").to_string();
         assert!(problem.contains("start of a run"), "{problem}");

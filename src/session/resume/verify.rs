@@ -29,10 +29,18 @@ pub struct Verification {
 /// # Errors
 /// The first line that does not fit; or the run is missing or of another version.
 pub fn verify(path: &Path) -> Result<Verification, RunError> {
+    verify_sealed(path, &SealKey::default())
+}
+
+/// As [`verify`], for a run whose snapshots a key seals.
+///
+/// # Errors
+/// The same.
+pub fn verify_sealed(path: &Path, key: &SealKey) -> Result<Verification, RunError> {
     let (origin, trajectory) = read(path)?;
     let Origin { path, folder, manifest, params } = origin;
     if let Some(folder) = &folder {
-        Integrity::of(folder, &manifest, &SealKey::default()).check(&path, &trajectory)?;
+        Integrity::of(folder, &manifest, key).check(&path, &trajectory)?;
     }
     let run = manifest.id.clone();
     let mut session = Session::unwritten(manifest, None, params, None);

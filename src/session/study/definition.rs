@@ -10,10 +10,12 @@ use serde::{Deserialize, Serialize};
 
 use super::assignment::Assignment;
 use super::code::CodeCheck;
+use super::keys::seal_key_of;
 use super::questions::Questionnaire;
 use super::rules::{DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
 use crate::session::error::RunError;
 use crate::session::folder::configuration::{DEFAULT_SCENARIO, check_cash, check_days};
+use crate::session::resume::sealing::SealKey;
 use crate::session::trajectory::record::Activity;
 use crate::world::params::{ParameterError, line_of_key};
 
@@ -38,6 +40,8 @@ pub struct Study {
     /// blake3 digest of protocol, consent and questions, in hexadecimal digits. The assignment may grow; what it says of a
     /// person stands in their run.
     pub digest: String,
+    /// What seals the snapshots of its runs besides the runs.
+    pub seal_key: SealKey,
 }
 
 /// What `study.toml` says.
@@ -295,7 +299,8 @@ impl Study {
             take(&path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default(), text);
         }
         let digest = digest.finalize().to_hex().to_string();
-        Ok(Study { folder: folder.to_owned(), protocol, consent, questionnaires, assignment, digest })
+        let (folder, seal_key) = (folder.to_owned(), seal_key_of(folder)?);
+        Ok(Study { folder, protocol, consent, questionnaires, assignment, digest, seal_key })
     }
 
     /// Folder that is told of every line; one that is named without its place lies in the folder of the study.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::session::archive::import_run;
+use crate::session::archive::{LabPublicKey, place_run};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::play::afterwards::lines_afterwards;
@@ -69,6 +69,13 @@ pub enum CollectNote {
         /// Label in the tables.
         to: String,
     },
+    /// An archive that the lab whose public key lies in the folder of the study has not signed.
+    NotSigned {
+        /// Where it lies.
+        path: PathBuf,
+        /// Fingerprint of the key that signed it; none where none did.
+        by: Option<String>,
+    },
     /// A line of the mapping file that names no run.
     UnknownRun {
         /// Run.
@@ -111,6 +118,16 @@ impl fmt::Display for CollectNote {
                     "conflict: run {run} has two records that differ from line {line} on: {}; both are kept in conflicts, \
                      neither is in the tables",
                     paths.join(" and ")
+                )
+            }
+            CollectNote::NotSigned { path, by: None } => {
+                write!(out, "not signed: {}", path.display())
+            }
+            CollectNote::NotSigned { path, by: Some(key) } => {
+                write!(
+                    out,
+                    "not signed by the lab: {} carries the signature of the key {key}",
+                    path.display()
                 )
             }
             CollectNote::SharedLabel { label, runs } => {
@@ -176,7 +193,8 @@ pub struct Gathered {
 }
 
 /// Finds all runs below some folders and in archives there. Archives are unpacked into `workshop`; `without` is not searched.
-pub fn gather(sources: &[PathBuf], workshop: &Path, without: &Path) -> Gathered {
+/// Where there is a key of a lab, archives that it has not signed are told.
+pub fn gather(sources: &[PathBuf], workshop: &Path, without: &Path, lab: Option<&LabPublicKey>) -> Gathered {
     let mut gathered = Gathered::default();
     let without = without.canonicalize().unwrap_or_else(|_| without.to_owned());
     let (mut folders, mut archives) = (BTreeSet::new(), BTreeSet::new());
@@ -195,12 +213,21 @@ pub fn gather(sources: &[PathBuf], workshop: &Path, without: &Path) -> Gathered 
             .notes
             .push(CollectNote::Unreadable { path: source.to_owned(), problem: error.to_string() }),
     };
+    let mut unsigned = Vec::new();
     for folder in &folders {
         take(FoundRun::read(folder, folder), folder);
     }
     for (number, archive) in archives.iter().enumerate() {
-        take(unpacked(archive, &workshop.join(number.to_string())), archive);
+        let unpacked = unpacked(archive, &workshop.join(number.to_string()));
+        if let (Some(lab), Ok((_, signer))) = (lab, &unpacked)
+            && signer.as_ref() != Some(lab)
+        {
+            let by = signer.as_ref().map(LabPublicKey::fingerprint);
+            unsigned.push(CollectNote::NotSigned { path: archive.clone(), by });
+        }
+        take(unpacked.map(|(run, _)| run), archive);
     }
+    gathered.notes.append(&mut unsigned);
     for (run, records) in by_run {
         settle(run, records, &mut gathered);
     }
@@ -225,10 +252,10 @@ pub fn missing_places(
     missing.map(|place| note(&place.label)).collect()
 }
 
-fn unpacked(archive: &Path, folder: &Path) -> Result<FoundRun, RunError> {
+fn unpacked(archive: &Path, folder: &Path) -> Result<(FoundRun, Option<LabPublicKey>), RunError> {
     std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
-    let (seal, _, _) = import_run(folder, archive)?;
-    FoundRun::read(&folder.join(&seal.run), archive)
+    let (seal, signer, _) = place_run(folder, archive)?;
+    Ok((FoundRun::read(&folder.join(&seal.run), archive)?, signer))
 }
 
 /// Folders of runs and archives below a path. Links are not followed.

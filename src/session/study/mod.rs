@@ -6,6 +6,7 @@ pub mod code;
 pub mod definition;
 pub mod due;
 pub mod gather;
+pub(in crate::session) mod keys;
 pub mod questions;
 pub mod remarks;
 pub mod rules;

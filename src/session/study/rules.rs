@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::session::folder::mode::Mode;
+use crate::session::trajectory::record::Ended;
 
 /// The rules of a session.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -102,6 +103,11 @@ pub enum AtLimit {
 }
 
 impl SessionRules {
+    /// Whether neither result nor figures are shown any more, given how the run ended.
+    pub fn hide_result(&self, ended: Option<Ended>) -> bool {
+        self.results == ResultsShown::None && ended.is_some()
+    }
+
     /// The rules of a run that belongs to no study.
     pub fn of_mode(mode: Mode) -> SessionRules {
         let open = SessionRules {

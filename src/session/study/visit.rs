@@ -10,6 +10,7 @@ use super::stamp::StudyStamp;
 use super::tombstone::Tombstone;
 use super::visit_log::{VisitEvent, VisitLog};
 use crate::session::error::RunError;
+use crate::session::folder::configuration::Configuration;
 use crate::session::folder::consent::{ConsentGiven, ConsentText};
 use crate::session::folder::create::{NewRun, Storage, StudyEntry};
 use crate::session::folder::derived::Derived;
@@ -149,7 +150,7 @@ impl Visit {
         if run.ended.is_none() {
             return Ok(NextStep::Session(Some(folder)));
         }
-        let finished = Session::open(&folder, Access::Read, false)?;
+        let finished = Session::open_sealed(&folder, Access::Read, false, self.study.seal_key.clone())?;
         let open = !self.study.due(&finished).is_empty();
         Ok(if open { NextStep::Questions(folder) } else { NextStep::Thanks })
     }
@@ -184,12 +185,37 @@ impl Visit {
             agreed,
             study: Some(StudyEntry { stamp, rules: self.study.rules(), consent: self.consent_text() }),
             storage: Storage::Runs(self.runs.clone()),
+            seal_key: self.study.seal_key.clone(),
             ..NewRun::default()
         }
     }
 
-    /// Tells the study's witness of every line of a run from now on.
-    pub fn watch(&self, session: &mut Session) {
+    /// Begins the practice or the session; the study's witness is told of every line.
+    ///
+    /// # Errors
+    /// As [`Session::create`].
+    pub fn begin_run(
+        &self,
+        practice: bool,
+        agreed: Option<ConsentGiven>,
+        configuration: &Configuration,
+    ) -> Result<Session, RunError> {
+        let mut session = Session::create(self.new_run(practice, agreed), configuration)?;
+        self.watch(&mut session);
+        Ok(session)
+    }
+
+    /// Opens a run of the participant to go on with it; the study's witness is told of every line.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open(&self, folder: &Path) -> Result<Session, RunError> {
+        let mut session = Session::open_sealed(folder, Access::Write, true, self.study.seal_key.clone())?;
+        self.watch(&mut session);
+        Ok(session)
+    }
+
+    fn watch(&self, session: &mut Session) {
         if let Some(folder) = self.study.witness() {
             session.tell_witness(&folder, &Machine::here().id);
         }

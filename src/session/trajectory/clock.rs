@@ -7,7 +7,13 @@ pub const CLOCK_CORRECTION: f64 = 2.0;
 
 /// The lines before which the clock went back by more than [`CLOCK_CORRECTION`], each after the one before it, with the
 /// seconds it went back.
-pub fn clock_went_back(lines: &[Line]) -> impl Iterator<Item = (&Line, &Line, f64)> {
-    let pairs = lines.windows(2).map(|pair| (&pair[0], &pair[1], pair[0].moment() - pair[1].moment()));
-    pairs.filter(|(_, _, back)| *back > CLOCK_CORRECTION)
+pub fn clock_went_back<'a>(
+    lines: impl IntoIterator<Item = &'a Line>,
+) -> impl Iterator<Item = (&'a Line, &'a Line, f64)> {
+    let pairs = lines.into_iter().scan(None::<&Line>, |before, line| Some((before.replace(line), line)));
+    pairs.filter_map(|(before, line)| {
+        let before = before?;
+        let back = before.moment() - line.moment();
+        (back > CLOCK_CORRECTION).then_some((before, line, back))
+    })
 }

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
@@ -41,7 +42,7 @@ pub struct TrajectoryWriter {
     /// Where everything went when the file was no longer there.
     aside: Option<PathBuf>,
     /// Who is told of lines once they are on the disk.
-    witness: Option<Witness>,
+    witness: Option<Arc<Witness>>,
     /// Number, hash and moment of lines that the witness has not been told of.
     untold: Vec<(u64, String, String)>,
 }
@@ -110,8 +111,9 @@ impl TrajectoryWriter {
     }
 
     /// Tells a witness of the last line, and of every line that follows once it is on the disk.
-    pub fn tell(&mut self, witness: Witness) {
-        if self.next_seq > 0 {
+    pub fn tell(&mut self, witness: Arc<Witness>) {
+        // A file that goes on from another and holds no line yet has none of its own to tell.
+        if !self.last_at.is_empty() {
             witness.tell(self.next_seq - 1, &self.last_hash, &self.last_at);
         }
         self.untold.clear();
@@ -119,7 +121,7 @@ impl TrajectoryWriter {
     }
 
     /// Who is told, if somebody is.
-    pub fn witness(&self) -> Option<&Witness> {
+    pub fn witness(&self) -> Option<&Arc<Witness>> {
         self.witness.as_ref()
     }
 

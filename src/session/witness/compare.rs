@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use serde::Serialize;
 
 use super::record::Told;
+use crate::session::trajectory::record::Activity;
 use crate::session::trajectory::{Line, Record, Trajectory, clock_went_back, seconds};
 
 /// What a comparison found.
@@ -40,14 +41,14 @@ pub enum FindingKind {
     ClockBack,
 }
 
-/// Compares a trajectory with what witnesses were told of its run, in the order of the lines. What follows from an honest
+/// Compares a trajectory, and the lines of what was done after its end, with what witnesses were told of its run, in the order of the lines. What follows from an honest
 /// session on one machine is no finding, nor is a line that was told twice.
-pub fn compare(trajectory: &Trajectory, told: &[Told]) -> Vec<Finding> {
+pub fn compare(trajectory: &Trajectory, afterwards: &[Line], told: &[Told]) -> Vec<Finding> {
     let Some(Record::Start(start)) = trajectory.lines.first().map(|line| &line.record) else {
         return Vec::new();
     };
-    let comparison =
-        Comparison { run: &start.run, lines: &trajectory.lines, told: distinct(told, &start.run) };
+    let lines = trajectory.lines.iter().chain(afterwards).collect();
+    let comparison = Comparison { run: &start.run, lines, told: distinct(told, &start.run) };
     let mut findings = Vec::new();
     findings.extend(comparison.changed());
     findings.extend(comparison.cut());
@@ -67,7 +68,7 @@ fn distinct<'a>(told: &'a [Told], run: &str) -> Vec<&'a Told> {
 
 struct Comparison<'a> {
     run: &'a str,
-    lines: &'a [Line],
+    lines: Vec<&'a Line>,
     told: Vec<&'a Told>,
 }
 
@@ -77,7 +78,7 @@ impl Comparison<'_> {
     }
 
     fn line(&self, told: &Told) -> Option<&Line> {
-        self.lines.get(usize::try_from(told.seq).ok()?)
+        self.lines.get(usize::try_from(told.seq).ok()?).copied()
     }
 
     fn is_in_trajectory(&self, told: &Told) -> bool {
@@ -113,7 +114,7 @@ impl Comparison<'_> {
         let missing: Vec<&&Told> = self.told.iter().filter(|told| told.seq >= end).collect();
         let furthest = missing.iter().max_by_key(|told| told.seq)?;
         let words = format!(
-            "the trajectory ends with line {end}, but the witness was told of line {} at {}: {} missing",
+            "the record ends with line {end}, but the witness was told of line {} at {}: {} missing",
             furthest.seq + 1,
             furthest.at,
             match furthest.seq + 1 - end {
@@ -159,17 +160,22 @@ impl Comparison<'_> {
         Some(self.finding(FindingKind::TwoHistories, seq, later, words))
     }
 
-    /// Stretches of lines of which no witness was told, where something was decided or a week ended in them.
+    /// Stretches of lines of which no witness was told, where something was decided or answered or a week ended in them.
     fn unseen(&self) -> Vec<Finding> {
         let seen: BTreeSet<u64> = self.told.iter().map(|told| told.seq).collect();
-        let unseen: Vec<&Line> = self.lines.iter().filter(|line| !seen.contains(&line.seq)).collect();
+        let unseen: Vec<&Line> =
+            self.lines.iter().copied().filter(|line| !seen.contains(&line.seq)).collect();
         let stretches = unseen.chunk_by(|one, next| one.seq + 1 == next.seq);
         stretches.filter_map(|stretch| self.unseen_stretch(stretch)).collect()
     }
 
     fn unseen_stretch(&self, stretch: &[&Line]) -> Option<Finding> {
         let weighs = |line: &&&Line| {
-            line.closes_days() || matches!(line.record, Record::Call(_) | Record::Advance(_) | Record::End(_))
+            let decides = matches!(
+                line.record,
+                Record::Call(_) | Record::Advance(_) | Record::End(_) | Record::Activity(Activity::Answer(_))
+            );
+            line.closes_days() || decides
         };
         stretch.iter().find(weighs)?;
         let (first, last) = (stretch.first()?, stretch.last()?);
@@ -206,7 +212,7 @@ impl Comparison<'_> {
     }
 
     fn clock_back(&self) -> Vec<Finding> {
-        clock_went_back(self.lines)
+        clock_went_back(self.lines.iter().copied())
             .map(|(before, line, back)| {
                 let words = format!(
                     "the clock went back by {back:.0} seconds: line {} carries {}, line {} carries {}",

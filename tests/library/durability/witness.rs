@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use novamind::session::{
-    Access, Finding, FindingKind, Session, Trajectory, WitnessRecord, compare, line_of_code, read_witness,
+    Access, Finding, FindingKind, Session, Trajectory, WitnessRecord, compare, line_of_code,
+    lines_afterwards, read_witness,
 };
 use serde_json::Value;
 
@@ -58,7 +59,9 @@ fn trajectory(folder: &Path) -> Trajectory {
 
 fn findings(folder: &Path, told: &WitnessRecord) -> Vec<Finding> {
     let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
-    compare(&trajectory(folder), told.runs.get(&id).map_or(&[], Vec::as_slice))
+    let trajectory = trajectory(folder);
+    let after = lines_afterwards(folder, &trajectory).expect("it reads");
+    compare(&trajectory, &after.lines, told.runs.get(&id).map_or(&[], Vec::as_slice))
 }
 
 fn kinds(findings: &[Finding]) -> Vec<FindingKind> {

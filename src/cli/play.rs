@@ -143,13 +143,14 @@ pub fn lead(folder: &Path, options: &Options, context: &Context) -> Result<(), F
         )));
     }
     let study = Study::read(folder)?;
+    let again = context.again_in_study(folder);
     if !asks_for_lines(options) {
-        let again = context.again_in_study(folder);
         return show_console_again(options, Some(Effect::Receive(Box::new(study))), context, again);
     }
     let style = crate::plain::Style { json: options.json, echo: options.echo, strict: options.strict };
     let base = context.runs()?;
-    match crate::plain::visit(study, &base, &context.configuration, style)? {
+    let again = if options.plain { format!("{again} --plain") } else { again };
+    match crate::plain::visit(study, &base, &context.configuration, style, &again)? {
         0 => Ok(()),
         code => Err(Failure::code_only(code)),
     }

@@ -36,13 +36,19 @@ impl From<io::Error> for Stop {
     }
 }
 
-/// Leads a participant through a study; returns the exit code.
+/// Leads a participant through a study; returns the exit code. `again` is the command that leads them once more.
 ///
 /// # Errors
 /// A run or a file of the study cannot be read; standard input or output fails.
-pub fn visit(study: Study, runs: &Path, configuration: &Configuration, style: Style) -> Result<u8, RunError> {
+pub fn visit(
+    study: Study,
+    runs: &Path,
+    configuration: &Configuration,
+    style: Style,
+    again: &str,
+) -> Result<u8, RunError> {
     let lines = Lines::of_standard_input();
-    let mut host = Host { lines, configuration, style, consent: None };
+    let mut host = Host { lines, configuration, style, consent: None, again };
     match host.lead(study, runs) {
         Ok(code) | Err(Stop::Left(code)) => Ok(code),
         Err(Stop::Run(error)) => Err(error),
@@ -55,6 +61,7 @@ struct Host<'a> {
     configuration: &'a Configuration,
     style: Style,
     consent: Option<ConsentGiven>,
+    again: &'a str,
 }
 
 impl Host<'_> {
@@ -170,7 +177,13 @@ impl Host<'_> {
         match end {
             End::Withdrawn => Ok(visit.withdraw()?),
             End::Quit | End::Over if goes_on => Ok(()),
-            end => Err(Stop::Left(end.code())),
+            End::RecordLost => Err(Stop::Left(end.code())),
+            end => {
+                let text =
+                    format!("Everything confirmed is kept. `{}` continues: give the same label.", self.again);
+                self.say("later", &text)?;
+                Err(Stop::Left(end.code()))
+            }
         }
     }
 

@@ -82,6 +82,9 @@ fn a_participant_is_led_from_the_label_to_the_thanks() {
         assert!(first.out.contains(part), "{part} is missing in\n{}", first.out);
     }
     assert!(!first.out.contains("seed"), "participants do not learn the seed");
+    // What leads back can be typed as it is, and names neither label nor code.
+    let again = format!("`novamind --study {}` continues: give the same label.", lab.folder());
+    assert!(first.out.contains(&again), "{again} is missing in\n{}", first.out);
     // They come back, end the run, and answer what is asked then.
     let second = lab.visit("P01\nnext \"e\" naive\nI tried to grow.\n1, 3\n");
     for part in ["run ended: horizon", "What did you try to do", "Thank you"] {

@@ -9,6 +9,7 @@ use clap::Args;
 use crate::cli::runs::as_csv;
 use crate::cli::{Failure, print};
 use crate::report::anonymised::{Anonymiser, LINKS, NamedTable, Texts};
+use crate::report::count;
 use crate::report::tables::headings;
 
 /// Options of `study anonymise`.
@@ -72,8 +73,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         .and_then(|mut file| file.write_all(text.as_bytes()))
         .map_err(|error| failed(&links_path, &error))?;
     print(&format!(
-        "{} runs without names are in {}; keep {} and {}\n",
-        links.len(),
+        "the tables of {} without names are in {}; keep {} and {}\n",
+        count(links.len() as u32, "run"),
         options.out.display(),
         options.secret.display(),
         links_path.display()

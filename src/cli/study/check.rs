@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::cli::{Context, Failure, print};
-use crate::session::{Machine, Moment, PracticeOffer, Study};
+use crate::session::{LAB_KEY_FILE, Machine, Moment, PracticeOffer, SEAL_KEY_FILE, Study};
 
 /// Free bytes that a machine should have: a session of a large company with its database.
 const ROOM: u64 = 2 << 30;
@@ -30,6 +30,7 @@ pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
         Point { name: "window", outcome: window() },
         Point { name: "characters", outcome: characters() },
         Point { name: "machine", outcome: Ok(Machine::here().id) },
+        Point { name: "keys", outcome: Ok(keys(folder).to_owned()) },
     ];
     if let Some(witness) = study.witness() {
         points.push(Point {
@@ -50,6 +51,17 @@ pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
         0 => Ok(()),
         1 => Err(Failure::failed("1 point is wrong: this machine is not ready")),
         failed => Err(Failure::failed(format!("{failed} points are wrong: this machine is not ready"))),
+    }
+}
+
+/// What seals snapshots here; a damaged key keeps the study from being read.
+fn keys(folder: &Path) -> &'static str {
+    let is_here = |file: &str| folder.join(file).exists();
+    match (is_here(SEAL_KEY_FILE), is_here(LAB_KEY_FILE)) {
+        (true, false) => "seal.key seals snapshots",
+        (true, true) => "seal.key seals snapshots; lab.key is here: keep it off the machines of participants",
+        (false, true) => "no seal.key; lab.key is here: `novamind study key` makes the other",
+        (false, false) => "none: snapshots are sealed by the run alone, archives are not signed",
     }
 }
 

@@ -71,7 +71,7 @@ fn shown(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> String {
     text += &aligned(&table(all));
     text += "\n";
     for remark in machines.iter().flat_map(|runs| remarks(runs)) {
-        text += &format!("\n{} {}: {}", remark.at, remark.participant, remark.text);
+        text += &format!("{} {}: {}\n", remark.at, remark.participant, remark.text);
     }
     text
 }

@@ -183,9 +183,10 @@ impl Inbox {
         let rows = self.rows.iter().map(row).collect();
         self.table.set(columns(self.view), rows);
         let from = here.and_then(|here| shown.iter().position(|number| *number == here)).unwrap_or(0);
-        let next = shown.iter().skip(from).find_map(|number| self.row_of_number(*number));
-        if let Some(row) = next {
-            self.table.select(row);
+        let rows = self.rows.iter().enumerate().map(|(row, at)| (self.letters.threads[*at].number, row));
+        let rows: BTreeMap<u32, usize> = rows.collect();
+        if let Some(row) = shown.iter().skip(from).find_map(|number| rows.get(number)) {
+            self.table.select(*row);
         }
     }
 

@@ -17,7 +17,7 @@ use crate::session::{Rows, number_at, text_at};
 
 /// A row of the query: first offers of a week to a group, of one plan at prices of one band.
 #[derive(Debug, Clone, PartialEq)]
-struct Outcome {
+struct FirstOffers {
     group: String,
     plan: String,
     /// Whole dollars a seat and month, from this on.
@@ -36,26 +36,26 @@ struct Outcome {
 #[derive(Debug, Clone, Default)]
 pub struct Outcomes {
     /// None until the answer is there.
-    found: Option<Vec<Outcome>>,
+    found: Option<Vec<FirstOffers>>,
     table: Table,
 }
 
 impl Outcomes {
     /// Takes the answer.
     pub fn take(&mut self, rows: &Rows) {
-        let found: Vec<Outcome> = rows.rows.iter().map(|row| outcome_of(row)).collect();
+        let found: Vec<FirstOffers> = rows.rows.iter().map(|row| outcome_of(row)).collect();
         self.table.set(columns(), found.iter().map(row_of).collect());
         self.found = Some(found);
     }
 
-    fn here(&self) -> Option<&Outcome> {
+    fn here(&self) -> Option<&FirstOffers> {
         self.found.as_ref()?.get(self.table.selected()?)
     }
 }
 
-fn outcome_of(row: &[crate::session::Cell]) -> Outcome {
+fn outcome_of(row: &[crate::session::Cell]) -> FirstOffers {
     let number = |at| number_at(row, at);
-    Outcome {
+    FirstOffers {
         group: text_at(row, 0).to_owned(),
         plan: text_at(row, 1).to_owned(),
         price_from: number(2),
@@ -77,7 +77,7 @@ fn columns() -> Vec<Column> {
     columns
 }
 
-fn row_of(own: &Outcome) -> Vec<Cell> {
+fn row_of(own: &FirstOffers) -> Vec<Cell> {
     let count = |value: f64| Cell::number(value, grouped(value, 0));
     let prices = format!("{}–{}", grouped(own.price_from, 0), grouped(own.price_below - 0.01, 2));
     vec![
@@ -94,8 +94,8 @@ fn row_of(own: &Outcome) -> Vec<Cell> {
 }
 
 /// The threads that a row counts, the oldest first.
-fn statement(own: &Outcome) -> String {
-    let Outcome { group, plan, price_from, price_below, week, .. } = own;
+fn statement(own: &FirstOffers) -> String {
+    let FirstOffers { group, plan, price_from, price_below, week, .. } = own;
     format!(
         "SELECT t.thread_id, t.customer_id, t.day, t.offer_json, s.status,\n    EXISTS (\n        SELECT 1 FROM \
          enterprise_turns e WHERE e.thread_id = t.thread_id AND e.close_reason = 'accepted'\n    ) AS is_signed\n\

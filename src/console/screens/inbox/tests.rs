@@ -11,8 +11,8 @@ use crate::session::{Cell as Datum, Via, WaitingThread, number_at};
 use crate::tools::{Answer, DealResult, DealResults, ToolId};
 use crate::world::identifiers::Plan;
 
-/// A company with 200 waiting threads: every third is a subscriber with a price of its own.
-fn crowded() -> (Company, Rows, Rows) {
+/// A company with waiting threads: every third is a subscriber with a price of its own.
+fn crowded_by(threads: u32) -> (Company, Rows, Rows) {
     let mut company = company();
     company.seen.day = 70;
     company.settings.insert(
@@ -20,7 +20,7 @@ fn crowded() -> (Company, Rows, Rows) {
         json!({"A": 14.0, "B": 32.0, "C": 55.0}).as_object().cloned().expect("an object"),
     );
     let (mut turns, mut firms) = (Vec::new(), Vec::new());
-    for number in 1..=200u32 {
+    for number in 1..=threads {
         let asks = number % 3 == 0;
         company.seen.waiting.push(WaitingThread {
             thread: number,
@@ -66,7 +66,11 @@ fn crowded() -> (Company, Rows, Rows) {
 }
 
 fn crowded_screen() -> (Inbox, Company) {
-    let (company, turns, firms) = crowded();
+    crowded_screen_by(200)
+}
+
+fn crowded_screen_by(threads: u32) -> (Inbox, Company) {
+    let (company, turns, firms) = crowded_by(threads);
     let mut screen = Inbox::default();
     let keys = Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 20 };
@@ -429,4 +433,20 @@ fn outcomes_stand_in_the_place_of_the_list_until_they_are_closed() {
     assert!(drawn(&screen, &company, 60, 13).contains("No new lead has been sent an offer yet"));
     screen.show(7, &company);
     assert_eq!(screen.focus, InboxPane::List);
+}
+
+#[test]
+fn thousands_of_threads_are_marked_sent_and_followed_by_the_next_one() {
+    let (mut screen, mut company) = crowded_screen_by(3_500);
+    press(&mut screen, &company, "a");
+    assert_eq!(screen.marked.len(), 3_500);
+    press(&mut screen, &company, "a");
+    // The first half is sent while its first thread is selected: the list goes on with the second half.
+    let (effects, _) = press(&mut screen, &company, "R 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
+    let [Effect::ConfirmCalls { calls, .. }] = &effects[..] else { panic!("{effects:?}") };
+    let sent = calls[0].1["deals"].as_array().expect("deals").clone();
+    assert_eq!(sent.len(), 1_749);
+    let next = screen.table.shown().iter().filter_map(|row| screen.number_of(*row)).nth(1_749);
+    answered(&mut screen, &mut company, &sent);
+    assert_eq!((screen.rows.len(), screen.here().map(|thread| thread.number)), (1_751, next));
 }

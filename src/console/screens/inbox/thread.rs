@@ -133,7 +133,8 @@ fn conversation(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, Ro
         lines.extend(wrapped(&terms, width).into_iter().map(|line| (line, Role::Strong)));
         lines.push((String::new(), Role::Text));
     }
-    if thread.turns.first().is_some_and(|turn| turn.number > 0) {
+    // Of many threads only the newest turns are read.
+    if thread.turns.first().is_none_or(|turn| turn.number > 0) {
         lines.push(("earlier turns: SQL".to_owned(), Role::Dim));
     }
     for turn in &thread.turns {

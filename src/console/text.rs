@@ -65,6 +65,18 @@ pub fn number(value: f64) -> String {
     grouped(value, decimals)
 }
 
+/// The first wording that fits into some columns; the last one if none does.
+pub fn fitting(wordings: impl IntoIterator<Item = String>, width: usize) -> String {
+    let mut last = String::new();
+    for wording in wordings {
+        if wording.width() <= width {
+            return wording;
+        }
+        last = wording;
+    }
+    last
+}
+
 /// Pieces side by side with dots between them, in lines that are not wider than some columns; no piece is broken unless
 /// it is wider than a line.
 pub fn flowed(pieces: &[String], width: usize) -> Vec<String> {
@@ -91,6 +103,13 @@ mod tests {
             [count(1.0, "seat"), count(0.0, "seat"), count(1204.0, "seat")],
             ["1 seat", "0 seats", "1,204 seats"]
         );
+    }
+
+    #[test]
+    fn a_shorter_wording_is_taken_where_the_longer_one_has_no_room() {
+        let wordings = || ["the longest", "shorter", "short"].map(str::to_owned);
+        let taken = [11, 10, 7, 6, 1].map(|width| fitting(wordings(), width));
+        assert_eq!(taken, ["the longest", "shorter", "shorter", "short", "short"]);
     }
 
     #[test]

@@ -15,6 +15,8 @@ const SUBSCRIBERS: &str = include_str!("../../assets/readings/subscribers.sql");
 const USAGE: &str = include_str!("../../assets/readings/usage.sql");
 /// Days of a month of billing.
 const MONTH: f64 = 30.0;
+/// Instead of margins, before anybody used a plan.
+const NOTHING_MEASURED: &str = "no margins: no use of subscribers has been measured";
 
 /// Subscribers, what they pay and what they used on the last day.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -198,7 +200,7 @@ pub fn margin_lines(
     day: u32,
 ) -> Vec<String> {
     if Plan::ALL.into_iter().all(|plan| sales.of_plan(plan).usage().is_none()) {
-        return vec!["no margins: no use of subscribers has been measured".to_owned()];
+        return vec![NOTHING_MEASURED.to_owned()];
     }
     let mut lines = vec![format!("gross margin by model tier at the use of day {day}; [ ] as set")];
     let tiers: String = models.iter().map(|(tier, _)| format!("{:>8}", format!("T{tier} "))).collect();
@@ -217,7 +219,7 @@ pub fn margin_lines(
         };
         lines.push(row(format!("{plan} paid {}", cents(paid)), &|unit_cost| own.margin(unit_cost)));
         match lever {
-            Lever::Price if set.price > 0.0 && (set.price - paid).abs() >= 0.005 => {
+            Lever::Price if differs(set.price, paid) => {
                 let label = format!("{plan} list {}", cents(set.price));
                 lines.push(row(label, &|unit_cost| margin(set.price, own.compute(unit_cost)?)));
             }
@@ -230,6 +232,51 @@ pub fn margin_lines(
     }
     lines.extend(Plan::ALL.into_iter().filter_map(|plan| by_group(sales, plan, terms[plan], models)));
     lines
+}
+
+/// The margins of every plan under its terms on its own model alone, for small windows: a head, then a line a plan.
+pub fn margin_summary(
+    sales: &Sales,
+    terms: &ByPlan<PlanTerms>,
+    lever: Lever,
+    models: &[(u8, f64)],
+    day: u32,
+) -> Vec<String> {
+    if Plan::ALL.into_iter().all(|plan| sales.of_plan(plan).usage().is_none()) {
+        return vec![NOTHING_MEASURED.to_owned()];
+    }
+    let line = |plan: Plan| {
+        let (own, set) = (sales.of_plan(plan), terms[plan]);
+        let Some(paid) = own.revenue().filter(|_| own.usage().is_some()) else {
+            return format!("{plan} nobody used it on day {day}");
+        };
+        let unit_cost = models.iter().find(|(tier, _)| *tier == set.tier).map(|(_, unit_cost)| *unit_cost);
+        let told = |margin: &dyn Fn(f64) -> Option<f64>| in_words(unit_cost.and_then(margin));
+        let also = match lever {
+            Lever::Price if differs(set.price, paid) => {
+                let margin = told(&|unit_cost| margin(set.price, own.compute(unit_cost)?));
+                format!(", list {} {margin}", cents(set.price))
+            }
+            Lever::Quota => {
+                let margin = told(&|unit_cost| own.margin_of_full_quota(set.quota, unit_cost));
+                format!(", all use {} {margin}", compact(set.quota))
+            }
+            _ => String::new(),
+        };
+        format!(
+            "{plan} T{}: paid {} {}{also}",
+            set.tier,
+            cents(paid),
+            told(&|unit_cost| own.margin(unit_cost))
+        )
+    };
+    let head = format!("gross margin at the use of day {day}");
+    std::iter::once(head).chain(Plan::ALL.into_iter().map(line)).collect()
+}
+
+/// Whether a list price is another one than what is paid, to the cent.
+fn differs(list: f64, paid: f64) -> bool {
+    list > 0.0 && (list - paid).abs() >= 0.005
 }
 
 /// The margins of a plan's groups on the model that is set; none where one group has the plan.
@@ -246,12 +293,16 @@ fn by_group(sales: &Sales, plan: Plan, set: PlanTerms, models: &[(u8, f64)]) -> 
     })
 }
 
-fn cell(margin: Option<f64>, is_set: bool) -> String {
-    // How far below nothing a margin lies matters no more at ten times the price.
-    let text = margin.map_or("–".to_owned(), |margin| match margin < -9.99 {
+/// A margin; how far below nothing it lies matters no more at ten times the price.
+fn in_words(margin: Option<f64>) -> String {
+    margin.map_or("–".to_owned(), |margin| match margin < -9.99 {
         true => "<-999%".to_owned(),
         false => percent(margin, 0),
-    });
+    })
+}
+
+fn cell(margin: Option<f64>, is_set: bool) -> String {
+    let text = in_words(margin);
     if is_set { format!("[{text}]") } else { format!("{text} ") }
 }
 
@@ -301,11 +352,27 @@ mod tests {
         let line = lines.iter().find(|line| line.starts_with("B list $250.00")).expect("the list price");
         let on_2 = format!("[{}]", percent(1.0 - units * models[1].1 / 250.0, 0));
         assert!(line.contains(&on_2), "{line} without {on_2}");
-        let full = Lever::Quota.apply(now, &json!({"B": 300}));
-        let lines = margin_lines(&sales, &full, Lever::Quota, &models, 42);
+        let full_quota = Lever::Quota.apply(now, &json!({"B": 300}));
+        let lines = margin_lines(&sales, &full_quota, Lever::Quota, &models, 42);
         let line = lines.iter().find(|line| line.starts_with("B all use 300")).expect("the quota");
         let full = 1.0 - own.accounts * 300.0 / own.users * 30.0 * models[1].1 / paid;
         assert!(line.contains(&format!("[{}]", percent(full, 0))), "{line} without {full}");
+        // In small windows the margins on the own model are the same.
+        for (lever, draft) in [(Lever::Price, &dear), (Lever::Quota, &full_quota), (Lever::Tier, &now)] {
+            let lines = margin_lines(&sales, draft, lever, &models, 42);
+            let set = |line: &str| Some(line.split_once('[')?.1.split_once(']')?.0.to_owned());
+            let of_b = |line: &&String| line.starts_with("B ") && !line.starts_with("B by");
+            let expected: Vec<String> = lines.iter().filter(of_b).filter_map(|line| set(line)).collect();
+            let summary = margin_summary(&sales, draft, lever, &models, 42);
+            let line = summary.iter().find(|line| line.starts_with("B ")).expect("plan B");
+            let told: Vec<&str> = line
+                .split(' ')
+                .map(|word| word.trim_end_matches(','))
+                .filter(|word| word.ends_with('%'))
+                .collect();
+            assert_eq!(told, expected, "{line}");
+            assert!(summary[0].ends_with("day 42") && summary.len() == 4, "{summary:?}");
+        }
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens::Figure;
 use crate::console::screens::panes::Seat;
+use crate::console::text::fitting;
 use crate::console::theme::Role;
 use crate::console::widgets::chart::NO_DATA;
 use crate::console::widgets::table::first_row;
@@ -23,20 +24,23 @@ pub fn tiers(company: &Company, days: &[Day]) -> (Option<u32>, u32) {
     (days.last().map(|day| day.tier), company.setting(ToolId::SetCapacityTier, "tier") as u32)
 }
 
-/// One line on capacity.
-fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> String {
+/// One line on capacity, the longest wording first.
+fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> Vec<String> {
     let (_, set) = tiers(company, days);
-    let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return String::new() };
-    match last_week(days) {
-        Some((mean, peak)) if rung.units > 0.0 => {
-            let next = PeakProjection::of(&company.weeks).map_or(String::new(), |next| {
-                let growth = next.growth_in_words();
-                format!(" · next week {} at last week's growth ({growth})", share(next.next(), rung.units))
-            });
-            format!("tier {set} · used {}, peak {}{next}", share(mean, rung.units), share(peak, rung.units))
-        }
-        _ => format!("tier {set} · {} units a day", compact(rung.units)),
-    }
+    let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return Vec::new() };
+    let Some((mean, peak)) = last_week(days).filter(|_| rung.units > 0.0) else {
+        return vec![format!("tier {set} · {} units a day", compact(rung.units))];
+    };
+    let [mean, peak] = [mean, peak].map(|units| share(units, rung.units));
+    let used = format!("tier {set} · used {mean}, peak {peak}");
+    let Some(next) = PeakProjection::of(&company.weeks) else { return vec![used] };
+    let (growth, next) = (next.growth_in_words(), share(next.next(), rung.units));
+    vec![
+        format!("{used} · next week {next} at last week's growth ({growth})"),
+        format!("tier {set} · peak {peak} → {next} at last week's growth ({growth})"),
+        format!("peak {peak} → {next} at last week's growth ({growth})"),
+        format!("{next} next week at last week's growth"),
+    ]
 }
 
 /// Units as a share of what a tier serves; how far beyond it matters no more at ten times of it.
@@ -60,8 +64,8 @@ impl ProductPart for Capacity {
         product.rungs.len()
     }
 
-    fn summary(&self, product: &Product, company: &Company) -> String {
-        summary(company, &product.rungs, &product.days)
+    fn summary(&self, product: &Product, company: &Company, width: usize) -> String {
+        fitting(summary(company, &product.rungs, &product.days), width)
     }
 
     fn destination(&self, _: &Product) -> &'static str {

@@ -49,7 +49,7 @@ impl ProductPart for Issues {
         product.issues.as_ref().map_or(0, BTreeMap::len)
     }
 
-    fn summary(&self, product: &Product, _: &Company) -> String {
+    fn summary(&self, product: &Product, _: &Company, _: usize) -> String {
         summary(product.issues.as_ref())
     }
 

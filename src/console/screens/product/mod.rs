@@ -208,7 +208,9 @@ impl Product {
                 true => ("▸", Role::Title),
                 false => (" ", Role::Text),
             };
-            let text = format!("{mark} {:<9} {}", pane.title(), pane.part().summary(self, look.company));
+            let head = format!("{mark} {:<9} ", pane.title());
+            let room = usize::from(row.width).saturating_sub(head.chars().count());
+            let text = head + &pane.part().summary(self, look.company, room);
             canvas.text(row, &text, role);
             canvas.click(row, Click::Pane(number));
         }

@@ -21,12 +21,12 @@ pub trait ProductPart: Pane<Product> {
         1
     }
 
-    /// All of it in one line.
-    fn summary(&self, product: &Product, company: &Company) -> String;
+    /// All of it in one line, in as many words as some columns hold.
+    fn summary(&self, product: &Product, company: &Company, width: usize) -> String;
 
     /// What stands at the right of its border.
-    fn note(&self, product: &Product, company: &Company) -> String {
-        self.summary(product, company)
+    fn note(&self, product: &Product, company: &Company, width: usize) -> String {
+        self.summary(product, company, width)
     }
 
     /// What opening the selected row leads to, in a word.
@@ -83,11 +83,14 @@ impl<P: ProductPart> Pane<Product> for P {
         if again { self.act(product, Action::Open, look) } else { Vec::new() }
     }
 
-    fn border(&self, product: &Product, _: Rect, look: &Look<'_>) -> Border {
+    fn border(&self, product: &Product, area: Rect, look: &Look<'_>) -> Border {
         let open = look.keys.label(Action::Open).unwrap_or_default();
+        let title = self.name().title();
+        // Corners, the blanks around title and note, and a piece of border between them.
+        let width = (area.width as usize).saturating_sub(title.len() + 9);
         Border {
-            title: self.name().title().to_owned(),
-            note: self.note(product, look.company),
+            title: title.to_owned(),
+            note: self.note(product, look.company, width),
             keys: format!("{open} {}", self.destination(product)),
             ..Border::default()
         }

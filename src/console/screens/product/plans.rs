@@ -12,6 +12,7 @@ use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens;
 use crate::console::screens::panes::Seat;
+use crate::console::text::fitting;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{cents, compact, grouped, percent};
@@ -30,20 +31,25 @@ impl ProductPart for Plans {
         FIGURES.len()
     }
 
-    fn summary(&self, product: &Product, _: &Company) -> String {
+    fn summary(&self, product: &Product, _: &Company, width: usize) -> String {
         let each = |write: fn(&PlanFacts) -> String| {
             let plans = Plan::ALL.iter().zip(&product.plans);
             plans.map(|(name, plan)| format!("{name} {}", write(plan))).collect::<Vec<_>>().join(", ")
         };
         let customers = each(|plan| grouped(plan.sold.customers, 0));
         if product.plans.iter().all(|plan| plan.margin().is_none()) {
-            return format!("no margin yet · customers {customers}");
+            return fitting([format!("no margin yet · customers {customers}"), "no margin yet".to_owned()], width);
         }
         let margins = each(|plan| or_none(plan.margin(), |margin| percent(margin, 0)));
-        format!("margin at the last day's use {margins} · customers {customers}")
+        let wordings = [
+            format!("margin at the last day's use {margins} · customers {customers}"),
+            format!("margin at the last day's use {margins}"),
+            format!("margin {margins}"),
+        ];
+        fitting(wordings, width)
     }
 
-    fn note(&self, _: &Product, _: &Company) -> String {
+    fn note(&self, _: &Product, _: &Company, _: usize) -> String {
         "at the last day's use, 30 days a month".to_owned()
     }
 

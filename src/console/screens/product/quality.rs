@@ -26,7 +26,7 @@ impl ProductPart for Quality {
         company.quality.len()
     }
 
-    fn summary(&self, _: &Product, company: &Company) -> String {
+    fn summary(&self, _: &Product, company: &Company, _: usize) -> String {
         let (base, shared) = company.quality_base;
         let best =
             company.quality.iter().max_by(|left, right| left.group_bonus.total_cmp(&right.group_bonus));

@@ -55,14 +55,14 @@ impl ProductPart for Research {
         product.projects.len() + product.offers.len()
     }
 
-    fn summary(&self, product: &Product, company: &Company) -> String {
+    fn summary(&self, product: &Product, company: &Company, _: usize) -> String {
         summary(&product.projects, company.seen.last_day)
     }
 
-    fn note(&self, product: &Product, company: &Company) -> String {
+    fn note(&self, product: &Product, company: &Company, width: usize) -> String {
         match product.focus == self.name() {
             true => format!("{} to spend", dollars(company.seen.cash)),
-            false => self.summary(product, company),
+            false => self.summary(product, company, width),
         }
     }
 

@@ -11,6 +11,7 @@ use crate::console::effect::Effect;
 use crate::console::screens::Figure;
 use crate::console::screens::panes::Seat;
 use crate::console::text::number;
+use crate::console::text::fitting;
 use crate::console::theme::Role;
 use crate::console::widgets::chart::NO_DATA;
 use crate::console::widgets::spark;
@@ -24,8 +25,8 @@ impl ProductPart for Service {
         ProductPane::Service
     }
 
-    fn summary(&self, product: &Product, _: &Company) -> String {
-        summary(&product.days)
+    fn summary(&self, product: &Product, _: &Company, width: usize) -> String {
+        fitting(summary(&product.days), width)
     }
 
     fn destination(&self, _: &Product) -> &'static str {
@@ -62,16 +63,16 @@ fn peak(days: &[f64]) -> f64 {
     days.iter().copied().fold(0.0, f64::max)
 }
 
-/// One line on the service.
-pub fn summary(days: &[Day]) -> String {
-    let Some(last) = days.last() else { return NO_DATA.to_owned() };
+/// One line on the service, the longer wording first.
+pub fn summary(days: &[Day]) -> Vec<String> {
+    let Some(last) = days.last() else { return vec![NO_DATA.to_owned()] };
     let minutes: f64 = days.iter().rev().take(28).map(|day| day.downtime).sum();
-    format!(
-        "p95 {} ms · errors {} · outage {} min in 28 days",
-        grouped(last.latency, 0),
-        percent(last.errors, 2),
-        number(minutes)
-    )
+    let (latency, errors) = (grouped(last.latency, 0), percent(last.errors, 2));
+    let outage = format!("outage {} min", number(minutes));
+    vec![
+        format!("p95 {latency} ms · errors {errors} · {outage} in 28 days"),
+        format!("p95 {latency} ms · errors {errors} · {outage}/28 d"),
+    ]
 }
 
 /// Draws the measures of the service by day, then the last outages.

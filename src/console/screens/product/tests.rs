@@ -212,7 +212,7 @@ fn load_is_the_share_of_the_capacity_that_is_used() {
 fn minutes_of_outage_add_up_to_the_minutes_in_the_title() {
     let day = |day: u32, downtime: f64| Day { day, downtime, capacity: 1.0, ..Day::default() };
     let days: Vec<Day> = (1..=28).map(|at| day(at, if at % 10 == 0 { 30.0 } else { 0.0 })).collect();
-    assert!(service::summary(&days).contains("outage 60 min in 28 days"));
+    assert!(service::summary(&days)[0].contains("outage 60 min in 28 days"));
     let text = crate::console::test_kit::painted(90, 8, |canvas, area| service::draw(canvas, area, &days));
     let line = text.iter().find(|line| line.starts_with("outage, minutes")).expect("a line");
     let figures: Vec<&str> = line.split_whitespace().skip(2).take(3).collect();

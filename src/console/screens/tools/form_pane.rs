@@ -6,7 +6,7 @@ use ratatui::text::Line as TextLine;
 
 use super::form::Form;
 use super::grid::{draw_sheet, form_lines};
-use super::outcome::outcome_lines;
+use super::outcome::{Detail, OutcomeLines, outcome_lines};
 use super::sheet::Block;
 use super::{Tools, ToolsPane, figure};
 use crate::console::action::{Action, Scope};
@@ -103,14 +103,16 @@ impl Pane<Tools> for FormPane {
     fn draw(&self, tools: &Tools, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let Some(form) = tools.seen_form() else { return };
         let inside = Rect { x: seat.area.x + 1, width: seat.area.width.saturating_sub(2), ..seat.area };
-        let below = draw_head(form.spec, canvas, inside, look);
+        let Laid { head, outcome, gap } = lay_out(tools, form, inside, look);
         let lines = form_lines(form);
-        let outcome = outcome_lines(form, &tools.leads, &tools.sales, look, inside.width as usize);
-        let room = below.height.saturating_sub(outcome.len().min(below.height as usize / 2) as u16);
+        let below = draw_head(&head, canvas, inside);
+        // In a dense form what is typed has to be seen; otherwise half of the room is for what comes of it.
+        let kept = if gap == 0 { 0 } else { outcome.lines.len().min(below.height as usize / 2) };
+        let room = below.height.saturating_sub(kept as u16);
         let sheet = Rect { height: (lines.len() as u16).min(room), ..below };
         draw_sheet(form, &tools.leads, &lines, canvas, sheet, seat.focused);
-        let rest = under(below, sheet.height + u16::from(sheet.height > 0));
-        let used = draw_outcome(&outcome, canvas, rest, look);
+        let rest = under(below, sheet.height + gap.min(sheet.height));
+        let used = draw_outcome(&outcome.lines, canvas, rest, look);
         let below = under(rest, used + 1);
         let used = draw_earlier(&form.earlier, canvas, below);
         draw_manual(form.spec, canvas, under(below, used), look);
@@ -123,16 +125,47 @@ fn under(area: Rect, rows: u16) -> Rect {
     Rect { y: area.y + rows, height: area.height - rows, ..area }
 }
 
-/// What the tool does and costs; returns the area below, after a blank row.
-fn draw_head(spec: &Spec, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) -> Rect {
-    let width = area.width as usize;
-    let summary = wrapped(&format!("{}.", spec.summary), width);
-    let terms = wrapped(&terms(spec, &look.company.numbers, look.company.seen.day), width);
-    let line = |text: &String, role| TextLine::from(canvas.span(text.clone(), role));
-    let summary = summary.iter().map(|text| line(text, Role::Strong));
-    let head: Vec<TextLine<'_>> = summary.chain(terms.iter().map(|text| line(text, Role::Text))).collect();
-    canvas.lines(area, &head);
-    under(area, head.len() as u16 + 1)
+/// Width from which on the margins in brief have a line for each plan.
+const BRIEF: usize = 36;
+
+/// How a form is laid out.
+struct Laid {
+    /// What the tool does and costs, with a blank row where there is room.
+    head: Vec<(String, Role)>,
+    outcome: OutcomeLines,
+    /// Blank rows below the values.
+    gap: u16,
+}
+
+/// Everything in its usual form if the margins have room in it, otherwise denser, with as much of the head as fits.
+fn lay_out(tools: &Tools, form: &Form, area: Rect, look: &Look<'_>) -> Laid {
+    let (width, values) = (area.width as usize, form_lines(form).len());
+    let lines = |text: &str, role: Role| wrapped(text, width).into_iter().map(move |line| (line, role));
+    let summary: Vec<_> = lines(&format!("{}.", form.spec.summary), Role::Strong).collect();
+    let terms = terms(form.spec, &look.company.numbers, look.company.seen.day);
+    let terms: Vec<_> = summary.iter().cloned().chain(lines(&terms, Role::Text)).collect();
+    let blank: Vec<_> = terms.iter().cloned().chain([(String::new(), Role::Text)]).collect();
+    let told = |detail| outcome_lines(form, &tools.leads, &tools.sales, look, (width, detail));
+    // A row is kept for what says that there is more.
+    let fits = |head: &[(String, Role)], gap: usize, outcome: &OutcomeLines| {
+        head.len() + values + gap + outcome.needed < area.height as usize && !outcome.is_cut(width)
+    };
+    let usual = told(Detail::Usual);
+    if usual.needed == 0 || width < BRIEF || fits(&blank, 1, &usual) {
+        return Laid { head: blank, outcome: usual, gap: 1 };
+    }
+    let dense = told(Detail::Dense);
+    let outcome = if fits(&summary, 0, &dense) { dense } else { told(Detail::Brief) };
+    let head = [blank, terms, summary].into_iter().find(|head| fits(head, 0, &outcome)).unwrap_or_default();
+    Laid { head, outcome, gap: 0 }
+}
+
+/// What the tool does and costs; returns the area below.
+fn draw_head(head: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect) -> Rect {
+    let lines: Vec<TextLine<'_>> =
+        head.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
+    canvas.lines(area, &lines);
+    under(area, head.len() as u16)
 }
 
 /// What the call would do, and what came of it; returns the rows taken.

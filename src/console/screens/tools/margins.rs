@@ -2,12 +2,13 @@
 
 use super::form::Form;
 use crate::console::company::Company;
-use crate::report::plan_margins::{Lever, PlanTerms, Sales, margin_lines};
+use crate::report::plan_margins::{Lever, PlanTerms, Sales, margin_lines, margin_summary};
 use crate::tools::ToolId;
 use crate::world::identifiers::ByPlan;
 
-/// Lines beside a form, the first one a head; empty where no margin follows from its tool.
-pub fn margins(form: &Form, sales: &Sales, company: &Company) -> Vec<String> {
+/// Lines beside a form, the first one a head: on every model, or in brief on the own one; empty where no margin follows
+/// from its tool.
+pub fn margins(form: &Form, sales: &Sales, company: &Company, brief: bool) -> Vec<String> {
     let Some(lever) = Lever::of(form.spec.id) else { return Vec::new() };
     let now = ByPlan::from_fn(|plan| PlanTerms {
         price: company.setting(ToolId::SetPrices, plan.id()),
@@ -18,5 +19,6 @@ pub fn margins(form: &Form, sales: &Sales, company: &Company) -> Vec<String> {
     let mut models: Vec<(u8, f64)> =
         company.costs.model_tiers.iter().map(|(tier, model)| (*tier, model.cost_per_usage_unit)).collect();
     models.sort_by_key(|(tier, _)| *tier);
-    margin_lines(sales, &terms, lever, &models, company.seen.day)
+    let lines = if brief { margin_summary } else { margin_lines };
+    lines(sales, &terms, lever, &models, company.seen.day)
 }

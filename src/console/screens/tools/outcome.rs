@@ -70,20 +70,47 @@ fn rate_in_words(rate: f64) -> String {
     grouped(rate, if rate < 10.0 { 1 } else { 0 })
 }
 
+/// How much stands below the values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Detail {
+    /// Everything, with blank rows.
+    Usual,
+    /// Nothing twice, and no blank rows.
+    Dense,
+    /// The same, with the margins of the models that are set alone.
+    Brief,
+}
+
+/// What stands below the values.
+pub(super) struct OutcomeLines {
+    /// The lines.
+    pub lines: Vec<(String, Role)>,
+    /// The first of them, with every row of the margins; 0 where the tool has none.
+    pub needed: usize,
+}
+
+impl OutcomeLines {
+    /// Whether a row of the margins is wider than there is room.
+    pub fn is_cut(&self, width: usize) -> bool {
+        self.lines.iter().take(self.needed).any(|(line, _)| line.chars().count() > width)
+    }
+}
+
 /// What stands below the values: what the call would do, the call itself, the effect, what helps, the answer.
 pub(super) fn outcome_lines(
     form: &Form,
     leads: &Leads,
     sales: &Sales,
     look: &Look<'_>,
-    width: usize,
-) -> Vec<(String, Role)> {
+    (width, detail): (usize, Detail),
+) -> OutcomeLines {
+    let dense = detail != Detail::Usual;
     let mut lines: Vec<(String, Role)> = Vec::new();
     let mut paragraph = |text: &str, role: Role| {
         lines.extend(wrapped(text, width).into_iter().map(|line| (line, role)));
     };
     if form.spec.kind.acts() && form.sheet.is_changed() {
-        paragraph(&draft_line(form, look), Role::Changed);
+        paragraph(&draft_line(form, look, dense), Role::Changed);
     }
     match &form.preview {
         Some(Ok(preview)) => {
@@ -97,7 +124,7 @@ pub(super) fn outcome_lines(
         Some(Err(refusal)) => paragraph(&format!("! {}", refusal.message), Role::Bad),
         None => {}
     }
-    if form.sheet.is_changed() || !form.spec.kind.acts() {
+    if !dense && (form.sheet.is_changed() || !form.spec.kind.acts()) {
         paragraph(&format!("≡ {}", form.call()), Role::Dim);
     }
     if let Some(words) = form.cell_names().and_then(|(channel, group)| leads.of(channel, group)) {
@@ -108,15 +135,21 @@ pub(super) fn outcome_lines(
     {
         answer_lines(answer, &mut paragraph);
     }
-    let tables = [margins(form, sales, look.company), reference(form.spec.id, look.company)];
-    for table in tables.iter().filter(|table| !table.is_empty()) {
-        lines.push((" ".to_owned(), Role::Text));
+    let tables = [margins(form, sales, look.company, detail == Detail::Brief), reference(form.spec.id, look.company)];
+    let mut needed = 0;
+    for (number, table) in tables.iter().enumerate().filter(|(_, table)| !table.is_empty()) {
+        if !dense {
+            lines.push((" ".to_owned(), Role::Text));
+        }
         for (at, line) in table.iter().enumerate() {
             let role = if at == 0 { Role::Header } else { Role::Text };
             // Rows of a table keep their blanks; sentences below it may need a second line.
             let is_row = line.contains("  ") || line.chars().count() <= width;
             let parts = if is_row { vec![line.clone()] } else { wrapped(line, width) };
             lines.extend(parts.into_iter().map(|part| (part, role)));
+            if number == 0 && (line.contains("  ") || detail == Detail::Brief) {
+                needed = lines.len();
+            }
         }
     }
     let mut about = |text: &str| {
@@ -126,11 +159,11 @@ pub(super) fn outcome_lines(
         }
     };
     about(&look.company.numbers.fill(form.spec.effect));
-    lines
+    OutcomeLines { lines, needed }
 }
 
 /// What is typed and not sent: one value as old → new, and what to do with the draft.
-fn draft_line(form: &Form, look: &Look<'_>) -> String {
+fn draft_line(form: &Form, look: &Look<'_>, dense: bool) -> String {
     let changes: Vec<String> = form
         .sheet
         .places()
@@ -152,7 +185,8 @@ fn draft_line(form: &Form, look: &Look<'_>) -> String {
         words += &format!(" · {more} more");
     }
     let keys = look.hints(&[Action::Apply, Action::ResetForm]);
-    format!("* draft, kept until sent or reset{}{words} ({keys})", if words.is_empty() { "" } else { ": " })
+    let draft = if dense { "* draft" } else { "* draft, kept until sent or reset" };
+    format!("{draft}{}{words} ({keys})", if words.is_empty() { "" } else { ": " })
 }
 
 fn answer_lines(answer: &Result<Value, crate::session::Refusal>, paragraph: &mut impl FnMut(&str, Role)) {

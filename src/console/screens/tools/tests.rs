@@ -8,6 +8,7 @@ use crate::console::test_kit::{act, company, drawn, played, shown, sweep};
 use crate::console::request::Request;
 use crate::session::{Refusal, Via};
 use crate::tools::ToolId;
+use crate::world::identifiers::Plan;
 
 /// Types into the form of a tool; words are keys, the rest is typed letter by letter.
 fn typed(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
@@ -338,5 +339,33 @@ fn columns_of_projects_stand_apart() {
         let (cost, after) = (&line[..ends], &line[ends..]);
         assert!(cost.ends_with(|last: char| last.is_ascii_digit()) && after.starts_with("  "), "{line}");
         assert!(cost.contains("  $"), "{line}");
+    }
+}
+
+#[test]
+fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
+    let mut session = played(6);
+    let company = Company::of(&session);
+    let mut screen: Tools = shown(&mut session, &company);
+    let sold: Vec<&str> =
+        Plan::ALL.into_iter().filter(|plan| screen.sales.of_plan(*plan).usage().is_some()).map(Plan::id).collect();
+    assert!(sold.len() >= 2, "{sold:?}");
+    for tool in [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetUsageQuotas] {
+        for draft in [json!({}), json!({"A": 4, "B": 3, "C": 5})] {
+            screen.prefill(tool, &draft, &company);
+            screen.focus_on(ToolsPane::Form);
+            for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
+                let text = drawn(&screen, &company, width, height);
+                let holds = |words: &[&str]| text.lines().any(|line| words.iter().all(|word| line.contains(word)));
+                let at = format!("{tool} {draft} at {width}x{height} in\n{text}");
+                for plan in ["A", "B", "C"] {
+                    let now = crate::console::text::number(company.setting(tool, plan));
+                    assert!(holds(&[&format!(" {plan}  "), &now]), "value of {plan}: {at}");
+                }
+                for plan in &sold {
+                    assert!(holds(&[&format!(" {plan} "), "paid $", "%"]), "margin of {plan}: {at}");
+                }
+            }
+        }
     }
 }

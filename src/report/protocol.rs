@@ -221,7 +221,7 @@ fn exclusion(study: &Study) -> String {
     format!(
         "## Exclusion\n\nBefore any result is looked at, `novamind study audit` is run. {witness} A session with one of \
          these findings is excluded, and reported as excluded: {}. To be decided before the first session: the number of failed \
-         attention checks, of naive weeks and of weeks decided in less than ten seconds from which a session is excluded.\n",
+         attention checks, of naive weeks and of weeks decided in less than ten active seconds from which a session is excluded.\n",
         grave.join(", ")
     )
 }

@@ -352,6 +352,16 @@ fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
     assert_eq!(export(&bare, lab.0.0.path()).code, 0);
     let noted = collect(&[&bare], "data-2");
     assert!(noted.code == 1 && noted.out.contains("not signed: "), "{}", noted.out);
+    // The audit asks for the signatures of archives in the folders that it is given.
+    let of_folder = |name: &str| {
+        let place = lab.0.0.path().join(name).display().to_string();
+        lab.0.run(&["study", "audit", &lab.folder(), &place])
+    };
+    assert!(of_folder("data").out.contains("Nothing was found"));
+    fs::create_dir(lab.0.0.path().join("loose")).expect("a folder");
+    fs::copy(&bare, lab.0.0.path().join("loose/p01.tar.gz")).expect("copied");
+    let loose = of_folder("loose");
+    assert!(loose.code == 1 && loose.out.contains("archive not signed"), "{}", loose.out);
     let audited = lab.0.run(&["study", "audit", &lab.folder()]);
     assert!(audited.out.contains("Nothing was found"), "{}", audited.out);
 }

@@ -55,11 +55,13 @@ pub enum AuditKind {
     OtherMachine,
     /// A participant has two sessions.
     SecondSession,
+    /// An archive does not carry the signature of the lab.
+    NotSigned,
 }
 
 impl AuditKind {
     /// Every kind, the gravest first.
-    pub const ALL: [AuditKind; 16] = [
+    pub const ALL: [AuditKind; 17] = [
         AuditKind::Missing,
         AuditKind::Damaged,
         AuditKind::Changed,
@@ -76,6 +78,7 @@ impl AuditKind {
         AuditKind::Clock,
         AuditKind::OtherMachine,
         AuditKind::SecondSession,
+        AuditKind::NotSigned,
     ];
 
     /// In words.
@@ -97,6 +100,7 @@ impl AuditKind {
             AuditKind::Clock => "clock set",
             AuditKind::OtherMachine => "other machine",
             AuditKind::SecondSession => "second session",
+            AuditKind::NotSigned => "archive not signed",
         }
     }
 }

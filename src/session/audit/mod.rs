@@ -4,6 +4,7 @@
 //! remembers otherwise: the chain of hashes, the simulation, a witness on another machine, the machine's list of opened
 //! worlds, the assignment, the clock that nobody sets.
 
+mod archives;
 mod clock;
 mod facts;
 mod finding;
@@ -45,7 +46,7 @@ pub struct Audit {
 /// protocol, unless another is named.
 ///
 /// # Errors
-/// The witness cannot be read.
+/// The witness or the public key of the lab cannot be read.
 pub fn audit(study: &Study, machines: &[PathBuf], witness: Option<&Path>) -> Result<Audit, RunError> {
     let records: Vec<MachineRecord> = machines.iter().map(|base| MachineRecord::read(base)).collect();
     let witness = witness.map(Path::to_owned).or_else(|| study.witness());
@@ -61,6 +62,7 @@ pub fn audit(study: &Study, machines: &[PathBuf], witness: Option<&Path>) -> Res
         }
     }
     audit.findings.extend(second_sessions(study, &records));
+    audit.findings.extend(archives::not_signed(study, machines)?);
     if let Some(record) = &told {
         audit.findings.extend(gone(&records, &record.runs));
     }

@@ -144,6 +144,12 @@ fn watched(home: &Home) {
         drop(run);
         run = Session::open(&folder, Access::Write, true).expect("it opens");
     }
+    // Somebody looks at how it ended, and leaves.
+    run.take_up(console);
+    wait();
+    run.note_view("cash", "overview", 11);
+    run.note_presence(PresenceEvent::FocusLost, None, None);
+    wait();
     run.set_memo("afterwards").expect("notes");
 }
 
@@ -170,7 +176,9 @@ fn an_independent_script_computes_every_measure_alike() {
     ] {
         assert_eq!(person[column], value, "{column}");
     }
-    for column in ["idle_seconds", "away_seconds", "paused_seconds", "active_seconds"] {
+    for column in
+        ["idle_seconds", "away_seconds", "paused_seconds", "active_seconds", "active_seconds_after_end"]
+    {
         assert!(person[column].parse::<f64>().expect("a number") > 0.0, "{column}");
     }
     let answers = table(&out.join("answers.csv"));

@@ -1,0 +1,64 @@
+//! Archives that lie among the runs: whether the lab whose public key the study has signed them.
+
+use std::path::{Path, PathBuf};
+
+use super::{AuditFinding, AuditKind};
+use crate::session::archive::{LabPublicKey, Workshop, place_run};
+use crate::session::error::RunError;
+use crate::session::folder::manifest::Manifest;
+use crate::session::study::definition::Study;
+use crate::session::study::keys::lab_public_key_of;
+
+/// Archives of the study in folders that the lab has not signed, or that are damaged. Without a public key nothing is
+/// asked.
+///
+/// # Errors
+/// The public key cannot be read; there is no room to unpack.
+pub(super) fn not_signed(study: &Study, folders: &[PathBuf]) -> Result<Vec<AuditFinding>, RunError> {
+    let Some(lab) = lab_public_key_of(&study.folder)? else { return Ok(Vec::new()) };
+    let workshop = Workshop::within(&std::env::temp_dir())?;
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
+    let mut archives: Vec<PathBuf> =
+        entries.map(|entry| entry.path()).filter(|path| is_archive(path)).collect();
+    archives.sort_unstable();
+    let inspect = |(number, archive): (usize, &PathBuf)| {
+        let place = workshop.path().join(number.to_string());
+        let found = inspect(study, &lab, archive, &place);
+        let _ = std::fs::remove_dir_all(place);
+        found
+    };
+    Ok(archives.iter().enumerate().filter_map(inspect).collect())
+}
+
+fn is_archive(path: &Path) -> bool {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    path.is_file() && [".tar", ".tar.gz", ".tgz"].iter().any(|ending| name.ends_with(ending))
+}
+
+fn inspect(study: &Study, lab: &LabPublicKey, archive: &Path, place: &Path) -> Option<AuditFinding> {
+    let finding = |kind, run: &str, participant, words| {
+        let (run, at) = (run.to_owned(), String::new());
+        AuditFinding { kind, run, participant, line: None, at, words }
+    };
+    let unpacked =
+        std::fs::create_dir(place).map_err(RunError::io(place)).and_then(|()| place_run(place, archive));
+    let (seal, signer, _) = match unpacked {
+        Ok(unpacked) => unpacked,
+        // An archive that cannot be read does not say whose run it holds.
+        Err(problem) => return Some(finding(AuditKind::Damaged, "?", None, problem.to_string())),
+    };
+    let manifest = Manifest::read(&place.join(&seal.run)).ok()?;
+    manifest.study.as_ref().filter(|stamp| stamp.digest == study.digest)?;
+    if signer.as_ref() == Some(lab) {
+        return None;
+    }
+    let words = match signer {
+        None => format!("{} is not signed", archive.display()),
+        Some(key) => format!(
+            "{} is signed by the key {}, which is not the lab's",
+            archive.display(),
+            key.fingerprint()
+        ),
+    };
+    Some(finding(AuditKind::NotSigned, &seal.run, manifest.participant, words))
+}

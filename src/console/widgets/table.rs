@@ -173,6 +173,11 @@ impl Table {
         self.is_typing() || !self.filter.is_empty()
     }
 
+    /// The text that the rows shown have; empty where all are shown.
+    pub fn filter_text(&self) -> &str {
+        &self.filter
+    }
+
     /// The field of the filter.
     pub fn typing(&mut self) -> Option<&mut Field> {
         self.typing.as_mut()

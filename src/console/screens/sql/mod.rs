@@ -5,6 +5,7 @@ mod completion;
 mod editor;
 mod history;
 mod lexer;
+mod meant;
 mod over;
 mod panes;
 mod picker;

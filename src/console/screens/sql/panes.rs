@@ -212,21 +212,26 @@ impl Sql {
     /// Counts the focused column, or asks what its pivot is made of.
     fn sum_up(&mut self, action: Action) -> Vec<Effect> {
         let complain = |text: &str| vec![Effect::Complain(text.to_owned())];
-        let (Some(sql), Some((rows, at))) = (self.results.statement(), self.results.shown().focused_column()) else {
+        let shown = self.results.shown();
+        let (Some(sql), Some((rows, at))) = (self.results.statement(), shown.focused_column()) else {
             return complain(NO_RESULT);
         };
+        let meant = shown.rows_meant();
+        let warning = meant.warning().map(Effect::Say);
         if self.is_running() {
             return complain("a query is running; esc cancels it");
         }
         if action == Action::Pivot {
-            match PivotChoice::of(sql, rows, at) {
+            match PivotChoice::of(sql, shown.held(&meant), at, meant) {
                 Some(choice) => self.over = Some(Over::Pivot(choice)),
                 None => return complain(NOT_A_TABLE),
             }
-            return Vec::new();
+            return warning.into_iter().collect();
         }
-        let Some(counting) = count(sql, &rows.columns, at) else { return complain(NOT_A_TABLE) };
-        self.edit_and_run_derived(&counting)
+        let Some(counting) = count(sql, &rows.columns, at, &meant) else { return complain(NOT_A_TABLE) };
+        let mut effects = self.edit_and_run_derived(&counting);
+        effects.extend(warning);
+        effects
     }
 
     /// Puts the selected name of the tables into the editor.

@@ -2,6 +2,7 @@
 
 use ratatui::layout::Rect;
 
+use super::meant::RowsMeant;
 use super::summary::{Aggregate, Distinct, MOST_ACROSS, PivotShape, pivot};
 use super::values::is_numeric;
 use crate::console::action::Action;
@@ -17,6 +18,8 @@ const RUN: usize = LINES - 1;
 /// A pivot that is being chosen.
 pub struct PivotChoice {
     sql: String,
+    meant: RowsMeant,
+    /// Of the rows that are meant those that are held.
     held: Rows,
     shape: PivotShape,
     /// Columns that can be aggregated.
@@ -36,12 +39,13 @@ pub enum PivotStep {
 }
 
 impl PivotChoice {
-    /// A pivot of the result of a statement by one of its columns; none where it cannot be pivoted.
-    pub fn of(sql: &str, held: &Rows, rows: usize) -> Option<PivotChoice> {
+    /// A pivot of the rows that are meant of the result of a statement, by one of its columns; none where it cannot be
+    /// pivoted.
+    pub fn of(sql: &str, held: Rows, rows: usize, meant: RowsMeant) -> Option<PivotChoice> {
         let numeric: Vec<usize> =
-            (0..held.columns.len()).filter(|at| *at != rows && is_numeric(held, *at)).collect();
+            (0..held.columns.len()).filter(|at| *at != rows && is_numeric(&held, *at)).collect();
         let few = |at: &usize| {
-            let Distinct { values, .. } = Distinct::of(held, *at);
+            let Distinct { values, .. } = Distinct::of(&held, *at);
             *at != rows && (2..MOST_ACROSS).contains(&values.len()) && values.len() < held.rows.len()
         };
         let is_real = |at: usize| held.rows.iter().any(|row| matches!(row.get(at), Some(Cell::Real(_))));
@@ -50,8 +54,8 @@ impl PivotChoice {
         let aggregate = if values.is_some() { Aggregate::Sum } else { Aggregate::Count };
         let shape = PivotShape { rows, across, values, aggregate };
         // Only where a statement comes of it is there something to choose.
-        pivot(sql, held, shape)?;
-        Some(PivotChoice { sql: sql.to_owned(), held: held.clone(), shape, numeric, line: 0 })
+        pivot(sql, &held, shape, &meant)?;
+        Some(PivotChoice { sql: sql.to_owned(), meant, held, shape, numeric, line: 0 })
     }
 
     /// Walks over the lines, changes one, runs or leaves.
@@ -62,7 +66,7 @@ impl PivotChoice {
             Action::Left => self.turn(false),
             Action::Right => self.turn(true),
             Action::Open => {
-                return pivot(&self.sql, &self.held, self.shape).map_or(PivotStep::Left, PivotStep::Run);
+                return pivot(&self.sql, &self.held, self.shape, &self.meant).map_or(PivotStep::Left, PivotStep::Run);
             }
             Action::Close => return PivotStep::Left,
             _ => {}
@@ -128,7 +132,8 @@ impl PivotChoice {
         canvas.clear(own, Role::Text);
         canvas.clicks.clear();
         let title = format!("Pivot by {}", self.held.columns[self.shape.rows]);
-        let inside = canvas.pane(own, &title, "", true);
+        let words = self.meant.in_words();
+        let inside = canvas.pane(own, &title, words.trim_start_matches(", "), true);
         for (row, (at, (label, value))) in rows_of(inside).zip(self.lines().into_iter().enumerate()) {
             let selected = at == self.line;
             let role = |other| if selected { Role::Selection } else { other };
@@ -179,17 +184,17 @@ mod tests {
 
     #[test]
     fn two_keys_give_the_pivot_that_is_likely() {
-        let mut choice = PivotChoice::of("SELECT * FROM t", &held(), 0).expect("a choice");
+        let mut choice = PivotChoice::of("SELECT * FROM t", held(), 0, RowsMeant::All).expect("a choice");
         let shape = PivotShape { rows: 0, across: Some(1), values: Some(3), aggregate: Aggregate::Sum };
         assert_eq!(choice.shape, shape, "neither days nor decimals are columns, days are not added up");
         assert!(matches!(choice.act(Action::Open), PivotStep::Run(sql) if sql.contains("sum(amount) FILTER")));
         assert_eq!(choice.act(Action::Close), PivotStep::Left);
-        assert!(PivotChoice::of("EXPLAIN QUERY PLAN SELECT 1", &held(), 0).is_none());
+        assert!(PivotChoice::of("EXPLAIN QUERY PLAN SELECT 1", held(), 0, RowsMeant::All).is_none());
     }
 
     #[test]
     fn lines_change_by_key_and_by_click() {
-        let mut choice = PivotChoice::of("SELECT * FROM t", &held(), 0).expect("a choice");
+        let mut choice = PivotChoice::of("SELECT * FROM t", held(), 0, RowsMeant::All).expect("a choice");
         choice.act(Action::Left);
         assert_eq!(choice.shape.across, None);
         choice.act(Action::Left);

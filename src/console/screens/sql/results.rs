@@ -5,6 +5,7 @@ use std::time::Duration;
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
+use super::meant::RowsMeant;
 use super::plot::PlottedColumns;
 use super::{takeout, values};
 use crate::console::action::Action;
@@ -113,6 +114,21 @@ impl Results {
     pub fn focused_column(&self) -> Option<(&Rows, usize)> {
         let at = self.table.selected_column();
         self.rows().filter(|rows| at < rows.columns.len()).map(|rows| (rows, at))
+    }
+
+    /// The rows that are counted and pivoted.
+    pub fn rows_meant(&self) -> RowsMeant {
+        let all = |rows| RowsMeant::by(self.table.filter_text(), rows, self.table.shown());
+        self.rows().map_or(RowsMeant::All, all)
+    }
+
+    /// Those of them that are held.
+    pub fn held(&self, meant: &RowsMeant) -> Rows {
+        let Some(all) = self.rows() else { return Rows::default() };
+        match (meant, self.rows_as_shown()) {
+            (RowsMeant::Holding { .. }, Some(shown)) => Rows { truncated: all.truncated, ..shown },
+            _ => all.clone(),
+        }
     }
 
     /// Whether there are rows to take somewhere.

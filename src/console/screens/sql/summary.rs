@@ -1,7 +1,9 @@
 //! Statements over a statement: how often each value of a column stands in its result, and a pivot of it. The database
-//! answers them, so they cover every row, and not only those that are held; and they are recorded as any query is.
+//! answers them, so they cover every row, and not only those that are held; they hold the filter of the screen; and they are recorded as any
+//! query is.
 
 use super::lexer::{KEYWORDS, tokens};
+use super::meant::RowsMeant;
 use super::picker::in_a_line;
 use super::values::whole;
 use crate::session::library::body;
@@ -68,14 +70,14 @@ pub struct PivotShape {
 struct Source {
     /// What stands before the other one.
     with: String,
-    /// What it reads from.
+    /// What it reads from, with the clause for the rows that are meant.
     from: String,
     /// Its columns as SQL writes them.
     names: Vec<String>,
 }
 
 impl Source {
-    fn of(sql: &str, columns: &[String]) -> Option<Source> {
+    fn of(sql: &str, columns: &[String], meant: &RowsMeant) -> Option<Source> {
         let body = body(sql).trim().trim_end_matches(';').trim_end();
         let first = tokens(body).into_iter().next()?;
         if body[first.place].eq_ignore_ascii_case("EXPLAIN") {
@@ -90,12 +92,13 @@ impl Source {
             given.extend(std::iter::once(first.clone()).chain(numbered).find(free));
         }
         let names: Vec<String> = given.iter().map(|name| identifier(name)).collect();
+        let clause = meant.clause(&names);
         // A name that is not found would be a text in double quotes: what is no plain word gets its name here.
         Some(match given == columns && names == given {
-            true => Source { with: String::new(), from: format!("(\n{body}\n)"), names },
+            true => Source { with: String::new(), from: format!("(\n{body}\n){clause}"), names },
             false => Source {
                 with: format!("WITH result ({}) AS (\n{body}\n)\n", names.join(", ")),
-                from: "result".to_owned(),
+                from: format!("result{clause}"),
                 names,
             },
         })
@@ -122,21 +125,22 @@ fn literal(cell: &Cell) -> Option<String> {
 }
 
 /// A statement that tells how often each value of a column stands in the result of another one, the most frequent first.
-pub fn count(sql: &str, columns: &[String], at: usize) -> Option<String> {
-    let source = Source::of(sql, columns)?;
+pub fn count(sql: &str, columns: &[String], at: usize, meant: &RowsMeant) -> Option<String> {
+    let source = Source::of(sql, columns, meant)?;
     let name = source.names.get(at)?;
     Some(format!(
-        "-- title: {} counted\n{}SELECT {name}, count(*) AS count,\n    \
+        "-- title: {} counted{}\n{}SELECT {name}, count(*) AS count,\n    \
          round(100.0 * count(*) / sum(count(*)) OVER (), 1) AS percent\nFROM {}\nGROUP BY 1\nORDER BY 2 DESC, 1",
         in_a_line(&columns[at]),
+        meant.in_words(),
         source.with,
         source.from
     ))
 }
 
-/// A statement that pivots the result of another one, of which some rows are held.
-pub fn pivot(sql: &str, held: &Rows, shape: PivotShape) -> Option<String> {
-    let source = Source::of(sql, &held.columns)?;
+/// A statement that pivots the result of another one, of which some rows are held: of those that are meant.
+pub fn pivot(sql: &str, held: &Rows, shape: PivotShape, meant: &RowsMeant) -> Option<String> {
+    let source = Source::of(sql, &held.columns, meant)?;
     let PivotShape { rows, across, values, aggregate } = shape;
     let name = |at: usize| source.names.get(at).map(String::as_str);
     let aggregated = aggregate.sql(values.and_then(name));
@@ -165,8 +169,9 @@ pub fn pivot(sql: &str, held: &Rows, shape: PivotShape) -> Option<String> {
         cells.push(format!("{aggregated} AS {}", identifier(&alias)));
     }
     Some(format!(
-        "-- title: {}\n{}SELECT {}\nFROM {}\nGROUP BY 1\nORDER BY 1",
+        "-- title: {}{}\n{}SELECT {}\nFROM {}\nGROUP BY 1\nORDER BY 1",
         title(held, shape),
+        meant.in_words(),
         source.with,
         cells.join(",\n    "),
         source.from
@@ -254,7 +259,7 @@ mod tests {
     fn values_are_counted_with_their_shares() {
         let mut session = session();
         let rows = asked(&mut session, SQL);
-        let counted = asked(&mut session, &count(SQL, &rows.columns, 0).expect("a statement"));
+        let counted = asked(&mut session, &count(SQL, &rows.columns, 0, &RowsMeant::All).expect("a statement"));
         assert_eq!(counted.columns, ["group by", "count", "percent"]);
         let text = |text: &str| Cell::Text(text.to_owned());
         let row = |cell, count, percent| vec![cell, Cell::Integer(count), Cell::Real(percent)];
@@ -262,7 +267,7 @@ mod tests {
             counted.rows,
             [row(text("it's"), 2, 50.0), row(Cell::Null, 1, 25.0), row(text("b"), 1, 25.0)]
         );
-        let second = asked(&mut session, &count(SQL, &rows.columns, 2).expect("a statement"));
+        let second = asked(&mut session, &count(SQL, &rows.columns, 2, &RowsMeant::All).expect("a statement"));
         assert_eq!(second.rows.len(), 4, "the second column of a name is meant: {second:?}");
     }
 
@@ -272,10 +277,10 @@ mod tests {
         let sql = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000) SELECT x % 2 AS odd FROM n;";
         let held = asked(&mut session, sql);
         assert!(held.truncated);
-        let counted = asked(&mut session, &count(sql, &held.columns, 0).expect("a statement"));
+        let counted = asked(&mut session, &count(sql, &held.columns, 0, &RowsMeant::All).expect("a statement"));
         assert_eq!(counted.rows[0][1], Cell::Integer(4500));
         let shape = PivotShape { rows: 0, across: Some(0), values: None, aggregate: Aggregate::Count };
-        let pivoted = asked(&mut session, &pivot(sql, &held, shape).expect("a statement"));
+        let pivoted = asked(&mut session, &pivot(sql, &held, shape, &RowsMeant::All).expect("a statement"));
         assert_eq!(pivoted.columns, ["odd", "0", "1", "other", "all"], "other values cannot be excluded");
         assert_eq!(pivoted.rows[1][2..], [4500, 0, 4500].map(Cell::Integer));
     }
@@ -285,17 +290,17 @@ mod tests {
         let mut session = session();
         let held = asked(&mut session, SQL);
         let shape = PivotShape { rows: 1, across: Some(0), values: Some(2), aggregate: Aggregate::Sum };
-        let rows = asked(&mut session, &pivot(SQL, &held, shape).expect("a statement"));
+        let rows = asked(&mut session, &pivot(SQL, &held, shape, &RowsMeant::All).expect("a statement"));
         assert_eq!(rows.columns, ["n", "b", "it's", "NULL", "all"]);
         let real = Cell::Real;
         assert_eq!(rows.rows[0], [Cell::Integer(1), real(1.5), real(2.5), real(4.0), real(8.0)]);
         assert_eq!(rows.rows[1], [Cell::Integer(2), Cell::Null, Cell::Null, Cell::Null, Cell::Null]);
         for (aggregate, all) in [(Aggregate::Mean, 8.0 / 3.0), (Aggregate::Min, 1.5), (Aggregate::Max, 4.0)] {
-            let rows = asked(&mut session, &pivot(SQL, &held, PivotShape { aggregate, ..shape }).expect("one"));
+            let rows = asked(&mut session, &pivot(SQL, &held, PivotShape { aggregate, ..shape }, &RowsMeant::All).expect("one"));
             assert_eq!(rows.rows[0][4], real(all), "{aggregate:?}");
         }
         let flat = PivotShape { across: None, values: None, aggregate: Aggregate::Count, ..shape };
-        let rows = asked(&mut session, &pivot(SQL, &held, flat).expect("a statement"));
+        let rows = asked(&mut session, &pivot(SQL, &held, flat, &RowsMeant::All).expect("a statement"));
         assert_eq!((rows.columns[1].as_str(), &rows.rows[0][1]), ("count", &Cell::Integer(3)));
     }
 
@@ -306,7 +311,7 @@ mod tests {
                    SELECT 'a' AS k, nullif(x, 40) AS x FROM n";
         let held = asked(&mut session, sql);
         let shape = PivotShape { rows: 0, across: Some(1), values: None, aggregate: Aggregate::Count };
-        let rows = asked(&mut session, &pivot(sql, &held, shape).expect("a statement"));
+        let rows = asked(&mut session, &pivot(sql, &held, shape, &RowsMeant::All).expect("a statement"));
         assert_eq!(rows.columns.len(), 1 + MOST_ACROSS + 2);
         assert_eq!(rows.rows[0][1 + MOST_ACROSS..], [40 - MOST_ACROSS as i64, 40].map(Cell::Integer));
     }
@@ -314,9 +319,9 @@ mod tests {
     #[test]
     fn plain_columns_need_no_names_and_plans_are_refused() {
         let columns = ["plan", "day"].map(str::to_owned);
-        let sql = count("SELECT plan, day FROM t;", &columns, 0).expect("a statement");
+        let sql = count("SELECT plan, day FROM t;", &columns, 0, &RowsMeant::All).expect("a statement");
         assert!(sql.contains("FROM (\nSELECT plan, day FROM t\n)") && !sql.contains("WITH"), "{sql}");
-        assert_eq!(count("explain query plan SELECT 1", &columns, 0), None);
-        assert_eq!(count("-- only words", &columns, 0), None);
+        assert_eq!(count("explain query plan SELECT 1", &columns, 0, &RowsMeant::All), None);
+        assert_eq!(count("-- only words", &columns, 0, &RowsMeant::All), None);
     }
 }

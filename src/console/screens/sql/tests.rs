@@ -393,6 +393,43 @@ fn a_column_is_counted_by_a_query_that_can_be_edited() {
 }
 
 #[test]
+fn a_count_and_a_pivot_are_made_of_the_rows_that_the_filter_shows() {
+    let company = company();
+    let filtered = |text: &str| {
+        let mut screen = with_result(&company, "SELECT * FROM ad_channel_leads", three_rows());
+        let table = screen.results.shown_mut().table_mut();
+        table.act(Action::Filter, 5);
+        table.edit_filter(|field| field.insert(text));
+        table.act(Action::Commit, 5);
+        screen
+    };
+    let word = three_rows().rows[0].iter().find_map(|cell| match cell {
+        Cell::Text(text) => Some(text.clone()),
+        _ => None,
+    });
+    let word = word.expect("a word").to_lowercase();
+    let mut screen = filtered(&word);
+    let asked = act(&mut screen, &company, Action::CountColumn);
+    let clause = format!("'{word}') > 0");
+    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql.contains(&clause)), "{asked:?}");
+    let mut screen = filtered(&word);
+    act(&mut screen, &company, Action::Pivot);
+    assert!(holds(&picture(&screen, &company, 60, 12), &format!("rows with \"{word}\"")));
+    let asked = act(&mut screen, &company, Action::Open);
+    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql.contains(&clause)), "{asked:?}");
+    // No row of SQL is NULL in letters.
+    let mut rows = three_rows();
+    rows.rows[1][0] = Cell::Null;
+    let mut screen = with_result(&company, "SELECT * FROM ad_channel_leads", rows);
+    screen.results.shown_mut().table_mut().act(Action::Filter, 5);
+    screen.results.shown_mut().table_mut().edit_filter(|field| field.insert("null"));
+    screen.results.shown_mut().table_mut().act(Action::Commit, 5);
+    let asked = act(&mut screen, &company, Action::CountColumn);
+    let [Effect::Ask(sql), Effect::Say(words)] = &asked[..] else { panic!("{asked:?}") };
+    assert!(sql.contains("counted, all rows") && !sql.contains("WHERE") && words.contains("without the filter"), "{asked:?}");
+}
+
+#[test]
 fn a_pivot_takes_two_keys_and_is_drawn_at_every_size() {
     let company = company();
     let mut screen = with_result(&company, "SELECT * FROM ad_channel_leads", three_rows());

@@ -1,0 +1,142 @@
+//! Which rows of a result a count or a pivot is made of: all of them, or those that the filter of the screen lets through,
+//! as far as SQL chooses the same ones.
+
+use super::picker::in_a_line;
+use crate::session::{Cell, Rows};
+
+/// The rows that are meant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum RowsMeant {
+    /// All: there is no filter.
+    All,
+    /// Those that hold a text in one of some columns.
+    Holding {
+        /// The text, in small letters.
+        text: String,
+        /// Places of the columns.
+        columns: Vec<usize>,
+    },
+    /// All, although there is a filter: it looks at numbers as the screen writes them, and SQL does not know that form.
+    AllBesideFilter(String),
+}
+
+impl RowsMeant {
+    /// What a filter of the screen means; `shown` are the rows that it lets through.
+    pub fn by(filter: &str, held: &Rows, shown: &[usize]) -> RowsMeant {
+        if filter.is_empty() {
+            return RowsMeant::All;
+        }
+        let text = filter.to_lowercase();
+        let all: Vec<usize> = (0..held.columns.len()).filter(|at| is_exact(held, *at)).collect();
+        let chosen = |columns: &[usize]| -> Vec<usize> {
+            let holds = |row: &Vec<Cell>| columns.iter().any(|at| row.get(*at).is_some_and(|cell| cell_holds(cell, &text)));
+            (0..held.rows.len()).filter(|at| holds(&held.rows[*at])).collect()
+        };
+        let mut expected = shown.to_vec();
+        expected.sort_unstable();
+        // Of rows that are not here nothing is known: a text without a letter might stand in any of their numbers.
+        let is_certain = !held.truncated || text.chars().any(char::is_alphabetic);
+        if !is_certain || chosen(&all) != expected {
+            return RowsMeant::AllBesideFilter(filter.to_owned());
+        }
+        let one = all.iter().copied().find(|at| !held.truncated && chosen(&[*at]) == expected);
+        RowsMeant::Holding { text, columns: one.map_or(all, |at| vec![at]) }
+    }
+
+    /// The clause that chooses them, with a line end before it; `names` are the columns as SQL writes them.
+    pub fn clause(&self, names: &[String]) -> String {
+        let RowsMeant::Holding { text, columns } = self else { return String::new() };
+        let text = text.replace('\'', "''");
+        let holds = |at: &usize| names.get(*at).map(|name| format!("instr(lower({name}), '{text}') > 0"));
+        format!("\nWHERE {}", columns.iter().filter_map(holds).collect::<Vec<_>>().join("\n    OR "))
+    }
+
+    /// In words behind a title; empty where nothing has to be said.
+    pub fn in_words(&self) -> String {
+        match self {
+            RowsMeant::All => String::new(),
+            RowsMeant::Holding { text, .. } => format!(", rows with \"{}\"", in_a_line(text)),
+            RowsMeant::AllBesideFilter(_) => ", all rows".to_owned(),
+        }
+    }
+
+    /// Why the filter has no part in it, where there is one.
+    pub fn warning(&self) -> Option<String> {
+        let RowsMeant::AllBesideFilter(filter) = self else { return None };
+        Some(format!("all rows, without the filter \"{filter}\": SQL cannot tell which rows it shows"))
+    }
+}
+
+/// Whether SQL sees the values of a column as they are: decimals are rounded on the screen.
+fn is_exact(held: &Rows, at: usize) -> bool {
+    held.rows.iter().all(|row| !matches!(row.get(at), Some(Cell::Real(_))))
+}
+
+/// What `instr(lower(cell), text) > 0` says: `lower` changes the letters of ASCII alone.
+fn cell_holds(cell: &Cell, text: &str) -> bool {
+    match cell {
+        Cell::Text(own) => own.to_ascii_lowercase().contains(text),
+        Cell::Integer(number) => number.to_string().contains(text),
+        Cell::Real(_) | Cell::Null => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::screens::sql::summary::count;
+    use crate::console::screens::sql::values;
+    use crate::console::test_kit::session;
+    use crate::console::widgets::Table;
+
+    /// What a filter means, and the rows it shows.
+    fn meant(held: &Rows, filter: &str) -> (RowsMeant, usize) {
+        let mut table = Table::new(values::columns(held));
+        table.set_rows(values::cells(held));
+        table.act(crate::console::action::Action::Filter, 5);
+        table.edit_filter(|field| field.insert(filter));
+        (RowsMeant::by(filter, held, table.shown()), table.shown().len())
+    }
+
+    #[test]
+    fn a_filter_chooses_in_sql_the_rows_that_it_shows_or_is_said_to_be_left_out() {
+        let mut session = session();
+        let sql = "WITH t(name, units, price) AS (VALUES ('Ada''s', 1234, 2.5), ('GRÜN', 7, 12.0), ('grün 12', 12, NULL))
+                   SELECT * FROM t";
+        let held = session.query(sql).expect("rows");
+        for (filter, shown, told) in [
+            ("ada's", 1, true),
+            ("12", 2, false),  // in 12.0, and not in 1,234
+            ("1,2", 1, false), // as the screen writes 1234
+            ("34", 1, true),
+            ("gr", 2, true),
+            ("ü", 2, false), // lower knows no Ü
+            ("null", 1, false),
+            ("nothing", 0, true),
+        ] {
+            let (meant, rows) = meant(&held, filter);
+            assert_eq!(rows, shown, "{filter}");
+            assert_eq!(matches!(meant, RowsMeant::Holding { .. }), told, "{filter}: {meant:?}");
+            assert_eq!(meant.warning().is_some(), !told, "{filter}");
+            let counting = count(sql, &held.columns, 0, &meant).expect("a statement");
+            let counted = session.query(&counting).unwrap_or_else(|refusal| panic!("{refusal}\n{counting}"));
+            assert_eq!(counted.rows.len(), if told { shown } else { 3 }, "{counting}");
+            assert!(counting.contains(if told { ", rows with" } else { ", all rows" }), "{counting}");
+        }
+        assert_eq!(RowsMeant::by("", &held, &[0, 1, 2]), RowsMeant::All);
+    }
+
+    #[test]
+    fn of_rows_that_are_not_here_only_words_are_certain() {
+        let mut session = session();
+        let sql = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000)
+                   SELECT x % 2 AS odd, iif(x % 3, 'some', 'third') AS word FROM n";
+        let held = session.query(sql).expect("rows");
+        assert!(held.truncated);
+        assert!(matches!(meant(&held, "1").0, RowsMeant::AllBesideFilter(_)));
+        let (words, _) = meant(&held, "thi");
+        let counting = count(sql, &held.columns, 1, &words).expect("a statement");
+        let counted = session.query(&counting).expect("a count");
+        assert_eq!(counted.rows, [[Cell::Text("third".to_owned()), Cell::Integer(3000), Cell::Real(100.0)]]);
+    }
+}

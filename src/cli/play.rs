@@ -2,7 +2,6 @@
 
 use std::io::IsTerminal;
 use std::path::Path;
-use std::time::Instant;
 
 use clap::Args;
 
@@ -18,7 +17,7 @@ use crate::console::request::Request;
 use crate::console::theme::Theme;
 use crate::session::{
     Access, Configuration, ConsentGiven, ConsentMeans, Goal, Library, Mode, NewRun, RunError, Session,
-    Storage, Study, find_run,
+    Storage, Study, find_run, steady,
 };
 
 /// Options of `play`.
@@ -170,7 +169,7 @@ fn open(options: &Options, context: &Context) -> Result<Session, Failure> {
 fn create(new: NewRun, context: &Context) -> Result<Session, Failure> {
     match Session::create(new.clone(), &context.configuration) {
         Err(RunError::ConsentNeeded(text)) if std::io::stdin().is_terminal() => {
-            let shown = Instant::now();
+            let shown = steady();
             eprint!("{}\n\nType yes to agree: ", text.text.trim_end());
             let mut answer = String::new();
             let read = std::io::stdin().read_line(&mut answer);
@@ -182,7 +181,7 @@ fn create(new: NewRun, context: &Context) -> Result<Session, Failure> {
             let given = ConsentGiven {
                 means: ConsentMeans::Prompt,
                 scrolled_to_end: true,
-                read_ms: shown.elapsed().as_millis() as u64,
+                read_ms: steady().saturating_sub(shown).as_millis() as u64,
             };
             Ok(Session::create(NewRun { agreed: Some(given), ..new }, &context.configuration)?)
         }

@@ -1,7 +1,7 @@
 //! A text that somebody agrees to, or not: it has to be on the screen to its end first.
 
 use std::cell::Cell;
-use std::time::Instant;
+use std::time::Duration;
 
 use ratatui::layout::Rect;
 
@@ -10,7 +10,7 @@ use super::canvas::{Canvas, rows_of};
 use super::text::wrapped;
 use super::theme::Role;
 use super::widgets::Scroll;
-use crate::session::{ConsentGiven, ConsentMeans};
+use crate::session::{ConsentGiven, ConsentMeans, steady};
 
 /// Widest lines that read well.
 const WIDEST: u16 = 100;
@@ -23,7 +23,7 @@ pub const READ_FIRST: &str = "the text goes on: scroll to its end first";
 pub struct Agreement {
     text: String,
     scroll: Scroll,
-    shown: Instant,
+    shown: Duration,
     /// Rows of text in the last frame.
     room: Cell<usize>,
     /// The last line was on the screen.
@@ -36,7 +36,7 @@ impl Agreement {
         Agreement {
             text: text.into(),
             scroll: Scroll::default(),
-            shown: Instant::now(),
+            shown: steady(),
             room: Cell::new(1),
             read: Cell::new(false),
         }
@@ -44,7 +44,7 @@ impl Agreement {
 
     /// How the person agrees; none while the end of the text was not on the screen.
     pub fn given(&self) -> Option<ConsentGiven> {
-        let read_ms = self.shown.elapsed().as_millis() as u64;
+        let read_ms = steady().saturating_sub(self.shown).as_millis() as u64;
         let given = ConsentGiven { means: ConsentMeans::Screen, scrolled_to_end: true, read_ms };
         self.read.get().then_some(given)
     }

@@ -167,6 +167,11 @@ impl Headless {
         Ok(())
     }
 
+    /// Waits until what was handed over without a question is done, too: notes of what the person did.
+    pub fn finish_notes(&self) {
+        self.workers.settle(PATIENCE);
+    }
+
     /// The next thing that arrives.
     ///
     /// # Errors

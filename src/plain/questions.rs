@@ -1,7 +1,6 @@
 //! Questions of a study, asked line by line between the commands.
 
 use std::io::{self, Write};
-use std::time::Instant;
 
 use serde_json::{Value, json};
 
@@ -9,7 +8,7 @@ use super::Style;
 use super::input::Read;
 use super::lines::Lines;
 use crate::notation::printable;
-use crate::session::{DueQuestion, Form, Session, Study};
+use crate::session::{DueQuestion, Form, Session, Study, steady};
 
 /// Asks everything that is due; whether the input goes on after it.
 ///
@@ -38,7 +37,7 @@ pub(super) fn ask_due(
 
 /// Reads lines until one of them is an answer.
 fn answer(due: &DueQuestion, session: &mut Session, style: Style, lines: &mut Lines) -> io::Result<bool> {
-    let shown = Instant::now();
+    let shown = steady();
     let mut changes = 0;
     loop {
         let typed = match lines.read()? {
@@ -53,7 +52,12 @@ fn answer(due: &DueQuestion, session: &mut Session, style: Style, lines: &mut Li
         };
         match value {
             Ok(value) => {
-                session.answer_question(due, &value, shown.elapsed().as_millis() as u64, changes);
+                session.answer_question(
+                    due,
+                    &value,
+                    steady().saturating_sub(shown).as_millis() as u64,
+                    changes,
+                );
                 return Ok(true);
             }
             Err(problem) => {

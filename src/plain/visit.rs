@@ -2,7 +2,6 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use serde_json::json;
 
@@ -11,7 +10,7 @@ use super::lines::Lines;
 use super::{End, Style, dialogue, prompt};
 use crate::notation::printable;
 use crate::session::{
-    Configuration, ConsentGiven, ConsentMeans, Library, NextStep, RunError, Session, Study, Visit,
+    Configuration, ConsentGiven, ConsentMeans, Library, NextStep, RunError, Session, Study, Visit, steady,
 };
 
 /// What ends a visit early.
@@ -114,12 +113,12 @@ impl Host<'_> {
 
     fn consent(&mut self, visit: &Visit, text: &str) -> Result<(), Stop> {
         self.say("consent", text.trim())?;
-        let shown = Instant::now();
+        let shown = steady();
         loop {
             let answer = self.ask("consent", "Type yes if you agree, no if you do not:")?;
             match answer.trim().to_lowercase().as_str() {
                 "yes" => {
-                    let read_ms = shown.elapsed().as_millis() as u64;
+                    let read_ms = steady().saturating_sub(shown).as_millis() as u64;
                     let means = ConsentMeans::Prompt;
                     self.consent = Some(ConsentGiven { means, scrolled_to_end: true, read_ms });
                     return Ok(());

@@ -92,7 +92,9 @@ pub use study::stamp::{EarlierRun, StudyStamp};
 pub use study::visit::{NextStep, Visit};
 pub use study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
 pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via};
-pub use trajectory::{Line, Record, Trajectory, nanoseconds as nanoseconds_of, record, written_moment};
+pub use trajectory::{
+    Line, Record, ScriptedClock, Trajectory, nanoseconds as nanoseconds_of, record, steady, written_moment,
+};
 pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,
 };

@@ -1,11 +1,13 @@
 //! Time as the person has it: it stands while their clock is stopped, and while the program is suspended.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use crate::session::steady;
 
 /// A watch that can be halted. Everything the record measures is measured with it.
 #[derive(Debug)]
 pub struct Stopwatch {
-    since: Instant,
+    since: Duration,
     /// Time that passed before `since`.
     before: Duration,
     halted: bool,
@@ -13,14 +15,14 @@ pub struct Stopwatch {
 
 impl Default for Stopwatch {
     fn default() -> Self {
-        Stopwatch { since: Instant::now(), before: Duration::ZERO, halted: false }
+        Stopwatch { since: steady(), before: Duration::ZERO, halted: false }
     }
 }
 
 impl Stopwatch {
     /// Time that has passed while it ran.
     pub fn now(&self) -> Duration {
-        if self.halted { self.before } else { self.before + self.since.elapsed() }
+        if self.halted { self.before } else { self.before + steady().saturating_sub(self.since) }
     }
 
     /// Halts it.
@@ -31,7 +33,7 @@ impl Stopwatch {
     /// Lets it run again.
     pub fn run(&mut self) {
         if self.halted {
-            (self.since, self.halted) = (Instant::now(), false);
+            (self.since, self.halted) = (steady(), false);
         }
     }
 

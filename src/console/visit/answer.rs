@@ -1,6 +1,6 @@
 //! The answer to a question of a study, while it is given.
 
-use std::time::Instant;
+use std::time::Duration;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use serde_json::Value;
@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::console::action::Action;
 use crate::console::request::GivenAnswer;
 use crate::console::widgets::{Editor, Field};
-use crate::session::{DueQuestion, Form};
+use crate::session::{DueQuestion, Form, steady};
 
 /// What was entered so far.
 #[derive(Debug, Clone)]
@@ -36,7 +36,7 @@ pub struct AnswerDraft {
     changes: u32,
     /// Milliseconds on the screen before it was shown last.
     shown_ms: u64,
-    shown: Instant,
+    shown: Duration,
 }
 
 impl AnswerDraft {
@@ -50,25 +50,17 @@ impl AnswerDraft {
             Form::Number { .. } => Entered::Number(Field::default()),
             Form::Text { .. } => Entered::Words(Box::default()),
         };
-        AnswerDraft {
-            due,
-            entered,
-            asked: false,
-            confirmed: None,
-            changes: 0,
-            shown_ms: 0,
-            shown: Instant::now(),
-        }
+        AnswerDraft { due, entered, asked: false, confirmed: None, changes: 0, shown_ms: 0, shown: steady() }
     }
 
     /// It is on the screen from now on.
     pub fn show(&mut self) {
-        (self.asked, self.shown) = (true, Instant::now());
+        (self.asked, self.shown) = (true, steady());
     }
 
     /// It is no longer on the screen.
     pub fn hide(&mut self) {
-        self.shown_ms += self.shown.elapsed().as_millis() as u64;
+        self.shown_ms += steady().saturating_sub(self.shown).as_millis() as u64;
     }
 
     /// What was entered, as plain mode would have it typed.

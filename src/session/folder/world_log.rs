@@ -7,7 +7,7 @@
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{PoisonError, RwLock};
 
 use serde::{Deserialize, Serialize};
 
@@ -54,16 +54,20 @@ pub struct WorldLog {
     pub broken_at: Option<u64>,
 }
 
-static PLACE: OnceLock<PathBuf> = OnceLock::new();
+static PLACE: RwLock<Option<PathBuf>> = RwLock::new(None);
 
 /// Keeps the list of this process in a folder of runs. Without it nothing is listed.
 pub fn list_worlds_in(runs: &Path) {
-    let _ = PLACE.set(runs.join(WORLDS));
+    *PLACE.write().unwrap_or_else(PoisonError::into_inner) = Some(runs.join(WORLDS));
+}
+
+fn place() -> Option<PathBuf> {
+    PLACE.read().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
 /// Lists a world that is opened. A list that cannot be written keeps nobody from playing.
 pub fn list_world(by: &str, seeds: (u64, u64), scenario: &str, run: Option<&str>, study: Option<&str>) {
-    let Some(path) = PLACE.get() else { return };
+    let Some(path) = place() else { return };
     let line = WorldLine {
         at: now(),
         machine: Machine::here().id,
@@ -75,7 +79,7 @@ pub fn list_world(by: &str, seeds: (u64, u64), scenario: &str, run: Option<&str>
         study: study.map(str::to_owned),
         prev: String::new(),
     };
-    let _ = append(path, line);
+    let _ = append(&path, line);
 }
 
 fn append(path: &Path, line: WorldLine) -> std::io::Result<()> {
@@ -104,7 +108,7 @@ fn last_head(text: &str) -> String {
 
 /// How long the list of this process is now, and how it ends; none where none is kept.
 pub(in crate::session) fn worlds_seen() -> Option<WorldsSeen> {
-    let text = std::fs::read_to_string(PLACE.get()?).unwrap_or_default();
+    let text = std::fs::read_to_string(place()?).unwrap_or_default();
     Some(WorldsSeen { lines: text.lines().count() as u64, head: last_head(&text) })
 }
 

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use crate::session::trajectory::scripted_steady;
+
 /// The machine, as records name it: nobody learns from them which one it is, but two records of one machine agree.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
@@ -28,6 +30,9 @@ impl Machine {
 
     /// Milliseconds since the machine was started; since the program was, where the system does not tell.
     pub fn monotonic_ms() -> u64 {
+        if let Some(scripted) = scripted_steady() {
+            return scripted.as_millis() as u64;
+        }
         let uptime = std::fs::read_to_string("/proc/uptime").ok();
         let seconds = uptime.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
         seconds.map_or_else(|| began().elapsed().as_millis() as u64, |seconds| (seconds * 1e3) as u64)

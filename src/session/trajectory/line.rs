@@ -7,10 +7,9 @@ use std::path::Path;
 
 use serde::Deserialize;
 use serde_json::{Map, Value};
-use time::OffsetDateTime;
-use time::format_description::well_known::Rfc3339;
 
 use super::record::Record;
+use super::time::{nanoseconds, seconds};
 use crate::database::Position;
 use crate::session::trajectory::DOES_NOT_FOLLOW;
 
@@ -157,26 +156,4 @@ fn sum_of(line: &[u8]) -> Option<bool> {
     let sum = tail.strip_prefix(SUM)?.strip_suffix(b"\"}")?;
     let without: Vec<u8> = own.iter().copied().chain([b'}']).collect();
     Some(line_hash(&without).as_bytes().starts_with(sum))
-}
-
-/// The present moment, RFC 3339.
-pub fn now() -> String {
-    OffsetDateTime::now_utc().format(&Rfc3339).unwrap_or_default()
-}
-
-/// A moment in nanoseconds since 1970, RFC 3339.
-pub fn written_moment(nanoseconds: i64) -> String {
-    let moment = OffsetDateTime::from_unix_timestamp_nanos(i128::from(nanoseconds)).ok();
-    moment.and_then(|moment| moment.format(&Rfc3339).ok()).unwrap_or_default()
-}
-
-/// Nanoseconds since 1970 of a moment of a line; 0 if it cannot be read.
-pub fn nanoseconds(at: &str) -> i64 {
-    let moment = OffsetDateTime::parse(at, &Rfc3339).map_or(0, OffsetDateTime::unix_timestamp_nanos);
-    i64::try_from(moment).unwrap_or(0)
-}
-
-/// Seconds since 1970 of a moment of a line.
-pub fn seconds(at: &str) -> f64 {
-    OffsetDateTime::parse(at, &Rfc3339).map_or(0.0, |moment| moment.unix_timestamp_nanos() as f64 / 1e9)
 }

@@ -8,16 +8,19 @@ mod clock;
 mod line;
 mod medium;
 pub mod record;
+mod time;
 mod writer;
 
 use std::path::Path;
 
 pub use clock::{CLOCK_CORRECTION, clock_went_back};
+pub use line::Line;
 pub(super) use line::hash_of_first_line;
-pub use line::{Line, nanoseconds, now, seconds, written_moment};
 #[cfg(test)]
 pub(super) use medium::Medium;
 pub use record::Record;
+pub(super) use time::scripted_steady;
+pub use time::{ScriptedClock, nanoseconds, now, seconds, steady, written_moment};
 pub use writer::{Durability, TrajectoryWriter};
 
 use crate::database::Position;

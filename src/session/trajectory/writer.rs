@@ -7,9 +7,10 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
-use super::line::{Line, line_hash, now, with_sum};
+use super::line::{Line, line_hash, with_sum};
 use super::medium::{Medium, NamedFile};
 use super::record::Record;
+use super::time::now;
 use crate::database::Position;
 use crate::session::error::RunError;
 use crate::session::trajectory::Trajectory;

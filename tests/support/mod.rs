@@ -4,3 +4,4 @@
 pub mod company;
 pub mod dice;
 pub mod home;
+pub mod python;

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 const OWN: [Heading; 12] = [
     heading("questionnaire", "name", "questionnaire it belongs to"),
-    heading("occasion", "text", "when it was asked: before, week 4, break, end"),
+    heading("occasion", "text", "when it was asked: before, week 4, break 1, end"),
     heading("question", "name", "name of the question"),
     heading("form", "word", "likert, number, choice, text or attention"),
     heading("shown", "text", "its text as it was shown"),

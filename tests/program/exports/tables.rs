@@ -12,6 +12,7 @@ use novamind::session::{Access, Activity, Configuration, Interface, NewRun, Sess
 
 use super::{folders, played, table, text};
 use crate::support::home::{Home, id};
+use crate::support::python::recompute;
 
 /// A run of four weeks that ends, with much of what the measures count.
 const FOUR_WEEKS: &str = "set_prices A=12 B=25 C=55
@@ -43,20 +44,6 @@ fn export(home: &Home) -> std::path::PathBuf {
     let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
     assert_eq!(said.code, 0, "{}", said.err);
     out
-}
-
-/// What the script says of an export, and its exit code; none on a machine without Python 3.11.
-fn recompute(tables: &Path) -> Option<(String, Option<i32>)> {
-    let fits = Command::new("python3").args(["-c", "import tomllib"]).output();
-    if !fits.is_ok_and(|done| done.status.success()) {
-        return None;
-    }
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut script = Command::new("python3");
-    script.arg(root.join("tests/python/recompute.py")).args([tables, &root.join("configs/world")]);
-    let done = script.output().expect("it runs");
-    let told = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
-    Some((told, done.status.code()))
 }
 
 /// A run with lines of every kind that tells of a person, by somebody who comes and goes.

@@ -1,0 +1,188 @@
+//! The study: its protocol, its three machines, and what the experimenter does with them.
+
+use std::fs;
+use std::path::PathBuf;
+
+use novamind::session::Study;
+
+use crate::support::home::{Home, Said};
+
+/// A study with a witness, on three machines.
+pub struct Lab {
+    home: Home,
+}
+
+/// Names of the machines.
+pub const MACHINES: [&str; 3] = ["m1", "m2", "m3"];
+
+const PROTOCOL: &str = r#"
+name = "twelve"
+title = "Four weeks"
+[world]
+scenario = "short"
+days = 28
+[seeds]
+plan = "assigned"
+[practice]
+offer = "none"
+[session]
+pause_reason = true
+[limits]
+week_minutes = 10
+warning_minutes = 1
+at_limit = "naive"
+[record]
+drafts = "text"
+[integrity]
+code_words = true
+witness = "WITNESS"
+"#;
+
+const BEFORE: &str = r#"
+title = "About you"
+when = "before"
+[[question]]
+id = "experience"
+text = "How much experience do you have?"
+form = "likert"
+points = 7
+required = true
+"#;
+
+const WEEK: &str = r#"
+title = "This week"
+when = "weeks"
+weeks = [2]
+[[question]]
+id = "check"
+text = "Choose the second option."
+form = "attention"
+options = ["first", "second"]
+expected = "second"
+required = true
+"#;
+
+const BREAK: &str = r#"
+title = "After the break"
+when = "break"
+[[question]]
+id = "spoke"
+text = "Did you speak to anybody about the study?"
+form = "choice"
+options = ["no", "yes"]
+required = true
+"#;
+
+const END: &str = r#"
+title = "The end"
+when = "end"
+[[question]]
+id = "strategy"
+text = "What did you try?"
+form = "text"
+most = 40
+required = true
+"#;
+
+impl Lab {
+    /// The study and its machines, on which nobody has played.
+    pub fn new() -> Lab {
+        let lab = Lab { home: Home::new() };
+        let folder = lab.study();
+        fs::create_dir_all(folder.join("questions")).expect("a folder");
+        fs::create_dir_all(lab.witness()).expect("a folder");
+        let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("written");
+        write("study.toml", &PROTOCOL.replace("WITNESS", &lab.witness().display().to_string()));
+        write("consent.md", "# Taking part\n\nEverything you do is recorded.\n");
+        write("questions/1-before.toml", BEFORE);
+        write("questions/2-week.toml", WEEK);
+        write("questions/3-break.toml", BREAK);
+        write("questions/4-end.toml", END);
+        let row = |person: u64| {
+            let condition = if person % 2 == 1 { "odd" } else { "even" };
+            format!("P{person:02},{condition},{},{person}\n", 40 + person % 3)
+        };
+        write(
+            "assignment.csv",
+            &("label,condition,seed,order\n".to_owned() + &(1..=12).map(row).collect::<String>()),
+        );
+        lab.command(&["study", "check", &folder.display().to_string()]);
+        lab
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.home.0.path().join(name)
+    }
+
+    /// Folder of the study.
+    pub fn study(&self) -> PathBuf {
+        self.path("study")
+    }
+
+    fn witness(&self) -> PathBuf {
+        self.path("witness")
+    }
+
+    /// Folder of runs of a machine.
+    pub fn machine(&self, name: &str) -> PathBuf {
+        self.path(name)
+    }
+
+    /// The protocol, read.
+    pub fn read_study(&self) -> Study {
+        Study::read(&self.study()).expect("a study")
+    }
+
+    /// The program, which plays on a machine.
+    pub fn program(&self, machine: &str) -> std::process::Command {
+        let mut command = self.home.program();
+        command.env("NOVAMIND_RUNS", self.machine(machine)).arg("--study").arg(self.study());
+        command
+    }
+
+    fn command(&self, arguments: &[&str]) -> Said {
+        self.home.run(arguments)
+    }
+
+    /// A command about the machines.
+    fn about_machines(&self, before: &[&str], after: &[&str]) -> Said {
+        let machines = MACHINES.map(|name| self.machine(name).display().to_string());
+        let machines: Vec<&str> = machines.iter().map(String::as_str).collect();
+        self.command(&[before, &machines, after].concat())
+    }
+
+    /// Folder of the tables.
+    pub fn data(&self) -> PathBuf {
+        self.path("data")
+    }
+
+    /// Collects what the machines hold.
+    pub fn collect(&self) -> Said {
+        let (data, study) = (self.data().display().to_string(), self.study().display().to_string());
+        self.about_machines(&["study", "collect"], &["--out", &data, "--protocol", &study])
+    }
+
+    /// Writes tables that do not tell who took part; their folder.
+    pub fn anonymise(&self) -> PathBuf {
+        let (public, secret) = (self.path("public"), self.path("secret"));
+        let path = |path: &PathBuf| path.display().to_string();
+        self.command(&[
+            "study",
+            "anonymise",
+            &path(&self.data()),
+            "--out",
+            &path(&public),
+            "--secret",
+            &path(&secret),
+        ]);
+        public
+    }
+
+    /// The audit of honest sessions.
+    pub fn audit_finds_nothing(&self) {
+        let study = self.study().display().to_string();
+        let said = self.about_machines(&["study", "audit", &study], &[]);
+        assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+        assert!(said.out.contains("Nothing was found."), "{}", said.out);
+    }
+}

@@ -1,0 +1,41 @@
+//! A whole study without a screen: twelve scripted participants on three machines, then everything an experimenter does
+//! with what they leave. Every line, time, week, question and decision in the tables is compared with what the scripts did.
+//!
+//!     cargo test --test study
+
+mod console;
+mod diary;
+#[path = "../console/harness.rs"]
+#[allow(dead_code, reason = "the stories of the console use the rest")]
+mod harness;
+mod lab;
+mod plain;
+mod scripts;
+#[path = "../support/mod.rs"]
+mod support;
+mod tables;
+
+use lab::Lab;
+use support::python::recompute;
+
+#[test]
+fn twelve_participants_are_in_the_tables_as_they_played() {
+    let lab = Lab::new();
+    let mut diaries = scripts::first_machine(&lab);
+    diaries.extend(scripts::second_machine(&lab));
+    diaries.extend(scripts::third_machine(&lab));
+    let said = lab.collect();
+    // Two have left nothing, and the experimenter is told.
+    let notes = [
+        "label P05 has no session; last visit: consent declined",
+        "label P06 has no session; last visit: withdrew",
+    ];
+    let told = said.out.lines().filter(|line| !line.contains("verified"));
+    assert_eq!(told.filter(|line| !line.is_empty()).collect::<Vec<_>>(), notes, "{}", said.out);
+    tables::compare(&lab, &diaries);
+    if let Some((told, code)) = recompute(&lab.data()) {
+        assert_eq!(code, Some(0), "{told}");
+    }
+    tables::anonymised(&lab, &diaries);
+    lab.audit_finds_nothing();
+}

@@ -1,0 +1,216 @@
+//! What each participant does.
+
+use novamind::session::{ScriptedClock, nanoseconds_of};
+
+use crate::console::Player;
+use crate::diary::{BEFORE, BREAK, Diary, END, WEEK};
+use crate::lab::Lab;
+use crate::plain::Plain;
+
+/// The first machine: from one end to the other, with a pause, out of time, and absent.
+pub fn first_machine(lab: &Lab) -> Vec<Diary> {
+    let clock = ScriptedClock::start(nanoseconds_of("2026-03-02T09:00:00Z"));
+    vec![
+        straight_through(lab, &clock),
+        with_breaks(lab, &clock),
+        out_of_time(lab, &clock),
+        absent(lab, &clock),
+    ]
+}
+
+/// Plays from the first page to the last.
+fn straight_through(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = Player::arrive(lab, "m1", "P01", clock);
+    player.agree(&[], 30);
+    player.begin();
+    player.answer(BEFORE, "6 enter", "6", 5);
+    player.wait(20);
+    player.go("2", "cash");
+    player.wait(7);
+    player.look_up("i", "cash-change", 3);
+    player.go("3", "customers");
+    player.select("enter", "group", "S1");
+    player.wait(2);
+    player.go("9", "sql");
+    player.query("SELECT count(*) FROM ledger", "");
+    player.wait(9);
+    player.go("0", "journal");
+    player.keep_notes("ads for S1", 3);
+    player.week("wait", 4, 6);
+    player.report(8);
+    player.go("8", "tools");
+    player.set_price("12");
+    finish(player)
+}
+
+/// Stops the clock once, and leaves for some hours once.
+fn with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = Player::arrive(lab, "m1", "P02", clock);
+    player.agree(&[], 20);
+    player.begin();
+    player.answer(BEFORE, "2 enter", "2", 4);
+    player.wait(11);
+    player.pause("lunch", 1800);
+    player.answer(BREAK, "1 enter", "no", 3);
+    player.wait(12);
+    player.week("think", 1, 2);
+    player.report(3);
+    player.leave_for(3 * 3600);
+    player.answer(BREAK, "2 enter", "yes", 3);
+    finish(player)
+}
+
+/// Thinks for so long that the second week is filed for them.
+fn out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = Player::arrive(lab, "m1", "P03", clock);
+    player.agree(&[], 20);
+    player.begin();
+    player.answer(BEFORE, "1 enter", "1", 4);
+    player.week("go", 1, 2);
+    player.report(3);
+    player.wait(20);
+    player.runs_out_of_time();
+    player.report(3);
+    player.answer(WEEK, "1 enter", "first", 5);
+    finish(player)
+}
+
+/// Presses no key for a while, looks at another window, and suspends the program.
+fn absent(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = Player::arrive(lab, "m1", "P04", clock);
+    player.agree(&[], 20);
+    player.begin();
+    player.answer(BEFORE, "7 enter", "7", 4);
+    player.idle(200);
+    player.wait(5);
+    player.look_elsewhere(40);
+    player.go("4", "product");
+    player.wait(6);
+    player.suspend(100);
+    player.wait(7);
+    player.week("go", 1, 2);
+    player.report(3);
+    finish(player)
+}
+
+/// Plays the weeks that are left, and answers what is asked.
+fn finish(mut player: Player<'_>) -> Diary {
+    while !player.diary.over {
+        player.wait(2);
+        player.week("on", 4, 6);
+        if player.diary.over {
+            break;
+        }
+        player.report(8);
+        if player.diary.weeks.len() == 2 {
+            player.answer(WEEK, "2 enter", "second", 5);
+        }
+    }
+    player.read_the_end(5);
+    player.answer(END, "'guessed' tab", "guessed", 6);
+    player.goes_home()
+}
+
+/// The second machine: declines, withdraws, mistypes the label, and has the terminal closed.
+pub fn second_machine(lab: &Lab) -> Vec<Diary> {
+    let clock = ScriptedClock::start(nanoseconds_of("2026-03-03T09:00:00Z"));
+    vec![
+        Player::arrive(lab, "m2", "P05", &clock).declines(15),
+        withdraws(lab, &clock),
+        mistypes(lab, &clock),
+        hung_up(lab, &clock),
+    ]
+}
+
+fn withdraws(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = Player::arrive(lab, "m2", "P06", clock);
+    player.agree(&[], 20);
+    player.begin();
+    player.answer(BEFORE, "7 enter", "7", 4);
+    player.week("go", 1, 2);
+    player.report(3);
+    player.withdraws()
+}
+
+/// Gives a wrong label twice, asks what cannot be answered, and takes back a price.
+fn mistypes(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = Player::arrive(lab, "m2", "P07", clock);
+    player.agree(&["P99", "../x"], 20);
+    player.begin();
+    player.answer(BEFORE, "3 enter", "3", 4);
+    player.go("9", "sql");
+    player.query("SELECT nothing FROM ledger", "sql_error");
+    player.go("8", "tools");
+    player.set_price("12");
+    player.set_price_again("15");
+    player.undo();
+    player.week("go", 1, 2);
+    player.report(3);
+    finish(player)
+}
+
+/// The terminal is closed while a reason is typed.
+fn hung_up(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = Player::arrive(lab, "m2", "P08", clock);
+    player.agree(&[], 20);
+    player.begin();
+    player.answer(BEFORE, "3 enter", "3", 4);
+    let mut player = player.hang_up_with_text(lab, "m2", "half", 1200);
+    player.answer(BREAK, "1 enter", "no", 3);
+    finish(player)
+}
+
+/// The third machine, line by line: with a pause, killed, closed, and in two sittings.
+pub fn third_machine(lab: &Lab) -> Vec<Diary> {
+    vec![line_by_line(lab), killed(lab), closed(lab), twice(lab)]
+}
+
+fn line_by_line(lab: &Lab) -> Diary {
+    let mut plain = Plain::arrive(lab, "m3", "P09");
+    plain.answer(BEFORE, "4", "4");
+    plain.call("set_prices", "A=12");
+    plain.query("SELECT count(*) FROM ledger");
+    plain.memo("ads for S1");
+    plain.look_around("churn", "churn");
+    plain.pause("tea");
+    plain.answer(BREAK, "1", "no");
+    finish_lines(plain)
+}
+
+fn killed(lab: &Lab) -> Diary {
+    let mut plain = Plain::arrive(lab, "m3", "P10");
+    plain.answer(BEFORE, "1", "1");
+    plain.week("go");
+    let mut plain = plain.killed_and_returns();
+    plain.answer(BREAK, "2", "yes");
+    finish_lines(plain)
+}
+
+fn closed(lab: &Lab) -> Diary {
+    let mut plain = Plain::arrive(lab, "m3", "P11");
+    plain.answer(BEFORE, "7", "7");
+    plain.call("set_prices", "A=10 B=20");
+    let mut plain = plain.hung_up_and_returns();
+    plain.answer(BREAK, "1", "no");
+    finish_lines(plain)
+}
+
+fn twice(lab: &Lab) -> Diary {
+    let mut plain = Plain::arrive(lab, "m3", "P12");
+    plain.answer(BEFORE, "2", "2");
+    plain.week("go");
+    let mut plain = plain.leaves_and_returns();
+    plain.answer(BREAK, "1", "no");
+    finish_lines(plain)
+}
+
+fn finish_lines(mut plain: Plain<'_>) -> Diary {
+    while !plain.diary.over {
+        plain.week("on");
+        if plain.diary.weeks.len() == 2 {
+            plain.answer(WEEK, "2", "second");
+        }
+    }
+    plain.answer(END, "guessed", "guessed");
+    plain.goes_home()
+}

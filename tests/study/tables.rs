@@ -1,0 +1,217 @@
+//! The tables, beside the diaries.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use crate::diary::{Answered, Deed, Diary, Spent};
+use crate::lab::Lab;
+
+/// A row by its columns.
+type Row = BTreeMap<String, String>;
+
+fn read(folder: &Path, table: &str) -> Vec<Row> {
+    let text = fs::read_to_string(folder.join(table)).unwrap_or_else(|error| panic!("{table}: {error}"));
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let headings = reader.headers().expect("headings").clone();
+    let row = |record: csv::StringRecord| {
+        headings.iter().zip(&record).map(|(name, cell)| (name.to_owned(), cell.to_owned())).collect()
+    };
+    reader.records().map(|record| row(record.expect("a row"))).collect()
+}
+
+/// The rows of a participant.
+fn of<'a>(rows: &'a [Row], label: &str) -> Vec<&'a Row> {
+    rows.iter().filter(|row| row["participant"] == label).collect()
+}
+
+/// Compares every table with what the scripts did.
+pub fn compare(lab: &Lab, diaries: &[Diary]) {
+    let [runs, weeks, events, queries, answers, notes, forecasts] =
+        ["runs", "weeks", "events", "queries", "answers", "notes", "forecasts"]
+            .map(|table| read(&lab.data(), &format!("{table}.csv")));
+    assert_eq!(diaries.len(), 12);
+    for diary in diaries {
+        let own = [&runs, &weeks, &events, &queries, &answers, &notes, &forecasts];
+        let [run, weeks, events, queries, answers, notes, forecasts] = own.map(|rows| of(rows, diary.label));
+        if diary.erased {
+            assert!(run.is_empty() && events.is_empty() && answers.is_empty(), "{}", diary.label);
+            continue;
+        }
+        deeds(diary, &events);
+        let [run] = run[..] else { panic!("{} has {} runs", diary.label, run.len()) };
+        whole_run(diary, run);
+        single_weeks(diary, &weeks);
+        cells(diary, &queries, "sql", &diary.queries);
+        cells(diary, &notes, "text", &diary.notes);
+        given(diary, &answers);
+        assert_eq!(forecasts.len(), 4 * diary.weeks.len(), "{}", diary.label);
+        assert!(forecasts.iter().all(|row| row["filled_naively"] == "1"), "{}", diary.label);
+    }
+}
+
+fn deeds(diary: &Diary, rows: &[&Row]) {
+    let told: Vec<String> = rows.iter().map(|row| told(row, diary.real)).collect();
+    let done: Vec<String> = diary.deeds.iter().map(|deed| done(deed, diary.real)).collect();
+    let different = told.iter().zip(&done).find(|(told, done)| told != done);
+    assert_eq!(different, None, "{}: what the table tells, and what was done", diary.label);
+    assert_eq!(told.len(), done.len(), "{}", diary.label);
+}
+
+/// The row of `runs.csv`.
+fn whole_run(diary: &Diary, row: &Row) {
+    let deeds = |part: fn(&Deed) -> bool| diary.deeds.iter().filter(|deed| part(deed)).count().to_string();
+    let number = diary.label[1..].parse::<u64>().expect("a number");
+    let text = |text: &str| text.to_owned();
+    let expected = [
+        ("study", text("twelve")),
+        ("condition", text(if number % 2 == 1 { "odd" } else { "even" })),
+        ("assigned_order", number.to_string()),
+        ("seed", (40 + number % 3).to_string()),
+        ("refused_labels", diary.refused_labels.to_string()),
+        ("practice", text("0")),
+        ("mode", text("baseline")),
+        ("ended", text("horizon")),
+        ("weeks", diary.weeks.len().to_string()),
+        ("weeks_filled_naively", diary.weeks.iter().filter(|(_, naive)| *naive).count().to_string()),
+        ("calls", deeds(|deed| deed.kind == "call")),
+        ("undone", deeds(|deed| deed.kind == "call" && deed.which == "palette")),
+        ("queries", deeds(|deed| deed.kind == "query")),
+        ("queries_failed", deeds(|deed| deed.kind == "query" && !deed.which.is_empty())),
+        ("note_versions", deeds(|deed| deed.kind == "note")),
+        ("sittings", diary.sittings.to_string()),
+        ("sittings_not_closed", diary.sittings_not_closed.to_string()),
+        ("machines", text("1")),
+        ("clock_stopped", deeds(|deed| deed.kind == "clock" && deed.what == "stopped")),
+        ("clock_set_back", text("0")),
+    ];
+    for (column, expected) in expected {
+        assert_eq!(row[column], expected, "{}: {column}", diary.label);
+    }
+    // What is done after the end is not counted with what was played.
+    let before_the_end = diary.deeds.iter().position(|deed| deed.kind == "end").expect("it ended");
+    let played = Diary { deeds: diary.deeds[..before_the_end].to_vec(), ..diary.clone() };
+    for (column, kind) in [("views", "view"), ("selects", "select"), ("helps", "help")] {
+        assert_eq!(row[column], played.count(kind).to_string(), "{}: {column}", diary.label);
+    }
+    for outcome in ["confirmed", "cancelled"] {
+        let own = played.deeds.iter().filter(|deed| deed.kind == "dialog" && deed.which == outcome);
+        assert_eq!(row[&format!("dialogs_{outcome}")], own.count().to_string(), "{}: {outcome}", diary.label);
+    }
+    times(diary, row);
+}
+
+/// Where the time of the whole run went.
+fn times(diary: &Diary, row: &Row) {
+    let told = |column: &str| (row[column].parse::<f64>().expect("seconds") * 1e3).round() as u64;
+    let own = |spent| diary.spent(spent);
+    if diary.real {
+        let within = |column: &str, spent: Spent| {
+            let (least, most) = diary.bounds.get(&spent).copied().unwrap_or_default();
+            let told = told(column);
+            assert!((least..=most).contains(&told), "{}: {column} {told}: {least} to {most}", diary.label);
+        };
+        within("paused_seconds", Spent::Paused);
+        if !diary.bounds.contains_key(&Spent::Paused) {
+            within("away_seconds", Spent::Away);
+        }
+        assert_eq!(row["idle_seconds"], "0", "{}", diary.label);
+        return;
+    }
+    assert_eq!(told("active_seconds"), own(Spent::Active), "{}", diary.label);
+    assert_eq!(told("idle_seconds"), own(Spent::Idle), "{}", diary.label);
+    assert_eq!(told("away_seconds"), own(Spent::Away) + own(Spent::Paused), "{}", diary.label);
+    assert_eq!(told("paused_seconds"), own(Spent::Paused), "{}", diary.label);
+    assert_eq!(told("active_seconds_after_end"), own(Spent::After), "{}", diary.label);
+}
+
+/// The rows of `weeks.csv`.
+fn single_weeks(diary: &Diary, rows: &[&Row]) {
+    assert_eq!(rows.len(), diary.weeks.len(), "{}", diary.label);
+    for (week, row) in (1..).zip(rows) {
+        let told = |column: &str| (row[column].parse::<f64>().expect("seconds") * 1e3).round() as u64;
+        let own = |spent| diary.time.get(&(week, spent)).copied().unwrap_or_default();
+        let count = |kind: &str| {
+            diary.deeds.iter().filter(|deed| deed.week == week && deed.kind == kind).count().to_string()
+        };
+        assert_eq!(row["week"], week.to_string());
+        assert_eq!((&row["calls"], &row["queries"]), (&count("call"), &count("query")), "{}", diary.label);
+        if diary.real {
+            continue;
+        }
+        let expected = [Spent::Active, Spent::Idle, Spent::Paused].map(own);
+        let told = ["active_seconds", "idle_seconds", "paused_seconds"].map(told);
+        assert_eq!(told, expected, "{} in week {week}", diary.label);
+        let fast = if own(Spent::Active) < 10_000 { "1" } else { "0" };
+        assert_eq!(row["implausibly_fast"], fast, "{} in week {week}", diary.label);
+    }
+}
+
+/// One column.
+fn cells(diary: &Diary, rows: &[&Row], column: &str, expected: &[String]) {
+    let told: Vec<&String> = rows.iter().map(|row| &row[column]).collect();
+    assert_eq!(told, expected.iter().collect::<Vec<_>>(), "{}: {column}", diary.label);
+}
+
+/// The rows of `answers.csv`.
+fn given(diary: &Diary, rows: &[&Row]) {
+    let told: Vec<Answered> = rows
+        .iter()
+        .map(|row| Answered {
+            occasion: row["occasion"].clone(),
+            question: QUESTIONS.into_iter().find(|name| *name == row["question"]).expect("a question"),
+            value: row["value"].clone(),
+            for_ms: if diary.real { 0 } else { row["for_ms"].parse().expect("milliseconds") },
+        })
+        .collect();
+    assert_eq!(told, diary.answers, "{}", diary.label);
+    for row in rows.iter().filter(|row| row["question"] == "check") {
+        assert_eq!(row["as_expected"], if row["value"] == "second" { "1" } else { "0" }, "{}", diary.label);
+    }
+}
+
+const QUESTIONS: [&str; 4] = ["experience", "check", "spoke", "strategy"];
+
+/// Kinds whose duration is the machine's, not the person's.
+const OF_MACHINE: [&str; 2] = ["query", "call"];
+
+/// A line as the table tells it. Times of a real clock are compared elsewhere.
+fn told(row: &Row, real: bool) -> String {
+    let cell = |name: &str| row[name].as_str();
+    let which = if cell("kind") == "note" { "" } else { cell("which") };
+    let is_measured = !real && !OF_MACHINE.contains(&cell("kind"));
+    let for_ms = if is_measured { cell("for_ms") } else { "" };
+    let at = if real { "" } else { cell("t") };
+    format!("{at} week {}: {} {} {which} {for_ms}", cell("week"), cell("kind"), cell("what"))
+}
+
+/// The same as the script has done it.
+fn done(deed: &Deed, real: bool) -> String {
+    let for_ms = deed.for_ms.map(|ms| ms.to_string()).unwrap_or_default();
+    let at = if real { String::new() } else { (deed.at as f64 / 1e3).to_string() };
+    format!("{at} week {}: {} {} {} {for_ms}", deed.week, deed.kind, deed.what, deed.which)
+}
+
+/// The tables without names hold the same runs.
+pub fn anonymised(lab: &Lab, diaries: &[Diary]) {
+    let public = lab.anonymise();
+    for entry in fs::read_dir(&public).expect("a folder").flatten() {
+        let text = fs::read_to_string(entry.path()).expect("a text");
+        for diary in diaries {
+            assert!(!text.contains(diary.label), "{} stands in {}", diary.label, entry.path().display());
+        }
+        for text_of_a_person in ["ads for S1", "guessed"] {
+            assert!(!text.contains(text_of_a_person), "{text_of_a_person}: {}", entry.path().display());
+        }
+    }
+    let times = |folder: &Path| {
+        let rows = read(folder, "runs.csv");
+        let mut times: Vec<[String; 3]> = rows
+            .iter()
+            .map(|row| ["active_seconds", "away_seconds", "seed"].map(|column| row[column].clone()))
+            .collect();
+        times.sort();
+        times
+    };
+    assert_eq!(times(&public), times(&lab.data()));
+}

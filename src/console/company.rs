@@ -61,6 +61,8 @@ pub struct Company {
     pub journal: Vec<JournalEntry>,
     /// Statements the database was asked, the newest last.
     pub asked: Vec<String>,
+    /// The last day on which each screen was left in an earlier sitting.
+    pub viewed: BTreeMap<String, u32>,
     /// Notes of the run.
     pub memo: String,
     /// Present arguments of every tool.
@@ -121,6 +123,7 @@ impl Company {
             scores: session.forecast_scores(),
             journal: session.journal().to_vec(),
             asked: session.asked().to_vec(),
+            viewed: session.viewed().clone(),
             memo: session.memo().unwrap_or_default(),
             settings: settings.collect(),
             costs: session.look_up(&GetCostInfo, ()).unwrap_or_default(),

@@ -52,6 +52,8 @@ pub struct Session {
     pub(super) closing_line: String,
     /// Rows that follow from what has happened.
     pub(super) projection: Projection,
+    /// The last day on which each screen of the console was left, in the sittings before this one.
+    pub(super) viewed: BTreeMap<String, u32>,
     /// What the record says about questions of a study.
     pub(super) answers: AnswerBook,
     /// What seals its snapshots.
@@ -68,6 +70,11 @@ impl Session {
     /// What the run is.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
+    }
+
+    /// The last day on which each screen of the console was left in an earlier sitting.
+    pub fn viewed(&self) -> &BTreeMap<String, u32> {
+        &self.viewed
     }
 
     /// Puts the world of the run on the machine's list.

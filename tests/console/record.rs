@@ -306,3 +306,23 @@ fn attention_changes_no_state() {
     assert_eq!((attentive.0, &attentive.1), (hasty.0, &hasty.1));
     assert!(attentive.2 > hasty.2 + 10, "what was looked at is told");
 }
+
+#[test]
+fn posts_that_were_looked_at_stay_read_when_the_run_is_opened_again() {
+    let runs = tempfile::tempdir().expect("a folder");
+    super::company::led("crisis.toml", 5, 28, runs.path());
+    let badge = |console: &mut Console| console.screen().contains("5 Social ●");
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    assert!(badge(&mut console), "nobody has seen the posts of the week:\n{}", console.screen());
+    drop(console);
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    assert!(badge(&mut console), "the overview shows no posts");
+    console.press("5 1");
+    assert!(!badge(&mut console));
+    drop(console);
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    assert!(!badge(&mut console), "they were read in an earlier sitting:\n{}", console.screen());
+    console.week();
+    console.press("esc 1");
+    assert!(badge(&mut console), "those of the new week were not:\n{}", console.screen());
+}

@@ -1,5 +1,6 @@
 //! Starting a run.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -158,6 +159,7 @@ impl Session {
             position: Position { seq: 0, line_hash: String::new() },
             closing_line: String::new(),
             surroundings: RunSurroundings::default(),
+            viewed: BTreeMap::new(),
             answers: AnswerBook::default(),
             seal_key: SealKey::default(),
             clock: PersonalClock::default(),

@@ -17,7 +17,7 @@ use crate::session::play::projection::Projection;
 use crate::session::play::recorder::Recorder;
 use crate::session::play::surroundings::RunSurroundings;
 use crate::session::state::Session;
-use crate::session::trajectory::record::{Closing, Outcome};
+use crate::session::trajectory::record::{Activity, Closing, Outcome};
 use crate::session::trajectory::{Line, Record, Trajectory, damaged_at};
 use crate::world::params::Params;
 
@@ -28,6 +28,14 @@ pub enum Access {
     Write,
     /// Look at it; nothing of it is changed.
     Read,
+}
+
+/// The screen that a line says was left, and the day.
+fn view(line: &Line) -> Option<(String, u32)> {
+    match &line.record {
+        Record::Activity(Activity::View(view)) => Some((view.screen.clone(), line.day)),
+        _ => None,
+    }
 }
 
 impl Session {
@@ -96,6 +104,7 @@ impl Session {
         }
         session.replay_afterwards(&trajectory);
         session.clock = PersonalClock::of(&trajectory);
+        session.viewed = trajectory.lines.iter().filter_map(view).collect();
         session.check_memo(&trajectory, access);
         session.finish_week(&trajectory);
         Ok(session)

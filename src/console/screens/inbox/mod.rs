@@ -56,17 +56,6 @@ pub enum InboxPane {
 const LISTED: [InboxPane; 3] = [InboxPane::List, InboxPane::Thread, InboxPane::Offer];
 const COUNTED: [InboxPane; 3] = [InboxPane::Outcomes, InboxPane::Thread, InboxPane::Offer];
 
-/// What it asks the database for: with the threads, and with what became of first offers.
-const READINGS: [Reading; 4] =
-    [Reading::EnterpriseTurns, Reading::Companies, Reading::Usage, Reading::LastLetters];
-const READINGS_COUNTED: [Reading; 5] = [
-    Reading::EnterpriseTurns,
-    Reading::Companies,
-    Reading::Usage,
-    Reading::LastLetters,
-    Reading::FirstOffers,
-];
-
 /// Actions worth showing where one thread is looked at.
 const OFFER_HINTS: [Action; 6] = [
     Action::SendOffer,
@@ -330,7 +319,10 @@ impl ScreenState for Inbox {
     }
 
     fn readings(&self) -> &'static [Reading] {
-        if self.outcomes.is_some() { &READINGS_COUNTED } else { &READINGS }
+        match self.outcomes {
+            Some(_) => &outcomes::READINGS,
+            None => &[Reading::EnterpriseTurns, Reading::Companies, Reading::Usage, Reading::LastLetters],
+        }
     }
 
     fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {

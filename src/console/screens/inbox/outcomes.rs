@@ -15,6 +15,15 @@ use crate::console::widgets::{Cell, Column, Table};
 use crate::notation::grouped;
 use crate::session::{Rows, number_at, text_at};
 
+/// What the screen asks the database for while they are shown.
+pub const READINGS: [Reading; 5] = [
+    Reading::EnterpriseTurns,
+    Reading::Companies,
+    Reading::Usage,
+    Reading::LastLetters,
+    Reading::FirstOffers,
+];
+
 /// A row of the query: first offers of a week to a group, of one plan at prices of one band.
 #[derive(Debug, Clone, PartialEq)]
 struct FirstOffers {

@@ -16,7 +16,7 @@ use strum::VariantArray;
 
 use self::feed::{Filter, PostKind, Post};
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Figure, Look, ScreenState};
+use super::{Figure, Look, ScreenId, ScreenState};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, fit};
 use crate::console::company::Company;
@@ -67,6 +67,8 @@ pub struct Social {
     sending: Option<Value>,
     /// Newest post that was looked at; none before the screen was shown.
     seen: Option<u32>,
+    /// Last day on which they were looked at before the run was opened.
+    viewed: Option<u32>,
     day: u32,
 }
 
@@ -253,16 +255,17 @@ impl ScreenState for Social {
     }
 
     fn unseen(&self) -> usize {
-        // Of a run that was just opened, what the last week brought is new.
+        // Of a run that was just opened, what the last week brought is new, unless it was looked at before.
         let is_new = |post: &&Arc<Post>| match self.seen {
             Some(seen) => post.number > seen,
-            None => post.day + 7 > self.day,
+            None => post.day + 7 > self.day && self.viewed.is_none_or(|day| post.day > day),
         };
         self.others.iter().filter(is_new).count()
     }
 
     fn renew(&mut self, look: &Look<'_>) {
         self.day = look.company.seen.day;
+        self.viewed = look.company.viewed.get(ScreenId::Social.id()).copied();
         if !Arc::ptr_eq(&self.others, &look.company.posts) {
             self.others = look.company.posts.clone();
             self.arrange();

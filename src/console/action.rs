@@ -320,7 +320,7 @@ actions! {
         Confirm "confirm" "yes" "Confirm."
         Cancel "cancel" "close" "Cancel."
         ScrollUp "scroll-up" "up" "Scroll up."
-        ScrollDown "scroll-down" "down" "Scroll down."
+        ScrollDown "scroll-down" "scroll" "Scroll down."
         OpenInSql "open-in-sql" "open in SQL" "Open the query in the SQL editor and run it."
         CopyQuery "copy-query" "copy query" "Copy the query."
     }

@@ -15,7 +15,7 @@ use crate::console::effect::Effect;
 use crate::console::request::Recorded;
 use crate::console::request::Request;
 use crate::console::screens::Look;
-use crate::console::text::wrapped;
+use crate::console::text::{fitting, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Line, Side, Unit, chart};
 use crate::notation::{dollars, grouped, percent};
@@ -308,7 +308,10 @@ fn ranking<'a>(
                 lines.extend(told.map(|line| TextLine::from(canvas.span(line, Role::Dim))));
             }
             false if best > 0 => {
-                lines.push(TextLine::from(canvas.span(fit(caveat, width as usize), Role::Dim)));
+                // Which runs are published comes first; how this one differs stands above, and in the header.
+                let first = caveat.split("; ").next().unwrap_or_default().to_owned();
+                let told = fitting([caveat.clone(), first], width as usize);
+                lines.push(TextLine::from(canvas.span(told, Role::Dim)));
             }
             // A ruin needs the room.
             false => {}
@@ -334,16 +337,21 @@ fn facts<'a>(
         }
         false => percent(share, 0),
     });
+    let planning = format!("{:.1} planning words", measures.planning.planning_each);
+    let words = measures.planning.words_each;
     let named: [(&str, String); 5] = [
         ("forecasts", calibration(&measures.forecasts, long)),
-        ("ads on best channel", measures.channels.as_ref().map_or("–".to_owned(), best_channel)),
+        (
+            "ads on best channel",
+            fitting(measures.channels.as_ref().map_or_else(Vec::new, best_channel), long),
+        ),
         ("targeted development", targeted),
         ("tools", tools(measures, long)),
         (
             "planning",
-            format!(
-                "{:.1} planning words in a rationale of {:.0}",
-                measures.planning.planning_each, measures.planning.words_each
+            fitting(
+                [format!("{planning} in a rationale of {words:.0}"), format!("{planning} of {words:.0}")],
+                long,
             ),
         ),
     ];
@@ -384,17 +392,19 @@ fn calibration(scores: &[ForecastScore], room: usize) -> String {
     format!("inside: {}", short.collect::<Vec<_>>().join(" · "))
 }
 
-fn best_channel(skill: &ChannelSkill) -> String {
+/// The share of ads on the best channel, or why there is none; the longer wording first.
+fn best_channel(skill: &ChannelSkill) -> Vec<String> {
     let first = skill.groups.iter().find_map(|group| Some((group, group.best.as_ref()?)));
     match (skill.share, first) {
         (Some(share), Some((group, best))) => {
             let channel = best.channel.replace('_', " ");
-            format!("{} · {}: {channel} of {} tried", percent(share, 0), group.group, group.tried)
+            let share = percent(share, 0);
+            vec![format!("{share} · {}: {channel} of {} tried", group.group, group.tried), share]
         }
         _ if skill.groups.iter().all(|group| group.tried == 1) => {
-            "– · no group had more than one channel".to_owned()
+            vec!["– · no group had more than one channel".to_owned(), "– · one channel a group".to_owned()]
         }
-        _ => format!("– · no channel brought {ENOUGH_LEADS} leads"),
+        _ => vec![format!("– · no channel brought {ENOUGH_LEADS} leads")],
     }
 }
 

@@ -401,7 +401,8 @@ impl Paned for Inbox {
                 Action::SendOffer => return Some(self.send_by_rules(look.company)),
                 Action::Discard | Action::Close => self.ruling = None,
                 Action::Commit => ruling.typing = false,
-                Action::InboxRules | Action::Open => ruling.typing = true,
+                Action::InboxRules | Action::Open => self.focus_on(InboxPane::Offer),
+                Action::CommitNext | Action::CommitPrevious => self.focus_on(InboxPane::Thread),
                 _ => return None,
             }
             return Some(Vec::new());
@@ -461,6 +462,9 @@ impl Paned for Inbox {
     fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         use InboxPane::{Offer, Thread};
         let first = self.first_pane();
+        if area.width < 104 && self.ruling.is_some() {
+            return ruling::arrange_small(self, canvas, area, look);
+        }
         if area.width < 104 {
             let below = (OFFER_HEIGHT + 1).min(area.height.div_ceil(2));
             let [list, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(below)]).areas(area);

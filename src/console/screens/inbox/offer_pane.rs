@@ -39,9 +39,10 @@ impl Pane<Inbox> for OfferPane {
     }
 
     fn hints(&self, inbox: &Inbox) -> Vec<Action> {
-        match inbox.typing {
-            Some(_) => vec![Action::Commit, Action::SendOffer, Action::Discard],
-            None => super::OFFER_HINTS.to_vec(),
+        match (&inbox.typing, &inbox.ruling) {
+            (_, Some(ruling)) if !ruling.typing => vec![Action::InboxRules, Action::SendOffer, Action::Close],
+            (Some(_), _) | (_, Some(_)) => vec![Action::Commit, Action::SendOffer, Action::Discard],
+            (None, None) => super::OFFER_HINTS.to_vec(),
         }
     }
 

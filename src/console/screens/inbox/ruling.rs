@@ -1,15 +1,15 @@
 //! Rules that are typed: what every waiting thread would be sent by them, and sending it once it was confirmed.
 
 use crossterm::event::KeyEvent;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::Inbox;
+use super::{Inbox, InboxPane};
 use super::estimate::market_of;
 use crate::console::canvas::{Canvas, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::screens::Look;
-use crate::console::screens::panes::{Border, Seat};
+use crate::console::screens::panes::{Border, Seat, draw_pane};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
@@ -55,6 +55,13 @@ impl Ruling {
     }
 }
 
+/// In a small window: the threads above, with what each would get, and the rules below.
+pub fn arrange_small(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    let [above, below] = Layout::vertical([Constraint::Percentage(45), Constraint::Min(0)]).areas(area);
+    draw_pane(inbox, InboxPane::Thread, canvas, above, look);
+    draw_pane(inbox, InboxPane::Offer, canvas, below, look);
+}
+
 impl Inbox {
     /// Opens the rules.
     pub(super) fn start_ruling(&mut self, company: &Company) -> Vec<Effect> {
@@ -63,7 +70,7 @@ impl Inbox {
             return vec![Effect::Complain("no thread waits for you: rules have nothing to answer".to_owned())];
         }
         self.ruling = Some(Ruling::new(self.last_rules.as_deref(), &threads, company, self));
-        self.focus = super::InboxPane::Offer;
+        self.focus = InboxPane::Offer;
         self.scroll = 0;
         Vec::new()
     }

@@ -171,7 +171,15 @@ fn rules_answer_every_thread_after_one_confirmation() {
     assert_eq!(sizes, [(ToolId::SendEnterpriseDeal, 66), (ToolId::RejectEnterpriseDeal, 6)]);
     assert!(text.contains("128 left as they are"), "{text}");
     press(&mut screen, &company, "esc R");
-    assert!(drawn(&screen, &company, 120, 37).contains("seats<60"), "rules that were sent come back");
+    for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
+        let text = drawn(&screen, &company, width, height);
+        assert!(text.contains("seats<60"), "rules that were sent come back: {width}x{height} in\n{text}");
+        assert!(text.contains("$20.00 → B $20.00"), "what a company gets: {width}x{height} in\n{text}");
+    }
+    press(&mut screen, &company, "tab");
+    assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Thread, false), "tab leads to the preview");
+    press(&mut screen, &company, "R");
+    assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Offer, true), "R leads back to the rules");
     let (effects, _) = press(&mut screen, &company, "'ofer' ctrl-s");
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("did you mean offer")));
     sweep(&mut screen, &company);

@@ -22,8 +22,11 @@ impl Pane<Inbox> for ThreadPane {
         vec![Scope::Inbox, Scope::List]
     }
 
-    fn hints(&self, _: &Inbox) -> Vec<Action> {
-        super::OFFER_HINTS.to_vec()
+    fn hints(&self, inbox: &Inbox) -> Vec<Action> {
+        match inbox.ruling {
+            Some(_) => vec![Action::InboxRules, Action::SendOffer, Action::Close],
+            None => super::OFFER_HINTS.to_vec(),
+        }
     }
 
     fn figure(&self, inbox: &Inbox, _: &Look<'_>) -> Option<Figure> {

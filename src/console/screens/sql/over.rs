@@ -193,7 +193,7 @@ impl Pane<Sql> for PivotPane {
     }
 
     fn hints(&self, _: &Sql) -> Vec<Action> {
-        vec![Action::Open, Action::Right, Action::Close]
+        vec![Action::Open, Action::Close]
     }
 
     fn act(&self, sql: &mut Sql, action: Action, _: &Look<'_>) -> Vec<Effect> {

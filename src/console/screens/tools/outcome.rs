@@ -85,7 +85,7 @@ pub(super) enum Detail {
 pub(super) struct OutcomeLines {
     /// The lines.
     pub lines: Vec<(String, Role)>,
-    /// The first of them, with every row of the margins; 0 where the tool has none.
+    /// The first of them, with every row of the margins, or the spread of an R&D project; 0 where the tool has none.
     pub needed: usize,
 }
 
@@ -135,8 +135,9 @@ pub(super) fn outcome_lines(
     {
         answer_lines(answer, &mut paragraph);
     }
+    let spread = form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|own| own.research.is_some()));
+    let mut needed = if spread { lines.len() } else { 0 };
     let tables = [margins(form, sales, look.company, detail == Detail::Brief), reference(form.spec.id, look.company)];
-    let mut needed = 0;
     for (number, table) in tables.iter().enumerate().filter(|(_, table)| !table.is_empty()) {
         if !dense {
             lines.push((" ".to_owned(), Role::Text));

@@ -63,7 +63,8 @@ fn projects(company: &Company) -> Vec<String> {
             running.to_owned(),
         ]
     };
-    let head = ["tier", "name", "cost", "mean days", "mean gain", "now"].map(str::to_owned);
+    let now = if company.projects.tiers.iter().any(|tier| tier.in_progress > 0) { "now" } else { "" };
+    let head = ["tier", "name", "cost", "mean days", "mean gain", now].map(str::to_owned);
     let rows: Vec<[String; 6]> =
         std::iter::once(head).chain(company.projects.tiers.iter().map(row)).collect();
     let width = |column: usize| rows.iter().map(|row| row[column].width()).max().unwrap_or(0);
@@ -99,14 +100,14 @@ fn threads(company: &Company) -> Vec<String> {
 }
 
 fn prices(company: &Company) -> Vec<String> {
-    let mut lines = vec!["plan   model tier   quota, units a day   full quota costs a month".to_owned()];
+    let mut lines = vec!["plan  tier  quota a day  full quota/month".to_owned()];
     lines.extend(["A", "B", "C"].into_iter().map(|plan| {
         let (tier, quota) =
             (company.setting(ToolId::SetModelTiers, plan), company.setting(ToolId::SetUsageQuotas, plan));
         let unit =
             company.costs.model_tiers.get(&(tier as u8)).map_or(0.0, |facts| facts.cost_per_usage_unit);
         format!(
-            "{plan:<4}   {:>10}   {:>18}   {:>24}",
+            "{plan:<4}  {:>4}  {:>11}  {:>16}",
             number(tier),
             grouped(quota, 0),
             dollars(quota * unit * 30.0)

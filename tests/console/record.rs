@@ -247,7 +247,7 @@ fn what_was_typed_comes_back_after_a_crash_and_goes_when_it_is_dropped() {
     console.settle().expect("it leaves");
     drop(console);
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
-    console.shows("you had typed");
+    console.shows("Not sent when");
     console.shows("because of S1");
     console.press("y");
     console.press("n enter");

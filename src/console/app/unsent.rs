@@ -95,7 +95,7 @@ impl App {
         let Some(texts) = self.unsent.offered.take() else { return };
         self.unsent.texts = None;
         if !restore {
-            self.say("what you had typed is dropped");
+            self.say("what was not sent is dropped");
             return self.keep_texts();
         }
         for (place, text) in texts.places() {
@@ -114,7 +114,7 @@ impl App {
                 run.screens.tools.restore(*tool, values, &run.company);
             }
         }
-        self.say("what you had typed is back where you typed it");
+        self.say("what was not sent is back in its place");
         self.keep_texts();
     }
 

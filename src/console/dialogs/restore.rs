@@ -51,7 +51,7 @@ impl Dialog for Restore {
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let width = usize::from(inside.width);
         let mut lines = vec![
-            Line::from(canvas.span("When the program last stopped, you had typed:", Role::Text)),
+            Line::from(canvas.span("Not sent when the program last stopped:", Role::Text)),
             Line::default(),
         ];
         for (place, text) in &self.texts {

@@ -89,7 +89,9 @@ impl Lines {
             // The thread ends with the program.
             let _ = self.wanted.send(());
         }
-        self.watch.enter(Phase::Prompt);
+        if !self.watch.enter_prompt() {
+            return Ok(Some(Read::End));
+        }
         let event = self.next(at_most);
         self.watch.enter(Phase::Working);
         match event {

@@ -78,6 +78,16 @@ impl Watch {
         self.state().phase = phase;
     }
 
+    /// Says that a line is waited for. False if a signal came before: nobody would end the wait.
+    pub fn enter_prompt(&self) -> bool {
+        let mut state = self.state();
+        let waits = state.caught.is_none();
+        if waits {
+            state.phase = Phase::Prompt;
+        }
+        waits
+    }
+
     /// Says that a query is asked, which this stops.
     pub fn enter_query(&self, interrupt: Interrupt) {
         let mut state = self.state();
@@ -96,5 +106,18 @@ impl Watch {
 
     fn state(&self) -> MutexGuard<'_, State> {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_signal_that_comes_just_before_the_prompt_keeps_nobody_waiting() {
+        let watch = Watch::start(|_| panic!("nobody waits"));
+        watch.handle(15, false, &|_| panic!("nobody waits"));
+        assert!(!watch.enter_prompt());
+        assert_eq!(watch.caught(), Some(15));
     }
 }

@@ -6,6 +6,7 @@ mod readings;
 mod report;
 mod rules;
 mod words;
+mod xray;
 
 use std::io;
 
@@ -33,7 +34,7 @@ use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 const NEXT: [&str; 3] = ["next", "next-week", "next_week"];
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 31] = [
+const COMMANDS: [(&str, &str); 32] = [
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("queries", "queries [NAME]           the library of queries, or the result of one of them"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, run a week (also: next-week)"),
@@ -70,6 +71,10 @@ const COMMANDS: [(&str, &str); 31] = [
     ("vars", "vars                     the current day, as get_vars returns it"),
     ("branch", "branch WEEK              continue in a branch from the start of that week"),
     ("step", "step [DAYS]              debug: run single days (1)"),
+    (
+        "xray",
+        "xray leads GROUP [DAY]   debug runs and runs that are over: the equation of a group's leads; R=1 holds a factor",
+    ),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),
     ("pause", "pause [REASON]           stop the clock for a break; only resume, help and quit work then"),
     ("resume", "resume                   start the clock again"),
@@ -278,6 +283,7 @@ impl Interpreter {
             "report" => name(arguments).and_then(|what| self.report(what, arguments)),
             "history" => count(arguments).map(|count| self.history(count.unwrap_or(20))),
             "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),
+            "xray" => self.xray(arguments),
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
             _ => self.call(word, column, arguments),
         };

@@ -17,6 +17,7 @@ mod state;
 mod study;
 mod trajectory;
 mod witness;
+mod xray;
 
 pub use archive::{Export, Imported, LabKey, LabPublicKey, Seal, import_run};
 pub use ask::{connection_to_file, rows_as_json};
@@ -42,7 +43,6 @@ pub use figures::sitting_count::SittingCount;
 pub use figures::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
 pub use figures::truth::truth_behind;
 pub use figures::week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
-pub use figures::xray::Xray;
 pub use folder::configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
 pub use folder::consent::{Consent, ConsentGiven, ConsentMeans, ConsentText};
 pub use folder::create::{NewRun, Storage, StudyEntry};
@@ -98,6 +98,9 @@ pub use trajectory::{
 pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,
 };
+
+pub use xray::last_day::Xray;
+pub use xray::lead_equation::{LeadEquation, LeadFactor};
 
 pub use crate::database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
 pub use crate::tools::{Numbers, PublicPost, Refusal, ToolId};

@@ -1,5 +1,9 @@
 //! A day, as a list: read [`step_day`] from top to bottom (`docs/mechanics/day.md`).
 
+pub mod watch;
+
+use watch::{DayWatch, Unwatched};
+
 use super::canonical::canonical;
 use super::context::DayContext;
 use super::customers::Customers;
@@ -42,6 +46,17 @@ pub fn step_day(
     params: &Params,
     streams: &Streams,
     facts: &mut Facts,
+) -> (DayFigures, DayTrace) {
+    step_day_watched(world, params, streams, facts, &Unwatched)
+}
+
+/// Simulates one day as [`step_day`] does, and shows it to somebody on the way.
+pub fn step_day_watched(
+    world: &mut World,
+    params: &Params,
+    streams: &Streams,
+    facts: &mut Facts,
+    watch: &dyn DayWatch,
 ) -> (DayFigures, DayTrace) {
     world.day += 1;
     let (day, total_days) = (world.day, world.total_days);
@@ -113,7 +128,9 @@ pub fn step_day(
 
     // New customers come.
     let coming = arrivals::Arrivals { day: &today, market };
-    let factors = arrivals::expect(&coming, &customers.active());
+    let subscribers = customers.active();
+    let factors = arrivals::expect(&coming, &subscribers);
+    watch.leads_expected(&coming, &subscribers, &factors);
     let leads = arrivals::arrive(&coming, &factors, customers, enterprise, facts);
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;
 
@@ -145,6 +162,7 @@ pub fn step_day(
         total_costs: costs,
         ..closing_figures(world)
     };
+    watch.day_over(world, params, facts);
     (figures, DayTrace { leads: factors })
 }
 

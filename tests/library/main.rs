@@ -11,3 +11,4 @@ mod support;
 mod tables;
 mod undiscovered;
 mod wiring;
+mod xray;

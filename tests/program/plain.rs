@@ -334,3 +334,26 @@ fn weeks_and_runs_are_told() {
     assert_eq!(told[2]["data"]["survival_days"], 7);
     assert_eq!(told[2]["data"]["planning_words_per_rationale"], 1.0);
 }
+
+#[test]
+fn the_xray_answers_in_debug_runs_and_refuses_in_others() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let lines = format!("{EXAMPLE}\nxray leads S1 R=1\nxray leads S9\nxray leads S1 8\nxray\n");
+    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
+    let said = objects(&said);
+    let answer = |at: usize| &said[said.len() - 5 + at];
+    let data = &answer(0)["data"];
+    assert_eq!((&data["group"], &data["day"], &data["known"]), (&"S1".into(), &7.into(), &true.into()));
+    let number = |name: &str| data[name].as_f64().expect("a number");
+    let reputation = data["factors"]["R"].as_f64().expect("a number");
+    assert!((number("held") * reputation - number("expected")).abs() < 1e-9);
+    assert_eq!(answer(1)["error"], "there is no group S9; did you mean S1 or S2 or S3?");
+    assert_eq!(answer(2)["code"], "day_unknown");
+    assert_eq!(answer(3)["code"], "usage");
+    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], &lines);
+    let said = objects(&said);
+    for at in said.len() - 5..said.len() - 1 {
+        assert_eq!(said[at]["code"], "not_in_this_mode", "{}", said[at]);
+        assert_eq!(said[at]["error"], said[said.len() - 2]["error"]);
+    }
+}

@@ -74,7 +74,8 @@ impl Effort {
             | Activity::Limit(_)
             | Activity::Question(_)
             | Activity::Answer(_)
-            | Activity::Look(_) => {}
+            | Activity::Look(_)
+            | Activity::Xray(_) => {}
         }
     }
 

@@ -13,19 +13,19 @@ const OWN: [Heading; 8] = [
         "what",
         "text",
         "call: tool; view: screen; select: kind of object; dialog, draft: which; help: term; session, clock: event; limit: \
-         which; question, answer: questionnaire; look: command; query, advance: via; start: mode; override: key; end: reason",
+         which; question, answer: questionnaire; look: command; xray: what was shown; query, advance: via; start: mode; override: key; end: reason",
     ),
     heading(
         "which",
         "text",
         "call: via; view: screen before; select: object; dialog, draft: outcome; help: place; session: interface or cause; \
-         limit: event; question, answer: question; query: error; note, memo: hash; start: scenario; branch: run",
+         limit: event; question, answer: question; xray: group, customer, part or statement; query: error; note, memo: hash; start: scenario; branch: run",
     ),
     heading(
         "value",
         "text",
         "call: accepted or code of the refusal; query: rows; draft, note, memo: length; limit: minutes; question: form; \
-         answer: answer; week, step, end: cash; start: seed; branch: line; override: new value",
+         answer: answer; week, step, end: cash; start: seed; branch: line; override: new value; xray: day that was shown",
     ),
     heading(
         "for_ms",
@@ -187,6 +187,10 @@ impl Event {
                 event.detail.extend(answer.as_expected.map(|expected| ("as_expected", flag(expected))));
             }
             Activity::Look(look) => (event.what, event.text) = (look.command.clone(), look.detail.clone()),
+            Activity::Xray(look) => {
+                (event.what, event.which) = (look.what.clone(), look.which.clone());
+                event.value = look.shown_day.to_string();
+            }
         }
         event
     }

@@ -21,4 +21,3 @@ pub(in crate::session) mod sitting_count;
 pub(in crate::session) mod tool_limits;
 pub(in crate::session) mod truth;
 pub(in crate::session) mod week;
-pub(in crate::session) mod xray;

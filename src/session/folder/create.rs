@@ -162,6 +162,8 @@ impl Session {
             viewed: BTreeMap::new(),
             answers: AnswerBook::default(),
             seal_key: SealKey::default(),
+            shadow: None,
+            diary: Arc::default(),
             clock: PersonalClock::default(),
             memo_in_memory: String::new(),
             remarks: Vec::new(),

@@ -16,7 +16,8 @@ use crate::database::Entry;
 use crate::session::folder::manifest::Manifest;
 use crate::voice::CompanyNames;
 use crate::world::command::{Command, ResolvedCommand};
-use crate::world::day::{DayTrace, step_day};
+use crate::world::day::watch::{DayWatch, Unwatched};
+use crate::world::day::{DayTrace, step_day_watched};
 use crate::world::events::{DayFigures, Facts};
 use crate::world::params::Params;
 use crate::world::random::Streams;
@@ -39,6 +40,8 @@ pub(in crate::session) struct Simulation {
     pub(in crate::session) feed: Feed,
     /// Hashes of this week's facts.
     pub(in crate::session) facts_chain: FactsChain,
+    /// Who looks into the days that are simulated: nobody, but for the x-ray.
+    pub(in crate::session) watch: Arc<dyn DayWatch>,
 }
 
 impl Simulation {
@@ -65,6 +68,7 @@ impl Simulation {
             trace: DayTrace::default(),
             feed: Feed::default(),
             facts_chain: FactsChain::default(),
+            watch: Arc::new(Unwatched),
         }
     }
 
@@ -98,11 +102,11 @@ impl Simulation {
         day_before: Option<Vec<String>>,
     ) -> DayFigures {
         std::mem::swap(&mut self.facts, &mut self.facts_before);
-        let Simulation { world, params, streams, facts, facts_before, feed, facts_chain, .. } = self;
+        let Simulation { world, params, streams, facts, facts_before, feed, facts_chain, watch, .. } = self;
         let today = to_fill(facts, entries);
         let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
         let ((figures, trace), ()) = rayon::join(
-            || step_day(world, params, streams, today),
+            || step_day_watched(world, params, streams, today, &**watch),
             || follow_up.follow(facts_before, day_before, None),
         );
         self.trace = trace;

@@ -302,7 +302,7 @@ mod tests {
         }
         let kinds: std::collections::BTreeSet<&str> =
             examples.iter().map(|(kind, _)| kind.as_str()).collect();
-        assert_eq!(kinds.len(), 22, "{kinds:?}");
+        assert_eq!(kinds.len(), 23, "{kinds:?}");
     }
 
     #[test]
@@ -331,6 +331,7 @@ mod tests {
                 "question" => "form",
                 "answer" => "id",
                 "look" => "command",
+                "xray" => "shown_day",
                 "advance" => "rationale",
                 "week" | "step" => "days_run",
                 "override" => "key",

@@ -66,18 +66,23 @@ enum Outcome {
 
 /// Number and factors of today's leads, group by group; undiscovered groups bring none.
 pub fn expect(arrivals: &Arrivals<'_>, subscribers: &ByGroup<u32>) -> ByGroup<LeadFactors> {
+    let (market, context) = (arrivals.market, lead_context(arrivals, subscribers));
+    ByGroup::from_fn(|group| {
+        if market.is_known(group) { lead_factors(group, &context) } else { LeadFactors::default() }
+    })
+}
+
+/// What the leads of the day depend on.
+pub fn lead_context<'a>(arrivals: &Arrivals<'a>, subscribers: &'a ByGroup<u32>) -> LeadContext<'a> {
     let &Arrivals { day: &DayContext { morning, settings, params, .. }, market } = arrivals;
-    let context = LeadContext {
+    LeadContext {
         day: morning.day,
         calendar: morning.weekday * morning.month_day,
         market,
         subscribers,
         ads: &settings.targeted_ads,
         params,
-    };
-    ByGroup::from_fn(|group| {
-        if market.is_known(group) { lead_factors(group, &context) } else { LeadFactors::default() }
-    })
+    }
 }
 
 /// Lets the leads of the day come. Subscriptions are numbered subscribers first, then lost leads, then

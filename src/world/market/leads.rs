@@ -103,6 +103,17 @@ pub struct LeadContext<'a> {
     pub params: &'a Params,
 }
 
+/// Leads by word of mouth before the factors, by the group whose subscribers bring them.
+pub fn word_of_mouth<'a>(
+    group: Group,
+    context: &'a LeadContext<'_>,
+) -> impl Iterator<Item = (Group, f64)> + use<'a> {
+    let &LeadContext { market, subscribers, params, .. } = context;
+    Group::all()
+        .filter(|source| market.is_known(*source) && subscribers[*source] > 0)
+        .map(move |source| (source, f64::from(subscribers[source]) * params.referral_rate(source, group)))
+}
+
 /// Factors of a discovered group.
 pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
     let &LeadContext { day, calendar, market, subscribers, ads, params } = context;
@@ -112,10 +123,7 @@ pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
         let spend = ads.spend(channel, group);
         if spend > 0.0 { paid_leads(spend, market.yields[channel][group], &params.leads) } else { 0.0 }
     };
-    let network = Group::all()
-        .filter(|source| market.is_known(*source) && subscribers[*source] > 0)
-        .map(|source| f64::from(subscribers[source]) * params.referral_rate(source, group))
-        .sum();
+    let network = word_of_mouth(group, context).map(|(_, leads)| leads).sum();
     LeadFactors {
         reputation: market.reputation.of(group),
         saturation: saturation(subscribers[group], cap, &params.leads),

@@ -32,6 +32,8 @@ pub enum Activity {
     Answer(Answered),
     /// The run was read from outside: by a command, without playing.
     Look(Look),
+    /// Hidden state was shown.
+    Xray(XrayLook),
 }
 
 /// A look at a screen.
@@ -143,8 +145,19 @@ pub struct Look {
     pub detail: String,
 }
 
+/// Hidden state that was shown.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct XrayLook {
+    /// What was shown: `leads`, `customer`, `sql` and so on.
+    pub what: String,
+    /// Of which group, customer or part; the statement of `sql`; empty where there is nothing to choose.
+    pub which: String,
+    /// The day that was shown.
+    pub shown_day: u32,
+}
+
 impl Activity {
-    /// Every kind, as lines name it.
+    /// The kinds that a study can leave out, as lines name them. Looks with the x-ray are always recorded.
     pub const KINDS: [&str; 11] = [
         "session", "clock", "limit", "view", "select", "dialog", "help", "draft", "question", "answer",
         "look",
@@ -164,6 +177,7 @@ impl Activity {
             Activity::Question(_) => "question",
             Activity::Answer(_) => "answer",
             Activity::Look(_) => "look",
+            Activity::Xray(_) => "xray",
         }
     }
 
@@ -199,6 +213,7 @@ impl Activity {
             "question" => of(line, Activity::Question),
             "answer" => of(line, Activity::Answer),
             "look" => of(line, Activity::Look),
+            "xray" => of(line, Activity::Xray),
             _ => return None,
         })
     }
@@ -217,6 +232,7 @@ impl Activity {
             Activity::Question(question) => serde_json::to_value(question),
             Activity::Answer(answer) => serde_json::to_value(answer),
             Activity::Look(look) => serde_json::to_value(look),
+            Activity::Xray(look) => serde_json::to_value(look),
         }
     }
 }

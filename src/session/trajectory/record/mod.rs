@@ -17,7 +17,7 @@ use serde_json::{Map, Value};
 use crate::notation::json_number;
 
 pub use activity::{
-    Activity, DialogOutcome, DialogStep, DialogUse, Draft, DraftOutcome, Help, Look, Select, View,
+    Activity, DialogOutcome, DialogStep, DialogUse, Draft, DraftOutcome, Help, Look, Select, View, XrayLook,
 };
 pub use answers::{Answered, Asked};
 pub use call::{Call, Outcome, RefusalRecord, Reversal, Via};

@@ -1,4 +1,4 @@
-//! The hidden state, for debug runs: what the player never sees.
+//! The hidden state after the last day, as it stands: for policies and figures of debug runs.
 
 use crate::session::folder::mode::Mode;
 use crate::session::play::simulation::Simulation;

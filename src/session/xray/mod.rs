@@ -1,0 +1,10 @@
+//! The x-ray: hidden state of debug runs, and of runs that are over (docs/debugging.md).
+//!
+//! Past days are simulated again beside the run, and watched on the way: what is shown is what the functions of the
+//! world were given and what they said, never a second calculation. Each look is a line of the trajectory.
+
+pub(in crate::session) mod hidden_day;
+pub(in crate::session) mod last_day;
+pub(in crate::session) mod lead_equation;
+pub(in crate::session) mod permission;
+pub(in crate::session) mod shadow;

@@ -1,0 +1,61 @@
+//! Who may look, and what a look leaves behind.
+
+use crate::session::folder::mode::Mode;
+use crate::session::state::Session;
+use crate::session::trajectory::record::{Activity, XrayLook};
+use crate::session::trajectory::{Durability, Record};
+use crate::tools::Refusal;
+
+impl Session {
+    /// Whether hidden state may be shown: in debug runs, and in runs that are over. Not where a study shows no results, and
+    /// not of its practice, since its session is still to come.
+    pub fn may_look_inside(&self) -> bool {
+        let hides_result = self.rules().hide_result(self.history.ended);
+        let is_practice = self.manifest.study.as_ref().is_some_and(|study| study.practice);
+        let is_open = self.manifest.mode == Mode::Debug || self.history.ended.is_some();
+        is_open && !hides_result && !is_practice
+    }
+
+    /// Refuses to look where hidden state stays hidden; the answer depends on nothing but the mode of the run, its study
+    /// and whether it is over.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`.
+    pub fn refuse_to_look_inside(&self) -> Result<(), Refusal> {
+        if self.may_look_inside() {
+            return Ok(());
+        }
+        let message = "the x-ray works in debug runs and in runs that are over";
+        Err(Refusal::new("not_in_this_mode", message))
+    }
+
+    /// Records a look, before anything is shown.
+    ///
+    /// # Errors
+    /// `not_saved`.
+    pub(in crate::session) fn record_look_inside(
+        &mut self,
+        what: &str,
+        which: &str,
+        shown_day: u32,
+    ) -> Result<(), Refusal> {
+        let look = XrayLook { what: what.to_owned(), which: which.to_owned(), shown_day };
+        let line = Record::Activity(Activity::Xray(look));
+        let appended = self.append(&line, Durability::Synced);
+        appended.map(drop).map_err(|error| Refusal::new("not_saved", error.to_string()))
+    }
+
+    /// The day that is asked for; the last one if none is.
+    ///
+    /// # Errors
+    /// `day_unknown`: it has not been simulated.
+    pub(in crate::session) fn day_to_show(&self, day: Option<u32>) -> Result<u32, Refusal> {
+        let last = self.day();
+        let refused = |message: String| Err(Refusal::at("day", "day_unknown", message));
+        match day.unwrap_or(last) {
+            _ if last == 0 => refused("no day has run yet".to_owned()),
+            day if (1..=last).contains(&day) => Ok(day),
+            day => refused(format!("there is no day {day}; choose a day from 1 to {last}")),
+        }
+    }
+}

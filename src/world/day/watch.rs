@@ -1,0 +1,29 @@
+//! Seeing a day from within: what it sees it cannot change, so a day that is watched ends as one that is not.
+
+use crate::events::Facts;
+use crate::identifiers::ByGroup;
+use crate::market::arrivals::Arrivals;
+use crate::market::leads::LeadFactors;
+use crate::params::Params;
+use crate::state::World;
+
+/// Looks into a day while it is simulated. Blocks are shown on any thread, in any order.
+pub trait DayWatch: Send + Sync {
+    /// The leads of the day are about to come: the market, the active subscriptions, the factors of each group.
+    fn leads_expected(
+        &self,
+        _arrivals: &Arrivals<'_>,
+        _subscribers: &ByGroup<u32>,
+        _factors: &ByGroup<LeadFactors>,
+    ) {
+    }
+
+    /// The day is over: the world and the facts as they stay.
+    fn day_over(&self, _world: &World, _params: &Params, _facts: &Facts) {}
+}
+
+/// Nobody looks.
+#[derive(Debug, Clone, Copy)]
+pub struct Unwatched;
+
+impl DayWatch for Unwatched {}

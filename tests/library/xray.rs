@@ -1,0 +1,192 @@
+//! The x-ray: who may look, what a look leaves behind, and whether what it shows is what happened.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use novamind::session::{
+    Access, Activity, Configuration, LeadFactor, Mode, NewRun, Record, Session, Storage, Trajectory, Via,
+    lines_afterwards, verify,
+};
+use novamind::world::identifiers::Group;
+use serde_json::json;
+
+use crate::support::company::{open_shop, week, weeks};
+
+fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
+    let new = NewRun {
+        seed: Some(7),
+        days: Some(days),
+        mode,
+        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
+        storage: Storage::Runs(folder.to_owned()),
+        ..NewRun::default()
+    };
+    Session::create(new, &Configuration::shipped()).expect("the run begins")
+}
+
+fn s2() -> Group {
+    Group::parse("S2").expect("a group")
+}
+
+fn looks(lines: &Trajectory) -> Vec<(String, String)> {
+    let look = |record: &Record| match record {
+        Record::Activity(Activity::Xray(look)) => {
+            Some((look.what.clone(), format!("{} {}", look.which, look.shown_day)))
+        }
+        _ => None,
+    };
+    lines.lines.iter().filter_map(|line| look(&line.record)).collect()
+}
+
+#[test]
+fn an_unfinished_baseline_sandbox_or_lesson_run_is_not_looked_into() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
+        let mut session = run_in(folder.path(), mode, 28);
+        open_shop(&mut session);
+        week(&mut session);
+        let place = session.folder().expect("a folder").to_owned();
+        let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
+        let before = lines();
+        // The refusal is the same whatever is asked for: a known group, an unknown one, a day that is not there.
+        let told: Vec<String> =
+            [(s2(), None), (Group::at(25).expect("a group"), Some(3)), (s2(), Some(9000))]
+                .into_iter()
+                .map(|(group, day)| session.lead_equations(group, day).expect_err("hidden").to_string())
+                .collect();
+        assert!(told.iter().all(|one| *one == told[0]), "{told:?}");
+        assert_eq!(told[0], "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
+        assert_eq!(lines(), before, "nothing was looked at, so nothing is recorded");
+        // Whoever gives it up may look, and cannot go on.
+        session.end().expect("it ends");
+        assert_eq!(session.lead_equations(s2(), Some(3)).expect("a look").len(), 3);
+        drop(session);
+        let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
+        assert_eq!(looks(&trajectory), [], "the end is the last line");
+        let after = lines_afterwards(&place, &trajectory).expect("lines");
+        assert_eq!(looks(&after), [("leads".to_owned(), "S2 3".to_owned())]);
+    }
+}
+
+#[test]
+fn looking_changes_no_hash_and_each_look_is_a_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut watched = run_in(folder.path(), Mode::Debug, 60);
+    let mut alone = run_in(folder.path(), Mode::Debug, 60);
+    for session in [&mut watched, &mut alone] {
+        open_shop(session);
+        week(session);
+    }
+    watched.lead_equations(s2(), Some(2)).expect("a look");
+    watched.step(3, &mut |_| {}).expect("days");
+    alone.step(3, &mut |_| {}).expect("days");
+    // In the middle of a week, after a call, and of an earlier day.
+    for session in [&mut watched, &mut alone] {
+        session.call("set_prices", &json!({"A": 13}), Via::Script).expect("a price");
+    }
+    assert_eq!(watched.lead_equations(s2(), None).expect("a look").last().map(|own| own.day), Some(10));
+    watched.lead_equations(s2(), Some(4)).expect("a look");
+    week(&mut watched);
+    week(&mut alone);
+    assert_eq!(watched.state_hash(), alone.state_hash());
+    let refused = watched.lead_equations(s2(), Some(15)).expect_err("not simulated");
+    assert_eq!(refused.to_string(), "day_unknown (day): there is no day 15; choose a day from 1 to 14");
+    let place = watched.folder().expect("a folder").to_owned();
+    drop(watched);
+    let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
+    let told: Vec<String> =
+        looks(&trajectory).into_iter().map(|(what, which)| format!("{what} {which}")).collect();
+    assert_eq!(told, ["leads S2 2", "leads S2 10", "leads S2 4"]);
+    assert_eq!(verify(&place).expect("it verifies").day, 14);
+    let mut again = Session::open(&place, Access::Write, false).expect("it opens");
+    assert_eq!(again.lead_equations(s2(), Some(10)).expect("a look").len(), 10);
+}
+
+#[test]
+fn the_lead_equation_comes_to_the_expectation_that_numbers_are_drawn_around() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, 60);
+    open_shop(&mut session);
+    let mut recorded: BTreeMap<(u32, &str), (f64, u32)> = BTreeMap::new();
+    for _ in 0..6 {
+        let forecasts = session.naive_forecasts();
+        let mut keep = |report: &novamind::session::DayReport<'_>| {
+            let xray = report.xray.expect("a debug run");
+            for group in Group::all() {
+                let came =
+                    xray.facts().arrivals.iter().filter(|arrival| arrival.group == group).count() as u32;
+                let expected = xray.lead_factors(group).expected();
+                recorded.insert((report.figures.day, group.id()), (expected, came));
+            }
+        };
+        session.advance("wait", &forecasts, Via::Script, &mut keep).expect("a week");
+    }
+    let mut compared = 0;
+    for group in Group::all() {
+        for own in
+            [20, 42].into_iter().flat_map(|day| session.lead_equations(group, Some(day)).expect("a look"))
+        {
+            let factors: f64 = LeadFactor::ALL.iter().map(|factor| own.factor(*factor)).product();
+            let channels: f64 = own.channels().map(|(_, leads)| leads).sum();
+            let mouths: f64 = own.word_of_mouth.iter().map(|(_, leads)| leads).sum();
+            let shown = factors * (channels + mouths);
+            let (expected, came) = recorded[&(own.day, group.id())];
+            assert!(
+                (shown - expected).abs() <= 1e-12 * expected.max(1.0),
+                "{group} {}: {shown} {expected}",
+                own.day
+            );
+            assert_eq!((own.expected(), own.came), (expected, came));
+            assert_eq!(own.is_known, group.initially_known());
+            let held = own.holding(&[(LeadFactor::Reputation, 2.0 * own.factor(LeadFactor::Reputation))]);
+            assert!((held - 2.0 * expected).abs() <= 1e-12 * expected.max(1.0));
+            compared += 1;
+        }
+    }
+    assert!(compared > 26 * 40);
+}
+
+/// Numbers of leads scatter around their expectations as a Poisson distribution does: Pearson's statistic over 1,000 days.
+#[test]
+fn residuals_of_a_thousand_days_are_those_of_a_poisson_distribution() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let new = NewRun {
+        cash: Some(1e9),
+        seed: Some(7),
+        days: Some(1000),
+        mode: Mode::Debug,
+        storage: Storage::Runs(folder.path().to_owned()),
+        projection: false,
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    open_shop(&mut session);
+    let spend = json!({"targeted_spend": {"content_marketing": {"S1": 50, "S2": 50, "S3": 50}}});
+    session.call("set_targeted_ad_spend", &spend, Via::Script).expect("ads");
+    weeks(&mut session, 143);
+    assert_eq!(session.day(), 1000, "the company lives");
+    for id in ["S1", "S2", "S3"] {
+        let group = Group::parse(id).expect("a group");
+        let (mut statistic, mut freedom, mut spread, mut extreme) = (0.0, 0.0, 0.0, 0);
+        for last in (28..=1000).step_by(28).chain([1000]) {
+            let days = session.lead_equations(group, Some(last)).expect("a look");
+            for own in days.iter().rev().take(if last == 1000 { 20 } else { 28 }) {
+                let (expected, came) = (own.expected(), f64::from(own.came));
+                if expected > 0.0 {
+                    statistic += (came - expected) * (came - expected) / expected;
+                    // Variance of a term: 2 + 1 / λ.
+                    spread += 2.0 + 1.0 / expected;
+                    freedom += 1.0;
+                }
+                extreme += u32::from(own.p_value() < 0.01);
+            }
+        }
+        assert_eq!(freedom, 1000.0, "{id}");
+        let deviation = (statistic - freedom) / spread.sqrt();
+        assert!(
+            deviation.abs() < 3.0,
+            "{id}: {statistic} over {freedom} days, {deviation} standard deviations"
+        );
+        assert!(extreme <= 22, "{id}: {extreme} of 1,000 days are beyond 1 %");
+    }
+}

@@ -109,10 +109,12 @@ impl Watch {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
+    #[cfg(unix)]
     use super::*;
 
+    #[cfg(unix)]
     #[test]
     fn a_signal_that_comes_just_before_the_prompt_keeps_nobody_waiting() {
         let watch = Watch::start(|_| panic!("nobody waits"));

@@ -90,7 +90,7 @@ pub use study::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules
 pub use study::sittings::{Sitting, SittingState, sittings};
 pub use study::stamp::{EarlierRun, StudyStamp};
 pub use study::visit::{NextStep, Visit};
-pub use study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
+pub use study::visit_log::{VISITS, VisitEvent, VisitLine, has_come, visits};
 pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via};
 pub use trajectory::{
     Line, Record, ScriptedClock, Trajectory, nanoseconds as nanoseconds_of, record, steady, written_moment,

@@ -8,6 +8,7 @@ mod forged;
 mod golden;
 mod hardship;
 mod plain;
+mod preparation;
 mod scenarios;
 mod studies;
 #[path = "../support/mod.rs"]

@@ -82,10 +82,10 @@ fn facts(runs: &[RunFacts]) -> Rows {
         "fast",
         "pasted",
         "failed checks",
-        "longest gap, s",
+        "longest time between two lines, s",
     ];
     let row = |own: &RunFacts| {
-        let text = |text: &Option<String>| text.clone().map_or(Cell::Null, Cell::Text);
+        let text = |text: &Option<String>| text.clone().map_or(Cell::Text(String::new()), Cell::Text);
         let number = |number: u32| Cell::Integer(i64::from(number));
         vec![
             text(&own.participant),

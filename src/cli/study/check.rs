@@ -1,5 +1,7 @@
 //! `novamind study check`: the protocol, and the machine.
 
+mod design;
+
 use std::path::Path;
 
 use crate::cli::{Context, Failure, print};
@@ -13,7 +15,38 @@ const WINDOW: (u16, u16) = (60, 16);
 /// A point that was checked.
 struct Point {
     name: &'static str,
-    outcome: Result<String, String>,
+    outcome: Outcome,
+}
+
+/// What became of it.
+enum Outcome {
+    /// It is as it should be.
+    Fits(String),
+    /// Whoever runs the study should know it, and may want it so.
+    Note(String),
+    /// No session should begin with it.
+    Wrong(String),
+}
+
+impl From<Result<String, String>> for Outcome {
+    fn from(result: Result<String, String>) -> Outcome {
+        result.map_or_else(Outcome::Wrong, Outcome::Fits)
+    }
+}
+
+impl Point {
+    fn new(name: &'static str, outcome: impl Into<Outcome>) -> Point {
+        Point { name, outcome: outcome.into() }
+    }
+
+    fn line(&self) -> String {
+        let (verdict, words) = match &self.outcome {
+            Outcome::Fits(words) => ("ok   ", words),
+            Outcome::Note(words) => ("note ", words),
+            Outcome::Wrong(words) => ("WRONG", words),
+        };
+        format!("  {verdict} {:<11} {words}\n", self.name)
+    }
 }
 
 /// Checks a study and this machine.
@@ -22,30 +55,20 @@ pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
     let runs = context.runs()?;
     let mut text = described(&study);
     let mut points = vec![
-        Point { name: "version", outcome: Ok(format!("novamind {}", env!("CARGO_PKG_VERSION"))) },
-        Point { name: "world", outcome: world(&study, context) },
-        Point { name: "clock", outcome: clock() },
-        Point { name: "runs", outcome: writable(&runs).map(|()| runs.display().to_string()) },
-        Point { name: "disk", outcome: room(&runs) },
-        Point { name: "window", outcome: window() },
-        Point { name: "characters", outcome: characters() },
-        Point { name: "machine", outcome: Ok(Machine::here().id) },
-        Point { name: "keys", outcome: Ok(keys(folder).to_owned()) },
+        Point::new("version", Ok(format!("novamind {}", env!("CARGO_PKG_VERSION")))),
+        Point::new("world", world(&study, context)),
+        Point::new("clock", clock()),
+        Point::new("runs", writable(&runs).map(|()| runs.display().to_string())),
+        Point::new("disk", room(&runs)),
+        Point::new("window", window()),
+        Point::new("characters", characters()),
+        Point::new("machine", Ok(Machine::here().id)),
+        Point::new("keys", Ok(keys(folder).to_owned())),
     ];
-    if let Some(witness) = study.witness() {
-        points.push(Point {
-            name: "witness",
-            outcome: writable(&witness).map(|()| witness.display().to_string()),
-        });
-    }
-    let failed = points.iter().filter(|point| point.outcome.is_err()).count();
-    for Point { name, outcome } in &points {
-        let line = match outcome {
-            Ok(words) => format!("  ok    {name:<11} {words}\n"),
-            Err(problem) => format!("  WRONG {name:<11} {problem}\n"),
-        };
-        text += &line;
-    }
+    points.extend(study.witness().map(|folder| Point::new("witness", witness(&folder, &runs))));
+    points.extend(design::points(&study, &context.configuration));
+    let failed = points.iter().filter(|point| matches!(point.outcome, Outcome::Wrong(_))).count();
+    text.extend(points.iter().map(Point::line));
     print(&text)?;
     match failed {
         0 => Ok(()),
@@ -98,7 +121,9 @@ fn world(study: &Study, context: &Context) -> Result<String, String> {
             return Err(format!("{name} is a file of your own: sessions need a shipped scenario"));
         }
     }
-    Ok(names.join(", practice "))
+    let [session, practice @ ..] = names.as_slice() else { return Ok(String::new()) };
+    let practice: String = practice.iter().map(|name| format!(", for the practice {name}")).collect();
+    Ok(format!("scenario {session}{practice}"))
 }
 
 /// The wall clock goes as fast as the one that nobody sets, and is not before this program was built.
@@ -117,12 +142,47 @@ fn clock() -> Result<String, String> {
     Ok("runs evenly".to_owned())
 }
 
+/// The folder of runs can be written; it is made if it is missing, as the first session does.
 fn writable(folder: &Path) -> Result<(), String> {
+    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    takes_files(folder)
+}
+
+fn takes_files(folder: &Path) -> Result<(), String> {
     let probe = folder.join(format!(".novamind-check-{}", std::process::id()));
-    let tried = std::fs::create_dir_all(folder)
-        .and_then(|()| std::fs::write(&probe, b"check"))
-        .and_then(|()| std::fs::remove_file(&probe));
+    let tried = std::fs::write(&probe, b"check").and_then(|()| std::fs::remove_file(&probe));
     tried.map_err(|error| format!("{}: {error}", folder.display()))
+}
+
+/// The folder of the witness is there and can be written. It is never made: a share that is not mounted would become a
+/// folder of this machine.
+fn witness(folder: &Path, runs: &Path) -> Outcome {
+    if !folder.is_dir() {
+        return Outcome::Wrong(format!(
+            "{} is not there: mount the share, or make the folder on the machine that is to hold it; nothing was made here",
+            folder.display()
+        ));
+    }
+    match takes_files(folder) {
+        Err(problem) => Outcome::Wrong(problem),
+        Ok(()) if on_one_file_system(folder, runs) => Outcome::Note(format!(
+            "{} lies on the file system of the runs: where it belongs on a share, the share is not mounted",
+            folder.display()
+        )),
+        Ok(()) => Outcome::Fits(folder.display().to_string()),
+    }
+}
+
+#[cfg(unix)]
+fn on_one_file_system(one: &Path, other: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let device = |path: &Path| std::fs::metadata(path).map(|found| found.dev()).ok();
+    device(one).is_some() && device(one) == device(other)
+}
+
+#[cfg(not(unix))]
+fn on_one_file_system(_: &Path, _: &Path) -> bool {
+    false
 }
 
 /// Room on the disk, by writing: what a file system promises and what a quota allows are two things.

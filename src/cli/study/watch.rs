@@ -9,7 +9,8 @@ use clap::Args;
 use crate::cli::{Context, Failure, print};
 use crate::plain::table as aligned;
 use crate::session::{
-    Cell, Rows, Sitting, SittingState, Study, participant_folder, remarks, sittings, week_of, write_remark,
+    Cell, REMARKS, Remark, Rows, Sitting, SittingState, Study, has_come, nanoseconds_of, participant_folder,
+    remarks, sittings, week_of, write_remark,
 };
 
 /// Options of `study watch`.
@@ -40,8 +41,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let study = Study::read(&options.folder)?;
     let machines = context.machines(&options.machines)?;
     if let Some([label, text]) = options.note.as_deref() {
-        participant_folder(Path::new(""), label).map_err(Failure::usage)?;
-        return Ok(write_remark(&machines[0], label, text)?);
+        return note(&study, &machines, label, text);
     }
     let look = || -> Vec<Sitting> { machines.iter().flat_map(|runs| sittings(&study, runs)).collect() };
     if options.json {
@@ -59,6 +59,27 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
+/// Writes a remark beside the runs of the label.
+fn note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> Result<(), Failure> {
+    participant_folder(Path::new(""), label).map_err(Failure::usage)?;
+    let last_played = machines.iter().filter_map(|runs| {
+        let own = sittings(study, runs).into_iter().filter(|own| own.participant == label);
+        own.map(|own| own.quiet_seconds).min_by(f64::total_cmp).map(|quiet| (quiet, runs))
+    });
+    let with_runs = last_played.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, runs)| runs);
+    let visited = |runs: &&PathBuf| has_come(study, runs, label);
+    let is_assigned = study.assignment.as_ref().is_some_and(|own| own.place(label).is_some());
+    let place = with_runs.or_else(|| machines.iter().find(visited));
+    let place = place.or_else(|| machines.first().filter(|_| is_assigned)).ok_or_else(|| {
+        Failure::usage(format!(
+            "{label} is no label of this study: it is not in the assignment, and these folders have no run or visit of it. \
+             Nothing was noted"
+        ))
+    })?;
+    write_remark(place, label, text)?;
+    print(&format!("noted for {label} in {}\n", place.join(REMARKS).display()))
+}
+
 fn shown(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> String {
     let running =
         all.iter().filter(|own| !matches!(own.state, SittingState::Left | SittingState::Over)).count();
@@ -70,7 +91,9 @@ fn shown(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> String {
         format!("{} · {running} running · {}{places} have begun\n\n", study.protocol.name, people.len());
     text += &aligned(&table(all));
     text += "\n";
-    for remark in machines.iter().flat_map(|runs| remarks(runs)) {
+    let mut noted: Vec<Remark> = machines.iter().flat_map(|runs| remarks(runs)).collect();
+    noted.sort_by_key(|remark| nanoseconds_of(&remark.at));
+    for remark in noted {
         text += &format!("{} {}: {}\n", remark.at, remark.participant, remark.text);
     }
     text

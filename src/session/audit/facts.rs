@@ -43,7 +43,7 @@ pub struct RunFacts {
     pub pasted: u64,
     /// Attention checks that were not answered as expected.
     pub failed_checks: u32,
-    /// Longest time without a line, seconds.
+    /// Longest time between two lines that follow each other, seconds.
     pub longest_gap: f64,
 }
 

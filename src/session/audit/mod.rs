@@ -50,7 +50,10 @@ pub struct Audit {
 pub fn audit(study: &Study, machines: &[PathBuf], witness: Option<&Path>) -> Result<Audit, RunError> {
     let records: Vec<MachineRecord> = machines.iter().map(|base| MachineRecord::read(base)).collect();
     let witness = witness.map(Path::to_owned).or_else(|| study.witness());
-    let told = witness.as_deref().map(read_witness).transpose()?;
+    let told = match &witness {
+        Some(folder) if !folder.is_dir() => return Err(no_witness(folder)),
+        folder => folder.as_deref().map(read_witness).transpose()?,
+    };
     let told_of =
         |run: &str| told.as_ref().and_then(|record| record.runs.get(run)).map_or(&[][..], Vec::as_slice);
     let mut audit = Audit { runs: Vec::new(), findings: Vec::new(), witnessed: told.is_some() };
@@ -76,6 +79,12 @@ pub fn audit(study: &Study, machines: &[PathBuf], witness: Option<&Path>) -> Res
         ))
     });
     Ok(audit)
+}
+
+fn no_witness(folder: &Path) -> RunError {
+    let problem = "the witness is not there: mount its share, or name a copy of its folder with --witness DIR. Nothing was audited";
+    let error = std::io::Error::new(std::io::ErrorKind::NotFound, problem);
+    RunError::Io { path: folder.to_owned(), error }
 }
 
 /// One run, on its machine.

@@ -110,9 +110,24 @@ pub struct Seeds {
     /// Seeds of a block, with plan `blocks`: each block of participants gets all of them, in random order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub block: Vec<u64>,
-    /// Conditions, crossed with the seeds of a block.
+    /// Conditions, crossed with the seeds of a block. They label and balance; they change nothing in the program.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub conditions: Vec<String>,
+    /// Seed of the randomisation, with plan `blocks`; 1 if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub draw: Option<u64>,
+}
+
+impl Seeds {
+    /// The seeds that a block of participants gets.
+    pub fn of_block(&self) -> Vec<u64> {
+        if self.block.is_empty() { self.seed.into_iter().collect() } else { self.block.clone() }
+    }
+
+    /// Cells of the design: seeds of a block times conditions; the size of a block of participants.
+    pub fn cells(&self) -> usize {
+        self.of_block().len().max(1) * self.conditions.len().max(1)
+    }
 }
 
 /// How seeds are given.
@@ -395,6 +410,7 @@ impl Protocol {
                 format!("{kind} cannot be left out: times and answers rest on it"),
             ));
         }
+        self.limits.check_warning()?;
         let limits = [self.limits.week_minutes, self.limits.session_minutes, self.limits.study_minutes];
         if limits.contains(&Some(0)) {
             return Err(("limits", "a limit has at least 1 minute".to_owned()));

@@ -89,6 +89,27 @@ pub struct TimeLimits {
     pub at_limit: AtLimit,
 }
 
+impl TimeLimits {
+    /// Checks that a warning comes after the time that it warns of has begun.
+    pub(super) fn check_warning(&self) -> Result<(), (&'static str, String)> {
+        let Some(warning) = self.warning_minutes else { return Ok(()) };
+        let limits = [
+            ("week_minutes", self.week_minutes),
+            ("session_minutes", self.session_minutes),
+            ("study_minutes", self.study_minutes),
+        ];
+        match limits.iter().find_map(|(key, own)| own.filter(|own| *own <= warning).map(|own| (key, own))) {
+            None => Ok(()),
+            Some((key, own)) => Err((
+                "limits.warning_minutes",
+                format!(
+                    "a warning {warning} minutes before the end of {key} = {own} would stand from the beginning"
+                ),
+            )),
+        }
+    }
+}
+
 /// What happens when a time limit is reached.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -11,6 +11,7 @@ use crate::session::folder::runs::{all_run_folders, last_lines};
 use crate::session::study::definition::Study;
 use crate::session::trajectory::record::{Activity, ClockEvent, Outcome, PresenceEvent};
 use crate::session::trajectory::{Line, Record, now, seconds};
+use crate::session::witness::waiting_lines;
 
 /// A run of a study as it stands.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -51,9 +52,6 @@ pub enum SittingState {
     Over,
 }
 
-/// Name of the file with lines that a witness has not been told of yet.
-const QUEUE: &str = "witness-queue.jsonl";
-
 /// Every run of a study in a machine's folder of runs, by label and run.
 pub fn sittings(study: &Study, runs: &Path) -> Vec<Sitting> {
     let folders = all_run_folders(runs);
@@ -77,9 +75,11 @@ fn sitting(folder: &Path, manifest: &Manifest) -> Sitting {
     let quiet = lines.last().map_or(0.0, |line| (seconds(&now()) - line.moment()).max(0.0));
     let mut problems: Vec<String> = damaged.into_iter().collect();
     problems.extend(not_saved(&lines));
-    if folder.join(QUEUE).exists() {
-        problems.push("the witness is not reached: lines wait on the machine".to_owned());
-    }
+    problems.extend(waiting_lines(folder).map(|waiting| {
+        let lines =
+            if waiting.lines == 1 { "1 line waits" } else { &format!("{} lines wait", waiting.lines) };
+        format!("the witness has not been reached since {}: {lines} on the machine", waiting.since)
+    }));
     Sitting {
         participant: manifest.participant.clone().unwrap_or_default(),
         run: manifest.id.clone(),

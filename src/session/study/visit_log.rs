@@ -78,6 +78,11 @@ impl VisitLog {
     }
 }
 
+/// Whether somebody came to a study under a label on the machine with a folder of runs.
+pub fn has_come(study: &Study, runs: &Path, label: &str) -> bool {
+    VisitLog::of(runs, study).has(label, VisitEvent::Came)
+}
+
 /// The lines of a list of visits; those that cannot be read are left out.
 pub fn visits(path: &Path) -> Vec<VisitLine> {
     let text = std::fs::read_to_string(path).unwrap_or_default();

@@ -9,8 +9,10 @@ mod code_words;
 mod compare;
 mod queue;
 mod record;
+mod waiting;
 
 pub use carrier::Witness;
 pub use code_words::{code_words, line_of_code};
 pub use compare::{Finding, FindingKind, compare};
 pub use record::{Told, WitnessRecord, read_witness};
+pub(in crate::session) use waiting::waiting_lines;

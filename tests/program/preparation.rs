@@ -1,0 +1,164 @@
+//! What an experimenter does around the sessions of a study: check, assign, watch, note.
+
+use std::fs;
+use std::path::PathBuf;
+
+use crate::support::home::{Home, Said, said};
+
+/// A study of four weeks without questions and practice.
+struct Lab(Home);
+
+impl Lab {
+    fn new() -> Lab {
+        let lab = Lab(Home::new());
+        assert_eq!(lab.0.run(&["study", "new", &lab.folder()]).code, 0);
+        lab.edit("# days = 84 ", "days = 28 #");
+        lab.edit("offer = \"required\"", "offer = \"none\"");
+        for questions in ["1-before", "2-effort", "3-end"] {
+            fs::remove_file(lab.path(&format!("pilot/questions/{questions}.toml"))).expect("gone");
+        }
+        lab
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.0.path().join(name)
+    }
+
+    fn folder(&self) -> String {
+        self.path("pilot").display().to_string()
+    }
+
+    fn edit(&self, from: &str, to: &str) {
+        let path = self.path("pilot/study.toml");
+        let text = fs::read_to_string(&path).expect("a protocol");
+        assert!(text.contains(from), "{from}");
+        fs::write(path, text.replace(from, to)).expect("written");
+    }
+
+    fn run(&self, command: &str, options: &[&str]) -> Said {
+        self.0.run(&[&["study", command, &self.folder()], options].concat())
+    }
+
+    fn visit(&self, machine: &str, lines: &str) -> Said {
+        let mut program = self.0.program();
+        program.env("NOVAMIND_RUNS", self.path(machine));
+        said(program.args(["--study", &self.folder()]), lines)
+    }
+
+    fn assignment(&self) -> String {
+        fs::read_to_string(self.path("pilot/assignment.csv")).expect("an assignment")
+    }
+}
+
+#[test]
+fn a_witness_that_is_not_there_is_told_and_never_made() {
+    let lab = Lab::new();
+    lab.edit("# witness = \"/mnt/lab/witness\"", "witness = \"share/witness\" #");
+    let share = lab.path("pilot/share");
+    lab.run("check", &[]).fails(1, &["not ready"]);
+    let told = lab.run("check", &[]).out;
+    assert!(told.contains("WRONG witness") && told.contains("is not there: mount the share"), "{told}");
+    assert_eq!(lab.visit("m1", "P1\nyes\nnext \"a\" naive\nquit\n").code, 0);
+    let missing = lab.run("audit", &[&lab.path("m1").display().to_string()]);
+    missing.fails(3, &["share/witness: the witness is not there", "--witness DIR"]);
+    assert!(!share.exists(), "neither the check nor a session makes it");
+    // The lines that waited are told once it is there again.
+    let watch = || lab.run("watch", &["--once", &lab.path("m1").display().to_string()]).out;
+    assert!(lab.path("m1/participants/P1").read_dir().expect("a folder").flatten().any(|run| {
+        fs::metadata(run.path().join("witness-queue.jsonl")).is_ok_and(|queue| queue.len() > 0)
+    }));
+    fs::create_dir_all(share.join("witness")).expect("mounted");
+    assert_eq!(lab.visit("m1", "P1\nquit\n").code, 0);
+    assert!(!watch().contains("witness"), "{}", watch());
+    let told = lab.run("check", &[]).out;
+    assert!(told.contains("note  witness") && told.contains("the file system of the runs"), "{told}");
+}
+
+#[test]
+fn a_check_names_what_a_session_of_this_length_cannot_do() {
+    let lab = Lab::new();
+    let questionnaire = |weeks: &str| {
+        let text = format!(
+            "title = \"Week\"\nwhen = \"weeks\"\nweeks = [{weeks}]\n[[question]]\nid = \"a\"\ntext = \"How?\"\nform = \"text\"\n"
+        );
+        fs::write(lab.path("pilot/questions/week.toml"), text).expect("written");
+    };
+    questionnaire("2, 9");
+    let told = lab.run("check", &[]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    for words in [
+        "ok    world       scenario default\n",
+        "note  questions   questions/week.toml asks after week 9: a session has 4 weeks",
+        "note  forecasts   of 4 weeks' forecasts come due: 4 looking 7 days ahead, 1 looking 28 days ahead, 0 looking 84",
+    ] {
+        assert!(told.out.contains(words), "{words} is missing in\n{}", told.out);
+    }
+    questionnaire("9");
+    let told = lab.run("check", &[]);
+    assert!(
+        told.code == 1 && told.out.contains("WRONG questions   questions/week.toml asks"),
+        "{}",
+        told.out
+    );
+    questionnaire("2");
+    lab.edit("# week_minutes = 20", "week_minutes = 2");
+    lab.edit("# warning_minutes = 2", "warning_minutes = 2");
+    lab.run("check", &[])
+        .fails(3, &["limits.warning_minutes", "week_minutes = 2 would stand from the beginning"]);
+    lab.edit("warning_minutes = 2", "warning_minutes = 1");
+    lab.edit("offer = \"none\"", "offer = \"optional\"");
+    let told = lab.run("check", &[]).out;
+    assert!(told.contains("scenario default, for the practice practice\n"), "{told}");
+}
+
+#[test]
+fn an_assignment_grows_and_keeps_the_rows_that_are_there() {
+    let lab = Lab::new();
+    lab.edit(
+        "plan = \"one\" ",
+        "plan = \"blocks\"\nblock = [11, 12, 13]\nconditions = [\"A\", \"B\"]\ndraw = 5 ",
+    );
+    lab.run("assign", &["--add", "3"]).fails(2, &["no assignment yet"]);
+    lab.run("assign", &["--participants", "8", "--draw", "6"]).fails(2, &["draw = 5"]);
+    let made = lab.run("assign", &["--participants", "8"]);
+    assert!(made.out.contains("the last block has 2 of 6 cells: with 12 participants"), "{}", made.out);
+    let told = lab.run("check", &[]).out;
+    assert!(told.contains("8 labels in blocks of 6: the last block has 2 of 6 cells"), "{told}");
+    let first = lab.assignment();
+    lab.run("assign", &["--participants", "12"]).fails(1, &["--add N"]);
+    let added = lab.run("assign", &["--add", "4"]);
+    assert!(added.code == 0 && added.out.contains("12 participants"), "{}{}", added.out, added.err);
+    let second = lab.assignment();
+    assert!(second.starts_with(&first) && second.contains("\nP12,"), "{second}");
+    let mut cells: Vec<&str> =
+        second.lines().skip(7).map(|line| line.split_once(',').expect("a label").1).collect();
+    cells.iter_mut().for_each(|cell| *cell = cell.rsplit_once(',').expect("an order").0);
+    cells.sort_unstable();
+    assert_eq!(cells, ["A,11", "A,12", "A,13", "B,11", "B,12", "B,13"]);
+    // Rows that somebody wrote stay as they are, and so does the file.
+    let by_hand = second.replacen(",A,", ",C,", 1);
+    fs::write(lab.path("pilot/assignment.csv"), &by_hand).expect("written");
+    lab.run("assign", &["--add", "1"]).fails(1, &["are not those that are drawn with 5", "by hand"]);
+    assert_eq!(lab.assignment(), by_hand);
+}
+
+#[test]
+fn a_remark_lies_beside_the_runs_of_its_label() {
+    let lab = Lab::new();
+    assert_eq!(lab.run("assign", &["--participants", "3"]).code, 0);
+    lab.visit("m1", "P01\nyes\nquit\n");
+    lab.visit("m2", "P02\nyes\nquit\n");
+    let machines = [lab.path("m1").display().to_string(), lab.path("m2").display().to_string()];
+    let note =
+        |label: &str, text: &str| lab.run("watch", &[&machines[0], &machines[1], "--note", label, text]);
+    let said = note("P02", "came late");
+    assert!(said.out.contains("noted for P02 in") && said.out.contains("m2/remarks.jsonl"), "{}", said.out);
+    assert!(note("P01", "asked what a lead is").out.contains("m1/remarks.jsonl"));
+    assert_eq!(note("P03", "has not come").code, 0, "a place of the assignment");
+    assert_eq!(note("P02", "left early").code, 0);
+    note("P99", "who is it?").fails(2, &["P99 is no label of this study", "Nothing was noted"]);
+    let shown = lab.run("watch", &[&machines[0], &machines[1], "--once"]).out;
+    let texts = ["came late", "asked what a lead is", "has not come", "left early"];
+    let places: Vec<usize> = texts.iter().map(|text| shown.find(text).expect(text)).collect();
+    assert!(places.is_sorted(), "by time\n{shown}");
+}

@@ -246,7 +246,7 @@ pub fn evenness(counts: &[u32]) -> Option<f64> {
     let entropy: f64 =
         used.clone().map(|count| f64::from(*count) / all).map(|share| -share * libm::log(share)).sum();
     let kinds = used.count();
-    (kinds > 1).then(|| entropy / libm::log(kinds as f64))
+    (kinds > 1).then(|| (entropy / libm::log(kinds as f64)).min(1.0))
 }
 
 /// How often which tools were called.

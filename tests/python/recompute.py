@@ -71,7 +71,7 @@ class Time:
         self.set_back = 0
         self.place, self.pieces = [], []
         copied = max((at for at, line in enumerate(lines) if line["kind"] == "branch"), default=-1)
-        where, state = 0, dict(sitting=None, stopped=False, idle=False, gone=False, other=False)
+        where, state = 0, dict(sitting=None, stopped=False, idle=False, gone=False, other=False, asked=0)
         idle = []
         for at, line in enumerate(lines):
             if at:
@@ -90,7 +90,7 @@ class Time:
                 middle = min(max(since, start), end)
                 until = min(max(found, start), end)
                 cut.append((start, middle, kind))
-                cut.append((middle, until, "idle" if kind == "active" else kind))
+                cut.append((middle, until, "idle" if kind in ("active", "answering") else kind))
                 cut.append((until, end, kind))
             self.pieces = [piece for piece in cut if piece[0] < piece[1]]
 
@@ -107,7 +107,7 @@ class Time:
             return "away"
         if state["idle"] or (state["sitting"] != "console" and passed > BREAK):
             return "idle"
-        return "active"
+        return "answering" if state["asked"] else "active"
 
     @staticmethod
     def follow(state, line, idle, where):
@@ -116,7 +116,7 @@ class Time:
             event = line["event"]
             if event == "opened":
                 interface = line.get("interface")
-                state.update(sitting="console" if interface == "console" else "other", idle=False, gone=False, other=False)
+                state.update(sitting="console" if interface == "console" else "other", idle=False, gone=False, other=False, asked=0)
             elif event == "closed":
                 state["sitting"] = "left"
             elif event == "idle":
@@ -132,6 +132,10 @@ class Time:
             state["stopped"] = line["event"] == "stopped"
         elif kind in ("call", "query", "note", "memo", "select", "dialog", "help", "draft", "answer"):
             state.update(idle=False, other=False)
+        if kind == "question":
+            state["asked"] += 1
+        if kind == "answer":
+            state["asked"] = max(state["asked"] - 1, 0)
 
     def between(self, start, end):
         spent = collections.Counter()
@@ -143,7 +147,7 @@ class Time:
         """Ends of the times of more than ten minutes in which nobody played."""
         apart = []
         for start, end, kind in self.pieces:
-            if kind in ("active", "simulating") or start == end:
+            if kind in ("active", "answering", "simulating") or start == end:
                 continue
             if apart and apart[-1][1] == start:
                 apart[-1][1] = end
@@ -155,8 +159,9 @@ class Time:
 def time_columns(spent):
     away = spent["away"] + spent["paused"]
     return {
-        "elapsed_seconds": seconds(spent["active"] + spent["idle"] + away),
+        "elapsed_seconds": seconds(spent["active"] + spent["answering"] + spent["idle"] + away),
         "active_seconds": seconds(spent["active"]),
+        "answering_seconds": seconds(spent["answering"]),
         "idle_seconds": seconds(spent["idle"]),
         "away_seconds": seconds(away),
         "paused_seconds": seconds(spent["paused"]),
@@ -166,7 +171,18 @@ def time_columns(spent):
 # Counts.
 
 
-def count(lines):
+IN_CONSOLE = ("dialogs_confirmed", "dialogs_cancelled", "drafts_left", "typed_characters", "deleted_characters", "pasted_characters")
+
+
+def count(lines, told):
+    """Counts of lines; `told` are the interfaces of the run's sittings."""
+    counts = count_all(lines)
+    if "console" not in told:
+        counts |= {name: "" for name in IN_CONSOLE + (("views",) if told else ())}
+    return counts
+
+
+def count_all(lines):
     tools = collections.Counter(line["tool"] for line in lines if line["kind"] == "call" and line["ok"])
     drafts = [line for line in lines if line["kind"] == "draft"]
     of = lambda kind: [line for line in lines if line["kind"] == kind]
@@ -320,9 +336,23 @@ class Run:
                 spent += (targeted + general) * line["days_run"]
         return aimed / spent if spent > 0 else ""
 
+    def interfaces(self):
+        return [line.get("interface") for line in self.lines if line["kind"] == "session" and line["event"] == "opened"]
+
+    @staticmethod
+    def at_limit(lines):
+        return any(line["kind"] == "limit" and line["event"] == "filed_naively" for line in lines)
+
+    def rationales(self):
+        """Those that somebody wrote."""
+        for week in self.weeks + [self.open]:
+            if not self.at_limit(week.lines if week.closing else self.lines[week.first :]):
+                filed = [line for line in (week.lines if week.closing else self.lines[week.first :]) if line["kind"] == "advance"]
+                yield from (line["rationale"] for line in filed[-1:])
+
     def runs_row(self):
         row = {"run": self.start["run"], "participant": self.start.get("participant") or "", "format": self.start["format"]}
-        row |= count(self.lines)
+        row |= count(self.lines, self.interfaces())
         presence = [line for line in self.lines if line["kind"] == "session"]
         states = [line["event"] for line in presence if line["event"] in ("opened", "closed")]
         row["sittings"] = states.count("opened")
@@ -376,8 +406,11 @@ class Run:
         row["tools_used"] = len(acting)
         shares = [value / everything for value in acting.values()]
         row["tool_evenness"] = -sum(share * math.log(share) for share in shares) / math.log(len(shares)) if len(shares) > 1 else ""
+        if len(shares) > 1:
+            row["tool_evenness"] = min(row["tool_evenness"], 1.0)
         row["weeks_filled_naively"] = sum(any(one.get("filled_naively") for one in line["forecasts"]) for line in advances)
-        words, planning, ifs = (sum(part) for part in zip((0, 0, 0), *(wording(line["rationale"]) for line in advances)))
+        row["weeks_filed_at_limit"] = sum(self.at_limit(week.lines) for week in self.weeks)
+        words, planning, ifs = (sum(part) for part in zip((0, 0, 0), *(wording(text) for text in self.rationales())))
         row |= {"rationale_words": words, "planning_words": planning, "if_words": ifs}
         row["planning_words_per_100"] = rounded(100 * planning / words) if words else ""
         notes = [line for line in self.lines if line["kind"] in ("note", "memo")]
@@ -395,12 +428,13 @@ class Run:
             row = {"run": self.start["run"], "week": week_of(closing["day"]), "day": closing["day"], "days_run": closing["days_run"]}
             row["decision_day"] = closing["day"] - closing["days_run"]
             row["inherited"] = int(week.inherited)
-            row |= count(week.lines) | time_columns(week.spent)
+            row |= count(week.lines, self.interfaces()) | time_columns(week.spent)
             row["breaks"] = sum(week.start < end <= week.end for end in ends)
             row["screens"] = pairs(week.screens)
             row["implausibly_fast"] = int(not week.inherited and seconds(week.spent["active"]) < 10)
             filed = [line for line in week.lines if line["kind"] == "advance"]
-            words = wording(filed[-1]["rationale"]) if filed else (0, 0, 0)
+            row["filed_at_limit"] = int(self.at_limit(week.lines))
+            words = wording(filed[-1]["rationale"]) if filed and not row["filed_at_limit"] else (0, 0, 0)
             row |= dict(zip(("rationale_words", "planning_words", "if_words"), words))
             row["filled_naively"] = int(any(one.get("filled_naively") for one in filed[-1]["forecasts"])) if filed else ""
             row |= {name: value for name, value in closing["figures"].items()}

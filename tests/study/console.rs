@@ -132,7 +132,9 @@ impl<'a> Player<'a> {
     /// Answers the only question of a page after a while.
     pub fn answer(&mut self, asked: Asked, keys: &str, value: &str, seconds: u64) {
         self.note("question", asked.questionnaire, asked.question, None);
+        let before = std::mem::replace(&mut self.spends, Spent::Answering);
         self.wait(seconds);
+        self.spends = before;
         self.does(keys);
         let for_ms = seconds * 1000;
         self.note("dialog", "questions", "confirmed", Some(for_ms));

@@ -6,6 +6,8 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Spent {
     Active,
+    /// With questions of the study.
+    Answering,
     Idle,
     Away,
     /// The clock is stopped.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use crate::diary::{Answered, Deed, Diary, Spent};
+use crate::diary::{Answered, Deed, Diary, Spent, WEEKS};
 use crate::lab::Lab;
 
 /// A row by its columns.
@@ -74,6 +74,7 @@ fn whole_run(diary: &Diary, row: &Row) {
         ("ended", text("horizon")),
         ("weeks", diary.weeks.len().to_string()),
         ("weeks_filled_naively", diary.weeks.iter().filter(|(_, naive)| *naive).count().to_string()),
+        ("weeks_filed_at_limit", deeds(|deed| deed.kind == "limit" && deed.which == "filed_naively")),
         ("calls", deeds(|deed| deed.kind == "call")),
         ("undone", deeds(|deed| deed.kind == "call" && deed.which == "palette")),
         ("queries", deeds(|deed| deed.kind == "query")),
@@ -92,18 +93,28 @@ fn whole_run(diary: &Diary, row: &Row) {
     let before_the_end = diary.deeds.iter().position(|deed| deed.kind == "end").expect("it ended");
     let played = Diary { deeds: diary.deeds[..before_the_end].to_vec(), ..diary.clone() };
     for (column, kind) in [("views", "view"), ("selects", "select"), ("helps", "help")] {
+        if diary.real && kind == "view" {
+            // Plain mode has no screens.
+            assert_eq!(row[column], "", "{}", diary.label);
+            continue;
+        }
         assert_eq!(row[column], played.count(kind).to_string(), "{}: {column}", diary.label);
     }
     for outcome in ["confirmed", "cancelled"] {
         let own = played.deeds.iter().filter(|deed| deed.kind == "dialog" && deed.which == outcome);
-        assert_eq!(row[&format!("dialogs_{outcome}")], own.count().to_string(), "{}: {outcome}", diary.label);
+        let own = if diary.real { String::new() } else { own.count().to_string() };
+        assert_eq!(row[&format!("dialogs_{outcome}")], own, "{}: {outcome}", diary.label);
     }
     times(diary, row);
 }
 
+fn told_ms(row: &Row, column: &str) -> u64 {
+    (row[column].parse::<f64>().expect("seconds") * 1e3).round() as u64
+}
+
 /// Where the time of the whole run went.
 fn times(diary: &Diary, row: &Row) {
-    let told = |column: &str| (row[column].parse::<f64>().expect("seconds") * 1e3).round() as u64;
+    let told = |column: &str| told_ms(row, column);
     let own = |spent| diary.spent(spent);
     if diary.real {
         let within = |column: &str, spent: Spent| {
@@ -119,6 +130,8 @@ fn times(diary: &Diary, row: &Row) {
         return;
     }
     assert_eq!(told("active_seconds"), own(Spent::Active), "{}", diary.label);
+    let after_the_end = diary.answers.last().map_or(0, |answer| answer.for_ms);
+    assert_eq!(told("answering_seconds"), own(Spent::Answering) - after_the_end, "{}", diary.label);
     assert_eq!(told("idle_seconds"), own(Spent::Idle), "{}", diary.label);
     assert_eq!(told("away_seconds"), own(Spent::Away) + own(Spent::Paused), "{}", diary.label);
     assert_eq!(told("paused_seconds"), own(Spent::Paused), "{}", diary.label);
@@ -129,7 +142,7 @@ fn times(diary: &Diary, row: &Row) {
 fn single_weeks(diary: &Diary, rows: &[&Row]) {
     assert_eq!(rows.len(), diary.weeks.len(), "{}", diary.label);
     for (week, row) in (1..).zip(rows) {
-        let told = |column: &str| (row[column].parse::<f64>().expect("seconds") * 1e3).round() as u64;
+        let told = |column: &str| told_ms(row, column);
         let own = |spent| diary.time.get(&(week, spent)).copied().unwrap_or_default();
         let count = |kind: &str| {
             diary.deeds.iter().filter(|deed| deed.week == week && deed.kind == kind).count().to_string()
@@ -141,6 +154,9 @@ fn single_weeks(diary: &Diary, rows: &[&Row]) {
         }
         let expected = [Spent::Active, Spent::Idle, Spent::Paused].map(own);
         let told = ["active_seconds", "idle_seconds", "paused_seconds"].map(told);
+        if week < WEEKS {
+            assert_eq!(told_ms(row, "answering_seconds"), own(Spent::Answering), "{}", diary.label);
+        }
         assert_eq!(told, expected, "{} in week {week}", diary.label);
         let fast = if own(Spent::Active) < 10_000 { "1" } else { "0" };
         assert_eq!(row["implausibly_fast"], fast, "{} in week {week}", diary.label);

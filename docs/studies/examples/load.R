@@ -7,7 +7,7 @@
 
 names_of_tables <- c("runs", "weeks", "forecasts", "queries", "events", "answers", "notes")
 whole <- c("count", "day", "days", "number", "bytes")
-real <- c("dollars", "dollars a month", "share", "seconds", "milliseconds", "minutes", "per week", "per 100 words", "units")
+real <- c("dollars", "dollars a month", "share", "seconds", "milliseconds", "minutes", "per week", "per 100 words", "per group", "units")
 
 typed <- function(cells, unit) {
   if (unit == "0 or 1") return(cells == "1")

@@ -17,7 +17,7 @@ except ImportError:
 
 NAMES = ("runs", "weeks", "forecasts", "queries", "events", "answers", "notes")
 WHOLE = {"count", "day", "days", "number", "bytes"}
-REAL = {"dollars", "dollars a month", "share", "seconds", "milliseconds", "minutes", "per week", "per 100 words", "units"}
+REAL = {"dollars", "dollars a month", "share", "seconds", "milliseconds", "minutes", "per week", "per 100 words", "per group", "units"}
 
 
 def columns(folder):

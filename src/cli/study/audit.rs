@@ -99,7 +99,7 @@ fn facts(runs: &[RunFacts]) -> Rows {
             number(own.refusals),
             number(own.naive_weeks),
             number(own.fast_weeks),
-            Cell::Integer(own.pasted as i64),
+            own.pasted.map_or(Cell::Null, |pasted| Cell::Integer(pasted as i64)),
             number(own.failed_checks),
             Cell::Integer(own.longest_gap.round() as i64),
         ]

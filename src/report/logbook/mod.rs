@@ -144,6 +144,8 @@ pub struct WeekLog {
     pub naive_forecasts: Vec<bool>,
     /// At least one was filled by the naive projection; none if none was filed.
     pub filled_naively: Option<bool>,
+    /// A time limit filed it.
+    pub filed_at_limit: bool,
     /// Figures of the week as its line has them.
     pub figures: Map<String, Value>,
     /// Hash of the state after it.
@@ -225,6 +227,7 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
         decided.iter().flat_map(|own| own.changes.iter().map(change_in_words)).collect();
     decisions.extend(decided.iter().flat_map(|own| own.purchases.iter().cloned()));
     let cash = session.cash_by_day();
+    let own_rationale = span.rationale.as_deref().filter(|_| !span.filed_at_limit);
     let scored = |filed: &FiledForecast| ScoredForecast::of(span.decision_day, &filed.said(), cash);
     WeekLog {
         week: crate::session::week_of(span.day),
@@ -236,11 +239,12 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
         began_at: span.began_at.clone(),
         decided_at: span.decided_at.clone(),
         effort: span.effort.clone(),
-        wording: span.rationale.as_deref().map(Wording::of).unwrap_or_default(),
+        wording: own_rationale.map(Wording::of).unwrap_or_default(),
         decisions,
         forecasts: span.forecasts.iter().map(scored).collect(),
         naive_forecasts: span.forecasts.iter().map(|forecast| forecast.filled_naively).collect(),
         filled_naively: span.filled_naively,
+        filed_at_limit: span.filed_at_limit,
         figures: span.figures.clone(),
         state_hash: span.state_hash.clone(),
     }

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::Effort;
-use crate::session::record::{Closing, FiledForecast, Outcome, View};
+use crate::session::record::{Closing, FiledForecast, LimitEvent, Outcome, View};
 use crate::session::{
     Activity, Attendance, AttendedWeek, Attention, BREAK_SECONDS, Line, Record, Reversal, written_moment,
 };
@@ -35,6 +35,8 @@ pub(super) struct Span {
     pub forecasts: Vec<FiledForecast>,
     /// At least one of them was filled by the naive projection; none if none was filed.
     pub filled_naively: Option<bool>,
+    /// A time limit filed it: nobody wrote its rationale.
+    pub filed_at_limit: bool,
     pub figures: Map<String, Value>,
     pub state_hash: String,
     /// Where it stands on the axis of the run.
@@ -93,7 +95,7 @@ impl Timeline {
         let mut apart: Vec<(i64, i64)> = Vec::new();
         for time in attendance.times() {
             match (time.attention, apart.last_mut()) {
-                (Attention::Active | Attention::Simulating, _) => {}
+                (Attention::Active | Attention::Answering | Attention::Simulating, _) => {}
                 (_, Some((_, to))) if *to == time.from => *to = time.to,
                 _ => apart.push((time.from, time.to)),
             }
@@ -141,7 +143,11 @@ impl Timeline {
                 effort.queries += 1;
                 effort.queries_failed += u32::from(query.error.is_some());
             }
-            Record::Activity(activity) => effort.count(activity),
+            Record::Activity(activity) => {
+                effort.count(activity);
+                let limit = if let Activity::Limit(limit) = activity { Some(limit.event) } else { None };
+                self.open.filed_at_limit |= limit == Some(LimitEvent::FiledNaively);
+            }
             Record::Memo(_) | Record::Note(_) => effort.memos += 1,
             Record::Advance(filed) => {
                 self.open.decided_at.clone_from(&line.at);

@@ -50,6 +50,16 @@ pub type RunColumn = Column<fn(&Logbook) -> String>;
 /// A column of the table of weeks.
 pub type WeekColumn = Column<fn(&Logbook, &WeekLog) -> String>;
 
+/// What only the console sees; empty of a run without a sitting there.
+fn in_console(run: &Logbook, value: impl ToString) -> String {
+    if run.sittings.in_console > 0 { value.to_string() } else { String::new() }
+}
+
+/// Views of screens, which the console has recorded since before lines told of sittings.
+fn seen(run: &Logbook, value: impl ToString) -> String {
+    if run.sittings.opened == 0 { value.to_string() } else { in_console(run, value) }
+}
+
 /// Columns by table, in the order of the tables.
 pub fn headings() -> Vec<(&'static str, Vec<Heading>)> {
     vec![

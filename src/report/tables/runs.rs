@@ -1,6 +1,8 @@
 //! The columns of `runs.csv`.
 
-use super::{Column, RunColumn, flag, heading, maybe, number, pairs, rounded, score, screens, tools};
+use super::{
+    Column, RunColumn, flag, heading, in_console, maybe, number, pairs, rounded, score, screens, seen, tools,
+};
 use crate::report::logbook::Logbook;
 use crate::report::measures::ChannelSkill;
 use crate::session::{StudyStamp, TimeSpent};
@@ -28,8 +30,9 @@ fn of_study(run: &Logbook, part: fn(&StudyStamp) -> Option<String>) -> String {
     run.study.as_ref().and_then(part).unwrap_or_default()
 }
 
-const FIRST_ERROR: &str = "mean of |point - outcome| / |outcome| of those filed before the first four weeks";
-const ERROR: &str = "their mean of |point - outcome| / |outcome|";
+const FIRST_ERROR: &str =
+    "mean of |point - outcome| / max(|outcome|, 1) of those filed before the first four weeks";
+const ERROR: &str = "their mean of |point - outcome| / max(|outcome|, 1)";
 const COVERAGE: &str = "share of them whose interval held the outcome";
 
 const fn column(
@@ -124,7 +127,7 @@ pub const RUNS: &[RunColumn] = &[
     column("queries_failed", "count", "queries that were refused or failed", |run| {
         run.total.queries_failed.to_string()
     }),
-    column("views", "count", "views of screens (console only)", |run| run.total.views.to_string()),
+    column("views", "count", "views of screens (console only)", |run| seen(run, run.total.views)),
     column("memos", "count", "changes of the notes", |run| run.total.memos.to_string()),
     column(
         "sittings",
@@ -144,10 +147,13 @@ pub const RUNS: &[RunColumn] = &[
     column(
         "elapsed_seconds",
         "seconds",
-        "active, idle and away together: from the first line to the last without the time the simulator took",
+        "active, answering, idle and away together: from the first line to the last without the time the simulator took",
         |run| number(run.total.time.elapsed_seconds()),
     ),
     column("active_seconds", "seconds", "time played", |run| number(run.total.time.active_seconds())),
+    column("answering_seconds", "seconds", "time with questions of the study on the screen", |run| {
+        number(run.total.time.answering_seconds())
+    }),
     column(
         "idle_seconds",
         "seconds",
@@ -192,13 +198,18 @@ pub const RUNS: &[RunColumn] = &[
     column("implausibly_fast_weeks", "count", "weeks decided in less than ten active seconds", |run| {
         run.fast_weeks.to_string()
     }),
-    column("typed_characters", "count", "characters typed into texts", |run| run.total.typed.to_string()),
-    column("deleted_characters", "count", "characters deleted from them", |run| {
-        run.total.deleted.to_string()
+    column("typed_characters", "count", "characters typed into texts (console only)", |run| {
+        in_console(run, run.total.typed)
     }),
-    column("pasted_characters", "count", "characters of them that came from the clipboard", |run| {
-        run.total.pasted.to_string()
+    column("deleted_characters", "count", "characters deleted from them (console only)", |run| {
+        in_console(run, run.total.deleted)
     }),
+    column(
+        "pasted_characters",
+        "count",
+        "characters of them that came from the clipboard (console only)",
+        |run| in_console(run, run.total.pasted),
+    ),
     column(
         "truly_best_channel_share",
         "share",
@@ -216,7 +227,7 @@ pub const RUNS: &[RunColumn] = &[
     }),
     column(
         "channels_tried",
-        "count",
+        "per group",
         "mean over the groups that were advertised to of the channels paid for",
         |run| maybe(run.measures.channels.as_ref().map(ChannelSkill::channels_tried)),
     ),
@@ -256,6 +267,12 @@ pub const RUNS: &[RunColumn] = &[
         |run| run.measures.filled_naively.0.to_string(),
     ),
     column(
+        "weeks_filed_at_limit",
+        "count",
+        "of them, weeks that a time limit filed; their rationale is nobody's and counts no words",
+        |run| run.weeks.iter().filter(|week| week.filed_at_limit).count().to_string(),
+    ),
+    column(
         "acting_calls",
         "count",
         "accepted calls that did something; readings are not among them",
@@ -278,15 +295,15 @@ pub const RUNS: &[RunColumn] = &[
     column("selects", "count", "objects that were opened: groups, threads, tools, posts, studies", |run| {
         run.total.selects.to_string()
     }),
-    column("dialogs_confirmed", "count", "dialogs whose question was confirmed", |run| {
-        run.total.dialogs_confirmed.to_string()
+    column("dialogs_confirmed", "count", "dialogs whose question was confirmed (console only)", |run| {
+        in_console(run, run.total.dialogs_confirmed)
     }),
-    column("dialogs_cancelled", "count", "dialogs that were left", |run| {
-        run.total.dialogs_cancelled.to_string()
+    column("dialogs_cancelled", "count", "dialogs that were left (console only)", |run| {
+        in_console(run, run.total.dialogs_cancelled)
     }),
     column("helps", "count", "terms that were explained", |run| run.total.helps.to_string()),
-    column("drafts_left", "count", "texts that were edited and left behind", |run| {
-        run.total.drafts_left.to_string()
+    column("drafts_left", "count", "texts that were edited and left behind (console only)", |run| {
+        in_console(run, run.total.drafts_left)
     }),
     column("rationale_words", "count", "words of all rationales", |run| run.wording.words.to_string()),
     column(

@@ -1,6 +1,6 @@
 //! The columns of `weeks.csv`.
 
-use super::{Column, WeekColumn, flag, heading, maybe, number, screens, tools};
+use super::{Column, WeekColumn, flag, heading, in_console, maybe, number, screens, seen, tools};
 use crate::report::logbook::{Logbook, WeekLog};
 use crate::session::ScoredForecast;
 
@@ -73,10 +73,13 @@ pub const WEEKS: &[WeekColumn] = &[
     column(
         "elapsed_seconds",
         "seconds",
-        "active, idle and away together, of the time before the week",
+        "active, answering, idle and away together, of the time before the week",
         |_, week| number(week.effort.time.elapsed_seconds()),
     ),
     column("active_seconds", "seconds", "time played", |_, week| number(week.effort.time.active_seconds())),
+    column("answering_seconds", "seconds", "time with questions of the study", |_, week| {
+        number(week.effort.time.answering_seconds())
+    }),
     column("idle_seconds", "seconds", "time without a key, the program in front", |_, week| {
         number(week.effort.time.idle_seconds())
     }),
@@ -105,7 +108,7 @@ pub const WEEKS: &[WeekColumn] = &[
     column("queries_failed", "count", "queries that were refused or failed", |_, week| {
         week.effort.queries_failed.to_string()
     }),
-    column("views", "count", "views of screens (console only)", |_, week| week.effort.views.to_string()),
+    column("views", "count", "views of screens (console only)", |run, week| seen(run, week.effort.views)),
     column("screens", "screen=seconds", "active time on each screen (console only)", |_, week| {
         screens(&week.effort)
     }),
@@ -115,25 +118,31 @@ pub const WEEKS: &[WeekColumn] = &[
         "objects that were opened: groups, threads, tools, posts, studies",
         |_, week| week.effort.selects.to_string(),
     ),
-    column("dialogs_confirmed", "count", "dialogs whose question was confirmed", |_, week| {
-        week.effort.dialogs_confirmed.to_string()
-    }),
-    column("dialogs_cancelled", "count", "dialogs that were left", |_, week| {
-        week.effort.dialogs_cancelled.to_string()
+    column(
+        "dialogs_confirmed",
+        "count",
+        "dialogs whose question was confirmed (console only)",
+        |run, week| in_console(run, week.effort.dialogs_confirmed),
+    ),
+    column("dialogs_cancelled", "count", "dialogs that were left (console only)", |run, week| {
+        in_console(run, week.effort.dialogs_cancelled)
     }),
     column("helps", "count", "terms that were explained", |_, week| week.effort.helps.to_string()),
-    column("drafts_left", "count", "texts that were edited and left behind", |_, week| {
-        week.effort.drafts_left.to_string()
+    column("drafts_left", "count", "texts that were edited and left behind (console only)", |run, week| {
+        in_console(run, week.effort.drafts_left)
     }),
-    column("typed_characters", "count", "characters typed into texts", |_, week| {
-        week.effort.typed.to_string()
+    column("typed_characters", "count", "characters typed into texts (console only)", |run, week| {
+        in_console(run, week.effort.typed)
     }),
-    column("deleted_characters", "count", "characters deleted from them", |_, week| {
-        week.effort.deleted.to_string()
+    column("deleted_characters", "count", "characters deleted from them (console only)", |run, week| {
+        in_console(run, week.effort.deleted)
     }),
-    column("pasted_characters", "count", "characters of them that came from the clipboard", |_, week| {
-        week.effort.pasted.to_string()
-    }),
+    column(
+        "pasted_characters",
+        "count",
+        "characters of them that came from the clipboard (console only)",
+        |run, week| in_console(run, week.effort.pasted),
+    ),
     column("memos", "count", "changes of the notes", |_, week| week.effort.memos.to_string()),
     column(
         "decisions",
@@ -152,6 +161,7 @@ pub const WEEKS: &[WeekColumn] = &[
         "1: at least one forecast was filled by the naive projection",
         |_, week| week.filled_naively.map(flag).unwrap_or_default(),
     ),
+    column("filed_at_limit", "0 or 1", "1: a time limit filed the week", |_, week| flag(week.filed_at_limit)),
     column("forecast_7_point", "dollars", "cash expected 7 days ahead", point::<7>),
     column("forecast_7_lower", "dollars", LOWER, lower::<7>),
     column("forecast_7_upper", "dollars", UPPER, upper::<7>),

@@ -39,8 +39,8 @@ pub struct RunFacts {
     pub naive_weeks: u32,
     /// Weeks that were decided in less than ten active seconds.
     pub fast_weeks: u32,
-    /// Characters that came from the clipboard.
-    pub pasted: u64,
+    /// Characters that came from the clipboard; none of a run that was never open in the console, which sees them.
+    pub pasted: Option<u64>,
     /// Attention checks that were not answered as expected.
     pub failed_checks: u32,
     /// Longest time between two lines that follow each other, seconds.
@@ -66,7 +66,7 @@ impl RunFacts {
             refusals: 0,
             naive_weeks: 0,
             fast_weeks: Attendance::of(&trajectory.lines).fast_weeks(),
-            pasted: 0,
+            pasted: (sittings.in_console > 0).then_some(0),
             failed_checks: 0,
             longest_gap: 0.0,
         };
@@ -91,7 +91,7 @@ impl RunFacts {
 
     fn note(&mut self, activity: &Activity) {
         match activity {
-            Activity::Draft(draft) => self.pasted += draft.pasted,
+            Activity::Draft(draft) => self.pasted = self.pasted.map(|own| own + draft.pasted),
             Activity::Answer(answer) => self.failed_checks += u32::from(answer.as_expected == Some(false)),
             _ => {}
         }

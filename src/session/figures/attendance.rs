@@ -19,13 +19,15 @@ const SECOND: i64 = 1_000_000_000;
 const MILLISECOND: i64 = 1_000_000;
 
 /// The interface that watches every key and records when there was none for a while.
-const WATCHES_KEYS: &str = "console";
+pub(super) const WATCHES_KEYS: &str = "console";
 
 /// What a person did with a stretch of time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Attention {
     /// They played.
     Active,
+    /// They answered questions of the study.
+    Answering,
     /// They were there, without a key since before the program found them idle; or, where keys are not watched, without
     /// a line for more than ten minutes.
     Idle,
@@ -42,6 +44,8 @@ pub enum Attention {
 pub struct TimeSpent {
     /// Nanoseconds played.
     active: i64,
+    /// Nanoseconds with questions of the study.
+    answering: i64,
     /// Nanoseconds idle.
     idle: i64,
     /// Nanoseconds away, the stopped clock among them.
@@ -54,6 +58,11 @@ impl TimeSpent {
     /// Seconds played, to the millisecond.
     pub fn active_seconds(&self) -> f64 {
         to_seconds(self.active)
+    }
+
+    /// Seconds with questions of the study, to the millisecond.
+    pub fn answering_seconds(&self) -> f64 {
+        to_seconds(self.answering)
     }
 
     /// Seconds idle, to the millisecond.
@@ -73,7 +82,7 @@ impl TimeSpent {
 
     /// Seconds of all kinds, to the millisecond.
     pub fn elapsed_seconds(&self) -> f64 {
-        to_seconds(self.active + self.idle + self.away)
+        to_seconds(self.active + self.answering + self.idle + self.away)
     }
 
     /// Milliseconds played, as time limits count them.
@@ -84,6 +93,7 @@ impl TimeSpent {
     fn add(&mut self, attention: Attention, passed: i64) {
         match attention {
             Attention::Active => self.active += passed,
+            Attention::Answering => self.answering += passed,
             Attention::Idle => self.idle += passed,
             Attention::Away => self.away += passed,
             Attention::Paused => {
@@ -98,9 +108,10 @@ impl TimeSpent {
 /// Its seconds by kind.
 impl Serialize for TimeSpent {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("TimeSpent", 5)?;
+        let mut fields = serializer.serialize_struct("TimeSpent", 6)?;
         fields.serialize_field("elapsed_seconds", &self.elapsed_seconds())?;
         fields.serialize_field("active_seconds", &self.active_seconds())?;
+        fields.serialize_field("answering_seconds", &self.answering_seconds())?;
         fields.serialize_field("idle_seconds", &self.idle_seconds())?;
         fields.serialize_field("away_seconds", &self.away_seconds())?;
         fields.serialize_field("paused_seconds", &self.paused_seconds())?;
@@ -111,6 +122,7 @@ impl Serialize for TimeSpent {
 impl std::ops::AddAssign for TimeSpent {
     fn add_assign(&mut self, other: TimeSpent) {
         self.active += other.active;
+        self.answering += other.answering;
         self.idle += other.idle;
         self.away += other.away;
         self.paused += other.paused;
@@ -163,6 +175,8 @@ pub struct Attendance {
     is_idle: bool,
     is_suspended: bool,
     has_focus_elsewhere: bool,
+    /// Questions that were asked in this sitting and have no answer yet.
+    open_questions: u32,
     clock_set_back: u32,
     weeks: Vec<AttendedWeek>,
     week_from: i64,
@@ -188,6 +202,7 @@ impl Attendance {
         self.push(passed, self.attention(passed, Some(record)));
         match record {
             Record::Activity(Activity::Session(presence)) => self.take_presence(presence),
+            Record::Activity(Activity::Question(_)) => self.open_questions += 1,
             Record::Activity(Activity::Clock(clock)) => self.is_paused = clock.event == ClockEvent::Stopped,
             // What a branch took over was played in another run, at another time.
             Record::Branch(_) => {
@@ -201,6 +216,9 @@ impl Attendance {
             }
             record if is_act(record) => (self.is_idle, self.has_focus_elsewhere) = (false, false),
             _ => {}
+        }
+        if matches!(record, Record::Activity(Activity::Answer(_))) {
+            self.open_questions = self.open_questions.saturating_sub(1);
         }
     }
 
@@ -272,6 +290,7 @@ impl Attendance {
             Openness::Open { .. } if self.is_suspended || self.has_focus_elsewhere => Attention::Away,
             Openness::Open { .. } if self.is_idle => Attention::Idle,
             Openness::Open { watches_keys: false } if long => Attention::Idle,
+            Openness::Open { .. } if self.open_questions > 0 => Attention::Answering,
             Openness::Open { .. } => Attention::Active,
         }
     }
@@ -292,6 +311,8 @@ impl Attendance {
                 let watches_keys = presence.interface.as_deref() == Some(WATCHES_KEYS);
                 self.sitting = Openness::Open { watches_keys };
                 self.sitting_from = self.place;
+                // Whoever left before a page was sent is asked again.
+                self.open_questions = 0;
                 (self.is_idle, self.is_suspended, self.has_focus_elsewhere) = (false, false, false);
             }
             PresenceEvent::Closed => self.sitting = Openness::Left,
@@ -316,7 +337,7 @@ impl Attendance {
         for time in found {
             let cut = since.clamp(time.from, time.to);
             let later = match time.attention {
-                Attention::Active => Attention::Idle,
+                Attention::Active | Attention::Answering => Attention::Idle,
                 other => other,
             };
             let parts = [(time.from, cut, time.attention), (cut, time.to, later)];

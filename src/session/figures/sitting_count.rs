@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
+use super::attendance::WATCHES_KEYS;
 use crate::session::trajectory::record::{Activity, ClockEvent, PresenceEvent};
 use crate::session::trajectory::{Line, Record};
 
@@ -12,6 +13,8 @@ use crate::session::trajectory::{Line, Record};
 pub struct SittingCount {
     /// How often; 0 where lines do not tell.
     pub opened: u32,
+    /// Of them, in the console, which sees screens, dialogs and keys.
+    pub in_console: u32,
     /// How often it did not leave the run before it took it up again, or, of an unfinished run, at all: it was killed, or
     /// still plays.
     pub not_closed: u32,
@@ -38,6 +41,7 @@ impl SittingCount {
             match presence.event {
                 PresenceEvent::Opened => {
                     count.opened += 1;
+                    count.in_console += u32::from(presence.interface.as_deref() == Some(WATCHES_KEYS));
                     count.not_closed += u32::from(is_open);
                     is_open = true;
                 }

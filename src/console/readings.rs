@@ -28,7 +28,7 @@ readings! {
     Service "readings/service" "The service by day: day, usage, capacity, tier, latency, errors, minutes of outage."
     OpenIssues "readings/open_issues" "Open issues: group, and a count for each of four ages."
     EnterpriseTurns "readings/enterprise_turns" "Turns of negotiations, the newest first: thread, company, kind, turn, sender, words, offer, day, seats, end."
-    LastLetters "readings/last_letters" "The newest price of each company that asked in the last eight days: thread, words."
+    LastLetters "readings/last_letters" "The newest letter of each company that named a price or a plan in the last eight days: thread, words, and the plan it has where it named no price."
     Companies "readings/companies" "The companies of these negotiations: profile and subscription."
     Research "readings/research" "R&D projects: id, tier, status, started, expected, boost; the newest first."
     OwnPosts "readings/own_posts" "Our posts, the newest first: number, day, text, post it answers, views, numbers of comments."

@@ -30,6 +30,8 @@ pub enum Answer {
         problem: String,
         /// Column, from 1.
         column: usize,
+        /// What stands there, where the problem does not name it.
+        place: Option<String>,
     },
     /// It was `quit`.
     Quit,
@@ -41,12 +43,7 @@ impl Answer {
         Answer::Done { command: command.to_owned(), text, data }
     }
 
-    /// An accepted tool call: its name and the fields of its data.
-    pub fn call(command: &str, data: Value) -> Answer {
-        Answer::call_shown(command, data, None)
-    }
-
-    /// The same, where people are shown other fields than programs.
+    /// An accepted tool call: its name and the fields of its data, or those that people are shown in place of them.
     pub fn call_shown(command: &str, data: Value, shown: Option<Value>) -> Answer {
         let mut text = format!("ok {command}\n");
         match shown.as_ref().unwrap_or(&data) {
@@ -72,7 +69,17 @@ impl Answer {
 
     /// An unreadable line.
     pub fn usage(problem: impl Into<String>, column: usize) -> Answer {
-        Answer::Usage { problem: problem.into(), column }
+        Answer::Usage { problem: problem.into(), column, place: None }
+    }
+
+    /// The same answer to a line; an unreadable one names the word that is wrong.
+    pub fn naming_the_word_in(self, line: &str) -> Answer {
+        let Answer::Usage { problem, column, .. } = self else { return self };
+        let bare = |word: &str| word.trim_matches([',', ';', ':', '?', '.']).to_owned();
+        let place = word_at(line, column);
+        let is_named = problem.split_whitespace().any(|word| bare(word) == bare(&place));
+        let place = Some(place).filter(|_| !is_named);
+        Answer::Usage { problem, column, place }
     }
 
     /// Whether it was done.
@@ -96,7 +103,10 @@ impl Answer {
                 };
                 format!("refused {refusal}{results}")
             }
-            Answer::Usage { problem, column } => format!("error usage: {problem} (column {column})"),
+            Answer::Usage { problem, place: None, .. } => format!("error usage: {problem}"),
+            Answer::Usage { problem, place: Some(place), .. } => {
+                format!("error usage: {problem}, at {place}")
+            }
             Answer::Quit => String::new(),
         }
     }
@@ -122,7 +132,7 @@ impl Answer {
                 }
                 object
             }
-            Answer::Usage { problem, column } => json!({
+            Answer::Usage { problem, column, .. } => json!({
                 "line": line,
                 "command": null,
                 "ok": false,
@@ -134,6 +144,13 @@ impl Answer {
             Answer::Quit => Value::Null,
         }
     }
+}
+
+/// The word in a column of a line, or that the line ends there.
+fn word_at(line: &str, column: usize) -> String {
+    let from = line.char_indices().nth(column.saturating_sub(1)).map_or(line.len(), |(at, _)| at);
+    let word: String = line[from..].split_whitespace().next().unwrap_or_default().chars().take(40).collect();
+    if word.is_empty() { "the end of the line".to_owned() } else { word }
 }
 
 /// A field of an answer; a list of objects becomes a table.
@@ -175,7 +192,7 @@ mod tests {
     #[test]
     fn calls_refusals_and_rows_have_their_forms() {
         let data = json!({"updated": {"A": 12, "B": 25}, "total_per_day": 120});
-        let answer = Answer::call("set_prices", data);
+        let answer = Answer::call_shown("set_prices", data, None);
         assert_eq!(answer.as_text(), "ok set_prices\n  updated: {\"A\":12,\"B\":25}\n  total_per_day: 120\n");
         let refusal = Refusal::at("A", "price_not_positive", "price of plan A must be above zero");
         let refused = Answer::refused("set_prices", refusal);
@@ -205,9 +222,27 @@ mod tests {
     }
 
     #[test]
+    fn what_cannot_be_read_names_the_word_and_no_column() {
+        let told = |problem: &str, column, line: &str| {
+            Answer::usage(problem, column).naming_the_word_in(line).as_text()
+        };
+        assert_eq!(
+            told("a value is expected", 14, "set_prices A=) B=3"),
+            "error usage: a value is expected, at )"
+        );
+        assert_eq!(
+            told("a value is missing", 14, "set_prices A="),
+            "error usage: a value is missing, at the end of the line"
+        );
+        assert_eq!(told("foo is not a command", 1, "foo 3"), "error usage: foo is not a command");
+        assert_eq!(told("größe", 9, "größe x ö"), "error usage: größe, at ö");
+        assert_eq!(Answer::usage("x", 7).naming_the_word_in("a b").as_json(1, 0)["column"], 7);
+    }
+
+    #[test]
     fn lists_of_objects_become_tables() {
         let data = json!({"tiers": [{"tier": 1, "name": "a"}, {"tier": 20, "name": "b c"}]});
-        let text = Answer::call("list", data).as_text();
+        let text = Answer::call_shown("list", data, None).as_text();
         assert_eq!(text, "ok list\n  tiers:\n    tier  name\n    1     a\n    20    b c\n");
     }
 }

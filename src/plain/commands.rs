@@ -2,9 +2,12 @@
 
 mod check;
 mod groups;
+mod help;
+mod inbox;
 mod readings;
 mod report;
 mod rules;
+mod thread;
 mod words;
 mod xray;
 
@@ -34,17 +37,21 @@ use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 const NEXT: [&str; 3] = ["next", "next-week", "next_week"];
 
 /// Commands that are no tools.
-const COMMANDS: [(&str, &str); 32] = [
+const COMMANDS: &[(&str, &str)] = &[
     ("sql", "sql SELECT …             ask the database (also: query)"),
     ("queries", "queries [NAME]           the library of queries, or the result of one of them"),
     ("next", "next \"WHY\" naive          file a rationale and forecasts, run a week (also: next-week)"),
     ("dashboard", "dashboard                the dashboard of the last week"),
     ("status", "status                   run, day, cash, runway, subscribers and what waits"),
-    ("inbox", "inbox                    threads that wait for an answer"),
+    (
+        "inbox",
+        "inbox [all] [where …]    threads that wait for an answer; inbox NUMBER reads that of one company",
+    ),
+    ("thread", "thread NUMBER            one thread, turn by turn"),
     ("rules", "rules [send] RULES       what rules would send to waiting threads; with send, sends it"),
     (
         "needs",
-        "needs                    what needs you, ranked by money at risk, with the call that addresses it",
+        "needs                    what needs you, urgent first, then by money at risk, with the call that addresses it",
     ),
     (
         "fit",
@@ -52,7 +59,7 @@ const COMMANDS: [(&str, &str); 32] = [
     ),
     (
         "leads",
-        "leads                    leads by group, paid and by word of mouth, and what a lead and a first bill cost",
+        "leads [GROUP]            leads by group, paid and by word of mouth, and what a lead and a first bill cost",
     ),
     ("changes", "changes                  settings changed since the last week"),
     (
@@ -85,10 +92,11 @@ const COMMANDS: [(&str, &str); 32] = [
 ];
 
 /// Commands that show something and change nothing.
-const LOOKS: [&str; 13] = [
+const LOOKS: &[&str] = &[
     "dashboard",
     "status",
     "inbox",
+    "thread",
     "changes",
     "needs",
     "fit",
@@ -135,26 +143,30 @@ impl Interpreter {
         let answer = match parsed {
             Ok(Line::Empty) => return Ok(None),
             Ok(Line::Text { word, .. }) if word == "check" => self.check(line).unwrap_or_else(usage),
-            Ok(Line::Text { word, rest }) => self.text(&word, &rest),
+            Ok(Line::Text { word, rest }) => self.text(&word, &rest, line),
             Ok(Line::Call { word, arguments, .. }) if NEXT.contains(&word.as_str()) => {
                 self.next(&arguments, input)?
             }
             Ok(Line::Call { word, column, arguments }) => self.command(&word, column, &arguments),
             Err(problem) => usage(problem),
         };
-        Ok(Some(answer))
+        Ok(Some(answer.naming_the_word_in(line)))
     }
 
-    fn text(&mut self, word: &str, rest: &str) -> Answer {
+    /// A command with the rest of its line as it stands.
+    fn text(&mut self, word: &str, rest: &str, line: &str) -> Answer {
+        // Columns are those of the line.
+        let column = line.trim_end().chars().count() - rest.chars().count() + 1;
         match word {
+            "inbox" => self.inbox_where(rest, column),
             "memo" if rest.is_empty() => self.show_memo(),
             "memo" => self.add_to_memo(rest),
             "explain" | "what" => self.explain(word, rest),
             "glossary" => glossary(rest),
-            "rules" => self.rules(rest),
+            "rules" => self.rules(rest, column),
             "pause" => self.pause(rest),
             "resume" => self.resume(rest),
-            _ => self.query(rest, QuerySource::Typed),
+            _ => self.query(&grammar::statement(rest), QuerySource::Typed),
         }
     }
 
@@ -261,17 +273,16 @@ impl Interpreter {
             "quit" | "exit" => none(arguments).map(|()| Answer::Quit),
             "dashboard" => none(arguments).map(|()| self.dashboard()),
             "status" => none(arguments).map(|()| self.status()),
-            "inbox" => none(arguments).map(|()| self.inbox()),
+            "inbox" => self.inbox(arguments),
+            "thread" => self.thread(arguments),
             "changes" => none(arguments).map(|()| self.changes()),
             "needs" => none(arguments).map(|()| self.needs()),
             "fit" => name(arguments).and_then(|name| self.fit(name, arguments)),
-            "leads" => none(arguments).map(|()| self.leads()),
+            "leads" => name(arguments).and_then(|name| self.leads(name, arguments)),
             "undo" => none(arguments).map(|()| self.undo()),
             "redo" => none(arguments).map(|()| self.redo()),
             "vars" => none(arguments).map(|()| self.call_named(ToolId::GetVars, &json!({}))),
-            "help" => {
-                name(arguments).and_then(|name| readings::help(name, arguments, &self.session.numbers()))
-            }
+            "help" => name(arguments).and_then(|name| help::help(name, arguments, &self.session.numbers())),
             "tools" => {
                 name(arguments).and_then(|name| readings::tools(name, arguments, &self.session.numbers()))
             }
@@ -296,7 +307,7 @@ impl Interpreter {
     /// Calls a tool by its name, with or without its module.
     fn call(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Result<Answer, Problem> {
         let tool = tool_called(word).ok_or_else(|| unknown(word, column))?;
-        let arguments = as_object(arguments, only_required(tool))?;
+        let arguments = read_arguments(tool, arguments)?;
         Ok(self.call_named(tool.spec().id, &arguments))
     }
 
@@ -376,6 +387,14 @@ fn tool_called(word: &str) -> Option<&'static dyn AnyTool> {
     tools::find(name)
         .filter(|tool| tool.spec().kind != Kind::Time && tool.spec().name() != "query")
         .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))
+}
+
+/// The arguments of a call; where they cannot be read, with a call that can.
+fn read_arguments(tool: &'static dyn AnyTool, arguments: &[Argument]) -> Result<Value, Problem> {
+    as_object(arguments, only_required(tool)).map_err(|problem| {
+        let (spec, text) = (tool.spec(), problem.text);
+        Problem { text: format!("{text}; for instance {} {}", spec.name(), spec.example), ..problem }
+    })
 }
 
 /// What was restored, one change in a line.

@@ -61,10 +61,27 @@ pub fn parse(line: &str) -> Result<Line, Problem> {
     if word.is_empty() {
         return Err(reader.problem("a line begins with the name of a command or tool"));
     }
-    if TEXT_COMMANDS.contains(&word.as_str()) {
+    if TEXT_COMMANDS.contains(&word.as_str()) || (word == "inbox" && has_condition(reader.rest())) {
         return Ok(Line::Text { word, rest: reader.rest().trim().to_owned() });
     }
     Ok(Line::Call { word, column, arguments: reader.arguments()? })
+}
+
+/// Whether the text after `inbox` holds a condition: `where …`, or `all where …`.
+fn has_condition(rest: &str) -> bool {
+    rest.split_whitespace().find(|word| *word != "all") == Some("where")
+}
+
+/// The statement after `sql` and `query`: as it stands, or as the only argument of the tool's call.
+pub fn statement(rest: &str) -> String {
+    let is_call = rest.starts_with(['{', '(']) || rest.starts_with("sql=");
+    if let Some(Ok(Line::Call { arguments, .. })) = is_call.then(|| parse(&format!("call {rest}")))
+        && let Ok(call) = as_object(&arguments, Some("sql"))
+        && let Some(sql) = call.get("sql").and_then(Value::as_str)
+    {
+        return sql.to_owned();
+    }
+    rest.to_owned()
 }
 
 struct Reader<'a> {
@@ -293,6 +310,21 @@ mod tests {
             ("memo".to_owned(), "remember: prices = 12".to_owned())
         );
         assert_eq!(text("sql"), ("sql".to_owned(), String::new()));
+        assert_eq!(
+            text("inbox all where seats >= 5"),
+            ("inbox".to_owned(), "all where seats >= 5".to_owned())
+        );
+        assert_eq!(call("inbox(tier=3)").1, json!({"tier": 3}));
+    }
+
+    #[test]
+    fn statements_may_be_written_as_a_call() {
+        for rest in ["SELECT 1", "{\"sql\": \"SELECT 1\"}", "(sql=\"SELECT 1\")", "sql=\"SELECT 1\""] {
+            assert_eq!(statement(rest), "SELECT 1", "{rest}");
+        }
+        for rest in ["(SELECT 1)", "{\"sql\": 3}", ""] {
+            assert_eq!(statement(rest), rest);
+        }
     }
 
     #[test]

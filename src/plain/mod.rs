@@ -198,6 +198,7 @@ fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()
         if !hides_result {
             writeln!(out, "{dashboard}")?;
         }
+        writeln!(out, "help lists the commands")?;
     }
     out.flush()
 }

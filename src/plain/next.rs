@@ -12,7 +12,7 @@ use super::prompt;
 use crate::notation::{dollars, grouped, signed_dollars};
 use crate::report::research::late_lines;
 use crate::report::review::alike_lines;
-use crate::session::{Mode, Session, TIME_LIMIT, Via, Week};
+use crate::session::{Mode, Refusal, Session, TIME_LIMIT, Via, Week};
 use crate::tools::{FORECAST_KEYS, Forecast};
 
 /// What is filed before a week.
@@ -114,6 +114,10 @@ pub fn run(session: &mut Session, filing: Filing) -> Answer {
     };
     match session.advance_given(&rationale, &predictions, naive, Via::Plain, &mut |_| {}) {
         Ok(week) => report("next", session, &week),
+        Err(refusal) if refusal.code == "rationale_missing" => {
+            let message = format!("{}; write next \"WHY\" naive, and help next says more", refusal.message);
+            Answer::refused("next", Refusal { message, ..refusal })
+        }
         Err(refusal) => Answer::refused("next", refusal),
     }
 }
@@ -202,7 +206,7 @@ pub fn ask(session: &Session, input: &mut Lines) -> io::Result<Option<Filing>> {
 fn ask_forecast(input: &mut Lines, weeks: u32, naive: Forecast) -> io::Result<Option<(Forecast, bool)>> {
     let whole = |value: f64| grouped(value, 0).replace(',', "");
     let text = format!(
-        "{weeks} {}: point lower upper [naive {} {} {}]> ",
+        "{weeks} {}: point lower upper, or enter for the naive {} {} {}> ",
         if weeks == 1 { "week" } else { "weeks" },
         whole(naive.point),
         whole(naive.lower),
@@ -210,7 +214,7 @@ fn ask_forecast(input: &mut Lines, weeks: u32, naive: Forecast) -> io::Result<Op
     );
     loop {
         let Some(line) = ask_line(input, &text)? else { return Ok(None) };
-        if line.trim().is_empty() {
+        if ["", "naive"].contains(&line.trim()) {
             return Ok(Some((naive, true)));
         }
         match read_forecast(&line, naive.horizon_days) {
@@ -238,7 +242,7 @@ fn read_forecast(line: &str, horizon_days: u32) -> Result<Forecast, String> {
         Some([point, lower, upper]) => {
             Ok(Forecast { horizon_days, point: *point, lower: *lower, upper: *upper })
         }
-        _ => Err("give three numbers: point lower upper, for instance 931000 902000 960000".to_owned()),
+        _ => Err("give three numbers, point lower upper, for instance 931000 902000 960000; or enter for the naive ones".to_owned()),
     }
 }
 

@@ -86,6 +86,20 @@ pub fn parse(text: &str) -> Result<Vec<Rule>, Problem> {
     }
 }
 
+/// Reads conditions alone, as they stand after `where`.
+pub(super) fn conditions(text: &str) -> Result<Vec<Condition>, Problem> {
+    let tokens = tokens(text)?;
+    let mut reader = Reader { text, tokens: &tokens, at: 0 };
+    if reader.is_at_end() {
+        return Err(reader.problem("a condition is missing, for instance seats >= 500"));
+    }
+    let conditions = reader.joined()?;
+    match reader.is_at_end() {
+        true => Ok(conditions),
+        false => Err(reader.problem("the conditions end here: join more with and")),
+    }
+}
+
 #[derive(Debug, Clone, PartialEq)]
 struct Token {
     text: String,
@@ -208,11 +222,22 @@ impl Reader<'_> {
             }
             _ => {}
         }
+        self.joined()
+    }
+
+    /// Conditions that `and` joins.
+    fn joined(&mut self) -> Result<Vec<Condition>, Problem> {
         let mut conditions = vec![self.condition()?];
         while self.take("and") {
             conditions.push(self.condition()?);
         }
-        Ok(conditions)
+        match self.peek() {
+            Some(word) if word.eq_ignore_ascii_case("or") => Err(self.problem(
+                "or is not understood: conditions are joined with and; in (…) means one of several values, and another \
+                 rule means other threads",
+            )),
+            _ => Ok(conditions),
+        }
     }
 
     fn condition(&mut self) -> Result<Condition, Problem> {
@@ -234,7 +259,26 @@ impl Reader<'_> {
             return self.one_of(field);
         }
         let comparison = self.comparison(field)?;
-        Ok(Condition::Compared(field, comparison, self.value(field)?))
+        if self.take("null") {
+            let is = if comparison == Comparison::NotEqual { "is not" } else { "is" };
+            return Err(self.wrong(format!("null is not compared: write {lower} {is} null")));
+        }
+        let value = self.value(field)?;
+        self.refuse_comma_in_number()?;
+        Ok(Condition::Compared(field, comparison, value))
+    }
+
+    /// Refuses `1,000`, in which the comma would separate two numbers.
+    fn refuse_comma_in_number(&mut self) -> Result<(), Problem> {
+        let [number, comma, more, ..] = &self.tokens[self.at.saturating_sub(1)..] else { return Ok(()) };
+        let digits = |token: &Token| token.text.chars().all(|letter| letter.is_ascii_digit());
+        let adjacent = number.to == comma.from && comma.to == more.from;
+        if comma.text != "," || !adjacent || !digits(number) || !digits(more) {
+            return Ok(());
+        }
+        let written = format!("{},{}", number.text, more.text);
+        let plain = format!("{}{}", number.text, more.text);
+        Err(self.wrong(format!("{written} has a comma: write {plain} or {}_{}", number.text, more.text)))
     }
 
     fn comparison(&mut self, field: Field) -> Result<Comparison, Problem> {
@@ -322,7 +366,9 @@ impl Reader<'_> {
             None if word.eq_ignore_ascii_case("asked_plan") => None,
             None => return Err(self.wrong(format!("{word} is no plan: A, B, C, or asked_plan"))),
         };
-        Ok(OfferLine { plan, price: self.price()? })
+        let price = self.price()?;
+        self.refuse_comma_in_number()?;
+        Ok(OfferLine { plan, price })
     }
 
     fn price(&mut self) -> Result<Price, Problem> {
@@ -413,6 +459,11 @@ mod tests {
             ("reject rest reject rest", 13, "put ;"),
             ("reject where größe > 3", 14, "nothing a rule can ask"),
             ("reject where seats ? 3", 20, "means nothing"),
+            ("reject where seats < 1,000", 22, "write 1000 or 1_000"),
+            ("offer rest: B 1,000", 15, "write 1000 or 1_000"),
+            ("offer where asked = null: B 3", 21, "write asked is null"),
+            ("offer where asked != null: B 3", 22, "write asked is not null"),
+            ("reject where seats < 3 or group = E1", 24, "joined with and"),
         ] {
             let problem = parse(text).expect_err(text);
             assert_eq!(problem.column, column, "{text}: {problem:?}");

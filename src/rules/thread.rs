@@ -15,21 +15,32 @@ pub const LAST_LETTERS: &str = include_str!("../../assets/readings/last_letters.
 /// Days of a month of compute.
 const MONTH: f64 = 30.0;
 
-/// The plan that companies named with their price, by thread.
+/// The plan that companies named in their newest letter, by thread: with a price, or as the one they would like.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Letters(BTreeMap<u32, Plan>);
 
 impl Letters {
     /// Reads the answer to [`LAST_LETTERS`].
     pub fn read(rows: &Rows) -> Letters {
-        let plan =
-            |row: &Vec<crate::session::Cell>| Some((number_at(row, 0) as u32, plan_in(text_at(row, 1))?));
+        let plan = |row: &Vec<crate::session::Cell>| {
+            let plan = other_plan_in(text_at(row, 1), Plan::parse(text_at(row, 2)))?;
+            Some((number_at(row, 0) as u32, plan))
+        };
         Letters(rows.rows.iter().filter_map(plan).collect())
     }
 }
 
-/// The plan that words name.
+/// The first plan that words name.
 pub fn plan_in(text: &str) -> Option<Plan> {
+    plans_in(text).first().copied()
+}
+
+/// The first plan that words name beside the one a company has: its wish may name both.
+fn other_plan_in(text: &str, present: Option<Plan>) -> Option<Plan> {
+    plans_in(text).into_iter().find(|plan| Some(*plan) != present)
+}
+
+fn plans_in(text: &str) -> Vec<Plan> {
     let lower = text.to_lowercase();
     let named = |(at, _): (usize, &str)| {
         let mut rest = lower[at + 5..].chars();
@@ -37,7 +48,7 @@ pub fn plan_in(text: &str) -> Option<Plan> {
         let ends = rest.next().is_none_or(|next| !next.is_alphanumeric());
         Plan::parse(&letter).filter(|_| ends)
     };
-    lower.match_indices("plan ").find_map(named)
+    lower.match_indices("plan ").filter_map(named).collect()
 }
 
 /// What the company sells, and what a seat uses of it.
@@ -90,7 +101,7 @@ impl Market {
 pub struct AskingThread {
     /// What the run says.
     pub waiting: WaitingThread,
-    /// The plan that the company named with its price.
+    /// The plan that the company named with its price, or asked the price of.
     pub asked_plan: Option<Plan>,
     /// Units a day that all its seats would use: the quota that covers them.
     pub needed_quota: Option<f64>,
@@ -100,11 +111,11 @@ impl AskingThread {
     /// Of a thread that waits.
     pub fn of(waiting: &WaitingThread, letters: &Letters, market: &Market) -> AskingThread {
         let only = || match waiting.last_offer.as_slice() {
-            [(plan, _)] => Some(*plan),
+            [(plan, _)] if waiting.asked.is_some() => Some(*plan),
             _ => None,
         };
         AskingThread {
-            asked_plan: waiting.asked.and_then(|_| letters.0.get(&waiting.thread).copied().or_else(only)),
+            asked_plan: letters.0.get(&waiting.thread).copied().or_else(only),
             needed_quota: market.wanted(waiting.group, waiting.seats),
             waiting: waiting.clone(),
         }
@@ -156,6 +167,19 @@ mod tests {
             ("plan Bravo", None),
         ] {
             assert_eq!(plan_in(text), plan, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_wish_names_the_plan_that_the_company_does_not_have() {
+        for (text, present, plan) in [
+            ("We think of plan A rather than plan B for our 78 seats.", Some(Plan::B), Some(Plan::A)),
+            ("Our 210 seats do not need all of plan C; what about plan B?", Some(Plan::C), Some(Plan::B)),
+            ("What would plan C cost for our 60 seats?", Some(Plan::A), Some(Plan::C)),
+            ("At $20.00 a seat for plan B we can sign.", None, Some(Plan::B)),
+            ("It may be time for another plan.", Some(Plan::A), None),
+        ] {
+            assert_eq!(other_plan_in(text, present), plan, "{text}");
         }
     }
 }

@@ -316,6 +316,36 @@ fn the_week_counts_threads_replies_and_what_waits() {
     assert_eq!(run.undo(Via::Script).expect_err("nothing was set").code, "nothing_to_undo");
 }
 
+/// A company that asks for the price of another plan names it in its letter.
+fn wishes_name_another_plan(run: &mut Session, thread: &AskingThread) {
+    let sql = format!(
+        "SELECT t.message_text, s.plan FROM enterprise_turns t JOIN subscriptions s USING (customer_id)
+         WHERE t.thread_id = {} AND t.sender = 'customer'",
+        thread.waiting.thread
+    );
+    let rows = run.query(&sql).expect("a letter").rows;
+    let plan = thread.asked_plan.expect("a plan").id();
+    assert_ne!(plan, text_at(&rows[0], 1));
+    assert!(text_at(&rows[0], 0).to_lowercase().contains(&format!("plan {}", plan.to_lowercase())));
+}
+
+/// Subscribers that ask for another plan: their rows hold it before any price is named.
+#[test]
+fn wishes_for_another_plan_are_in_the_rows() {
+    let mut session = create(Storage::Memory);
+    let mut wishes = 0;
+    for _ in 0..20 {
+        week(&mut session);
+        let (threads, _) = AskingThread::all(&mut session).expect("threads");
+        let wish = |own: &&AskingThread| own.waiting.kind == "plan_change" && own.waiting.asked.is_none();
+        for thread in threads.iter().filter(wish) {
+            wishes_name_another_plan(&mut session, thread);
+            wishes += 1;
+        }
+    }
+    assert!(wishes > 0, "nobody asked for another plan");
+}
+
 /// What rules ask of a thread stands in the tables: price and plan that a company named, and the last offer.
 fn rules_see_what_the_tables_say(run: &mut Session) {
     let (threads, _) = AskingThread::all(run).expect("threads");
@@ -338,6 +368,8 @@ fn rules_see_what_the_tables_say(run: &mut Session) {
             let plan = thread.asked_plan.expect("a plan").id();
             assert!(text_at(row, 0).to_lowercase().contains(&format!("plan {}", plan.to_lowercase())));
             asked += 1;
+        } else if thread.waiting.kind == "plan_change" {
+            wishes_name_another_plan(run, thread);
         }
         let last: Vec<Value> =
             thread.waiting.last_offer.iter().map(|(plan, price)| json!([plan.id(), price])).collect();

@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::super::answers::Answer;
-use super::super::grammar::{self, Line, Problem, as_object};
-use super::{Interpreter, change_line, only_required, tool_called, unknown};
+use super::super::grammar::{self, Line, Problem};
+use super::{COMMANDS, Interpreter, change_line, read_arguments, tool_called, unknown};
 use crate::report::plan_margins::{Lever, PlanTerms, Sales, margin_lines};
 use crate::report::research::outlook_lines;
 use crate::report::review::terms_line;
@@ -19,8 +19,8 @@ impl Interpreter {
             let text = "check needs a call, for instance check set_prices B=30".to_owned();
             return Err(Problem { text, column: line.chars().count() });
         };
-        let tool = tool_called(&word).ok_or_else(|| unknown(&word, column))?;
-        let arguments = as_object(&arguments, only_required(tool))?;
+        let tool = tool_called(&word).ok_or_else(|| no_tool(&word, column))?;
+        let arguments = read_arguments(tool, &arguments)?;
         Ok(match self.session.check(tool.spec().name(), &arguments) {
             Ok(preview) => self.told(&preview, &arguments),
             Err(refusal) => Answer::refused("check", refusal),
@@ -63,4 +63,16 @@ impl Interpreter {
             Err(refusal) => vec![format!("no margins: {}", refusal.message)],
         }
     }
+}
+
+/// That a word is no tool: commands cannot be checked.
+fn no_tool(word: &str, column: usize) -> Problem {
+    if !COMMANDS.iter().any(|(name, _)| *name == word) {
+        return unknown(word, column);
+    }
+    let text = format!(
+        "check takes the call of a tool, and {word} is a command; changes shows what is set, and check set_prices B=30 \
+         is a call that can be checked"
+    );
+    Problem { text, column }
 }

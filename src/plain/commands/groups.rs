@@ -17,21 +17,7 @@ use crate::world::identifiers::{Group, Plan};
 impl Interpreter {
     pub(super) fn fit(&self, name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
         let all = fits(&self.session);
-        let shown: Vec<&Fit> = match name {
-            None => all.iter().collect(),
-            Some(id) => match all.iter().find(|fit| fit.group.id().eq_ignore_ascii_case(id)) {
-                Some(fit) => vec![fit],
-                None => {
-                    let near = nearest(id, all.iter().map(|fit| fit.group.id()));
-                    let known = if near.is_empty() {
-                        all.iter().map(|fit| fit.group.id()).collect::<Vec<_>>().join(", ")
-                    } else {
-                        near.join(" or ")
-                    };
-                    return Err(problem(arguments, &format!("{id} is no known group; known: {known}")));
-                }
-            },
-        };
+        let shown = known(&all, name, arguments)?;
         let mut lines: Vec<String> = shown.iter().flat_map(|fit| fit.lines()).collect();
         lines.push(
             "ranges are those of the group's means; the quality a customer requires rises with the price"
@@ -41,10 +27,11 @@ impl Interpreter {
         Ok(Answer::done("fit", lines.join("\n"), data))
     }
 
-    pub(super) fn leads(&self) -> Answer {
+    pub(super) fn leads(&self, name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
         let (all, weeks) = (fits(&self.session), self.session.group_weeks());
+        let shown = known(&all, name, arguments)?;
         let mut lines: Vec<String> = Vec::new();
-        for fit in &all {
+        for fit in &shown {
             match fit.last_week {
                 Some(week) => {
                     let (group, week, recent) = (fit.group, week.in_words(), fit.recent.in_words());
@@ -53,7 +40,8 @@ impl Interpreter {
                 None => lines.push(format!("{}: no week has run", fit.group)),
             }
         }
-        let costs = pair_costs(weeks);
+        let mut costs = pair_costs(weeks);
+        costs.retain(|pair| shown.iter().any(|fit| fit.group == pair.group));
         lines.extend(costs.iter().map(cost_line));
         let week = |(at, own): (usize, &GroupWeek)| {
             json!({
@@ -68,10 +56,24 @@ impl Interpreter {
             weeks.iter().map(|week| &week[group]).enumerate().map(week).collect()
         };
         let groups: Vec<Value> =
-            all.iter().map(|fit| json!({ "group": fit.group.id(), "weeks": by_week(fit.group) })).collect();
+            shown.iter().map(|fit| json!({ "group": fit.group.id(), "weeks": by_week(fit.group) })).collect();
         let costs: Vec<Value> = costs.iter().map(cost_as_data).collect();
-        Answer::done("leads", lines.join("\n"), json!({ "groups": groups, "costs": costs }))
+        Ok(Answer::done("leads", lines.join("\n"), json!({ "groups": groups, "costs": costs })))
     }
+}
+
+/// The group of a name, or every known one.
+fn known<'a>(all: &'a [Fit], name: Option<&str>, arguments: &[Argument]) -> Result<Vec<&'a Fit>, Problem> {
+    let Some(id) = name else { return Ok(all.iter().collect()) };
+    if let Some(fit) = all.iter().find(|fit| fit.group.id().eq_ignore_ascii_case(id)) {
+        return Ok(vec![fit]);
+    }
+    let near = nearest(id, all.iter().map(|fit| fit.group.id()));
+    let known = match near.is_empty() {
+        true => all.iter().map(|fit| fit.group.id()).collect::<Vec<_>>().join(", "),
+        false => near.join(" or "),
+    };
+    Err(problem(arguments, &format!("{id} is no known group; known: {known}")))
 }
 
 /// What a tool answered with ranges in place of estimates and the days they are of; none where it holds no estimates.

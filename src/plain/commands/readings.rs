@@ -7,21 +7,19 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::super::seed_in_words;
-use super::{COMMANDS, Interpreter, NEXT, problem, rules, tool_called, words};
+use super::help::not_there;
+use super::{Interpreter, problem, tool_called};
 use crate::database;
-use crate::glossary;
 use crate::notation::{dollars, grouped, nearest, signed_dollars};
 use crate::report::chapters::change_in_words;
 use crate::report::deals::deals_in_words;
-use crate::report::funnel::{Funnel, funnels};
 use crate::report::needs::{Need, Place, needs};
 use crate::report::peak::PeakProjection;
 use crate::report::research::late_lines;
 use crate::report::review::{alike_lines, money_lines};
-use crate::rules::AskingThread;
-use crate::session::{Bands, Change, CompanyNames, JournalEntry, Numbers, Reversal, undone_calls};
+use crate::session::{Change, CompanyNames, JournalEntry, Numbers, Reversal, undone_calls};
+use crate::tools;
 use crate::tools::describe::{self, ToolDocument, document};
-use crate::tools::{self, Kind};
 
 impl Interpreter {
     pub(super) fn dashboard(&self) -> Answer {
@@ -102,33 +100,6 @@ impl Interpreter {
             lines.push("nothing needs you".to_owned());
         }
         Answer::done("needs", lines.join("\n"), data)
-    }
-
-    pub(super) fn inbox(&mut self) -> Answer {
-        let waiting = match AskingThread::all(&mut self.session) {
-            Ok((waiting, _)) => waiting,
-            Err(refusal) => return Answer::refused("inbox", refusal),
-        };
-        let funnel = |own: &Funnel| {
-            json!({
-                "group": own.group.id(),
-                "came": own.came,
-                "no_plan_good_enough": own.turned_away(),
-                "asked": own.asked,
-                "signed": own.signed,
-            })
-        };
-        let funnels_so_far: Vec<Value> = funnels(&self.session).iter().map(funnel).collect();
-        let names = self.session.company_names();
-        let threads: Vec<Value> = waiting.iter().map(|thread| thread.row(names)).collect();
-        let data = json!({ "threads": threads, "funnels": funnels_so_far });
-        if waiting.is_empty() {
-            let mut lines = vec!["no threads waiting".to_owned()];
-            lines.extend(funnels(&self.session).iter().map(Funnel::in_words));
-            return Answer::done("inbox", lines.join("\n"), data);
-        }
-        let call = Answer::call("inbox", data.clone());
-        Answer::done("inbox", call.as_text().trim_start_matches("ok inbox\n").to_owned(), data)
     }
 
     pub(super) fn changes(&self) -> Answer {
@@ -214,59 +185,6 @@ fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>, names: &CompanyNames
     }
 }
 
-/// `help [NAME]`.
-pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers) -> Result<Answer, Problem> {
-    let Some(name) = name else {
-        let lines: Vec<&str> =
-            COMMANDS.iter().map(|(_, line)| *line).filter(|line| !line.is_empty()).collect();
-        let tools: Vec<&str> = callable().collect();
-        let text = format!(
-            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=16 B=34 C=70\n\
-             A week as agents call it: next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": \
-             {{\"point\": 950000, \"lower\": 900000, \"upper\": 990000}}, …}}}} (help next shows all of it)\n\
-             help NAME explains one of them, and explain TERM says what a word means.",
-            lines.join("\n"),
-            tools.join(", ")
-        );
-        return Ok(Answer::done("help", text, json!({ "commands": lines, "tools": tools })));
-    };
-    if name == "rules" {
-        return Ok(Answer::done("help", rules::IN_FULL.to_owned(), json!({ "command": rules::IN_FULL })));
-    }
-    if NEXT.contains(&name) {
-        let text = next_in_full();
-        return Ok(Answer::done("help", text.clone(), json!({ "command": text })));
-    }
-    if let Some((_, line)) = COMMANDS.iter().find(|(command, line)| *command == name && !line.is_empty()) {
-        return Ok(Answer::done("help", (*line).to_owned(), json!({ "command": line })));
-    }
-    if tools::find(name).is_some() || tool_called(name).is_some() {
-        return self::tools(Some(name), arguments, numbers);
-    }
-    if database::table(name).is_some() {
-        return tables(Some(name), arguments);
-    }
-    if let Ok(found) = glossary::find(name) {
-        return Ok(words::answer("help", found, numbers));
-    }
-    let names = COMMANDS.iter().map(|(name, _)| *name).chain(callable());
-    let names = names.chain(database::tables().iter().map(|table| table.name.as_str()));
-    Err(problem(arguments, &not_there("nothing", name, nearest(name, names))))
-}
-
-/// The forms of the command that runs a week, and what its naive forecasts are worth.
-fn next_in_full() -> String {
-    format!(
-        "next \"WHY\" naive                         naive forecasts\n\
-         next \"WHY\" P L U  P L U  P L U  P L U    point, lower, upper of cash in 1, 4, 12 and 26 weeks\n\
-         next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": {{\"point\": 950000, \"lower\": 900000, \
-         \"upper\": 990000}}, \"cash_4wk\": …, \"cash_12wk\": …, \"cash_26wk\": …}}}}\n\
-         next                                     asks, at a terminal\n\
-         Naive forecasts: income, compute and lead costs go on as in the last four weeks, at the costs set now. {}.",
-        Bands::shipped().coverage_in_words()
-    )
-}
-
 /// `tools [NAME]`.
 pub(super) fn tools(
     name: Option<&str>,
@@ -281,7 +199,12 @@ pub(super) fn tools(
     let tool = tools::find(name)
         .or_else(|| tool_called(name))
         .or_else(|| tools::catalogue::find_code(name))
-        .ok_or_else(|| problem(arguments, &not_there("no tool", name, tools::catalogue::nearest(name))))?;
+        .ok_or_else(|| {
+            problem(
+                arguments,
+                &not_there("no tool", name, tools::catalogue::nearest(name), "tools lists them"),
+            )
+        })?;
     Ok(Answer::done("tools", describe::manual(tool.spec(), numbers), json!(document(tool.spec(), numbers))))
 }
 
@@ -295,20 +218,7 @@ pub(super) fn tables(name: Option<&str>, arguments: &[Argument]) -> Result<Answe
     };
     let table = database::table(name).ok_or_else(|| {
         let names = database::tables().iter().map(|table| table.name.as_str());
-        problem(arguments, &not_there("no table", name, nearest(name, names)))
+        problem(arguments, &not_there("no table", name, nearest(name, names), "tables lists them"))
     })?;
     Ok(Answer::done("tables", table.describe(), json!(table)))
-}
-
-fn callable() -> impl Iterator<Item = &'static str> {
-    tools::CATALOGUE
-        .iter()
-        .map(|tool| tool.spec())
-        .filter(|spec| spec.kind != Kind::Time)
-        .map(|spec| spec.name())
-}
-
-fn not_there(what: &str, name: &str, near: Vec<&str>) -> String {
-    let near = if near.is_empty() { String::new() } else { format!("; did you mean {}?", near.join(" or ")) };
-    format!("there is {what} called {name}{near}")
 }

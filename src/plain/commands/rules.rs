@@ -26,14 +26,14 @@ Conditions ask: group, type, seats, asked, asked_plan, last_offer, offers_so_far
 They are compared with = != < <= > >=, in (…), is null, is not null, and joined with and. rest means all others.";
 
 impl Interpreter {
-    pub(super) fn rules(&mut self, text: &str) -> Answer {
+    pub(super) fn rules(&mut self, text: &str, column: usize) -> Answer {
         let (send, text, before) = match text.split_once(char::is_whitespace) {
             Some(("send", rest)) => (true, rest.trim_start(), text.len() - rest.trim_start().len()),
             _ => (false, text, 0),
         };
         let rules = match rules::parse(text) {
             Ok(rules) => rules,
-            Err(problem) => return Answer::usage(problem.text, "rules ".len() + before + problem.column),
+            Err(problem) => return Answer::usage(problem.text, column + before + problem.column - 1),
         };
         let (threads, market) = match AskingThread::all(&mut self.session) {
             Ok(all) => all,
@@ -46,7 +46,8 @@ impl Interpreter {
     fn send(&mut self, batch: &Batch) -> Answer {
         let calls = batch.calls();
         if calls.is_empty() {
-            let text = format!("nothing to send\n{}", batch.summary().join("\n"));
+            let text =
+                format!("no waiting thread would get an offer or an end\n{}", batch.summary().join("\n"));
             return Answer::refused("rules", Refusal::new("nothing_to_send", text));
         }
         let (mut lines, mut data) = (batch.summary(), Vec::new());

@@ -17,9 +17,10 @@ pub(super) fn explain(command: &str, words: &str, numbers: &Numbers) -> Answer {
         Err(near) if near.is_empty() => {
             Answer::usage(format!("unknown term {words}; glossary lists every term"), column)
         }
-        Err(near) => {
-            Answer::usage(format!("unknown term {words}; did you mean {}?", near.join(" or ")), column)
-        }
+        Err(near) => Answer::usage(
+            format!("unknown term {words}; did you mean {}? glossary lists every term", near.join(" or ")),
+            column,
+        ),
     }
 }
 
@@ -150,7 +151,7 @@ mod tests {
             ("qqqqqqqqqqqq", "glossary lists every term", 9),
         ] {
             match explain("explain", words, &Numbers::shipped()) {
-                Answer::Usage { problem, column: at } => {
+                Answer::Usage { problem, column: at, .. } => {
                     assert!(problem.contains(part), "{problem}");
                     assert_eq!(at, column);
                 }

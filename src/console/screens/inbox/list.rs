@@ -181,12 +181,13 @@ pub(super) fn row_of(thread: &Thread, marked: bool) -> Vec<Cell> {
         (_, Some(turn)) => Cell::number(f64::from(turn.day), format!("day {}", turn.day)).role(Role::Dim),
         (_, None) => Cell::words("–").role(Role::Dim),
     };
-    let asked = match thread.asked() {
-        Some((plan, price)) => {
+    let asked = match (thread.asked(), thread.asked_plan()) {
+        (Some((_, price)), plan) => {
             let plan = plan.map_or(String::new(), |plan| format!("{plan} "));
             Cell::number(price, format!("{plan}${}", grouped(price, 2)))
         }
-        None => Cell::words("–").role(Role::Dim),
+        (None, Some(plan)) => Cell::words(format!("plan {plan}")),
+        (None, None) => Cell::words("–").role(Role::Dim),
     };
     let end = match thread.state {
         state if !state.is_open() => {

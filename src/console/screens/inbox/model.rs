@@ -2,10 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde_json::Value;
-
 use crate::console::readings::Reading;
-use crate::rules::{AskingThread, plan_in};
+use crate::rules::{AskingThread, offer_of, plan_in};
 use crate::session::{CompanyNames, Rows};
 use crate::session::{number_at, text_at};
 use crate::world::identifiers::Plan;
@@ -110,6 +108,14 @@ impl Thread {
         }
         let turn = self.turns.iter().rev().find(|turn| turn.price.is_some())?;
         Some((plan_in(&turn.text).or_else(|| self.only_offer()), turn.price?))
+    }
+
+    /// The plan that its price is for, or whose price it asks.
+    pub fn asked_plan(&self) -> Option<Plan> {
+        match &self.asking {
+            Some(own) => own.asked_plan,
+            None => self.asked()?.0,
+        }
     }
 
     fn only_offer(&self) -> Option<Plan> {
@@ -265,15 +271,6 @@ fn threads_of(rows: &Rows) -> BTreeMap<u32, Thread> {
     threads
 }
 
-fn offer_of(json: &str) -> (Vec<(Plan, f64)>, Option<f64>) {
-    let value: Value = serde_json::from_str(json).unwrap_or(Value::Null);
-    let one = |offer: &Value| {
-        Some((Plan::parse(offer.get("plan")?.as_str()?)?, offer.get("price_per_seat")?.as_f64()?))
-    };
-    let offers = value.as_array().into_iter().flatten().filter_map(one).collect();
-    (offers, value.get("price").and_then(Value::as_f64))
-}
-
 fn firms_of(rows: &Rows) -> BTreeMap<u32, Firm> {
     let firm = |row: &Vec<crate::session::Cell>| {
         let text = |at: usize| text_at(row, at).to_owned();
@@ -290,18 +287,4 @@ fn firms_of(rows: &Rows) -> BTreeMap<u32, Firm> {
         (number_at(row, 0) as u32, firm)
     };
     rows.rows.iter().map(firm).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn offers_are_read_from_their_json() {
-        let two = r#"[{"plan": "A", "price_per_seat": 18.5, "contract_months": 1}, {"plan": "Z", "price_per_seat": 1}]"#;
-        assert_eq!(offer_of(two), (vec![(Plan::A, 18.5)], None));
-        assert_eq!(offer_of(r#"{"price": 27.34}"#), (vec![], Some(27.34)));
-        assert_eq!(offer_of("{}"), (vec![], None));
-        assert_eq!(offer_of("broken"), (vec![], None));
-    }
 }

@@ -95,7 +95,7 @@ impl Term {
         let plan = match self.plan {
             TermChoice::Nothing => return None,
             TermChoice::Fixed(plan) => plan,
-            TermChoice::Theirs => asked.and_then(|(plan, _)| plan)?,
+            TermChoice::Theirs => thread.asked_plan()?,
         };
         let price = match self.basis {
             Basis::Dollars => self.value,
@@ -121,12 +121,12 @@ impl Offer {
         Offer([Term { plan: TermChoice::Theirs, basis: Basis::Asked, value: 100.0 }, UNUSED, UNUSED])
     }
 
-    /// Where to start with a company.
+    /// Where to start with a company: its price, or the list price of the plan it asks about.
     pub fn first_for(thread: &Thread) -> Offer {
-        if thread.asked().is_some_and(|(plan, _)| plan.is_some()) {
-            Offer::as_asked()
-        } else {
-            Offer::at_list()
+        match (thread.asked_plan(), thread.asked()) {
+            (Some(_), Some(_)) => Offer::as_asked(),
+            (Some(plan), None) => Offer([Term { plan: TermChoice::Fixed(plan), ..UNUSED }, UNUSED, UNUSED]),
+            (None, _) => Offer::at_list(),
         }
     }
 

@@ -47,7 +47,7 @@ fn draw_planned(canvas: &mut Canvas<'_>, row: Rect, (thread, offers): &Planned<'
         Err(why) => return canvas.text(rest, &format!("skipped: {why}"), Role::Warning),
     };
     let before = match (thread.offered(), thread.asked()) {
-        ([], None) => "–".to_owned(),
+        ([], None) => thread.asked_plan().map_or("–".to_owned(), |plan| format!("plan {plan}?")),
         ([], Some((_, price))) => format!("asks {}", cents(price)),
         ([(_, price)], _) => cents(*price),
         (own, _) => format!("{} offers", own.len()),

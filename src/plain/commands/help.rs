@@ -1,0 +1,153 @@
+//! `help`: the list of commands, and each of them with an example.
+
+use serde_json::json;
+
+use super::super::answers::Answer;
+use super::super::grammar::{Argument, Problem};
+use super::{COMMANDS, NEXT, inbox, problem, readings, rules, tool_called, words};
+use crate::database;
+use crate::glossary;
+use crate::notation::nearest;
+use crate::session::{Bands, Numbers};
+use crate::tools::{self, Kind};
+
+const NEEDS: &str = "\
+needs                     what costs money or is about to: each with the object, the amount and the call that addresses it
+Urgent ones come first and begin with !; within both, more money at risk in the next four weeks comes first.
+The call below a line can be typed as it stands; check before it says what it would do, for instance
+                          check set_capacity_tier 2";
+
+const FIT: &str = "\
+fit                       every known group
+fit GROUP                 one group, for instance fit S1
+For each plan: the price, quality and quota that the group is offered beside the budget, floor and use it has. The
+estimates are ranges with the day they are of; research_group narrows them. What is missing for certain is named.";
+
+const LEADS: &str = "\
+leads                     leads by group in the last week and the last four, paid and by word of mouth, and how many signed
+leads GROUP               one group, for instance leads S1
+Below it, by channel and group, what a lead and a first bill cost in the last four weeks, beside the cheapest four weeks
+before.";
+
+const CHECK: &str = "\
+check CALL                what a call would do and cost; nothing is done, drawn or recorded. For instance
+                          check set_prices B=30
+                          check set_capacity_tier 2
+                          check research_group S2
+Prices, model tiers and quotas come with the gross margins that would follow, capacity with the busiest day of the last
+week, a study with the level it reaches, an R&D project with its spread.";
+
+const PAUSE: &str = "\
+pause                     stops the clock for a break; until resume, only resume, help and quit work
+pause REASON              the same with a reason, which is recorded, for instance pause lunch
+Time that the clock stands counts as no playing time.";
+
+/// The explanation of a command that has one of its own.
+fn in_full(name: &str) -> Option<String> {
+    let text = match name {
+        "inbox" | "thread" => inbox::IN_FULL,
+        "rules" => rules::IN_FULL,
+        "needs" => NEEDS,
+        "fit" => FIT,
+        "leads" => LEADS,
+        "check" => CHECK,
+        "pause" => PAUSE,
+        _ if NEXT.contains(&name) => return Some(next_in_full()),
+        _ => return None,
+    };
+    Some(text.to_owned())
+}
+
+/// `help [NAME]`.
+pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers) -> Result<Answer, Problem> {
+    let Some(name) = name else {
+        let lines: Vec<&str> =
+            COMMANDS.iter().map(|(_, line)| *line).filter(|line| !line.is_empty()).collect();
+        let tools: Vec<&str> = callable().collect();
+        let text = format!(
+            "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=16 B=34 C=70\n\
+             A week as agents call it: next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": \
+             {{\"point\": 950000, \"lower\": 900000, \"upper\": 990000}}, …}}}} (help next shows all of it)\n\
+             help NAME explains one of them, and explain TERM says what a word means.",
+            lines.join("\n"),
+            tools.join(", ")
+        );
+        return Ok(Answer::done("help", text, json!({ "commands": lines, "tools": tools })));
+    };
+    if let Some(text) = in_full(name) {
+        return Ok(Answer::done("help", text.clone(), json!({ "command": text })));
+    }
+    if let Some((_, line)) = COMMANDS.iter().find(|(command, line)| *command == name && !line.is_empty()) {
+        return Ok(Answer::done("help", (*line).to_owned(), json!({ "command": line })));
+    }
+    if tools::find(name).is_some() || tool_called(name).is_some() {
+        return readings::tools(Some(name), arguments, numbers);
+    }
+    if database::table(name).is_some() {
+        return readings::tables(Some(name), arguments);
+    }
+    if let Ok(found) = glossary::find(name) {
+        return Ok(words::answer("help", found, numbers));
+    }
+    let names = COMMANDS.iter().map(|(name, _)| *name).chain(callable());
+    let names = names.chain(database::tables().iter().map(|table| table.name.as_str()));
+    let where_to_look = "help lists the commands, glossary the terms";
+    Err(problem(arguments, &not_there("nothing", name, nearest(name, names), where_to_look)))
+}
+
+/// The forms of the command that runs a week, and what its naive forecasts are worth.
+fn next_in_full() -> String {
+    format!(
+        "next \"WHY\" naive                         naive forecasts\n\
+         next \"WHY\" P L U  P L U  P L U  P L U    point, lower, upper of cash in 1, 4, 12 and 26 weeks\n\
+         next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": {{\"point\": 950000, \"lower\": 900000, \
+         \"upper\": 990000}}, \"cash_4wk\": …, \"cash_12wk\": …, \"cash_26wk\": …}}}}\n\
+         next                                     asks, at a terminal\n\
+         Naive forecasts: income, compute and lead costs go on as in the last four weeks, at the costs set now. {}.",
+        Bands::shipped().coverage_in_words()
+    )
+}
+
+fn callable() -> impl Iterator<Item = &'static str> {
+    tools::CATALOGUE
+        .iter()
+        .map(|tool| tool.spec())
+        .filter(|spec| spec.kind != Kind::Time)
+        .map(|spec| spec.name())
+}
+
+/// That there is nothing of a name, what is near, and where the list is.
+pub(super) fn not_there(what: &str, name: &str, near: Vec<&str>, list: &str) -> String {
+    match near.is_empty() {
+        true => format!("there is {what} called {name}; {list}"),
+        false => format!("there is {what} called {name}; did you mean {}? {list}", near.join(" or ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_are_explained_with_an_example() {
+        for name in ["inbox", "thread", "needs", "fit", "leads", "check", "pause", "rules", "next"] {
+            let told = help(Some(name), &[], &Numbers::shipped()).expect("help").as_text();
+            assert!(told.lines().count() > 1, "{name}: {told}");
+        }
+        let told = help(Some("needs"), &[], &Numbers::shipped()).expect("help").as_text();
+        assert!(told.contains("Urgent ones come first"), "{told}");
+    }
+
+    #[test]
+    fn what_is_unknown_is_answered_with_where_the_list_is() {
+        let numbers = Numbers::shipped();
+        for (told, list) in [
+            (help(Some("zzzzzzz"), &[], &numbers), "help lists the commands"),
+            (readings::tools(Some("foo"), &[], &numbers), "tools lists them"),
+            (readings::tables(Some("leger"), &[]), "did you mean ledger? tables lists them"),
+        ] {
+            let problem = told.expect_err(list);
+            assert!(problem.text.ends_with(list) || problem.text.contains(list), "{problem:?}");
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! `inbox`: the threads that wait, first by group, then the next to be lost in sentences.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::super::grammar::{Argument, Problem};
+use super::{Interpreter, problem};
+use crate::notation::{cents, grouped};
+use crate::report::count;
+use crate::report::funnel::{Funnel, funnels};
+use crate::rules::{AskingThread, Filter};
+use crate::session::CompanyNames;
+use crate::world::identifiers::Plan;
+
+/// Threads that are read out unless all of them are asked for; programs get every row.
+const TOLD: usize = 20;
+/// Days that make a thread urgent.
+const URGENT: u32 = 2;
+
+/// What `help inbox` says.
+pub(super) const IN_FULL: &str = "\
+inbox                     how many threads wait in each group, and the 20 that are lost first, the larger first
+inbox all                 every thread that waits
+inbox where CONDITION     those that meet a condition in the grammar of rules, for instance
+                          inbox where group = E2 and seats >= 500
+inbox all where CONDITION every one of them, where there are more than 20
+inbox NUMBER              the newest thread of the company with that number, turn by turn, for instance inbox 5641
+thread NUMBER             the thread with that number, waiting or ended
+Conditions ask: group, type, seats, asked, asked_plan, last_offer, offers_so_far, turn, days_left, needed_quota, customer.
+send_enterprise_deal and reject_enterprise_deal answer a thread; rules answers many.";
+
+/// Which threads are wanted.
+#[derive(Default)]
+struct Wanted {
+    all: bool,
+    filter: Option<Filter>,
+}
+
+impl Interpreter {
+    /// `inbox`, `inbox all`, `inbox NUMBER`.
+    pub(super) fn inbox(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+        match arguments {
+            [] => Ok(self.threads(&Wanted::default())),
+            [Argument { key: None, value: Value::String(word), .. }] if word == "all" => {
+                Ok(self.threads(&Wanted { all: true, filter: None }))
+            }
+            [Argument { key: None, value, .. }] if value.is_u64() => {
+                Ok(self.thread_of_company(value.as_u64().unwrap_or_default()))
+            }
+            _ => Err(problem(
+                arguments,
+                "inbox takes all, the number of a company, or where and a condition, for instance inbox where seats >= \
+                 500; help inbox explains more",
+            )),
+        }
+    }
+
+    /// `inbox [all] where CONDITION`: the text after the command, which begins in a column.
+    pub(super) fn inbox_where(&mut self, text: &str, column: usize) -> Answer {
+        let before = text.find("where").map_or(0, |at| at + "where".len());
+        let (head, condition) = text.split_at(before);
+        match Filter::parse(condition) {
+            Ok(filter) => {
+                self.note_look(&format!("inbox {text}"), &[]);
+                self.threads(&Wanted { all: head.starts_with("all"), filter: Some(filter) })
+            }
+            Err(wrong) => Answer::usage(wrong.text, column + head.chars().count() + wrong.column - 1),
+        }
+    }
+
+    fn threads(&mut self, wanted: &Wanted) -> Answer {
+        let mut waiting = match AskingThread::all(&mut self.session) {
+            Ok((waiting, _)) => waiting,
+            Err(refusal) => return Answer::refused("inbox", refusal),
+        };
+        let everyone = waiting.len();
+        if let Some(filter) = &wanted.filter {
+            waiting.retain(|thread| filter.means(thread));
+        }
+        let names = self.session.company_names();
+        let funnels = funnels(&self.session);
+        let data = json!({
+            "threads": waiting.iter().map(|thread| thread.row(names)).collect::<Vec<Value>>(),
+            "funnels": funnels.iter().map(funnel_row).collect::<Vec<Value>>(),
+        });
+        let mut lines = match (&wanted.filter, waiting.len()) {
+            (None, 0) => vec!["no threads waiting".to_owned()],
+            (None, many) => vec![format!("{} waiting", threads_in_words(many))],
+            (Some(_), many) => {
+                vec![format!("{} of {} waiting meet it", grouped(many as f64, 0), threads_in_words(everyone))]
+            }
+        };
+        lines.extend(group_lines(&waiting));
+        if wanted.filter.is_none() {
+            lines.extend(funnels.iter().map(Funnel::in_words));
+        }
+        lines.extend(told_lines(&waiting, wanted, names));
+        Answer::done("inbox", lines.join("\n"), data)
+    }
+}
+
+fn threads_in_words(many: usize) -> String {
+    count(many as u32, "thread")
+}
+
+fn funnel_row(own: &Funnel) -> Value {
+    json!({
+        "group": own.group.id(),
+        "came": own.came,
+        "no_plan_good_enough": own.turned_away(),
+        "asked": own.asked,
+        "signed": own.signed,
+    })
+}
+
+/// A sentence for each group with threads.
+fn group_lines(waiting: &[AskingThread]) -> Vec<String> {
+    let mut groups: BTreeMap<&str, Vec<&AskingThread>> = BTreeMap::new();
+    for thread in waiting {
+        groups.entry(thread.waiting.group).or_default().push(thread);
+    }
+    groups.into_iter().map(|(group, threads)| group_line(group, &threads)).collect()
+}
+
+fn group_line(group: &str, threads: &[&AskingThread]) -> String {
+    let seats: u32 = threads.iter().map(|thread| thread.waiting.seats).sum();
+    let mut line = format!("{group}: {}, {}", threads_in_words(threads.len()), count(seats, "seat"));
+    let urgent = threads.iter().filter(|thread| thread.waiting.days_left <= URGENT).count();
+    if urgent > 0 {
+        line += &format!(", {} with {URGENT} days or less", grouped(urgent as f64, 0));
+    }
+    let asked: Vec<f64> = threads.iter().filter_map(|thread| thread.waiting.asked).collect();
+    let least = asked.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = asked.iter().copied().fold(0.0, f64::max);
+    match asked.len() {
+        0 => line + ", none names a price",
+        1 => line + &format!(", 1 names a price, {}", cents(most)),
+        many => {
+            line + &format!(", {} name a price, {} to {}", grouped(many as f64, 0), cents(least), cents(most))
+        }
+    }
+}
+
+/// The threads in sentences, and how the others are heard.
+fn told_lines(waiting: &[AskingThread], wanted: &Wanted, names: &CompanyNames) -> Vec<String> {
+    let told = if wanted.all { waiting.len() } else { waiting.len().min(TOLD) };
+    if told == 0 {
+        return Vec::new();
+    }
+    let mut lines = vec![match told < waiting.len() {
+        true => format!("the {told} that are lost first, the larger first:"),
+        false => "the first to be lost first:".to_owned(),
+    }];
+    lines.extend(waiting.iter().take(told).map(|thread| sentence(thread, names)));
+    if told < waiting.len() {
+        let more = grouped((waiting.len() - told) as f64, 0);
+        lines.push(match wanted.filter {
+            Some(_) => format!("{more} more: inbox all where … reads all of them"),
+            None => format!(
+                "{more} more: inbox all reads all of them, inbox where CONDITION some, for instance inbox where \
+                 seats >= 500"
+            ),
+        });
+    }
+    lines.push("inbox NUMBER reads the thread of one company".to_owned());
+    lines
+}
+
+/// A thread in one sentence.
+fn sentence(thread: &AskingThread, names: &CompanyNames) -> String {
+    let own = &thread.waiting;
+    let mut parts = vec![
+        names.with_number(own.customer),
+        own.group.to_owned(),
+        count(own.seats, "seat"),
+        own.kind.replace('_', " "),
+        format!("{} left", count(own.days_left, "day")),
+    ];
+    parts.extend(ask_in_words(thread));
+    parts.push(match own.last_offer.as_slice() {
+        [] => "no offer yet".to_owned(),
+        offered => format!("last offer {}", offer_in_words(offered)),
+    });
+    if let Some(units) = thread.needed_quota {
+        parts.push(format!("needs a quota of {} units a day", grouped(units.round(), 0)));
+    }
+    parts.join(", ")
+}
+
+/// What a company asks: a price, a plan, or both.
+pub(super) fn ask_in_words(thread: &AskingThread) -> Option<String> {
+    match (thread.waiting.asked, thread.asked_plan) {
+        (Some(price), Some(plan)) => Some(format!("asks {} for plan {plan}", cents(price))),
+        (Some(price), None) => Some(format!("asks {}", cents(price))),
+        (None, Some(plan)) => Some(format!("asks the price of plan {plan}")),
+        (None, None) => None,
+    }
+}
+
+/// An offer in words: `plan B at $30.00 or plan C at $55.00`.
+pub(super) fn offer_in_words(offered: &[(Plan, f64)]) -> String {
+    let line = |(plan, price): &(Plan, f64)| format!("plan {plan} at {}", cents(*price));
+    offered.iter().map(line).collect::<Vec<_>>().join(" or ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::WaitingThread;
+    use crate::world::params::Params;
+
+    fn thread(customer: u32, asked: Option<f64>, asked_plan: Option<Plan>) -> AskingThread {
+        let waiting = WaitingThread {
+            thread: customer + 1_000,
+            customer,
+            group: if customer.is_multiple_of(2) { "E2" } else { "E1" },
+            seats: 50,
+            kind: "plan_change",
+            turn: 1,
+            offers_so_far: 0,
+            last_offer: Vec::new(),
+            asked,
+            days_left: customer % 7 + 1,
+        };
+        AskingThread { waiting, asked_plan, needed_quota: Some(5_000.0) }
+    }
+
+    #[test]
+    fn a_full_inbox_is_told_by_group_and_twenty_threads() {
+        let names = CompanyNames::new(3, &Params::shipped().personas.email);
+        let mut waiting: Vec<AskingThread> = (1..=682).map(|at| thread(at, None, None)).collect();
+        waiting[0] = thread(1, Some(20.0), Some(Plan::B));
+        waiting[1] = thread(2, None, Some(Plan::A));
+        let groups = group_lines(&waiting);
+        assert!(groups[0].starts_with("E1: 341 threads, 17,050 seats, "), "{groups:?}");
+        assert!(
+            groups[0].ends_with(", 1 names a price, $20.00") && groups[1].ends_with("none names a price")
+        );
+        let lines = told_lines(&waiting, &Wanted::default(), &names);
+        assert_eq!(lines.len(), 1 + TOLD + 2);
+        assert!(
+            lines[1].contains("50 seats, plan change, 2 days left, asks $20.00 for plan B, no offer yet")
+        );
+        assert!(
+            lines[2].contains("asks the price of plan A, no offer yet, needs a quota of 5,000 units a day")
+        );
+        assert!(lines[21].starts_with("662 more: inbox all") && lines[22].starts_with("inbox NUMBER"));
+        let all = told_lines(&waiting, &Wanted { all: true, filter: None }, &names);
+        assert_eq!(all.len(), 1 + 682 + 1);
+        assert!(told_lines(&[], &Wanted::default(), &names).is_empty());
+    }
+}

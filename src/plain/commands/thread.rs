@@ -1,0 +1,163 @@
+//! One thread of a negotiation: who, what was written and offered turn by turn, and the days left.
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::super::grammar::{Argument, Problem};
+use super::inbox::{ask_in_words, offer_in_words};
+use super::{Interpreter, count as number, problem};
+use crate::notation::{cents, grouped};
+use crate::report::count;
+use crate::rules::{AskingThread, offer_of};
+use crate::session::{Cell, Refusal, Rows, number_at, text_at};
+
+/// Columns of the turns of a thread.
+const TURNS: &str = "SELECT thread_id, customer_id, thread_type, turn_number, sender, message_text, offer_json, day, \
+                     seat_count, close_reason FROM enterprise_turns";
+/// Columns of a company.
+const COMPANY: &str = "SELECT c.group_id, c.persona_industry, c.company_size_descriptor, c.company_culture, \
+                       c.company_decision_style, c.company_primary_concern, s.status, s.plan, s.effective_price \
+                       FROM customers c CROSS JOIN subscriptions s WHERE s.customer_id = c.customer_id";
+
+impl Interpreter {
+    /// `thread NUMBER`.
+    pub(super) fn thread(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+        let Some(thread) = number(arguments)? else {
+            return Err(problem(arguments, "thread needs the number of a thread, for instance thread 12"));
+        };
+        let told = self.conversation(&format!("{TURNS} WHERE thread_id = {thread} ORDER BY message_id"));
+        Ok(told.unwrap_or_else(|| {
+            let text = format!("there is no thread {thread}; inbox NUMBER takes the number of a company");
+            Answer::refused("thread", Refusal::new("thread_not_found", text))
+        }))
+    }
+
+    /// The newest thread of a company.
+    pub(super) fn thread_of_company(&mut self, customer: u64) -> Answer {
+        let newest = format!(
+            "{TURNS} WHERE thread_id = (SELECT max(thread_id) FROM enterprise_turns WHERE customer_id = {customer}) \
+             ORDER BY message_id"
+        );
+        self.conversation(&newest).unwrap_or_else(|| {
+            let text = format!("company {customer} has no thread; inbox lists those that wait");
+            Answer::refused("inbox", Refusal::new("thread_not_found", text))
+        })
+    }
+
+    /// The thread that a statement reads; none where it finds no turn.
+    fn conversation(&mut self, statement: &str) -> Option<Answer> {
+        let turns = match self.session.look_into_database(statement) {
+            Ok(turns) => turns,
+            Err(refusal) => return Some(Answer::refused("thread", refusal)),
+        };
+        let first = turns.rows.first()?;
+        let (thread, customer) = (number_at(first, 0) as u32, number_at(first, 1) as u32);
+        let company =
+            self.session.look_into_database(&format!("{COMPANY} AND c.customer_id = {customer}")).ok();
+        let waiting = AskingThread::all(&mut self.session)
+            .ok()
+            .and_then(|(waiting, _)| waiting.into_iter().find(|own| own.waiting.thread == thread));
+        let names = self.session.company_names();
+        let kind = text_at(first, 2).replace('_', " ");
+        // Rows of the player count one seat, whatever the company has.
+        let theirs = turns.rows.iter().filter(|row| text_at(row, 4) != "agent");
+        let seats = waiting.as_ref().map_or_else(
+            || theirs.map(|row| number_at(row, 8) as u32).max().unwrap_or(1),
+            |own| own.waiting.seats,
+        );
+        let mut lines = vec![format!(
+            "{}, {}, {kind}, thread {thread}",
+            names.with_number(customer),
+            count(seats, "seat")
+        )];
+        lines.extend(company.as_ref().and_then(company_in_words));
+        lines.extend(turns.rows.iter().filter_map(|row| Some(names.put_into(&turn_in_words(row)?))));
+        lines.extend(state_in_words(waiting.as_ref(), turns.rows.last().unwrap_or(first), customer));
+        let data = json!({
+            "thread": thread,
+            "customer": customer,
+            "company": names.of(customer),
+            "waiting": waiting.map(|own| own.row(names)),
+            "turns": turns.rows.iter().map(|row| turn_row(row)).collect::<Vec<Value>>(),
+        });
+        Some(Answer::done("thread", lines.join("\n"), data))
+    }
+}
+
+/// Group, profile and subscription of a company.
+fn company_in_words(rows: &Rows) -> Option<String> {
+    let row = rows.rows.first()?;
+    let mut parts = vec![format!("group {}", text_at(row, 0))];
+    let trade = format!("{} {}", text_at(row, 2), text_at(row, 1));
+    for (name, value) in [
+        ("trade", trade.trim()),
+        ("culture", text_at(row, 3)),
+        ("decides", text_at(row, 4)),
+        ("main concern", text_at(row, 5)),
+    ] {
+        if !value.is_empty() {
+            parts.push(format!("{name}: {value}"));
+        }
+    }
+    parts.push(match text_at(row, 6) {
+        "subscribed" => {
+            format!("subscribes to plan {} at {} a seat", text_at(row, 7), cents(number_at(row, 8)))
+        }
+        "lead" => "no subscriber yet".to_owned(),
+        other => format!("subscription {other}"),
+    });
+    Some(parts.join("; "))
+}
+
+/// A turn as one line; none for what opens a thread without a word.
+fn turn_in_words(row: &[Cell]) -> Option<String> {
+    let (day, words) = (number_at(row, 7), text_at(row, 5));
+    let (offers, price) = offer_of(text_at(row, 6));
+    let said = match (text_at(row, 4), text_at(row, 9)) {
+        ("agent", "agent_rejected") => "you ended the thread".to_owned(),
+        ("agent", _) => format!("you offered {}", offer_in_words(&offers)),
+        ("customer", _) if words.is_empty() => format!("they ask {}", cents(price?)),
+        ("customer", _) => format!("they wrote: {words}"),
+        _ if words.is_empty() => return None,
+        _ => words.to_owned(),
+    };
+    Some(format!("day {day}: {said}"))
+}
+
+/// What is left to do, and how.
+fn state_in_words(waiting: Option<&AskingThread>, last: &[Cell], customer: u32) -> Vec<String> {
+    let Some(thread) = waiting else {
+        return vec![match text_at(last, 9) {
+            "accepted" => "it ended with a deal".to_owned(),
+            "agent_rejected" => "it was ended by you".to_owned(),
+            _ => "it does not wait for you".to_owned(),
+        }];
+    };
+    let mut parts = vec![format!("it waits for you: {} left", count(thread.waiting.days_left, "day"))];
+    parts.extend(ask_in_words(thread).map(|ask| format!("it {ask}")));
+    parts.extend(
+        thread
+            .needed_quota
+            .map(|units| format!("it needs a quota of {} units a day", grouped(units.round(), 0))),
+    );
+    let plan = thread.asked_plan.map_or("B", |plan| plan.id());
+    vec![
+        parts.join("; "),
+        format!(
+            "answer with send_enterprise_deal [[{customer}, [[\"{plan}\", PRICE]]]] or reject_enterprise_deal {customer}"
+        ),
+    ]
+}
+
+fn turn_row(row: &[Cell]) -> Value {
+    let (offers, price) = offer_of(text_at(row, 6));
+    json!({
+        "turn": number_at(row, 3),
+        "sender": text_at(row, 4),
+        "day": number_at(row, 7),
+        "text": text_at(row, 5),
+        "offers": offers,
+        "price": price,
+        "close_reason": text_at(row, 9),
+    })
+}

@@ -1,0 +1,44 @@
+//! A filter of threads: conditions as rules have them after `where`.
+
+use super::condition::Condition;
+use super::grammar::{self, Problem};
+use super::thread::AskingThread;
+
+/// Conditions that a thread has to meet, all of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Filter(Vec<Condition>);
+
+impl Filter {
+    /// Reads conditions joined with `and`, in the grammar of rules.
+    ///
+    /// # Errors
+    /// The first word that is no condition.
+    pub fn parse(text: &str) -> Result<Filter, Problem> {
+        grammar::conditions(text).map(Filter)
+    }
+
+    /// Whether a thread meets them.
+    pub fn means(&self, thread: &AskingThread) -> bool {
+        self.0.iter().all(|condition| condition.holds(thread))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_filter_is_what_a_rule_says_after_where() {
+        assert!(Filter::parse("group = E2 and asked is null and seats >= 1_000").is_ok());
+        for (text, column, part) in [
+            ("", 1, "for instance seats >= 500"),
+            ("seats", 6, "comparison"),
+            ("seats > 3 group = E1", 11, "join more with and"),
+            ("seats > 3 or group = E1", 11, "joined with and"),
+        ] {
+            let problem = Filter::parse(text).expect_err(text);
+            assert_eq!(problem.column, column, "{text}: {problem:?}");
+            assert!(problem.text.contains(part), "{text}: {problem:?}");
+        }
+    }
+}

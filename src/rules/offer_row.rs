@@ -1,0 +1,30 @@
+//! What a row of a negotiation offers.
+
+use serde_json::Value;
+
+use crate::world::identifiers::Plan;
+
+/// Plans and prices that the player offered, and the price that a company named, dollars a month and seat, in the JSON
+/// of a row.
+pub fn offer_of(json: &str) -> (Vec<(Plan, f64)>, Option<f64>) {
+    let value: Value = serde_json::from_str(json).unwrap_or(Value::Null);
+    let one = |offer: &Value| {
+        Some((Plan::parse(offer.get("plan")?.as_str()?)?, offer.get("price_per_seat")?.as_f64()?))
+    };
+    let offers = value.as_array().into_iter().flatten().filter_map(one).collect();
+    (offers, value.get("price").and_then(Value::as_f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn offers_are_read_from_their_json() {
+        let two = r#"[{"plan": "A", "price_per_seat": 18.5, "contract_months": 1}, {"plan": "Z", "price_per_seat": 1}]"#;
+        assert_eq!(offer_of(two), (vec![(Plan::A, 18.5)], None));
+        assert_eq!(offer_of(r#"{"price": 27.34}"#), (vec![], Some(27.34)));
+        assert_eq!(offer_of("{}"), (vec![], None));
+        assert_eq!(offer_of("broken"), (vec![], None));
+    }
+}

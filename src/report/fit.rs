@@ -271,7 +271,7 @@ impl Fit {
             return "has no price".to_owned();
         }
         let certain = |concern: &Concern| Some((*concern, self.missing(plan, *concern)?));
-        let missing: Vec<String> = Concern::ALL.iter().filter_map(certain).map(lack_in_words).collect();
+        let missing: Vec<(Concern, f64)> = Concern::ALL.iter().filter_map(certain).collect();
         let inside = |concern: &&Concern| self.beside(plan, **concern) == Some(Beside::Inside);
         let open: Vec<&str> = Concern::ALL.iter().filter(inside).map(|concern| concern.id()).collect();
         let open =
@@ -279,8 +279,8 @@ impl Fit {
         match (missing.is_empty(), open.is_empty()) {
             (true, true) => "lacks nothing".to_owned(),
             (true, false) => open,
-            (false, true) => format!("lacks {}", missing.join(", ")),
-            (false, false) => format!("lacks {}; {open}", missing.join(", ")),
+            (false, true) => lacks_in_words(&missing),
+            (false, false) => format!("{}; {open}", lacks_in_words(&missing)),
         }
     }
 
@@ -341,10 +341,22 @@ impl Fit {
     }
 }
 
+/// A price is too high; quality and quota are lacking.
+fn lacks_in_words(missing: &[(Concern, f64)]) -> String {
+    let (price, lacks): (Vec<_>, Vec<_>) =
+        missing.iter().copied().partition(|(concern, _)| *concern == Concern::Price);
+    let mut parts: Vec<String> = price.into_iter().map(lack_in_words).collect();
+    if !lacks.is_empty() {
+        let lacks: Vec<String> = lacks.into_iter().map(lack_in_words).collect();
+        parts.push(format!("lacks {}", lacks.join(", ")));
+    }
+    parts.join("; ")
+}
+
 fn lack_in_words((concern, amount): (Concern, f64)) -> String {
     match concern {
         Concern::Price => format!(
-            "price (at least {} too high)",
+            "price too high (by at least {})",
             if amount < 1.0 { cents(amount) } else { dollars(amount) }
         ),
         Concern::Quality => format!("quality (at least {amount:.4})"),
@@ -450,7 +462,7 @@ mod tests {
             assert!(short <= floor - quality, "{short}");
         }
         assert!(fit.lacks(Plan::A).contains("quota (at least "), "{}", fit.lacks(Plan::A));
-        assert!(fit.lacks(Plan::C).contains("price (at least $"), "{}", fit.lacks(Plan::C));
+        assert!(fit.lacks(Plan::C).contains("price too high (by at least $"), "{}", fit.lacks(Plan::C));
         let enterprise = all.iter().find(|fit| fit.group.is_enterprise()).expect("E1");
         assert_eq!(enterprise.beside(Plan::C, Concern::Price), None, "companies negotiate");
         let text = fit.lines().join("\n");

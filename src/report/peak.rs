@@ -47,6 +47,20 @@ impl PeakProjection {
     }
 }
 
+/// What a tier holds beside the busiest day of the last week: `tier 1 holds 80,000 units a day; the busiest day of the
+/// last week had 61,000, 76% of it`.
+pub fn peak_beside_tier(weeks: &[WeekFigures], tier: u32, units: f64) -> String {
+    let holds = format!("tier {tier} holds {} units a day", whole(units));
+    match weeks.last() {
+        None => format!("{holds}; no week has run yet"),
+        Some(week) => {
+            let busiest = week.busiest_day as f64;
+            let share = percent(busiest / units.max(1.0), 0);
+            format!("{holds}; the busiest day of the last week had {}, {share} of it", whole(busiest))
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -66,6 +80,16 @@ mod tests {
         let (before, last) = (busiest(28), busiest(35));
         assert_eq!((projection.busiest, projection.next()), (last, last * (last / before)));
         assert!(projection.in_words(1, 200_000.0).contains(&whole(last * last / before)));
+    }
+
+    #[test]
+    fn a_tier_stands_beside_the_busiest_day() {
+        let week = WeekFigures { days_run: 7, busiest_day: 61_000, ..WeekFigures::default() };
+        assert_eq!(
+            peak_beside_tier(&[week], 1, 80_000.0),
+            "tier 1 holds 80,000 units a day; the busiest day of the last week had 61,000, 76% of it"
+        );
+        assert!(peak_beside_tier(&[], 1, 80_000.0).ends_with("no week has run yet"));
     }
 
     #[test]

@@ -2,7 +2,11 @@
 //! them and on others. There is one definition, for the screen of the product, the forms and plain mode: the use of the
 //! last day by those who are there, 30 days a month, and what they pay a month.
 
+mod sentences;
+
 use serde_json::Value;
+
+pub use sentences::margin_sentences;
 
 use super::words::money;
 use crate::notation::{cents, compact, percent};

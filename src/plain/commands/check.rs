@@ -5,7 +5,10 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{self, Line, Problem};
 use super::{COMMANDS, Interpreter, change_line, read_arguments, tool_called, unknown};
-use crate::report::plan_margins::{Lever, PlanTerms, Sales, margin_lines};
+use crate::notation::percent;
+use crate::report::count;
+use crate::report::peak::peak_beside_tier;
+use crate::report::plan_margins::{Lever, PlanTerms, Sales, margin_sentences};
 use crate::report::research::outlook_lines;
 use crate::report::review::terms_line;
 use crate::session::{Preview, ToolId};
@@ -31,8 +34,13 @@ impl Interpreter {
         let mut lines = vec![format!("{} would be accepted; nothing was done", preview.tool)];
         lines.extend(preview.changes.iter().map(|change| format!("  {}", change_line(change))));
         lines.extend(terms_line(preview).map(|line| format!("  {line}")));
-        let notes =
-            preview.research.iter().flat_map(outlook_lines).chain(self.margins(preview.tool, arguments));
+        let notes = preview
+            .research
+            .iter()
+            .flat_map(outlook_lines)
+            .chain(self.capacity(preview.tool, arguments))
+            .chain(self.study(preview.tool, arguments))
+            .chain(self.margins(preview.tool, arguments));
         lines.extend(notes.map(|note| format!("  {note}")));
         let data = json!({
             "tool": preview.tool,
@@ -43,6 +51,35 @@ impl Interpreter {
             "research": preview.research,
         });
         Answer::done("check", lines.join("\n"), data)
+    }
+
+    /// What a capacity tier holds beside the busiest day of the last week.
+    fn capacity(&self, tool: ToolId, arguments: &Value) -> Option<String> {
+        let tier = arguments.get("tier").filter(|_| tool == ToolId::SetCapacityTier)?.as_u64()?;
+        let terms = self.session.terms();
+        let own = terms.capacities.iter().find(|own| u64::from(own.tier) == tier)?;
+        Some(peak_beside_tier(self.session.weeks(), u32::from(own.tier), own.units))
+    }
+
+    /// The level that a study reaches.
+    fn study(&self, tool: ToolId, arguments: &Value) -> Option<String> {
+        let group = arguments.get("group_id").filter(|_| tool == ToolId::ResearchGroup)?.as_str()?;
+        let terms = self.session.terms();
+        let now =
+            self.session.estimates().into_iter().find(|own| own.group.id().eq_ignore_ascii_case(group))?;
+        let given = arguments.get("target_level").and_then(Value::as_u64);
+        let target = given.map_or(now.level.max(terms.targets.0), |target| target as u8);
+        let level = terms.level(target)?;
+        let from = match target == now.level {
+            true => format!("stays at level {target}, with fresh estimates"),
+            false => format!("goes from level {} to level {target}", now.level),
+        };
+        Some(format!(
+            "{} {from}: estimates off by at most {}, after {}",
+            now.group,
+            percent(level.noise, 0),
+            count(level.days, "day")
+        ))
     }
 
     /// The margins that a call would leave; none where none follow from its tool.
@@ -58,7 +95,7 @@ impl Interpreter {
             self.session.terms().models.iter().map(|model| (model.tier, model.unit_cost)).collect();
         match Sales::of(&self.session) {
             Ok(sales) => {
-                margin_lines(&sales, &lever.apply(now, arguments), lever, &models, self.session.day())
+                margin_sentences(&sales, &lever.apply(now, arguments), lever, &models, self.session.day())
             }
             Err(refusal) => vec![format!("no margins: {}", refusal.message)],
         }

@@ -141,6 +141,11 @@ mod tests {
         let object = told.as_json(3, 7);
         assert_eq!((&object["command"], &object["data"]["kind"]), (&json!("explain"), &json!("term")));
         assert!(explain("explain", "set_prices.A", &Numbers::shipped()).is_ok());
+        for word in "needs rules margin spread load asked needed_quota days_left patience relationship risk"
+            .split(' ')
+        {
+            assert!(explain("explain", word, &Numbers::shipped()).is_ok(), "{word}");
+        }
     }
 
     #[test]

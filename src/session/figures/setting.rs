@@ -80,7 +80,7 @@ impl SettingId {
             SettingId::ModelTier(_) | SettingId::CapacityTier => None,
             SettingId::Price(_) | SettingId::Discount(_) | SettingId::LeadDiscount(_) => Some("$/month"),
             SettingId::Quota(_) => Some("units/day"),
-            SettingId::AdsStrength(_) => Some("load"),
+            SettingId::AdsStrength(_) => Some("strength"),
             SettingId::Operations
             | SettingId::Development
             | SettingId::Advertising(..)
@@ -163,7 +163,9 @@ pub(in crate::session) fn values(settings: &Settings) -> Vec<(SettingId, f64)> {
     all.extend(
         lead_discounts(settings).map(|(audience, dollars)| (SettingId::LeadDiscount(audience), dollars)),
     );
-    all.extend(ads_strengths(settings).map(|(audience, load)| (SettingId::AdsStrength(audience), load)));
+    all.extend(
+        ads_strengths(settings).map(|(audience, strength)| (SettingId::AdsStrength(audience), strength)),
+    );
     all
 }
 

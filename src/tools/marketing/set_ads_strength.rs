@@ -9,12 +9,12 @@ use super::super::{
 use crate::notation::json_number;
 use crate::world::settings::{AdsStrength, PerCustomer, PerGroup, Settings, SettingsChange};
 
-/// Sets the load of in-app advertising.
+/// Sets the strength of in-app advertising.
 pub struct SetAdsStrength;
 
 const STRENGTH: Amount = Amount {
     code: "strength_out_of_range",
-    words: "must be an ad load between 0 and 1",
+    words: "must be an ads strength between 0 and 1",
     range: Range::SHARE,
 };
 
@@ -37,7 +37,7 @@ static SPEC: Spec = Spec {
     whole: None,
     when: When::NextDay,
     effect: "Every subscriber who sees ads earns you a little each day but perceives less quality. The \
-             effective load is log{ads.log_curve_k:+1}(1 + {ads.log_curve_k} s) of the summed strength s, so a small load already earns much \
+             effective load is log{ads.log_curve_k:+1}(1 + {ads.log_curve_k} s) of the summed strength s, so a small strength already earns much \
              of what a full one does.",
     cost: "nothing; perceived quality falls",
     writes: &["config_overrides"],
@@ -57,14 +57,14 @@ static SPEC: Spec = Spec {
 };
 
 /// The scopes that a call names; the others stay as they are.
-pub struct AdLoads {
+pub struct AdStrengths {
     global: Option<f64>,
     by_group: Option<PerGroup>,
     by_customer: Option<PerCustomer>,
 }
 
 impl Tool for SetAdsStrength {
-    type Args = AdLoads;
+    type Args = AdStrengths;
     type Answer = Plain<AdsStrength>;
 
     fn spec(&self) -> &'static Spec {
@@ -80,11 +80,11 @@ impl Tool for SetAdsStrength {
         ])
     }
 
-    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<AdLoads, Refusal> {
-        Ok(AdLoads {
+    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<AdStrengths, Refusal> {
+        Ok(AdStrengths {
             global: arguments.read("global_strength", |value, name| {
                 number(value).filter(|strength| Range::SHARE.holds(*strength)).ok_or_else(|| {
-                    let message = "the global ad load must be between 0 and 1";
+                    let message = "the global ads strength must be between 0 and 1";
                     Refusal::at(name, "global_strength_out_of_range", message)
                 })
             })?,
@@ -93,7 +93,7 @@ impl Tool for SetAdsStrength {
         })
     }
 
-    fn plan(&self, view: &View<'_>, given: AdLoads) -> Result<Planned<Plain<AdsStrength>>, Refusal> {
+    fn plan(&self, view: &View<'_>, given: AdStrengths) -> Result<Planned<Plain<AdsStrength>>, Refusal> {
         let mut ads = view.settings().ads_strength.clone();
         replace(&mut ads.global, given.global);
         replace(&mut ads.by_group, given.by_group);

@@ -1,0 +1,144 @@
+//! The same margins in sentences, for whoever listens: the model that is set first, the others in a line.
+
+use super::{Lever, NOTHING_MEASURED, PlanTerms, PlanUse, Sales, differs, margin};
+use crate::notation::{cents, grouped, percent};
+use crate::report::words::whole;
+use crate::world::identifiers::{ByPlan, Plan};
+
+/// The margins of every plan under its terms, in sentences.
+pub fn margin_sentences(
+    sales: &Sales,
+    terms: &ByPlan<PlanTerms>,
+    lever: Lever,
+    models: &[(u8, f64)],
+    day: u32,
+) -> Vec<String> {
+    if Plan::ALL.into_iter().all(|plan| sales.of_plan(plan).usage().is_none()) {
+        return vec![NOTHING_MEASURED.to_owned()];
+    }
+    let mut lines =
+        vec![format!("gross margins at the use of day {day}: the share of what is paid that compute leaves")];
+    lines
+        .extend(Plan::ALL.into_iter().flat_map(|plan| of_plan(sales, plan, terms[plan], lever, models, day)));
+    lines
+}
+
+fn of_plan(
+    sales: &Sales,
+    plan: Plan,
+    set: PlanTerms,
+    lever: Lever,
+    models: &[(u8, f64)],
+    day: u32,
+) -> Vec<String> {
+    let own = sales.of_plan(plan);
+    let Some(paid) = own.revenue().filter(|_| own.usage().is_some()) else {
+        return vec![format!("plan {plan}: nobody used it on day {day}")];
+    };
+    let unit_cost = models.iter().find(|(tier, _)| *tier == set.tier).map(|(_, unit_cost)| *unit_cost);
+    let on_own = |told: &dyn Fn(f64) -> Option<f64>| in_words(unit_cost.and_then(told));
+    let at_list = |unit_cost: f64| margin(set.price, own.compute(unit_cost)?);
+    let is_at_list = lever == Lever::Price && differs(set.price, paid);
+    let mut line = format!(
+        "plan {plan} on model tier {}: {} of the {} a seat and month that are paid now",
+        set.tier,
+        on_own(&|unit_cost| own.margin(unit_cost)),
+        cents(paid)
+    );
+    if is_at_list {
+        line += &format!("; at the list price of {}, {}", cents(set.price), on_own(&at_list));
+    }
+    if lever == Lever::Quota {
+        let full = on_own(&|unit_cost| own.margin_of_full_quota(set.quota, unit_cost));
+        line += &format!("; if all use up the quota of {} units, {full}", whole(set.quota));
+    }
+    let mut lines = vec![line];
+    lines.extend(by_group(sales, plan, unit_cost));
+    let told = |unit_cost: f64| if is_at_list { at_list(unit_cost) } else { own.margin(unit_cost) };
+    let others = models.iter().filter(|(tier, _)| *tier != set.tier);
+    let others: Vec<(u8, f64)> =
+        others.filter_map(|(tier, unit_cost)| Some((*tier, told(*unit_cost)?))).collect();
+    let basis = if is_at_list { "at that list price" } else { "of what is paid now" };
+    lines.extend(
+        on_others(&others).map(|words| format!("plan {plan} on other model tiers, {basis}: {words}")),
+    );
+    lines
+}
+
+/// The margins of a plan's groups; none where one group has the plan.
+fn by_group(sales: &Sales, plan: Plan, unit_cost: Option<f64>) -> Option<String> {
+    let groups = sales.by_group(plan);
+    let told = |(group, own): &(_, PlanUse)| {
+        let words = in_words(unit_cost.and_then(|unit_cost| own.margin(unit_cost)));
+        format!("{group} {words} of {}", own.revenue().map_or("nothing".to_owned(), cents))
+    };
+    (groups.len() > 1).then(|| {
+        let told: Vec<String> = groups.iter().map(told).collect();
+        format!("plan {plan} by group: {}", told.join(", "))
+    })
+}
+
+/// Tiers that earn one by one, those that lose together.
+fn on_others(margins: &[(u8, f64)]) -> Option<String> {
+    let (earns, loses): (Vec<_>, Vec<_>) = margins.iter().partition(|(_, margin)| *margin >= 0.0);
+    let mut parts: Vec<String> =
+        earns.iter().map(|(tier, margin)| format!("tier {tier} {}", percent(*margin, 0))).collect();
+    let tiers: Vec<String> = loses.iter().map(|(tier, _)| tier.to_string()).collect();
+    match tiers.as_slice() {
+        [] => {}
+        [only] => parts.push(format!("a loss on tier {only}")),
+        [most @ .., last] => parts.push(format!("a loss on tiers {} and {last}", most.join(", "))),
+    }
+    (!parts.is_empty()).then(|| parts.join(", "))
+}
+
+/// A margin; a loss as the multiple of what is paid that compute costs.
+fn in_words(margin: Option<f64>) -> String {
+    match margin {
+        None => "an unknown share".to_owned(),
+        Some(margin) if margin < 0.0 => format!("a loss, compute costs {} times", grouped(1.0 - margin, 1)),
+        Some(margin) => percent(margin, 0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::report::test_kit::played;
+
+    #[test]
+    fn margins_are_told_without_places_and_brackets() {
+        let session = played(6);
+        let sales = Sales::of(&session).expect("a database");
+        let core = &session.settings().core;
+        let now = ByPlan::from_fn(|plan| PlanTerms {
+            price: core.prices[plan],
+            tier: core.tiers[plan],
+            quota: core.quotas[plan].units(),
+        });
+        let models: Vec<(u8, f64)> =
+            session.terms().models.iter().map(|model| (model.tier, model.unit_cost)).collect();
+        let own = sales.of_plan(Plan::B);
+        let unit_cost = models.iter().find(|(tier, _)| *tier == now[Plan::B].tier).expect("its model").1;
+        let dear = Lever::Price.apply(now, &json!({"B": 250}));
+        let lines = margin_sentences(&sales, &dear, Lever::Price, &models, 42);
+        let line = lines.iter().find(|line| line.starts_with("plan B on model tier 2: ")).expect("plan B");
+        let paid = in_words(own.margin(unit_cost));
+        let list = in_words(margin(250.0, own.compute(unit_cost).expect("compute")));
+        assert!(line.contains(&format!("tier 2: {paid} of the ")), "{line} without {paid}");
+        assert!(line.ends_with(&format!("at the list price of $250.00, {list}")), "{line} without {list}");
+        let text = lines.join("\n");
+        assert!(!text.contains(['[', '<']) && !text.contains("  "), "{text}");
+        assert!(text.contains("plan B on other model tiers, at that list price: tier 1 "), "{text}");
+    }
+
+    #[test]
+    fn losses_are_told_together() {
+        let told = on_others(&[(1, 0.5), (3, -0.2), (4, -30.0), (5, -90.0)]);
+        assert_eq!(told.as_deref(), Some("tier 1 50%, a loss on tiers 3, 4 and 5"));
+        assert_eq!(on_others(&[]), None);
+        assert_eq!(in_words(Some(-11.4)), "a loss, compute costs 12.4 times");
+    }
+}

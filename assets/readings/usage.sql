@@ -1,5 +1,6 @@
--- Units of the last day by group and plan, of customers who are still there.
-SELECT c.group_id, s.plan, count(*) AS users, sum(s.seat_count) AS seats, sum(u.usage_units) AS units
+-- Units of the last day by group and plan, of customers who are still there, and what those pay a month.
+SELECT c.group_id, s.plan, count(*) AS users, sum(s.seat_count) AS seats, sum(u.usage_units) AS units,
+    sum(s.effective_price * s.seat_count) AS monthly
 FROM daily_usage u
 CROSS JOIN subscriptions s
 CROSS JOIN customers c

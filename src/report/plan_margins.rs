@@ -1,6 +1,6 @@
 //! Gross margins of plans: what their subscribers pay beside the compute that their use costs, on the models that serve
 //! them and on others. There is one definition, for the screen of the product, the forms and plain mode: the use of the
-//! last day by those who are there, 30 days a month, and what they pay a month.
+//! last day, 30 days a month, beside what those who used it pay a month. Who signed on that day has used nothing yet.
 
 mod sentences;
 
@@ -37,6 +37,8 @@ pub struct PlanUse {
     pub users: f64,
     /// Units they used on it.
     pub units: f64,
+    /// What they pay, dollars a month.
+    pub paid_by_users: f64,
 }
 
 impl PlanUse {
@@ -48,6 +50,7 @@ impl PlanUse {
             accounts: self.accounts + other.accounts,
             users: self.users + other.users,
             units: self.units + other.units,
+            paid_by_users: self.paid_by_users + other.paid_by_users,
         }
     }
 
@@ -61,9 +64,12 @@ impl PlanUse {
         self.usage().map(|usage| usage * MONTH * unit_cost)
     }
 
-    /// Dollars a month and seat that are paid.
+    /// Dollars a month and seat that are paid by those whose use is known; by all where nobody's is.
     pub fn revenue(&self) -> Option<f64> {
-        (self.seats > 0.0).then(|| self.monthly / self.seats)
+        match self.users > 0.0 {
+            true => Some(self.paid_by_users / self.users),
+            false => (self.seats > 0.0).then(|| self.monthly / self.seats),
+        }
     }
 
     /// Share of what is paid that compute leaves, at dollars a unit.
@@ -114,12 +120,13 @@ impl Sales {
         });
     }
 
-    /// Takes what they used: group, plan, accounts, seats, units.
+    /// Takes what they used: group, plan, accounts, seats, units, dollars a month.
     pub fn take_usage(&mut self, rows: &Rows) {
         self.used = by_plan(rows, |row| PlanUse {
             accounts: number_at(row, 2),
             users: number_at(row, 3),
             units: number_at(row, 4),
+            paid_by_users: number_at(row, 5),
             ..PlanUse::default()
         });
     }
@@ -330,11 +337,13 @@ mod tests {
     fn margins_are_those_of_the_tables_on_every_model() {
         let mut session = played(6);
         let sales = Sales::of(&session).expect("a database");
-        let sql = "SELECT sum(s.effective_price * s.seat_count) / sum(s.seat_count),
+        let sql =
+            "SELECT (SELECT sum(o.effective_price * o.seat_count) / sum(o.seat_count) FROM daily_usage u
+                    JOIN subscriptions o ON o.customer_id = u.customer_id AND o.status = 'subscribed'
+                    WHERE u.day = 42 AND o.plan = 'B'),
                    (SELECT sum(u.usage_units) * 30.0 / sum(o.seat_count) FROM daily_usage u
                     JOIN subscriptions o ON o.customer_id = u.customer_id AND o.status = 'subscribed'
-                    WHERE u.day = 42 AND o.plan = 'B')
-                   FROM subscriptions s WHERE s.plan = 'B' AND s.status = 'subscribed'";
+                    WHERE u.day = 42 AND o.plan = 'B')";
         let row = session.query(sql).expect("figures").rows.remove(0);
         let (paid, units) = (number_at(&row, 0), number_at(&row, 1));
         let own = sales.of_plan(Plan::B);
@@ -377,6 +386,21 @@ mod tests {
             assert_eq!(told, expected, "{line}");
             assert!(summary[0].ends_with("day 42") && summary.len() == 4, "{summary:?}");
         }
+    }
+
+    #[test]
+    fn who_has_just_signed_changes_no_margin() {
+        let before = PlanUse {
+            customers: 55.0,
+            seats: 55.0,
+            monthly: 4_400.0,
+            accounts: 55.0,
+            users: 55.0,
+            units: 33_952.0,
+            paid_by_users: 4_400.0,
+        };
+        let joined = PlanUse { customers: 650.0, seats: 650.0, monthly: 47_900.0, ..before };
+        assert_eq!((joined.margin(0.006), joined.revenue()), (before.margin(0.006), Some(80.0)));
     }
 
     #[test]

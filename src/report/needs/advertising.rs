@@ -36,7 +36,7 @@ pub(super) fn unwanted(situation: &Situation<'_>) -> Vec<Need> {
         // Nothing on sale now is known to fail them: what can be named is what the ads cost.
         let (told, proposal, place) = match offers.missing() {
             missing @ (Missing::Quota | Missing::Quality) => {
-                let (told, proposal, place) = offers.remedy(missing)?;
+                let (told, proposal, place) = offers.remedy(missing, ads * AHEAD)?;
                 (format!("{text}; {told}"), Some(proposal), place)
             }
             Missing::Price | Missing::Balance => {

@@ -30,7 +30,13 @@ const JUDGED: [ToolId; 5] = [
 /// Threads that end within the coming week unless they are answered now.
 pub(super) fn threads(situation: &Situation<'_>) -> Option<Need> {
     let waiting = &situation.seen.waiting;
-    let last = situation.seen.day + waiting.iter().map(|thread| thread.days_left).max()?;
+    let deadline = |days: u32| situation.seen.day + days;
+    let earliest = deadline(waiting.iter().map(|thread| thread.days_left).min()?);
+    let last = deadline(waiting.iter().map(|thread| thread.days_left).max()?);
+    let by = match earliest == last {
+        true => format!("by day {last}"),
+        false => format!("by day {last}, the first by day {earliest}"),
+    };
     let lowest =
         Plan::ALL.into_iter().map(|plan| situation.settings.prices[plan]).filter(|price| *price > 0.0);
     let lowest = lowest.fold(f64::INFINITY, f64::min);
@@ -51,8 +57,7 @@ pub(super) fn threads(situation: &Situation<'_>) -> Option<Need> {
     Some(Need {
         problem: Problem::Threads,
         text: format!(
-            "{who} for an answer ({}, {} a month at what they ask or the lowest list price); without one {fate} by day \
-             {last}",
+            "{who} for an answer ({}, {} a month at what they ask or the lowest list price); without one {fate} {by}",
             count(seats, "seat"),
             money(a_month)
         ),

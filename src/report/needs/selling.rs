@@ -16,6 +16,8 @@ const ENOUGH_LEADS: u32 = 20;
 const FEW: f64 = 0.1;
 /// Share of the estimated use that a quota must cover.
 const COVERED: f64 = 0.8;
+/// Days after which an estimate of a study is old.
+const OLD: u32 = 28;
 /// Dollars a day of a first try of a channel.
 const FIRST_TRY: f64 = 50.0;
 
@@ -166,8 +168,9 @@ fn no_sale(situation: &Situation<'_>, own: &Estimates, week: &GroupWeek) -> Opti
     let missing = offers.missing();
     let signed = if week.signed == 0 { "none".to_owned() } else { whole(f64::from(week.signed)) };
     let share = percent(week.conversion()?, 1);
-    let (told, proposal, place) = offers.remedy(missing)?;
     let price = offers.lowest_price().min(own.budget);
+    let at_risk = f64::from(week.leads - week.signed) * AHEAD / 7.0 * price;
+    let (told, proposal, place) = offers.remedy(missing, at_risk)?;
     Some(Need {
         problem: Problem::NoSales(own.group),
         text: format!(
@@ -177,7 +180,7 @@ fn no_sale(situation: &Situation<'_>, own: &Estimates, week: &GroupWeek) -> Opti
         ),
         proposal: Some(proposal),
         place,
-        at_risk: f64::from(week.leads - week.signed) * AHEAD / 7.0 * price,
+        at_risk,
         urgent: true,
     })
 }
@@ -219,13 +222,18 @@ impl<'a> Offers<'a> {
         self.plans().filter(move |plan| negotiates || self.price(*plan) <= self.own.budget)
     }
 
-    /// The affordable plan that delivers most, its quota left aside.
+    /// The affordable plan that lacks least; of several the one that delivers most, its quota left aside.
     fn best(&self) -> Option<Plan> {
         let quality = |plan: &Plan| self.quality.by_plan[*plan];
+        let lacks =
+            |plan: &Plan| u8::from(self.covered(*plan) < COVERED) + u8::from(quality(plan) < self.own.floor);
         // Of two that deliver the same, people take the cheaper one.
         let price = |plan: &Plan| self.price(*plan);
         self.affordable().max_by(|left, right| {
-            quality(left).total_cmp(&quality(right)).then_with(|| price(right).total_cmp(&price(left)))
+            lacks(right)
+                .cmp(&lacks(left))
+                .then_with(|| quality(left).total_cmp(&quality(right)))
+                .then_with(|| price(right).total_cmp(&price(left)))
         })
     }
 
@@ -244,8 +252,40 @@ impl<'a> Offers<'a> {
         self.situation.seen.changes.iter().any(|change| of_offers.contains(&change.setting.tool()))
     }
 
-    /// What is missing in words, what would mend it, and where.
-    pub(super) fn remedy(&self, missing: Missing) -> Option<(String, String, Place)> {
+    /// What is missing in words, what would mend it, and where. What rests on an old study is studied again first.
+    pub(super) fn remedy(&self, missing: Missing, at_risk: f64) -> Option<(String, String, Place)> {
+        let (told, proposal, place) = self.remedy_of(missing, at_risk)?;
+        match self.renewed(at_risk) {
+            Some((study, place)) if matches!(missing, Missing::Quality | Missing::Balance) => {
+                Some((told, study, place))
+            }
+            _ => Some((told, proposal, place)),
+        }
+    }
+
+    /// A study that renews estimates which are older than four weeks, if it costs no more than is at risk; none while one
+    /// is under way.
+    fn renewed(&self, at_risk: f64) -> Option<(String, Place)> {
+        let (own, day) = (self.own, self.situation.seen.day);
+        let is_studied =
+            || self.situation.session.running_studies().iter().any(|study| study.group == own.group);
+        if day < own.as_of + OLD || is_studied() {
+            return None;
+        }
+        let terms = &self.situation.terms;
+        let study = terms.level(own.level.max(terms.targets.0)).filter(|study| study.cost <= at_risk)?;
+        let text = format!(
+            "their floor rises as rivals improve, and the estimate is {} old: a study of level {} renews it for {} in {}",
+            count(day - own.as_of, "day"),
+            study.level,
+            money(study.cost),
+            count(study.days, "day")
+        );
+        let arguments = json!({ "group_id": own.group.id(), "target_level": study.level });
+        Some((text, Place::Call(ToolId::ResearchGroup, arguments)))
+    }
+
+    fn remedy_of(&self, missing: Missing, at_risk: f64) -> Option<(String, String, Place)> {
         let (own, group) = (self.own, self.own.group);
         let floor = TruthRange::behind(own.floor, own.noise).quality();
         let as_of = format!("as of day {}", own.as_of);
@@ -292,7 +332,8 @@ impl<'a> Offers<'a> {
                 let told = format!(
                     "quality: the best for them, {delivered:.4} on {plan}, against a mean floor of {floor} ({as_of})"
                 );
-                let (proposal, place) = better_quality(self.situation, group, plan, delivered, own.floor)?;
+                let (proposal, place) =
+                    better_quality(self.situation, group, plan, (delivered, own.floor), at_risk)?;
                 Some((told, proposal, place))
             }
             // Nobody has seen an offer that was changed today: last week says nothing about it.
@@ -343,13 +384,13 @@ fn better_model(
     ))
 }
 
-/// A better model if one is good enough and pays, otherwise development for the group.
+/// A better model if one is good enough and pays, otherwise development for the group, if it costs no more than is at risk.
 fn better_quality(
     situation: &Situation<'_>,
     group: Group,
     plan: Plan,
-    delivered: f64,
-    floor: f64,
+    (delivered, floor): (f64, f64),
+    at_risk: f64,
 ) -> Option<(String, Place)> {
     if let Some(model) = better_model(situation, group, plan, delivered, floor) {
         return Some(model);
@@ -357,19 +398,26 @@ fn better_quality(
     let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     const DOLLARS: f64 = 5_000.0;
     // What is on its way needs nothing but time.
-    let settings = situation.session.settings();
-    if settings.targeted_development.targeted_spend.get(&group).is_some_and(|spend| *spend >= DOLLARS) {
+    let mut spend = situation.session.settings().targeted_development.targeted_spend.clone();
+    if spend.get(&group).is_some_and(|spend| *spend >= DOLLARS) {
         return None;
     }
     let gain = situation.session.targeted_gain(DOLLARS) * now.multiplier;
     let days = ((floor - delivered) / gain).ceil();
-    Some((
-        format!(
-            "development for {group} at {} a day closes the gap in {}, for {} in all",
-            money(DOLLARS),
-            count(days as u32, "day"),
-            money(DOLLARS * days)
-        ),
-        Place::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": { group.id(): DOLLARS } })),
-    ))
+    // Settings hold for a week at least.
+    let cost = DOLLARS * days.max(7.0);
+    let reached = format!(
+        "development for {group} at {} a day reaches that floor in {}, for {} in all",
+        money(DOLLARS),
+        count(days as u32, "day"),
+        money(cost)
+    );
+    let told = match cost > at_risk {
+        true => format!("{reached}: more than the {} that four weeks lose, but it stays", money(at_risk)),
+        false => reached,
+    };
+    spend.insert(group, DOLLARS);
+    let spend: Map<String, Value> =
+        spend.iter().map(|(group, dollars)| (group.id().to_owned(), json_number(*dollars))).collect();
+    Some((told, Place::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": spend }))))
 }

@@ -453,3 +453,38 @@ fn a_baseline_run_gets_facts_and_no_advice() {
         assert!(!matches!(need.place, Place::Call(_, arguments) if !arguments.is_null()));
     }
 }
+
+#[test]
+fn the_plan_that_lacks_least_is_named_and_development_of_others_stays() {
+    let calls = but(&[
+        ("set_usage_quotas", json!({"A": 10, "B": 90_000_000, "C": 90_000_000})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S2": 900}}})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 700}})),
+        ("set_prices", json!({"A": 20, "B": 30, "C": 40})),
+    ]);
+    let session = company(7, 1e6, &calls, 2);
+    let all = needs(&session);
+    let need = all.iter().find(|need| need.problem == Problem::NoSales(group("S2"))).expect("none signs");
+    assert!(need.text.contains("quality: the best for them"), "A lacks a quota, too: {}", need.text);
+    let Place::Call(ToolId::SetTargetedDevSpend, arguments) = &need.place else { panic!("{need:?}") };
+    assert_eq!(arguments["targeted_spend"], json!({"S1": 700, "S2": 5_000}));
+}
+
+#[test]
+fn an_old_estimate_is_studied_again_where_that_costs_less_than_is_at_risk() {
+    let with_ads = |dollars: u32| {
+        but(&[
+            ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S2": dollars}}})),
+            ("set_targeted_dev_spend", json!({"targeted_spend": {}})),
+            ("set_prices", json!({"A": 20, "B": 30, "C": 40})),
+        ])
+    };
+    let place = |dollars: u32, weeks: usize| {
+        let all = needs(&company(7, 1e7, &with_ads(dollars), weeks));
+        all.into_iter().find(|need| need.problem == Problem::NoSales(group("S2"))).expect("none signs").place
+    };
+    let study = Place::Call(ToolId::ResearchGroup, json!({"group_id": "S2", "target_level": 2}));
+    assert_ne!(place(9_000, 2), study, "the estimate is two weeks old");
+    assert_eq!(place(9_000, 5), study);
+    assert_ne!(place(200, 5), study, "the study costs more than is at risk");
+}

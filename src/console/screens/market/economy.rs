@@ -75,7 +75,9 @@ impl Pane<Market> for EconomyPane {
             Action::First => Some(0),
             Action::Last | Action::Close => None,
             _ => market.point,
-        };
+        }
+        // The last one stays the last one when a newer is published.
+        .filter(|at| *at < last);
         Vec::new()
     }
 

@@ -50,7 +50,7 @@ impl ProductPart for Plans {
     }
 
     fn note(&self, _: &Product, _: &Company, _: usize) -> String {
-        "at the last day's use, 30 days a month".to_owned()
+        "of seats that used it on the last day, 30 days a month".to_owned()
     }
 
     fn destination(&self, product: &Product) -> &'static str {

@@ -20,6 +20,7 @@ fn plans_earn_what_is_paid_less_what_is_used() {
             monthly: 240.0,
             units: 1000.0,
             users: 20.0,
+            paid_by_users: 240.0,
             ..PlanUse::default()
         },
         ..PlanFacts::default()

@@ -105,7 +105,7 @@ impl Answer {
             }
             Answer::Usage { problem, place: None, .. } => format!("error usage: {problem}"),
             Answer::Usage { problem, place: Some(place), .. } => {
-                format!("error usage: {problem}, at {place}")
+                format!("error usage: at {place}: {problem}")
             }
             Answer::Quit => String::new(),
         }
@@ -228,14 +228,14 @@ mod tests {
         };
         assert_eq!(
             told("a value is expected", 14, "set_prices A=) B=3"),
-            "error usage: a value is expected, at )"
+            "error usage: at ): a value is expected"
         );
         assert_eq!(
             told("a value is missing", 14, "set_prices A="),
-            "error usage: a value is missing, at the end of the line"
+            "error usage: at the end of the line: a value is missing"
         );
         assert_eq!(told("foo is not a command", 1, "foo 3"), "error usage: foo is not a command");
-        assert_eq!(told("größe", 9, "größe x ö"), "error usage: größe, at ö");
+        assert_eq!(told("größe", 9, "größe x ö"), "error usage: at ö: größe");
         assert_eq!(Answer::usage("x", 7).naming_the_word_in("a b").as_json(1, 0)["column"], 7);
     }
 

@@ -17,7 +17,7 @@ pub fn margin_sentences(
         return vec![NOTHING_MEASURED.to_owned()];
     }
     let mut lines =
-        vec![format!("gross margins at the use of day {day}: the share of what is paid that compute leaves")];
+        vec![format!("gross margins at the use of day {day}: the share of a price that compute leaves")];
     lines
         .extend(Plan::ALL.into_iter().flat_map(|plan| of_plan(sales, plan, terms[plan], lever, models, day)));
     lines
@@ -36,20 +36,22 @@ fn of_plan(
         return vec![format!("plan {plan}: nobody used it on day {day}")];
     };
     let unit_cost = models.iter().find(|(tier, _)| *tier == set.tier).map(|(_, unit_cost)| *unit_cost);
-    let on_own = |told: &dyn Fn(f64) -> Option<f64>| in_words(unit_cost.and_then(told));
+    let on_own = |told: &dyn Fn(f64) -> Option<f64>, of: &str| in_words(unit_cost.and_then(told), of);
     let at_list = |unit_cost: f64| margin(set.price, own.compute(unit_cost)?);
     let is_at_list = lever == Lever::Price && differs(set.price, paid);
     let mut line = format!(
-        "plan {plan} on model tier {}: {} of the {} a seat and month that are paid now",
+        "plan {plan} on model tier {}: {}",
         set.tier,
-        on_own(&|unit_cost| own.margin(unit_cost)),
-        cents(paid)
+        on_own(
+            &|unit_cost| own.margin(unit_cost),
+            &format!("the {} a seat and month that are paid now", cents(paid))
+        )
     );
     if is_at_list {
-        line += &format!("; at the list price of {}, {}", cents(set.price), on_own(&at_list));
+        line += &format!("; {}", on_own(&at_list, &format!("the list price of {}", cents(set.price))));
     }
     if lever == Lever::Quota {
-        let full = on_own(&|unit_cost| own.margin_of_full_quota(set.quota, unit_cost));
+        let full = on_own(&|unit_cost| own.margin_of_full_quota(set.quota, unit_cost), "what is paid");
         line += &format!("; if all use up the quota of {} units, {full}", whole(set.quota));
     }
     let mut lines = vec![line];
@@ -69,12 +71,12 @@ fn of_plan(
 fn by_group(sales: &Sales, plan: Plan, unit_cost: Option<f64>) -> Option<String> {
     let groups = sales.by_group(plan);
     let told = |(group, own): &(_, PlanUse)| {
-        let words = in_words(unit_cost.and_then(|unit_cost| own.margin(unit_cost)));
-        format!("{group} {words} of {}", own.revenue().map_or("nothing".to_owned(), cents))
+        let paid = own.revenue().map_or("nothing".to_owned(), cents);
+        format!("{group} {}", in_words(unit_cost.and_then(|unit_cost| own.margin(unit_cost)), &paid))
     };
     (groups.len() > 1).then(|| {
         let told: Vec<String> = groups.iter().map(told).collect();
-        format!("plan {plan} by group: {}", told.join(", "))
+        format!("plan {plan} by group: {}", told.join("; "))
     })
 }
 
@@ -92,12 +94,14 @@ fn on_others(margins: &[(u8, f64)]) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(", "))
 }
 
-/// A margin; a loss as the multiple of what is paid that compute costs.
-fn in_words(margin: Option<f64>) -> String {
+/// A margin of a price; a loss as the multiple of the price that compute costs.
+fn in_words(margin: Option<f64>, of: &str) -> String {
     match margin {
-        None => "an unknown share".to_owned(),
-        Some(margin) if margin < 0.0 => format!("a loss, compute costs {} times", grouped(1.0 - margin, 1)),
-        Some(margin) => percent(margin, 0),
+        None => format!("an unknown share of {of}"),
+        Some(margin) if margin < 0.0 => {
+            format!("a loss, compute costs {} times {of}", grouped(1.0 - margin, 2))
+        }
+        Some(margin) => format!("{} of {of}", percent(margin, 0)),
     }
 }
 
@@ -125,10 +129,11 @@ mod tests {
         let dear = Lever::Price.apply(now, &json!({"B": 250}));
         let lines = margin_sentences(&sales, &dear, Lever::Price, &models, 42);
         let line = lines.iter().find(|line| line.starts_with("plan B on model tier 2: ")).expect("plan B");
-        let paid = in_words(own.margin(unit_cost));
-        let list = in_words(margin(250.0, own.compute(unit_cost).expect("compute")));
-        assert!(line.contains(&format!("tier 2: {paid} of the ")), "{line} without {paid}");
-        assert!(line.ends_with(&format!("at the list price of $250.00, {list}")), "{line} without {list}");
+        let paid = in_words(own.margin(unit_cost), "the ");
+        let list = margin(250.0, own.compute(unit_cost).expect("compute"));
+        let list = in_words(list, "the list price of $250.00");
+        assert!(line.contains(&format!("tier 2: {paid}")), "{line} without {paid}");
+        assert!(line.ends_with(&list), "{line} without {list}");
         let text = lines.join("\n");
         assert!(!text.contains(['[', '<']) && !text.contains("  "), "{text}");
         assert!(text.contains("plan B on other model tiers, at that list price: tier 1 "), "{text}");
@@ -139,6 +144,6 @@ mod tests {
         let told = on_others(&[(1, 0.5), (3, -0.2), (4, -30.0), (5, -90.0)]);
         assert_eq!(told.as_deref(), Some("tier 1 50%, a loss on tiers 3, 4 and 5"));
         assert_eq!(on_others(&[]), None);
-        assert_eq!(in_words(Some(-11.4)), "a loss, compute costs 12.4 times");
+        assert_eq!(in_words(Some(-11.4), "$14.00"), "a loss, compute costs 12.40 times $14.00");
     }
 }

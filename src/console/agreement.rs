@@ -4,12 +4,13 @@ use std::cell::Cell;
 use std::time::Duration;
 
 use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
 
 use super::action::Action;
 use super::canvas::{Canvas, rows_of};
-use super::text::wrapped;
 use super::theme::Role;
 use super::widgets::Scroll;
+use crate::report::prose::{Face, laid_out};
 use crate::session::{ConsentGiven, ConsentMeans, steady};
 
 /// Widest lines that read well.
@@ -58,7 +59,7 @@ impl Agreement {
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, title: &str, agree: &str, decline: &str) {
         canvas.clear(area, Role::Text);
         let width = area.width.saturating_sub(4).clamp(1, WIDEST);
-        let lines = wrapped(self.text.trim_end(), width as usize);
+        let lines = laid_out(&self.text, width as usize);
         let room = area.height.saturating_sub(4) as usize;
         let last = lines.len().saturating_sub(room);
         let from = self.scroll.within(last);
@@ -75,7 +76,17 @@ impl Agreement {
         canvas.page = (room as u16).max(1);
         let text = Rect { height: (room as u16).min(inside.height), ..inside };
         for (row, line) in rows_of(text).zip(lines.iter().skip(from)) {
-            canvas.text(row, line, Role::Text);
+            let mut left = row;
+            for (piece, face) in line {
+                let role = match face {
+                    Face::Text => Role::Text,
+                    Face::Strong => Role::Strong,
+                    Face::Heading => Role::Header,
+                };
+                canvas.text(left, piece, role);
+                let taken = (piece.width() as u16).min(left.width);
+                left = Rect { x: left.x + taken, width: left.width - taken, ..left };
+            }
         }
         let below = Rect { y: inside.bottom().saturating_sub(1), height: inside.height.min(1), ..inside };
         match self.read.get() {
@@ -100,7 +111,7 @@ mod tests {
 
     #[test]
     fn nobody_agrees_before_the_end_was_on_the_screen() {
-        let text = (1..=30).map(|line| format!("line {line}.")).collect::<Vec<_>>().join("\n");
+        let text = (1..=30).map(|line| format!("- line {line}.")).collect::<Vec<_>>().join("\n");
         let mut long = Agreement::new(text);
         assert!(drawn(&long, 16).contains("scroll to its end"));
         assert_eq!(long.given(), None);

@@ -231,6 +231,8 @@ pub struct App {
     tour_planned: bool,
     /// The study whose participants are led.
     visit: Option<VisitState>,
+    /// What was told of time limits.
+    limit: limits::LimitTold,
     /// What could be clicked in the last frame.
     pub clicks: Vec<(Rect, Click)>,
     /// Rows that the focused list showed in the last frame.
@@ -291,6 +293,7 @@ impl App {
             closing: None,
             tour_planned: false,
             visit: None,
+            limit: limits::LimitTold::default(),
             clicks: Vec::new(),
             page: 10,
             window: (0, 0),
@@ -312,6 +315,7 @@ impl App {
             Message::Time => self.pass_time(),
         }
         self.settle_tour();
+        self.settle_limit();
         self.settle_visit();
         self.settle_record();
     }

@@ -12,7 +12,7 @@ use super::company::Company;
 use super::glyphs::Glyphs;
 use super::keys::written;
 use super::screens::{Look, ScreenId};
-use super::text::{arrow, short_dollars};
+use super::text::{arrow, short_dollars, wrapped};
 use super::theme::Role;
 use super::widgets::spark::bar;
 use crate::notation::{compact, dollars, grouped};
@@ -100,6 +100,8 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     if run.behind.is_some() {
         draw_behind(canvas, Rect { y: area.y + 2, height: 1, ..area }, run);
     }
+    let warned = draw_limit(app, canvas, Rect { y: area.y + 2 + banner, height: 2, ..area });
+    let banner = banner + warned;
     let body = Rect { y: area.y + 2 + banner, height: area.height - 3 - banner, ..area };
     let tour = run.tour.as_ref().map(|tour| (tour, tour.height(&app.keys, &run.company.numbers, area.width)));
     let strip = u16::from(run.viewer.is_some());
@@ -150,6 +152,19 @@ fn draw_behind(canvas: &mut Canvas<'_>, row: Rect, run: &Run) {
     let text = format!(" ! The database is behind: {problem}. {here} is tried again every few seconds.");
     canvas.clear(row, Role::Bad);
     canvas.text(row, &text, Role::Bad);
+}
+
+/// What is said of a time limit, above the screen and everything that lies over it; the rows it takes.
+fn draw_limit(app: &App, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
+    let Some(text) = app.limit_notice() else { return 0 };
+    let lines = wrapped(&text, usize::from(area.width.saturating_sub(4)));
+    let taken = (lines.len() as u16).min(area.height);
+    for (at, (row, line)) in rows_of(area).zip(lines).enumerate() {
+        let sign = if at == 0 { "!" } else { " " };
+        canvas.clear(row, Role::Warning);
+        canvas.text(row, &format!(" {sign} {line}"), Role::Warning);
+    }
+    taken
 }
 
 fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
@@ -207,7 +222,8 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
 
 /// The least time that is left to a limit, where the rules have one.
 fn time_left(app: &App) -> String {
-    let left = app.run().map_or(&[][..], |run| run.time_left.as_slice());
+    let running = app.run().filter(|run| run.company.is_running());
+    let left = running.map_or(&[][..], |run| run.time_left.as_slice());
     let minutes = left.iter().map(TimeLeft::whole_minutes).min();
     minutes.map_or(String::new(), |minutes| format!("{} min left · ", minutes.max(0)))
 }

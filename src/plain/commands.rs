@@ -121,12 +121,22 @@ pub struct Interpreter {
     pub(super) locked: bool,
     /// Says whether a word is the experimenter's code; none where there is no experimenter.
     pub(super) code_check: Option<CodeCheck>,
+    /// A participant of a study is led: some commands are not theirs.
+    pub(super) leads_participant: bool,
 }
 
 impl Interpreter {
     /// An interpreter with named queries; `prompts` says that a person types and can be asked.
     pub fn new(session: Session, library: Library, watch: Watch, prompts: bool) -> Interpreter {
-        Interpreter { session, library, watch, prompts, locked: false, code_check: None }
+        Interpreter {
+            session,
+            library,
+            watch,
+            prompts,
+            locked: false,
+            code_check: None,
+            leads_participant: false,
+        }
     }
 
     /// Does what a line says; none for empty lines and comments.
@@ -282,7 +292,10 @@ impl Interpreter {
             "undo" => none(arguments).map(|()| self.undo()),
             "redo" => none(arguments).map(|()| self.redo()),
             "vars" => none(arguments).map(|()| self.call_named(ToolId::GetVars, &json!({}))),
-            "help" => name(arguments).and_then(|name| help::help(name, arguments, &self.session.numbers())),
+            "help" => {
+                let (numbers, led) = (self.session.numbers(), self.leads_participant);
+                name(arguments).and_then(|name| help::help(name, arguments, &numbers, led))
+            }
             "tools" => {
                 name(arguments).and_then(|name| readings::tools(name, arguments, &self.session.numbers()))
             }

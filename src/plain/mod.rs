@@ -63,6 +63,7 @@ fn dialogue(
     session.take_up(Interface { name: "plain", window: None });
     let mut interpreter = Interpreter::new(session, library, lines.watch(), io::stdin().is_terminal());
     interpreter.code_check = study.and_then(Study::code_check);
+    interpreter.leads_participant = study.is_some();
     let mut out = io::stdout();
     let end = converse(&mut interpreter, lines, &mut out, style, study);
     // Whoever cannot be answered any more has gone.
@@ -119,6 +120,9 @@ fn converse(
             if withdraws(style, lines)? {
                 return Ok(End::Withdrawn);
             }
+            let text = "nothing was erased; the study goes on".to_owned();
+            let reply = Answer::done("withdraw", text, json!({ "withdrawn": false }));
+            answer(out, style, number, None, &reply, day)?;
             continue;
         }
         let Some(reply) = interpreter.answer(&line, lines)? else { continue };
@@ -148,10 +152,8 @@ fn ask_questions(
     let Some(study) = study.filter(|_| !lines.is_waiting() && !interpreter.session.clock_stands()) else {
         return Ok(None);
     };
-    if !questions::ask_due(study, &mut interpreter.session, style, lines)? {
-        return Ok(Some(lines.end()));
-    }
-    Ok(interpreter.session.ended().map(|_| End::Over))
+    let left = questions::ask_due(study, &mut interpreter.session, style, lines)?;
+    Ok(left.or_else(|| interpreter.session.ended().map(|_| End::Over)))
 }
 
 /// Asks whether a participant really withdraws.

@@ -155,7 +155,10 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
 
 /// What is said of the end where its result is not shown.
 fn over(command: &str, session: &Session, week: &Week) -> Answer {
-    let mut text = "the run is over; the result is not shown in this study\n".to_owned();
+    let mut text = match session.is_practice() {
+        true => "the practice is over; the session comes next\n".to_owned(),
+        false => "the run is over; the result is not shown in this study\n".to_owned(),
+    };
     let mut object = json!({ "ended": true });
     if session.rules().code_words {
         text += &format!("code: {}\n", session.code_words());

@@ -67,6 +67,7 @@ impl Interpreter {
     fn reach(&mut self, limit: &Limit) -> Vec<Answer> {
         let left = self.session.time_left().into_iter().find(|left| left.scope == limit.limit);
         let words = left.map_or(String::new(), |left| left.in_words());
+        let follows = left.map_or("", |left| left.what_follows(self.session.rules().limits.at_limit));
         let scope = match limit.limit {
             LimitScope::Week => "week",
             LimitScope::Session => "session",
@@ -75,7 +76,8 @@ impl Interpreter {
         let data = json!({ "limit": scope, "event": limit.event, "minutes": limit.minutes, "used_ms": limit.used_ms });
         let tell = |what: &str| Answer::done("limit", format!("time limit: {words}{what}"), data.clone());
         match limit.event {
-            LimitEvent::Warned | LimitEvent::Reminded => vec![tell("")],
+            LimitEvent::Warned => vec![tell(&format!("; {follows}"))],
+            LimitEvent::Reminded => vec![tell("; please come to an end")],
             LimitEvent::FiledNaively => {
                 let filing = Filing::at_limit(&self.session);
                 let filed = next::run(&mut self.session, filing);

@@ -4,13 +4,14 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use super::Style;
+use super::ending::End;
 use super::input::Read;
 use super::lines::Lines;
+use super::{Style, withdraws};
 use crate::notation::printable;
 use crate::session::{DueQuestion, Form, Session, Study, steady};
 
-/// Asks everything that is due; whether the input goes on after it.
+/// Asks everything that is due; how the dialogue ends, if it ends before all of it is answered.
 ///
 /// # Errors
 /// Standard input or output fails.
@@ -19,7 +20,7 @@ pub(super) fn ask_due(
     session: &mut Session,
     style: Style,
     lines: &mut Lines,
-) -> io::Result<bool> {
+) -> io::Result<Option<End>> {
     let due = study.due(session);
     for (number, question) in due.iter().enumerate() {
         let begins = number == 0 || due[number - 1].questionnaire != question.questionnaire;
@@ -28,52 +29,60 @@ pub(super) fn ask_due(
         }
         session.ask_question(question);
         show(question, style)?;
-        if !answer(question, session, style, lines)? {
-            return Ok(false);
+        if let Some(end) = answer(question, session, style, lines)? {
+            return Ok(Some(end));
         }
     }
-    Ok(true)
+    Ok(None)
 }
 
-/// Reads lines until one of them is an answer.
-fn answer(due: &DueQuestion, session: &mut Session, style: Style, lines: &mut Lines) -> io::Result<bool> {
+/// Reads lines until one of them is an answer, or leaves. An answer is given once here: none replaces another.
+fn answer(
+    due: &DueQuestion,
+    session: &mut Session,
+    style: Style,
+    lines: &mut Lines,
+) -> io::Result<Option<End>> {
     let shown = steady();
-    let mut changes = 0;
     loop {
         let typed = match lines.read()? {
-            Read::End => return Ok(false),
-            Read::Unreadable(_) => continue,
+            Read::End => return Ok(Some(lines.end())),
+            Read::Unreadable(problem) => {
+                refuse(due, &problem, style)?;
+                continue;
+            }
             Read::Line(line) => line,
         };
         let value = match typed.trim() {
+            "quit" | "exit" => return Ok(Some(End::Quit)),
+            "withdraw" if withdraws(style, lines)? => return Ok(Some(End::Withdrawn)),
+            "withdraw" => {
+                show(due, style)?;
+                continue;
+            }
             "" if !due.question.required => Ok(Value::Null),
             "" => Err(format!("an answer is needed: {}", expected(&due.question.form))),
             typed => due.question.form.value(typed).map_err(|expected| format!("type {expected}")),
         };
         match value {
             Ok(value) => {
-                session.answer_question(
-                    due,
-                    &value,
-                    steady().saturating_sub(shown).as_millis() as u64,
-                    changes,
-                );
-                return Ok(true);
+                let for_ms = steady().saturating_sub(shown).as_millis() as u64;
+                session.answer_question(due, &value, for_ms, 0);
+                return Ok(None);
             }
-            Err(problem) => {
-                changes += 1;
-                if style.json {
-                    println!(
-                        "{}",
-                        json!({ "event": "question_refused", "id": due.question.id, "error": problem })
-                    );
-                } else {
-                    println!("{problem}");
-                }
-                io::stdout().flush()?;
-            }
+            Err(problem) => refuse(due, &problem, style)?,
         }
     }
+}
+
+/// Says why a line is no answer.
+fn refuse(due: &DueQuestion, problem: &str, style: Style) -> io::Result<()> {
+    if style.json {
+        println!("{}", json!({ "event": "question_refused", "id": due.question.id, "error": problem }));
+    } else {
+        println!("{problem}");
+    }
+    io::stdout().flush()
 }
 
 fn show(due: &DueQuestion, style: Style) -> io::Result<()> {
@@ -96,7 +105,7 @@ fn show(due: &DueQuestion, style: Style) -> io::Result<()> {
             println!("  {}", printable(&line));
         }
         let pass = if question.required { "" } else { ", or an empty line to pass" };
-        println!("type {}{pass}", expected(&question.form));
+        println!("type {}{pass}; quit leaves, withdraw erases what you did", expected(&question.form));
     }
     io::stdout().flush()
 }
@@ -111,7 +120,6 @@ fn choices(form: &Form) -> Vec<String> {
         Form::Choice { options, .. } | Form::Attention { options, .. } => {
             options.iter().enumerate().map(|(at, option)| format!("{} {option}", at + 1)).collect()
         }
-        Form::Number { unit, .. } if !unit.is_empty() => vec![format!("in {unit}")],
         Form::Number { .. } | Form::Text { .. } => Vec::new(),
     }
 }

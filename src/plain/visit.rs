@@ -7,8 +7,9 @@ use serde_json::json;
 
 use super::input::Read;
 use super::lines::Lines;
-use super::{End, Style, dialogue, prompt};
+use super::{End, Style, dialogue, prompt, withdraws};
 use crate::notation::printable;
+use crate::report::prose::as_plain;
 use crate::session::{
     Configuration, ConsentGiven, ConsentMeans, Library, NextStep, RunError, Session, Study, Visit, steady,
 };
@@ -55,6 +56,14 @@ pub fn visit(
     }
 }
 
+/// Columns of a text that is read.
+const WIDEST: usize = 78;
+
+/// How a run of a study can be left.
+const WAYS_OUT: &str = "quit leaves it, and everything confirmed is kept.\n\
+                        withdraw erases everything you did in this study. Both work at questions, too.\n\
+                        pause stops the clock for a break, resume starts it again.";
+
 struct Host<'a> {
     lines: Lines,
     configuration: &'a Configuration,
@@ -77,8 +86,13 @@ impl Host<'_> {
                 NextStep::Consent(text) => self.consent(&visit, &text.text)?,
                 NextStep::Practice { unfinished, may_pass } => self.practise(&visit, unfinished, may_pass)?,
                 NextStep::Session(unfinished) => {
-                    self.say("session", "The session begins. quit leaves it; everything confirmed is kept.")?;
                     let session = self.begin(&visit, false, unfinished.as_deref())?;
+                    let first = match (unfinished, session.observe().week) {
+                        (None, _) => "The session begins.".to_owned(),
+                        (Some(_), 0) => "The session goes on before its first week.".to_owned(),
+                        (Some(_), week) => format!("The session goes on after week {week}."),
+                    };
+                    self.say("session", &format!("{first}\n{WAYS_OUT}"))?;
                     self.play(&visit, session)?;
                 }
                 NextStep::Questions(folder) => self.play(&visit, visit.open(&folder)?)?,
@@ -99,7 +113,10 @@ impl Host<'_> {
     fn label(&mut self, study: Study, runs: &Path) -> Result<Visit, Stop> {
         let mut refused = 0;
         loop {
-            let label = self.ask("label", "Your label:")?;
+            let label = self.ask("label", "Your label (quit leaves):")?;
+            if is_quit(&label) {
+                return Err(Stop::Left(0));
+            }
             match Visit::begin(study.clone(), runs, &label, refused) {
                 Ok(visit) => return Ok(visit),
                 Err(RunError::NotPossible(problem)) => {
@@ -112,49 +129,80 @@ impl Host<'_> {
     }
 
     fn consent(&mut self, visit: &Visit, text: &str) -> Result<(), Stop> {
-        self.say("consent", text.trim())?;
+        // A program gets the text as it was written.
+        let shown = if self.style.json { text.trim().to_owned() } else { as_plain(text, WIDEST) };
+        self.say("consent", &shown)?;
         let shown = steady();
-        loop {
-            let answer = self.ask("consent", "Type yes if you agree, no if you do not:")?;
-            match answer.trim().to_lowercase().as_str() {
-                "yes" => {
-                    let read_ms = steady().saturating_sub(shown).as_millis() as u64;
-                    let means = ConsentMeans::Prompt;
-                    self.consent = Some(ConsentGiven { means, scrolled_to_end: true, read_ms });
-                    return Ok(());
-                }
-                "no" => {
-                    visit.decline();
-                    self.say(
-                        "declined",
-                        "You did not agree. Nothing of you was recorded; please tell the experimenter.",
-                    )?;
-                    return Err(Stop::Left(0));
-                }
-                _ => {}
+        let question = "Type yes if you agree, no if you do not";
+        match self.choose(visit, "consent", question, ["yes", "no"])? {
+            None => Ok(()),
+            Some("yes") => {
+                let read_ms = steady().saturating_sub(shown).as_millis() as u64;
+                let means = ConsentMeans::Prompt;
+                self.consent = Some(ConsentGiven { means, scrolled_to_end: true, read_ms });
+                Ok(())
+            }
+            Some(_) => {
+                visit.decline();
+                self.say(
+                    "declined",
+                    "You did not agree. No run of yours was recorded; please tell the experimenter.",
+                )?;
+                Err(Stop::Left(0))
             }
         }
     }
 
     fn practise(&mut self, visit: &Visit, unfinished: Option<PathBuf>, may_pass: bool) -> Result<(), Stop> {
-        if may_pass && !self.wants_practice()? {
-            visit.pass_practice();
-            return Ok(());
+        if may_pass {
+            let question = "Type practice to practise first, skip to begin the session";
+            match self.choose(visit, "practice", question, ["practice", "skip"])? {
+                None => return Ok(()),
+                Some("practice") => {}
+                Some(_) => {
+                    visit.pass_practice();
+                    return Ok(());
+                }
+            }
         }
-        self.say(
-            "practice",
-            "Practice: another company, which does not count. It ends by itself, or with quit.",
-        )?;
+        let first = if unfinished.is_some() { "The practice goes on" } else { "The practice begins" };
+        let text = format!(
+            "{first}: another company, which does not count. It ends by itself after its last day.\n{WAYS_OUT}"
+        );
+        self.say("practice", &text)?;
         let session = self.begin(visit, true, unfinished.as_deref())?;
         self.play(visit, session)
     }
 
-    fn wants_practice(&mut self) -> Result<bool, Stop> {
+    /// Asks for one of two words until one of them comes; none if the participant withdrew.
+    fn choose(
+        &mut self,
+        visit: &Visit,
+        event: &str,
+        question: &str,
+        words: [&'static str; 2],
+    ) -> Result<Option<&'static str>, Stop> {
+        let question = format!("{question} (quit leaves, withdraw erases what you did):");
         loop {
-            match self.ask("practice", "Type practice to practise first, or skip:")?.trim() {
-                "practice" => return Ok(true),
-                "skip" => return Ok(false),
-                _ => {}
+            let typed = self.ask(event, &question)?.trim().to_lowercase();
+            if let Some(word) = words.into_iter().find(|word| *word == typed) {
+                return Ok(Some(word));
+            }
+            match typed.as_str() {
+                typed if is_quit(typed) => {
+                    let text = format!("You have left. `{}` continues: give the same label.", self.again);
+                    self.say("later", &text)?;
+                    return Err(Stop::Left(0));
+                }
+                "withdraw" if withdraws(self.style, &mut self.lines)? => {
+                    visit.withdraw()?;
+                    return Ok(None);
+                }
+                "withdraw" => {}
+                other => {
+                    let [one, two] = words;
+                    self.say("not_understood", &format!("{other:?} is neither {one} nor {two}"))?;
+                }
             }
         }
     }
@@ -199,7 +247,7 @@ impl Host<'_> {
         loop {
             match self.lines.read()? {
                 Read::Line(line) => return Ok(line),
-                Read::Unreadable(_) => {}
+                Read::Unreadable(problem) => self.say("not_understood", &problem)?,
                 Read::End => return Err(Stop::Left(self.lines.end().code())),
             }
         }
@@ -214,4 +262,9 @@ impl Host<'_> {
         io::stdout().flush()?;
         Ok(())
     }
+}
+
+/// Whether a line asks to leave.
+fn is_quit(line: &str) -> bool {
+    matches!(line.trim(), "quit" | "exit")
 }

@@ -26,6 +26,7 @@ mod page;
 pub(crate) mod peak;
 pub(crate) mod plan_margins;
 pub(crate) mod post_leads;
+pub(crate) mod prose;
 pub mod protocol;
 pub(crate) mod ranking;
 pub(crate) mod research;

@@ -6,7 +6,8 @@ use super::movement::{Movement, movement};
 use super::words::{category_name, money, number, whole};
 use crate::notation::{compact, percent};
 use crate::session::{
-    Booked, Category, Decisions, JournalEntry, ScoredForecast, Session, WeekFigures, filed_forecasts,
+    Booked, Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT, WeekFigures,
+    filed_forecasts,
 };
 
 /// A figure that moved.
@@ -64,6 +65,8 @@ pub struct WeekReport {
     pub news_items: u32,
     /// Four words for the record up to it, where the rules show them.
     pub code: Option<String>,
+    /// Days on which the program filed a week because the time for it was over.
+    limit_days: Vec<u32>,
 }
 
 /// A figure: its name, how it is read and written, whether more of it is better, and the categories of the ledger that
@@ -155,7 +158,30 @@ impl WeekReport {
             comments,
             news_items,
             code: None,
+            limit_days: sources.journal.iter().filter_map(filed_at_limit).collect(),
         })
+    }
+
+    /// Whether the program filed the week because the time for it was over.
+    pub fn was_filed_at_limit(&self) -> bool {
+        self.limit_days.contains(&(self.week.day - self.week.days_run.min(self.week.day)))
+    }
+
+    /// Whether a forecast was filed so.
+    pub fn is_of_limit(&self, forecast: &ScoredForecast) -> bool {
+        self.limit_days.contains(&forecast.day)
+    }
+}
+
+/// The day on which the program filed a week because the time for it was over.
+fn filed_at_limit(entry: &JournalEntry) -> Option<u32> {
+    match entry {
+        JournalEntry::Advance { day, rationale, filled_naively: [true, true, true, true], .. }
+            if rationale == TIME_LIMIT =>
+        {
+            Some(*day)
+        }
+        _ => None,
     }
 }
 

@@ -88,7 +88,7 @@ impl Lab {
         let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("written");
         write("study.toml", &PROTOCOL.replace("CODE", CodeDigest::of("open sesame", "salt").as_text()));
         let consent: Vec<String> =
-            (1..=40).map(|line| format!("Paragraph {line} of what is recorded.")).collect();
+            (1..=40).map(|line| format!("- Paragraph {line} of\n**what** is recorded.")).collect();
         write("consent.md", &consent.join("\n"));
         write("questions/1-before.toml", BEFORE);
         write("questions/2-week.toml", WEEK);
@@ -168,7 +168,7 @@ fn a_participant_is_led_from_the_label_to_the_thanks_and_may_leave_between() {
         console.shows("! ");
     }
     console.press("'P01' enter");
-    console.shows("Paragraph 1 of");
+    console.shows("· Paragraph 1 of what is recorded.");
     console.press("y");
     console.shows("scroll to its end first");
     console.press("pagedown pagedown y");
@@ -282,7 +282,14 @@ fn practice_comes_first_and_can_be_passed_over_where_the_protocol_says_so() {
     console.press("enter");
     console.shows("PRACTICE");
     console.shows("Tour · 1");
-    console.press("f4 n enter 'test' enter f enter enter");
+    console.press("f4 n enter 'test' enter f enter");
+    console.shows("The practice is over");
+    console.shows("It does not count. The session comes next.");
+    let screen = console.screen();
+    for measure in ["$", "lanning", "best channel", "forecast"] {
+        assert!(!screen.contains(measure), "{measure}\n{screen}");
+    }
+    console.press("enter");
     console.shows("The session begins now.");
     console.press("enter");
     console.shows("SESSION");
@@ -416,4 +423,77 @@ fn the_witness_of_the_study_is_told_of_sessions_in_the_console() {
     let told = read_witness(&lab.folder().join("witness")).expect("a witness");
     let told = told.runs.into_values().next().expect("a run that was told");
     assert_eq!(compare(&trajectory, &after.lines, &told), []);
+}
+
+#[test]
+fn pages_of_questions_say_which_key_goes_on_and_which_leaves() {
+    let lab = Lab::new();
+    for size in [(60, 16), (80, 24)] {
+        let mut console = lab.visit(size);
+        console.press(&format!("'P0{}' enter end y", if size.0 == 60 { 1 } else { 2 }));
+        console.shows("; p stops the clock");
+        console.press("enter");
+        console.shows("enter goes on · q leaves");
+        assert!(!console.screen().contains("a new company"), "{}", console.screen());
+        console.press("4 enter 'x'");
+        console.shows("! type a number from 18 to 99 (years)");
+        console.shows("enter sends the answers · ctrl-c leaves");
+        console.shows("shift-tab question before");
+        console.press("'42' enter");
+        for _ in 0..2 {
+            week(&mut console);
+            console.press("enter");
+            if console.screen().contains("Choose the second") {
+                console.press("2 enter enter");
+            }
+        }
+        console.shows("tab sends the answers · enter new line · ctrl-c leaves");
+        let screen = console.screen();
+        assert!(!screen.contains("enter go on") && !screen.contains("min left"), "{screen}");
+        console.press("'done' tab");
+        console.shows("Thank you");
+    }
+}
+
+#[test]
+fn somebody_withdraws_instead_of_answering() {
+    let lab = Lab::new();
+    let mut console = lab.visit((80, 24));
+    console.press("'P01' enter end y enter");
+    console.shows("question 1 of 2");
+    console.press("W y 'withdraw' enter");
+    console.shows("You have withdrawn");
+    assert!(lab.own_runs("P01").is_empty());
+}
+
+#[test]
+fn the_palette_finds_the_stopped_clock_by_what_people_call_it() {
+    let lab = Lab::new();
+    let mut console = lab.visit((80, 24));
+    console.press("'P01' enter end y enter 4 enter enter");
+    for word in ["pause", "break", "clock"] {
+        console.press(&format!(": '{word}' enter"));
+        console.shows("The clock is stopped.");
+        console.press("enter");
+    }
+}
+
+#[test]
+fn naive_forecasts_are_offered_where_they_fill_in_and_say_what_they_are() {
+    let lab = Lab::new();
+    for (label, size) in [("P01", (60, 16)), ("P02", (80, 24))] {
+        let mut console = lab.visit(size);
+        console.press(&format!("'{label}' enter end y enter 4 enter enter n"));
+        assert!(!console.screen().contains("fill"), "{}", console.screen());
+        console.press("f");
+        console.shows("forecasts can be filled in at step 3");
+        console.press("enter");
+        console.shows("Required, and kept with the run.");
+        console.press("'test' enter");
+        console.shows("f fills empty cells: the last four weeks go on");
+        console.press("f");
+        let screen = console.screen();
+        assert!(screen.contains("naive cells") && !screen.contains("back-tests"), "{screen}");
+        console.press("esc ; q");
+    }
 }

@@ -129,7 +129,7 @@ fn who_declines_or_withdraws_leaves_no_run() {
     let lab = Lab::new();
     lab.assign();
     let declined = lab.visit("P02\nno\n");
-    assert!(declined.code == 0 && declined.out.contains("Nothing of you was recorded"), "{}", declined.out);
+    assert!(declined.code == 0 && declined.out.contains("No run of yours was recorded"), "{}", declined.out);
     let withdrew =
         lab.visit(&format!("P03\nyes\n1\n{WEEKS}1\n2\nwithdraw\nno\nstatus\nwithdraw\nwithdraw\n"));
     assert!(
@@ -145,6 +145,46 @@ fn who_declines_or_withdraws_leaves_no_run() {
     assert_eq!(left, ["withdrawn.toml"]);
     assert!(lab.visit("P03\n").out.contains("You have withdrawn"));
     assert!(!lab.0.runs().join("participants/P02").exists());
+}
+
+#[test]
+fn at_every_prompt_and_question_one_can_leave_or_withdraw() {
+    let lab = Lab::new();
+    lab.assign();
+    lab.edit("offer = \"none\"", "offer = \"optional\"");
+    assert_eq!(lab.visit("quit\n").code, 0);
+    let read = lab.visit("P01\nmaybe\nquit\n");
+    assert!(read.out.contains("\"maybe\" is neither yes nor no"), "{}", read.out);
+    assert!(read.out.contains("You have left.") && !read.out.contains("practise"), "{}", read.out);
+    let passed = lab.visit("P01\nyes\nperhaps\nskip\nabc\n300\nquit\n");
+    for part in
+        ["neither practice nor skip", "The session begins.", "quit leaves, withdraw erases", "continues"]
+    {
+        assert!(passed.out.contains(part), "{part} is missing in\n{}", passed.out);
+    }
+    let back = lab.visit(&format!("P01\n9\n2\nhelp\nhelp branch\n{WEEKS}quit\n"));
+    for part in
+        ["The session goes on before its first week.", "withdraw                 erase", "week 4 done"]
+    {
+        assert!(back.out.contains(part), "{part} is missing in\n{}", back.out);
+    }
+    let refused = ["branch WEEK", "step [DAYS]", "The session begins"];
+    assert_eq!(refused.map(|part| back.out.contains(part)), [false; 3], "{}", back.out);
+    assert!(lab.visit("P01\nquit\n").out.contains("The session goes on after week 4."));
+    let trajectory = Trajectory::read(&lab.only_run("P01").join("trajectory.jsonl")).expect("it reads");
+    let changes = trajectory.lines.iter().filter_map(|line| match &line.record {
+        Record::Activity(Activity::Answer(answer)) => Some(answer.changes),
+        _ => None,
+    });
+    assert_eq!(changes.collect::<Vec<_>>(), [0], "what was refused was no answer");
+    for (label, lines) in [
+        ("P02", "yes\nskip\nwithdraw\nno\nwithdraw\nwithdraw\n"),
+        ("P03", "withdraw\nno\nwithdraw\nwithdraw\n"),
+    ] {
+        let withdrew = lab.visit(&format!("{label}\n{lines}"));
+        assert!(withdrew.out.contains("You have withdrawn"), "{}", withdrew.out);
+        assert!(lab.events().contains(&(label.to_owned(), VisitEvent::Withdrew)));
+    }
 }
 
 #[test]

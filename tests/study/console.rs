@@ -316,17 +316,25 @@ impl<'a> Player<'a> {
         self.note("session", "resumed", "", None);
     }
 
-    /// Plays on in one week until the time for it is over: is warned, and has the week filed.
+    /// Plays on in one week until the time for it is over: is warned, types a reason meanwhile, and has the week filed
+    /// without it.
     pub fn runs_out_of_time(&mut self) {
         let spent =
             self.diary.time.get(&(self.diary.week(), Spent::Active)).copied().unwrap_or_default() / 1000;
         self.stays_active(WEEK_SECONDS - WARNING_SECONDS - spent);
-        self.await_limit("Time limit");
+        self.await_limit("1 of 10 min left for this week; then the week is filed with the naive projection");
         self.note("limit", "week", "warned", Some((WEEK_SECONDS - WARNING_SECONDS) * 1000));
-        self.read_dialog("", "text Time limit", 3);
-        self.stays_active(WARNING_SECONDS - 3);
-        self.await_limit(&format!("Week {}", self.diary.week()));
+        self.does("n enter 'half'");
+        self.shows("half");
+        self.shows("1 of 10 min left for this week");
+        self.stays_active(WARNING_SECONDS);
+        self.await_limit(&format!("Week {} ·", self.diary.week()));
         self.note("limit", "week", "filed_naively", Some(WEEK_SECONDS * 1000));
+        self.note("dialog", "next week", "cancelled", Some(WARNING_SECONDS * 1000));
+        self.note("draft", "rationale", "left", Some(0));
+        self.shows("The time for this week was over: it was filed with the naive projection.");
+        self.shows("a week ago the naive projection filed at the limit said");
+        self.shows("What you had typed for it was not filed; the record keeps it as a draft.");
         self.passes("time limit", "form");
     }
 

@@ -184,6 +184,8 @@ impl App {
             Action::Redraw => return self.orders.push(Order::Redraw),
             Action::TourSkip => return self.skip_step(),
             Action::TourClose => return self.close_tour(),
+            // Over questions, too: nobody has to answer them first.
+            Action::Withdraw if matches!(self.stage, Stage::Run(_)) => return self.withdraw(),
             _ => {}
         }
         if !self.layers.is_empty() {
@@ -199,9 +201,6 @@ impl App {
         }
         if self.refuses_in_replay(action) {
             return;
-        }
-        if action == Action::Withdraw {
-            return self.withdraw();
         }
         if action.entry().scope == Scope::Viewer {
             return self.act_in_viewer(action);
@@ -367,7 +366,7 @@ impl App {
         if !run.company.is_running() {
             return self.show_end();
         }
-        run.filing.reopen(run.screens.tools.unsent());
+        run.filing.reopen(run.screens.tools.unsent(), run.company.is_baseline());
         self.lay(Layer::Filing);
     }
 

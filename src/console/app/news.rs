@@ -230,6 +230,7 @@ impl App {
             run.screens.sql.learn(self.library.clone());
         }
         self.forget_texts();
+        self.limit = super::limits::LimitTold::default();
         self.take_up();
         self.renew();
         // The questions at the end come at once.
@@ -328,11 +329,16 @@ impl App {
         if let Stage::Run(run) = &mut self.stage {
             run.filing = FilingDialog::default();
         }
+        let unfiled = self.end_limit_of_week();
+        let remark = [unfiled, week.remark].into_iter().flatten().collect::<Vec<_>>().join(" ");
         let hides_result = self.run().is_some_and(|run| run.company.rules.hide_result(week.ended));
         self.say(if hides_result { "the run is over".to_owned() } else { text });
         match week.ended {
             Some(_) => self.show_end(),
-            None => self.lay(Layer::Dialog(Box::new(Report::new(week.remark)))),
+            None => {
+                let remark = (!remark.is_empty()).then_some(remark);
+                self.lay(Layer::Dialog(Box::new(Report::new(remark))));
+            }
         }
     }
 }

@@ -161,7 +161,10 @@ impl App {
     /// What a request sends is a draft no more.
     pub(super) fn send_texts(&mut self, request: &Request) {
         match request {
-            Request::Advance { .. } => OF_FILING.map(|place| self.end_text(place, DraftOutcome::Sent)),
+            Request::Advance { .. } => {
+                self.leave_filing(DraftOutcome::Sent);
+                return;
+            }
             Request::SetMemo(_) => [self.end_text("notes", DraftOutcome::Sent); 2],
             Request::Call { tool, .. } => {
                 if *tool == ToolId::PostSocialMedia {
@@ -171,6 +174,11 @@ impl App {
             }
             _ => return,
         };
+    }
+
+    /// What was typed before a week was sent or left.
+    pub(super) fn leave_filing(&mut self, outcome: DraftOutcome) {
+        OF_FILING.into_iter().for_each(|place| self.end_text(place, outcome));
     }
 
     /// A text was sent or left.

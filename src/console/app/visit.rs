@@ -151,6 +151,8 @@ impl App {
         let over = !run.company.is_running();
         match QuestionPage::first_of(&visit.due) {
             Some((page, shown)) => {
+                // What was said of the company's keys does not hold here.
+                self.note = None;
                 self.lay(Layer::Dialog(Box::new(page)));
                 self.follow(vec![shown]);
             }

@@ -146,9 +146,14 @@ impl FinalPage {
     fn draw_over(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         canvas.clear(area, Role::Text);
         let own = centered(area, 60, 6);
-        let inside = canvas.pane(own, "The run is over", "", true);
+        let practice = look.company.study.as_ref().is_some_and(|study| study.practice);
+        let (title, said) = match practice {
+            true => ("The practice is over", "It does not count. The session comes next."),
+            false => ("The run is over", "The result is not shown in this study."),
+        };
+        let inside = canvas.pane(own, title, "", true);
         let row = Rect { x: inside.x + 1, y: inside.y + 1, width: inside.width.saturating_sub(2), height: 1 };
-        canvas.text(row.intersection(inside), "The result is not shown in this study.", Role::Text);
+        canvas.text(row.intersection(inside), said, Role::Text);
         let below = Rect { y: row.y + 1, ..row }.intersection(inside);
         if let Some(code) = code(look.company) {
             canvas.text(below, &code, Role::Strong);

@@ -46,6 +46,7 @@ impl PaletteEntry {
             Action::LeaveRun => &["menu", "home", "save"],
             Action::Quit => &["exit", "save"],
             Action::Undo => &["revert"],
+            Action::StopClock => &["pause", "break", "rest", "clock"],
             Action::NextWeek => &["advance", "simulate"],
             Action::Dashboard => &["figures"],
             _ => &[],

@@ -141,7 +141,13 @@ impl Report {
         lines.extend(code.map(|code| Line::from(canvas.span(code, Role::Strong))));
         let remark = self.remark.iter().flat_map(|remark| wrapped(remark, width as usize));
         lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
-        lines.extend(told.due.iter().take(forecasts).map(|due| forecast_line(canvas, due)));
+        if told.was_filed_at_limit() {
+            let text = "The time for this week was over: it was filed with the naive projection.";
+            let said = wrapped(text, width as usize).into_iter();
+            lines.extend(said.map(|line| Line::from(canvas.span(line, Role::Warning))));
+        }
+        let due = told.due.iter().take(forecasts);
+        lines.extend(due.map(|due| forecast_line(canvas, due, told.is_of_limit(due), width)));
         // Forecasts without room are still counted: the journal holds them.
         let left_out = told.due.len().saturating_sub(forecasts);
         if let (Some(last), true) = (lines.last_mut(), left_out > 0) {
@@ -155,11 +161,17 @@ fn with_heading<'a>(canvas: &Canvas<'_>, heading: &'static str, lines: Section<'
     std::iter::once(Line::from(canvas.span(heading, Role::Header))).chain(lines).collect()
 }
 
-fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast) -> Line<'a> {
+/// What was said of the week's last day, and what came. `of_limit` says that nobody said it: the program filed it.
+fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, width: u16) -> Line<'a> {
     let weeks = due.forecast.horizon_days / 7;
     let ago = if weeks == 1 { "a week ago".to_owned() } else { format!("{weeks} weeks ago") };
+    let who = match (of_limit, width) {
+        (false, _) => "you",
+        (true, 90..) => "the naive projection filed at the limit",
+        (true, _) => "the naive one filed at the limit",
+    };
     let said = format!(
-        "{ago} you said {}, {} to {}: ",
+        "{ago} {who} said {}, {} to {}: ",
         short_dollars(due.forecast.point),
         short_dollars(due.forecast.lower),
         short_dollars(due.forecast.upper)

@@ -8,7 +8,11 @@ use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, centered, fit};
 use crate::console::effect::Effect;
 use crate::console::screens::Look;
+use crate::console::text::wrapped;
 use crate::console::theme::Role;
+
+/// Widest that reads well.
+const WIDEST: u16 = 76;
 
 /// The offer.
 pub struct Restore {
@@ -45,22 +49,58 @@ impl Dialog for Restore {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let own = centered(area, 76, self.texts.len() as u16 + 6);
+        let room = usize::from(area.height.saturating_sub(5)).max(1);
+        let each = (room / self.texts.len().max(1)).saturating_sub(1).max(1);
+        let width = usize::from(area.width.min(WIDEST).saturating_sub(4)).max(8);
+        let mut lines = vec![Line::from(canvas.span("Not sent when the program last stopped:", Role::Text))];
+        for (place, text) in &self.texts {
+            lines.push(Line::from(canvas.span(fit(place, width), Role::Header)));
+            let shown = last_lines(text, width.saturating_sub(2), each).into_iter();
+            lines.extend(shown.map(|line| Line::from(canvas.span(format!("  {line}"), Role::Text))));
+        }
+        let own = centered(area, WIDEST, lines.len() as u16 + 2);
         canvas.clear(own, Role::Text);
         let inside = canvas.pane(own, "Unsent text", "", true);
-        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        let width = usize::from(inside.width);
-        let mut lines = vec![
-            Line::from(canvas.span("Not sent when the program last stopped:", Role::Text)),
-            Line::default(),
-        ];
-        for (place, text) in &self.texts {
-            let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-            lines.push(Line::from(canvas.span(fit(&format!("{place}: {text}"), width), Role::Header)));
-        }
-        canvas.lines(inside, &lines);
+        canvas.lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
         let restore = look.keys.label(Action::RestoreTexts).unwrap_or_default();
         let drop = look.keys.label(Action::DropTexts).unwrap_or_default();
         canvas.pane_keys(own, &format!("{restore} restore · {drop} drop"));
+    }
+}
+
+/// The end of a text, where it was being written, in so many lines.
+fn last_lines(text: &str, width: usize, most: usize) -> Vec<String> {
+    let lines: Vec<String> =
+        wrapped(text, width).into_iter().filter(|line| !line.trim().is_empty()).collect();
+    let left_out = lines.len().saturating_sub(most);
+    let mut shown = lines[left_out..].to_vec();
+    if left_out > 0
+        && let Some(first) = shown.first_mut()
+    {
+        let cut = wrapped(first, width.saturating_sub(2)).pop().unwrap_or_default();
+        *first = format!("… {cut}");
+    }
+    shown
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::dialogs::picture;
+    use crate::console::test_kit::company;
+
+    #[test]
+    fn the_end_of_every_text_is_shown_in_the_smallest_window() {
+        let long = format!("{} stopped", "words of a reason ".repeat(60));
+        let texts = vec![("rationale".to_owned(), long), ("notes".to_owned(), "one\ntwo".to_owned())];
+        let dialog = Restore::new(texts);
+        for (width, height) in [(60, 13), (80, 21), (120, 37)] {
+            let shown = picture(&dialog, &company(), width, height);
+            for part in ["rationale", "stopped", "notes", "two", "restore"] {
+                assert!(shown.contains(part), "{part}\n{shown}");
+            }
+        }
+        assert_eq!(last_lines("aa bb cc dd", 5, 1), ["… dd"]);
+        assert_eq!(last_lines("a b", 9, 3), ["a b"]);
     }
 }

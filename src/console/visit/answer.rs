@@ -164,12 +164,13 @@ impl AnswerDraft {
         }
     }
 
-    /// Takes a key that is typed.
-    pub fn key(&mut self, key: &KeyEvent) {
+    /// Takes a key that is typed; why it does nothing, where that is not seen.
+    pub fn key(&mut self, key: &KeyEvent) -> Option<String> {
         let plain = !key.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT);
         match (&mut self.entered, key.code) {
             (Entered::Number(field), _) => {
-                field.number_key(key);
+                let expected = || self.due.question.form.value("").err().unwrap_or_default();
+                return (!field.number_key(key)).then(|| format!("type {}", expected()));
             }
             (Entered::Words(editor), _) => editor.key(key),
             (_, KeyCode::Char(letter)) if plain => {
@@ -179,6 +180,7 @@ impl AnswerDraft {
             }
             _ => {}
         }
+        None
     }
 
     /// Takes pasted text.

@@ -101,7 +101,12 @@ impl VisitPage {
                     "You can withdraw at any time ({palette} {}). That erases everything you did in this study.",
                     Action::Withdraw.entry().title
                 );
-                ("Session", vec![text(first), text(kept), text(&withdraw), strong(format!("{go} begins"))])
+                let pause = format!(
+                    "For a break, {} stops the clock: the screen is covered, and the time does not count.",
+                    key(Action::StopClock)
+                );
+                let goes = strong(format!("{go} {}", if *resumed { "goes on" } else { "begins" }));
+                ("Session", vec![text(first), text(kept), text(&pause), text(&withdraw), goes])
             }
             PageKind::Left => (
                 "Left",

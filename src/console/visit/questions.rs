@@ -11,6 +11,7 @@ use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::dialogs::{Dialog, Outcome};
 use crate::console::effect::Effect;
+use crate::console::keys::{Chord, Keys, written};
 use crate::console::request::{Request, VisitRequest};
 use crate::console::screens::Look;
 use crate::console::text::wrapped;
@@ -125,7 +126,11 @@ impl Dialog for QuestionPage {
     }
 
     fn hints(&self) -> Vec<Action> {
-        let mut hints = vec![Action::GoOn];
+        let mut hints = Vec::new();
+        // In words its first key begins a new line; the frame says which one goes on.
+        if !matches!(self.draft().entered, Entered::Words(_)) {
+            hints.push(Action::GoOn);
+        }
         if matches!(self.draft().entered, Entered::Several(..)) {
             hints.push(Action::MarkOption);
         }
@@ -133,7 +138,7 @@ impl Dialog for QuestionPage {
             hints.push(Action::GoBack);
         }
         if self.chooses() {
-            hints.push(Action::Quit);
+            hints.extend([Action::Quit, Action::Withdraw]);
         }
         hints
     }
@@ -159,10 +164,7 @@ impl Dialog for QuestionPage {
             KeyCode::Char('q') if self.chooses() && key.modifiers.is_empty() => {
                 return Outcome::with(vec![Effect::Do(Action::Quit)]);
             }
-            _ => {
-                self.problem = None;
-                self.drafts[self.at].key(key);
-            }
+            _ => self.problem = self.drafts[self.at].key(key),
         }
         Outcome::stay()
     }
@@ -236,8 +238,19 @@ impl QuestionPage {
             _ => key(Action::GoOn),
         };
         let what = if last { "sends the answers" } else { "goes on" };
-        let back = if self.at > 0 { format!(" · {} back", key(Action::GoBack)) } else { String::new() };
-        format!("{on} {what}{back}")
+        let mut words = vec![format!("{on} {what}")];
+        if matches!(self.draft().entered, Entered::Words(_)) {
+            words.push("enter new line".to_owned());
+        }
+        words.extend(self.way_out(look.keys).map(|key| format!("{key} leaves")));
+        words.join(" · ")
+    }
+
+    /// The key that leaves from here: where one types, none that is a letter.
+    fn way_out(&self, keys: &Keys) -> Option<String> {
+        let works =
+            |chords: &&[Chord]| self.chooses() || chords.first().is_some_and(|chord| !chord.is_text());
+        keys.chords(Action::Quit).find(works).map(written)
     }
 }
 

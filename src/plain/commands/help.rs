@@ -58,11 +58,27 @@ fn in_full(name: &str) -> Option<String> {
     Some(text.to_owned())
 }
 
-/// `help [NAME]`.
-pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers) -> Result<Answer, Problem> {
+/// Only participants of a study have it.
+const WITHDRAW: (&str, &str) =
+    ("withdraw", "withdraw                 erase everything you did in this study; asks once more");
+/// Not for participants of a study: refused in their runs.
+const NOT_LED: [&str; 3] = ["branch", "step", "xray"];
+
+/// The commands, for participants of a study or others.
+fn commands(led: bool) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let all = COMMANDS.iter().copied().filter(|(_, line)| !line.is_empty());
+    all.filter(move |(name, _)| !led || !NOT_LED.contains(name)).chain(led.then_some(WITHDRAW))
+}
+
+/// `help [NAME]`, for participants of a study or others.
+pub(super) fn help(
+    name: Option<&str>,
+    arguments: &[Argument],
+    numbers: &Numbers,
+    led: bool,
+) -> Result<Answer, Problem> {
     let Some(name) = name else {
-        let lines: Vec<&str> =
-            COMMANDS.iter().map(|(_, line)| *line).filter(|line| !line.is_empty()).collect();
+        let lines: Vec<&str> = commands(led).map(|(_, line)| line).collect();
         let tools: Vec<&str> = callable().collect();
         let text = format!(
             "{}\n\nEvery tool is a command too: {}\nFor instance: set_prices A=16 B=34 C=70\n\
@@ -77,8 +93,8 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers
     if let Some(text) = in_full(name) {
         return Ok(Answer::done("help", text.clone(), json!({ "command": text })));
     }
-    if let Some((_, line)) = COMMANDS.iter().find(|(command, line)| *command == name && !line.is_empty()) {
-        return Ok(Answer::done("help", (*line).to_owned(), json!({ "command": line })));
+    if let Some((_, line)) = commands(led).find(|(command, _)| *command == name) {
+        return Ok(Answer::done("help", line.to_owned(), json!({ "command": line })));
     }
     if tools::find(name).is_some() || tool_called(name).is_some() {
         return readings::tools(Some(name), arguments, numbers);
@@ -89,7 +105,7 @@ pub(super) fn help(name: Option<&str>, arguments: &[Argument], numbers: &Numbers
     if let Ok(found) = glossary::find(name) {
         return Ok(words::answer("help", found, numbers));
     }
-    let names = COMMANDS.iter().map(|(name, _)| *name).chain(callable());
+    let names = commands(led).map(|(name, _)| name).chain(callable());
     let names = names.chain(database::tables().iter().map(|table| table.name.as_str()));
     let where_to_look = "help lists the commands, glossary the terms";
     Err(problem(arguments, &not_there("nothing", name, nearest(name, names), where_to_look)))

@@ -58,6 +58,9 @@ fn in_words(report: &WeekReport) -> String {
     let change = signed_dollars(week.cash_change);
     let mut lines =
         vec![format!("week to day {}: cash change {change}, of which {}", week.day, parts.join(", "))];
+    if report.was_filed_at_limit() {
+        lines.push("the time for this week was over: it was filed with the naive projection".to_owned());
+    }
     if !report.decided.is_empty() {
         lines.push(format!("decided before it: {}", report.decided.join("; ")));
     }
@@ -78,7 +81,8 @@ fn in_words(report: &WeekReport) -> String {
         let (weeks, miss) =
             (due.forecast.horizon_days / 7, percent(due.error().unwrap_or_default().abs(), 1));
         let verdict = due.verdict().map_or("open", Verdict::word);
-        lines.push(format!("forecast from {weeks} weeks ago: {verdict} the interval, off by {miss}"));
+        let filed = if report.is_of_limit(due) { ", which the program filed at the time limit" } else { "" };
+        lines.push(format!("forecast from {weeks} weeks ago{filed}: {verdict} the interval, off by {miss}"));
     }
     lines.push(format!(
         "new: {}, {}, {}, {}, {}, {}",
@@ -127,6 +131,7 @@ fn as_data(report: &WeekReport) -> Value {
         "cash_change": report.week.cash_change,
         "parts": parts(&report.parts),
         "decided": report.decided,
+        "filed_at_limit": report.was_filed_at_limit(),
         "moves": report.moves.iter().map(moved).collect::<Vec<_>>(),
         "forecasts": report.due.iter().map(due).collect::<Vec<_>>(),
         "code": report.code,

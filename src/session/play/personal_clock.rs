@@ -90,6 +90,17 @@ impl TimeLeft {
             minutes => format!("{minutes} of {} min left for {scope}", self.minutes),
         }
     }
+
+    /// What happens when none is left, in words.
+    pub fn what_follows(&self, at_limit: AtLimit) -> &'static str {
+        match at_limit {
+            AtLimit::Remind => "then you are asked to come to an end",
+            AtLimit::Naive if self.scope == LimitScope::Week => {
+                "then the week is filed with the naive projection, and what you typed is not"
+            }
+            AtLimit::Naive | AtLimit::Pause => "then the clock is stopped",
+        }
+    }
 }
 
 #[cfg(test)]

@@ -145,16 +145,17 @@ impl Form {
                 Ok(point) if (1..=*points).contains(&point) => Ok(json!(point)),
                 _ => Err(format!("a number from 1 to {points}")),
             },
-            Form::Number { min, max, .. } => {
+            Form::Number { min, max, unit } => {
+                let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
                 let number = typed.replace('_', "").parse::<f64>().ok().filter(|number| number.is_finite());
                 let above = |number: &f64| min.is_none_or(|min| *number >= min);
                 let below = |number: &f64| max.is_none_or(|max| *number <= max);
                 number.filter(above).filter(below).map(|number| json!(number)).ok_or_else(|| {
                     match (min, max) {
-                        (Some(min), Some(max)) => format!("a number from {min} to {max}"),
-                        (Some(min), None) => format!("a number of at least {min}"),
-                        (None, Some(max)) => format!("a number of at most {max}"),
-                        (None, None) => "a number".to_owned(),
+                        (Some(min), Some(max)) => format!("a number from {min} to {max}{unit}"),
+                        (Some(min), None) => format!("a number of at least {min}{unit}"),
+                        (None, Some(max)) => format!("a number of at most {max}{unit}"),
+                        (None, None) => format!("a number{unit}"),
                     }
                 })
             }

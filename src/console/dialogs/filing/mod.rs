@@ -1,6 +1,7 @@
 //! What is filed before a week runs: review, rationale, forecasts. Three steps that can be walked back; what was
 //! typed stays until the week has run.
 
+mod forecasts;
 mod review;
 
 use crossterm::event::KeyEvent;
@@ -10,18 +11,17 @@ use self::review::Review;
 use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
 use crate::console::attention::BETWEEN_CELLS;
-use crate::console::canvas::{Align, Canvas, Click, centered, rows_of};
+use crate::console::canvas::{Canvas, centered, rows_of};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::request::Request;
 use crate::console::screens::Look;
 use crate::console::text::number;
 use crate::console::theme::Role;
-use crate::console::widgets::fan::draw_fan;
 use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::console::widgets::{Editor, Field};
-use crate::notation::{dollars, grouped, percent};
-use crate::session::{Bands, Forecasts};
+use crate::notation::grouped;
+use crate::session::Forecasts;
 use crate::tools::{Forecast, ToolId};
 
 /// Steps.
@@ -50,7 +50,16 @@ pub struct FilingDialog {
     problem: Option<String>,
     /// Tools whose forms hold values that were not sent.
     unsent: Vec<ToolId>,
+    /// Of a baseline run: the program writes no rationale.
+    baseline: bool,
 }
+
+/// What a rationale is asked for with. It has none of the words that are counted in rationales.
+const RATIONALE_QUESTION: &str = "Why these decisions, and what will come of them?";
+/// Said where one is missing.
+const RATIONALE_NEEDED: &str = "a rationale is required: write at least one sentence";
+/// What an empty rationale shows. It has none of the words that are counted in rationales.
+const RATIONALE_HINT: &str = "what you changed, and your reasons";
 
 /// Weeks of the horizons, in words.
 const HORIZONS: [&str; 4] = ["1 week", "4 weeks", "12 weeks", "26 weeks"];
@@ -69,14 +78,15 @@ impl Default for FilingDialog {
             filled: Default::default(),
             problem: None,
             unsent: Vec::new(),
+            baseline: false,
         }
     }
 }
 
 impl FilingDialog {
     /// Goes back to the first step; drafts stay. Warns of forms whose values were not sent.
-    pub fn reopen(&mut self, unsent: Vec<ToolId>) {
-        self.unsent = unsent;
+    pub fn reopen(&mut self, unsent: Vec<ToolId>, baseline: bool) {
+        (self.unsent, self.baseline) = (unsent, baseline);
         self.step = FilingStep::Review;
         self.review = Review::default();
         self.problem = None;
@@ -125,8 +135,7 @@ impl FilingDialog {
         match self.step {
             FilingStep::Review => self.step = FilingStep::Rationale,
             FilingStep::Rationale if self.rationale.is_blank() => {
-                self.problem =
-                    Some("a rationale is required: one sentence on what you expect and why".to_owned());
+                self.problem = Some(RATIONALE_NEEDED.to_owned());
             }
             FilingStep::Rationale => self.step = FilingStep::Forecasts,
             FilingStep::Forecasts => match self.forecasts(look.company) {
@@ -266,7 +275,7 @@ impl Dialog for FilingDialog {
     }
 
     fn hints(&self) -> Vec<Action> {
-        match self.step {
+        let mut hints = match self.step {
             FilingStep::Review => vec![Action::NextStep, Action::FillNaively, Action::Close],
             FilingStep::Rationale => {
                 vec![Action::NextStep, Action::PreviousStep, Action::FillRationale, Action::LeaveEditor]
@@ -277,7 +286,14 @@ impl Dialog for FilingDialog {
             FilingStep::Forecasts => {
                 vec![Action::NextStep, Action::FillNaively, Action::PreviousStep, Action::Close]
             }
+        };
+        if self.baseline {
+            let filled = self.step == FilingStep::Forecasts;
+            hints.retain(|action| {
+                *action != Action::FillRationale && (filled || *action != Action::FillNaively)
+            });
         }
+        hints
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
@@ -299,6 +315,9 @@ impl Dialog for FilingDialog {
                 self.fill_rationale(look.company);
                 self.fill_naively(look.company);
                 self.step = FilingStep::Forecasts;
+            }
+            Action::FillNaively if self.step == FilingStep::Review => {
+                self.problem = Some("forecasts can be filled in at step 3".to_owned());
             }
             Action::Discard => {
                 self.typing = false;
@@ -380,18 +399,13 @@ impl Dialog for FilingDialog {
         match self.step {
             FilingStep::Review => self.review.draw(canvas, body, look.company, &self.unsent),
             FilingStep::Rationale => self.draw_rationale(canvas, body, look.company),
-            FilingStep::Forecasts => self.draw_forecasts(canvas, body, look.company),
+            FilingStep::Forecasts => self.draw_forecasts(canvas, body, look),
         }
         if let Some(problem) = &self.problem {
             let row = Rect { y: body.bottom(), height: 1, ..body };
             canvas.text(row, &format!("! {problem}"), Role::Bad);
         }
-        let mut actions = self.hints();
-        if look.company.is_baseline() {
-            actions.retain(|action| *action != Action::FillRationale);
-            actions.retain(|action| *action != Action::FillNaively || self.step == FilingStep::Forecasts);
-        }
-        canvas.pane_keys(own, &look.hints(&actions));
+        canvas.pane_keys(own, &look.hints(&self.hints()));
     }
 }
 
@@ -402,92 +416,27 @@ impl FilingDialog {
         } else {
             "It is kept with the run."
         };
-        canvas.text(area, &format!("Why these decisions, and what do you expect? {why}"), Role::Text);
-        let editor = Rect { y: area.y + 2, height: area.height.saturating_sub(2), ..area };
-        self.rationale.draw(
-            canvas,
-            editor,
-            true,
-            "for example: raised C to $60 because margins are thin; expect fewer upgrades",
-        );
-    }
-
-    fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
-        let mut rows = rows_of(area);
-        let now = dollars(company.seen.cash);
-        let question = match area.width {
-            0..90 => format!("Cash now {now}. Aim for 95 % between low and high."),
-            _ => format!(
-                "Cash now {now}. What will it be? Between low and high you should be right 95 % of the time."
-            ),
-        };
-        if let Some(row) = rows.next() {
-            canvas.text(row, &question, Role::Text);
+        let used = 3;
+        for (row, (line, role)) in rows_of(area).zip([(RATIONALE_QUESTION, Role::Text), (why, Role::Dim)]) {
+            canvas.text(row, line, role);
         }
-        if let Some(row) = rows.next() {
-            for (at, title) in ["low", "point", "high"].into_iter().enumerate() {
-                canvas.aligned(cell_area(row, at), title, Role::Header, Align::Right);
-            }
-            let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
-            let title = if record.width < 18 { "so far" } else { "your record so far" };
-            if company.shows_calibration() {
-                canvas.text(record, title, Role::Header);
-            }
-        }
-        for (at, row) in rows.by_ref().take(4).enumerate() {
-            self.draw_horizon(canvas, row, at, company);
-        }
-        if self.filled.as_flattened().contains(&true)
-            && let Some(row) = rows.next()
-        {
-            let words = "naive: four-week mean of income and usage at the costs set now (recorded)";
-            canvas.text(row, words, Role::Text);
-            if let Some(row) = rows.next().filter(|_| area.height >= 12) {
-                canvas.text(row, &Bands::shipped().coverage_in_words(), Role::Dim);
-            }
-        }
-        let used = if area.height >= 12 { 8 } else { 7 };
-        let left = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
-        if let Ok(forecasts) = self.forecasts(company) {
-            draw_fan(canvas, left, company, company.seen.day, &forecasts.all);
-        }
-    }
-
-    fn draw_horizon(&self, canvas: &mut Canvas<'_>, row: Rect, at: usize, company: &Company) {
-        canvas.text(Rect { width: 9.min(row.width), ..row }, HORIZONS[at], Role::Text);
-        for (column, field) in self.cells[at].iter().enumerate() {
-            let place = cell_area(row, column).intersection(row);
-            let here = self.at == (at, column);
-            if here && self.typing {
-                field.draw(canvas, place);
-                continue;
-            }
-            let role = if here { Role::Selection } else { Role::Field };
-            canvas.clear(place, role);
-            let text = if field.is_empty() { "–" } else { field.text() };
-            canvas.aligned(place, text, role, Align::Right);
-            canvas.click(place, Click::Row(0, at * 3 + column));
-        }
-        if !company.shows_calibration() {
-            return;
-        }
-        let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
-        let text = match company.scores.get(at) {
-            Some(score) if score.scored > 0 && record.width < 36 => {
-                format!("{} of {}", score.covered, score.scored)
-            }
-            Some(score) if score.scored > 0 => format!(
-                "inside {} of {} · typical miss {}",
-                score.covered,
-                score.scored,
-                percent(score.mean_error, 1)
-            ),
-            _ => "–".to_owned(),
-        };
-        canvas.text(record, &text, Role::Dim);
+        let editor = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
+        self.rationale.draw(canvas, editor, true, RATIONALE_HINT);
     }
 }
 
-fn cell_area(row: Rect, column: usize) -> Rect {
-    Rect { x: row.x + 10 + column as u16 * 16, width: 14, ..row }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::measures::PLANNING_WORDS;
+
+    #[test]
+    fn nothing_that_asks_for_a_rationale_says_a_word_that_is_counted_in_it() {
+        for said in [RATIONALE_QUESTION, RATIONALE_HINT, RATIONALE_NEEDED] {
+            let words = said.to_lowercase();
+            let words = words.split(|letter: char| !letter.is_alphabetic());
+            let counted: Vec<&str> = words.filter(|word| PLANNING_WORDS.contains(word)).collect();
+            assert_eq!(counted, Vec::<&str>::new(), "{said}");
+        }
+    }
 }

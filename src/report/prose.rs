@@ -1,0 +1,300 @@
+//! A text that was written with the simplest marks of Markdown, for screens: headings, lists, strong words, quotes, blocks
+//! that stay as they are. Line breaks of the source are blanks; every word of it is kept.
+
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
+
+/// How a piece of a line is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Face {
+    /// As text.
+    Text,
+    /// Emphasised.
+    Strong,
+    /// A heading.
+    Heading,
+}
+
+/// A line of a screen, in pieces.
+pub type ProseLine = Vec<(String, Face)>;
+
+/// What the source consists of.
+#[derive(Debug, PartialEq)]
+enum Passage {
+    Heading(String),
+    Paragraph(String),
+    /// What stands before an item, and the item.
+    Item(String, String),
+    Quote(String),
+    /// A line that stays as it is.
+    Verbatim(String),
+    Blank,
+}
+
+/// The text in lines of at most so many columns.
+pub fn laid_out(text: &str, width: usize) -> Vec<ProseLine> {
+    let width = width.max(1);
+    let mut lines: Vec<ProseLine> = Vec::new();
+    for block in blocks(text) {
+        match block {
+            Passage::Heading(text) => {
+                let shown = faced(&text).into_iter().map(|(letter, _)| (letter, Face::Heading)).collect();
+                lines.extend(filled(shown, "", "", width));
+            }
+            Passage::Paragraph(text) => lines.extend(filled(faced(&text), "", "", width)),
+            Passage::Item(mark, text) => {
+                let beside = " ".repeat(mark.width());
+                lines.extend(filled(faced(&text), &mark, &beside, width));
+            }
+            Passage::Quote(text) => lines.extend(filled(faced(&text), "  ", "  ", width)),
+            Passage::Verbatim(text) => {
+                let letters = text.chars().map(|letter| (letter, Face::Text)).collect();
+                lines.extend(match text.width() <= width {
+                    true => vec![vec![(text, Face::Text)]],
+                    false => filled(letters, "", "", width),
+                });
+            }
+            Passage::Blank => lines.push(Vec::new()),
+        }
+    }
+    lines
+}
+
+/// The same without any marks, in lines of at most so many columns.
+pub fn as_plain(text: &str, width: usize) -> String {
+    let line = |line: ProseLine| line.into_iter().map(|(piece, _)| piece).collect::<String>();
+    laid_out(text, width).into_iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+fn blocks(text: &str) -> Vec<Passage> {
+    let mut blocks: Vec<Passage> = Vec::new();
+    let mut fenced = false;
+    // The line before ended a block.
+    let mut ends = true;
+    for line in text.lines() {
+        let (bare, indent) = (line.trim(), line.len() - line.trim_start().len());
+        if bare.starts_with("```") {
+            (fenced, ends) = (!fenced, true);
+            continue;
+        }
+        let broken = line.ends_with("  ") || bare.ends_with('\\');
+        let said = bare.strip_suffix('\\').unwrap_or(bare).trim_end();
+        let fresh = match kind_of(bare, indent) {
+            _ if fenced => Some(Passage::Verbatim(line.trim_end().to_owned())),
+            Some(block) => Some(block),
+            None => match blocks.last_mut().filter(|_| !ends) {
+                Some(Passage::Paragraph(text) | Passage::Item(_, text) | Passage::Quote(text)) => {
+                    text.push(' ');
+                    text.push_str(said);
+                    None
+                }
+                _ if indent >= 4 => Some(Passage::Verbatim(line.trim_end().to_owned())),
+                _ => Some(Passage::Paragraph(said.to_owned())),
+            },
+        };
+        match (fresh, blocks.last_mut()) {
+            (None, _) => {}
+            (Some(Passage::Blank), None | Some(Passage::Blank)) => {}
+            (Some(Passage::Quote(more)), Some(Passage::Quote(text))) if !ends => {
+                text.push(' ');
+                text.push_str(&more);
+            }
+            (Some(block), last) => {
+                // A list, or a heading, stands apart from the text around it.
+                let apart = match (last.as_deref(), &block) {
+                    (None | Some(Passage::Blank), _) | (_, Passage::Blank) => false,
+                    (Some(Passage::Heading(_)), _) | (_, Passage::Heading(_)) => true,
+                    (Some(Passage::Item(..)), Passage::Paragraph(_)) => true,
+                    _ => false,
+                };
+                if apart {
+                    blocks.push(Passage::Blank);
+                }
+                blocks.push(block);
+            }
+        }
+        ends = broken
+            || matches!(
+                blocks.last(),
+                Some(Passage::Heading(_) | Passage::Verbatim(_) | Passage::Blank) | None
+            );
+    }
+    while blocks.last() == Some(&Passage::Blank) {
+        blocks.pop();
+    }
+    blocks
+}
+
+/// What a line begins, going by its first letters; none where it is ordinary text.
+fn kind_of(bare: &str, indent: usize) -> Option<Passage> {
+    if bare.is_empty() {
+        return Some(Passage::Blank);
+    }
+    let marks = bare.chars().take_while(|letter| *letter == '#').count();
+    if let (1..=6, Some(text)) = (marks, bare[marks..].strip_prefix(' ')) {
+        return Some(Passage::Heading(text.trim().trim_end_matches('#').trim_end().to_owned()));
+    }
+    if bare.len() >= 3 && ["-", "*", "_", "="].iter().any(|rule| bare.replace(rule, "").trim().is_empty()) {
+        // A rule, or the line under a heading: it says nothing.
+        return Some(Passage::Blank);
+    }
+    if bare.starts_with('|') {
+        return Some(Passage::Verbatim(bare.to_owned()));
+    }
+    if let Some(text) = bare.strip_prefix("> ") {
+        return Some(Passage::Quote(text.trim().to_owned()));
+    }
+    let margin = " ".repeat(indent.min(8));
+    if let Some(text) = ["- ", "* ", "+ "].iter().find_map(|mark| bare.strip_prefix(mark)) {
+        return Some(Passage::Item(format!("{margin}· "), text.trim().to_owned()));
+    }
+    let digits = bare.chars().take_while(char::is_ascii_digit).count();
+    let numbered = (1..=3).contains(&digits).then(|| bare[digits..].strip_prefix(". ")).flatten();
+    numbered.map(|text| Passage::Item(format!("{margin}{}. ", &bare[..digits]), text.trim().to_owned()))
+}
+
+/// The letters of a text without its marks, each with its face.
+fn faced(text: &str) -> Vec<(char, Face)> {
+    let letters: Vec<char> = text.chars().collect();
+    let mut found = Vec::new();
+    let mut at = 0;
+    while at < letters.len() {
+        let rest = &letters[at..];
+        if rest[0] == '\\' && rest.get(1).is_some_and(char::is_ascii_punctuation) {
+            found.push((rest[1], Face::Text));
+            at += 2;
+            continue;
+        }
+        let before = at.checked_sub(1).map(|before| letters[before]);
+        match marked(rest, before) {
+            Some((inner, taken)) => {
+                found.extend(inner.iter().map(|letter| (*letter, Face::Strong)));
+                at += taken;
+            }
+            None => {
+                found.push((rest[0], Face::Text));
+                at += 1;
+            }
+        }
+    }
+    found
+}
+
+/// The letters between two equal marks at the beginning of a text, and how many letters they take with the marks.
+fn marked(rest: &[char], before: Option<char>) -> Option<(&[char], usize)> {
+    const MARKS: [&[char]; 5] = [&['*', '*'], &['_', '_'], &['*'], &['_'], &['`']];
+    let mark = MARKS.into_iter().find(|mark| rest.starts_with(mark))?;
+    let inner = &rest[mark.len()..];
+    let opens = inner.first().is_some_and(|letter| !letter.is_whitespace());
+    // A name like `filled_naively` has no mark in it.
+    let in_word = mark[0] == '_' && before.is_some_and(char::is_alphanumeric);
+    if !opens || in_word {
+        return None;
+    }
+    let closes = |at: &usize| {
+        let after = inner.get(at + mark.len());
+        inner[*at..].starts_with(mark)
+            && !inner[at - 1].is_whitespace()
+            && (mark[0] == '`' || after != Some(&mark[0]))
+            && (mark[0] != '_' || after.is_none_or(|letter| !letter.is_alphanumeric()))
+    };
+    let end = (1..inner.len()).find(closes)?;
+    Some((&inner[..end], end + 2 * mark.len()))
+}
+
+/// Letters in lines, broken between words where that is possible: `first` stands before the first line, `next` before
+/// the others.
+fn filled(letters: Vec<(char, Face)>, first: &str, next: &str, width: usize) -> Vec<ProseLine> {
+    let width_of =
+        |word: &[(char, Face)]| word.iter().map(|(letter, _)| letter.width().unwrap_or(0)).sum::<usize>();
+    let room = width.saturating_sub(first.width()).max(1);
+    let mut rows: Vec<Vec<(char, Face)>> = vec![Vec::new()];
+    let words = letters.split(|(letter, _)| letter.is_whitespace()).filter(|word| !word.is_empty());
+    for word in words {
+        let row = rows.last_mut().filter(|row| !row.is_empty());
+        match row {
+            Some(row) if width_of(row) + 1 + width_of(word) <= room => {
+                // Between two words of a face the blank has it, too.
+                let face = row.last().map(|(_, face)| *face).filter(|face| *face == word[0].1);
+                row.push((' ', face.unwrap_or(Face::Text)));
+                row.extend(word);
+                continue;
+            }
+            Some(_) => rows.push(Vec::new()),
+            None => {}
+        }
+        for letter in word {
+            if rows.last().is_some_and(|row| !row.is_empty() && width_of(row) + width_of(&[*letter]) > room) {
+                rows.push(Vec::new());
+            }
+            rows.extend(rows.is_empty().then(Vec::new));
+            if let Some(row) = rows.last_mut() {
+                row.push(*letter);
+            }
+        }
+    }
+    let line = |(at, row): (usize, Vec<(char, Face)>)| {
+        let before = if at == 0 { first } else { next };
+        let mut line: ProseLine = Vec::new();
+        if !before.is_empty() {
+            line.push((before.to_owned(), Face::Text));
+        }
+        for (letter, face) in row {
+            match line.last_mut() {
+                Some((piece, own)) if *own == face => piece.push(letter),
+                _ => line.push((letter.to_string(), face)),
+            }
+        }
+        line
+    };
+    rows.into_iter().enumerate().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CONSENT: &str = "# Taking part\n\nYou run **four simulated\nweeks** of a company. Names like filled_naively\nand 3 * 4 \
+                           stay.\n- one *thing*\n  that goes on\n- `withdraw` erases it\n1. first\n\n> said\n> twice\n\n    as it   \
+                           is\n```\n# no heading\n```\nSigned: A\\_B  \nNext line\n";
+
+    #[test]
+    fn headings_lists_and_strong_words_are_shown_as_such() {
+        assert_eq!(
+            as_plain(CONSENT, 40),
+            "Taking part\n\nYou run four simulated weeks of a\ncompany. Names like filled_naively and 3\n* 4 stay.\n\
+             · one thing that goes on\n· withdraw erases it\n1. first\n\n  said twice\n\n    as it   is\n# no heading\n\
+             Signed: A_B\nNext line"
+        );
+        let lines = laid_out(CONSENT, 40);
+        assert_eq!(lines[0], [("Taking part".to_owned(), Face::Heading)]);
+        let (text, strong) = (Face::Text, Face::Strong);
+        let third = [("You run ", text), ("four simulated weeks", strong), (" of a", text)];
+        assert_eq!(lines[2], third.map(|(piece, face)| (piece.to_owned(), face)));
+    }
+
+    #[test]
+    fn no_word_is_lost_and_no_line_too_wide_at_any_width() {
+        let bare = |text: &str| text.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>();
+        for text in [
+            CONSENT,
+            "**open",
+            "a ** b",
+            "*",
+            "`",
+            "__",
+            "# ",
+            "#none",
+            "- ",
+            "日本語の同意書です。 **同意**",
+            "\\",
+        ] {
+            for width in 1..60 {
+                let shown = as_plain(text, width);
+                assert_eq!(bare(&shown), bare(text), "{width}: {shown}");
+                // A mark of a list and one letter of two columns are the least there can be.
+                let widest = shown.lines().map(UnicodeWidthStr::width).max().unwrap_or(0);
+                assert!(widest <= width.max(6), "{width}: {shown}");
+            }
+        }
+    }
+}

@@ -161,19 +161,16 @@ impl App {
     /// What a request sends is a draft no more.
     pub(super) fn send_texts(&mut self, request: &Request) {
         match request {
-            Request::Advance { .. } => {
-                self.leave_filing(DraftOutcome::Sent);
-                return;
-            }
-            Request::SetMemo(_) => [self.end_text("notes", DraftOutcome::Sent); 2],
+            Request::Advance { .. } => self.leave_filing(DraftOutcome::Sent),
+            Request::SetMemo(_) => self.end_text("notes", DraftOutcome::Sent),
             Request::Call { tool, .. } => {
                 if *tool == ToolId::PostSocialMedia {
                     self.end_text("post", DraftOutcome::Sent);
                 }
-                [self.end_text(&format!("form {tool}"), DraftOutcome::Sent); 2]
+                self.end_text(&format!("form {tool}"), DraftOutcome::Sent);
             }
-            _ => return,
-        };
+            _ => {}
+        }
     }
 
     /// What was typed before a week was sent or left.

@@ -43,7 +43,7 @@ pause REASON              the same with a reason, which is recorded, for instanc
 Time that the clock stands counts as no playing time.";
 
 /// The explanation of a command that has one of its own.
-fn in_full(name: &str) -> Option<String> {
+fn in_full(name: &str, led: bool) -> Option<String> {
     let text = match name {
         "inbox" | "thread" => inbox::IN_FULL,
         "rules" => rules::IN_FULL,
@@ -52,7 +52,7 @@ fn in_full(name: &str) -> Option<String> {
         "leads" => LEADS,
         "check" => CHECK,
         "pause" => PAUSE,
-        _ if NEXT.contains(&name) => return Some(next_in_full()),
+        _ if NEXT.contains(&name) => return Some(next_in_full(led)),
         _ => return None,
     };
     Some(text.to_owned())
@@ -90,7 +90,7 @@ pub(super) fn help(
         );
         return Ok(Answer::done("help", text, json!({ "commands": lines, "tools": tools })));
     };
-    if let Some(text) = in_full(name) {
+    if let Some(text) = in_full(name, led) {
         return Ok(Answer::done("help", text.clone(), json!({ "command": text })));
     }
     if let Some((_, line)) = commands(led).find(|(command, _)| *command == name) {
@@ -111,17 +111,20 @@ pub(super) fn help(
     Err(problem(arguments, &not_there("nothing", name, nearest(name, names), where_to_look)))
 }
 
-/// The forms of the command that runs a week, and what its naive forecasts are worth.
-fn next_in_full() -> String {
-    format!(
-        "next \"WHY\" naive                         naive forecasts\n\
-         next \"WHY\" P L U  P L U  P L U  P L U    point, lower, upper of cash in 1, 4, 12 and 26 weeks\n\
-         next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": {{\"point\": 950000, \"lower\": 900000, \
-         \"upper\": 990000}}, \"cash_4wk\": …, \"cash_12wk\": …, \"cash_26wk\": …}}}}\n\
-         next                                     asks, at a terminal\n\
-         Naive forecasts: income, compute and lead costs go on as in the last four weeks, at the costs set now. {}.",
-        Bands::shipped().coverage_in_words()
-    )
+/// The forms of the command that runs a week, and what its naive forecasts are worth; participants of a study are not
+/// told how other companies did.
+fn next_in_full(led: bool) -> String {
+    let forms = "\
+next \"WHY\" naive                         naive forecasts
+next \"WHY\" P L U  P L U  P L U  P L U    point, lower, upper of cash in 1, 4, 12 and 26 weeks
+next_week {\"rationale\": \"WHY\", \"predictions\": {\"cash_1wk\": {\"point\": 950000, \"lower\": 900000, \"upper\": 990000}, \
+\"cash_4wk\": …, \"cash_12wk\": …, \"cash_26wk\": …}}
+next                                     asks, at a terminal
+Naive forecasts: income, compute and lead costs go on as in the last four weeks, at the costs set now.";
+    match led {
+        true => forms.to_owned(),
+        false => format!("{forms} {}.", Bands::shipped().coverage_in_words()),
+    }
 }
 
 fn callable() -> impl Iterator<Item = &'static str> {

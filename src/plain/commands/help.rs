@@ -150,10 +150,10 @@ mod tests {
     #[test]
     fn commands_are_explained_with_an_example() {
         for name in ["inbox", "thread", "needs", "fit", "leads", "check", "pause", "rules", "next"] {
-            let told = help(Some(name), &[], &Numbers::shipped()).expect("help").as_text();
+            let told = help(Some(name), &[], &Numbers::shipped(), false).expect("help").as_text();
             assert!(told.lines().count() > 1, "{name}: {told}");
         }
-        let told = help(Some("needs"), &[], &Numbers::shipped()).expect("help").as_text();
+        let told = help(Some("needs"), &[], &Numbers::shipped(), false).expect("help").as_text();
         assert!(told.contains("Urgent ones come first"), "{told}");
     }
 
@@ -161,7 +161,7 @@ mod tests {
     fn what_is_unknown_is_answered_with_where_the_list_is() {
         let numbers = Numbers::shipped();
         for (told, list) in [
-            (help(Some("zzzzzzz"), &[], &numbers), "help lists the commands"),
+            (help(Some("zzzzzzz"), &[], &numbers, false), "help lists the commands"),
             (readings::tools(Some("foo"), &[], &numbers), "tools lists them"),
             (readings::tables(Some("leger"), &[]), "did you mean ledger? tables lists them"),
         ] {
